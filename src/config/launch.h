@@ -1,0 +1,96 @@
+// A launch file as one struct with defaults, and how to read it. Every error says file:line:column, the field,
+// what was found and what is allowed. Unknown keys are errors.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/region_map.h"
+#include "core/scene.h"
+
+namespace aurasim::config {
+
+enum class Sync { kFreeRunning, kBounded, kDeterministic };
+enum class Pace { kWall, kNone };
+enum class AuraRadius { kNone, kThesis, kTight, kSwept };
+enum class Discovery { kMulticast, kPeers, kServer };
+
+struct Time {
+  double step_hz = 60;
+  int substeps = 4;
+  Sync sync = Sync::kBounded;
+  std::optional<int> lookahead;  ///< K; nothing: from the tolerances
+  Pace pace = Pace::kWall;
+};
+
+struct Tolerances {
+  double speed_m_s = 32;
+  double latency_s = 0.002;
+  double frame_s = 0.015;
+};
+
+struct Aura {
+  AuraRadius radius = AuraRadius::kSwept;
+  double uncertainty = 0.5;  ///< U of DESIGN section 3
+};
+
+struct Physics {
+  std::string precision = "double";  ///< or "single"
+  std::string solver = "sequential_impulse";
+  int iterations = 10;
+};
+
+struct Dds {
+  int domain = 0;
+  std::filesystem::path profiles;  ///< absolute, once read
+  Discovery discovery = Discovery::kMulticast;
+  std::vector<std::string> interfaces = {"127.0.0.1"};
+  std::vector<std::string> peers;  ///< for Discovery::kPeers and kServer: "address" or "address:port"
+};
+
+struct Observe {
+  double tick_hz = 20;
+};
+
+struct Launch {
+  std::filesystem::path file;  ///< absolute
+  std::filesystem::path scene_file;
+  core::Scene scene;
+  core::RegionMap regions = core::RegionMap::columns(1, 1);
+  double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other; at least the zone
+  Time time;
+  Tolerances tolerances;
+  Aura aura;
+  Physics physics;
+  Dds dds;
+  Observe observe;
+
+  double step_s() const { return 1.0 / time.step_hz; }
+  /// K of DESIGN section 2.
+  int lookahead() const;
+  /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
+  std::uint64_t agreement() const;
+};
+
+/// Everything that is wrong with a file, one message a line, each "file:line:column: field: ...".
+class BadConfig : public std::runtime_error {
+ public:
+  explicit BadConfig(std::vector<std::string> errors);
+  const std::vector<std::string>& errors() const { return errors_; }
+
+ private:
+  std::vector<std::string> errors_;
+};
+
+/// Reads and validates a launch file and the scene it names. `overrides` are "key.path=value" as in --set; their
+/// errors name the override. Throws BadConfig with every error found, not only the first.
+Launch read_launch(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Reads and validates a scene file alone.
+core::Scene read_scene(const std::filesystem::path& file);
+
+}  // namespace aurasim::config

@@ -1,0 +1,98 @@
+// The state of bodies: what the protocol looks at each step, and what a hand-off carries.
+// World frame W: right-handed, z up, metres, seconds, kilograms, radians. B is a body's own frame.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+struct Pose {
+  Vec3 p_WB = Vec3::Zero();
+  Quat q_WB = Quat::Identity();
+};
+
+/// One body in one state, as the protocol sees it.
+struct BodyState {
+  BodyId id{};
+  Epoch epoch = 0;
+  PrototypeId prototype{};
+  bool awake = true;
+  /// First state in which the body exists. Later than the snapshot's step for a body announced but not yet there.
+  Step birth = 0;
+  Pose pose;
+  Vec3 v_WB = Vec3::Zero();  ///< m/s
+  Vec3 w_WB = Vec3::Zero();  ///< rad/s
+};
+
+/// Two bodies of one node in contact or within Bullet's contact margin. Indices into Snapshot::bodies, a < b.
+struct Contact {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// All bodies of one node in state `step`, in ascending order of id; never changed after it was taken.
+struct Snapshot {
+  Step step = 0;
+  std::vector<BodyState> bodies;
+  std::vector<Contact> contacts;  ///< between bodies, not with statics
+  std::vector<Contact> joints;    ///< pairs of bodies held together by a joint
+};
+
+/// Full dynamic state of one body: what has to travel for the next state to come out the same to the last bit.
+/// The rotation is a matrix because that is what Bullet integrates; a quaternion would round it.
+struct BodyRecord {
+  BodyId id{};
+  Epoch epoch = 0;
+  PrototypeId prototype{};
+  Step birth = 0;
+  std::int32_t activation_state = 1;  ///< Bullet's: 1 active, 2 sleeping, 3 wants to sleep, 4 never sleeps, 5 disabled
+  double deactivation_time = 0;       ///< s below the sleeping thresholds
+  Vec3 p_WB = Vec3::Zero();
+  Mat3 R_WB = Mat3::Identity();
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+};
+
+/// Either end of a manifold: a body (>= 0, its id) or a static (< 0, -1 - its id).
+using ObjectRef = std::int64_t;
+constexpr ObjectRef ref_of(BodyId id) { return static_cast<ObjectRef>(value_of(id)); }
+constexpr ObjectRef ref_of(StaticId id) { return -1 - static_cast<ObjectRef>(value_of(id)); }
+
+/// One pair's contact cache. Its points are `point_count` rows of ClusterState::points from row `first_point` on.
+struct ManifoldRecord {
+  ObjectRef object0 = 0;  ///< Bullet's body0; the order matters
+  ObjectRef object1 = 0;
+  std::uint32_t first_point = 0;
+  std::uint32_t point_count = 0;
+};
+
+/// Accumulated state of one joint: `value_count` entries of ClusterState::joint_values from `first_value` on.
+struct JointRecord {
+  JointId id{};
+  std::uint32_t first_value = 0;
+  std::uint32_t value_count = 0;
+};
+
+/// Doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
+inline constexpr std::size_t kContactPointDoubles = 50;
+
+/// Bodies that move together, with everything that physics remembers about them.
+struct ClusterState {
+  std::vector<BodyRecord> bodies;         ///< ascending id
+  std::vector<ManifoldRecord> manifolds;  ///< ascending (object0, object1)
+  std::vector<double> points;             ///< rows of kContactPointDoubles
+  std::vector<JointRecord> joints;
+  std::vector<double> joint_values;
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,116 @@
+// What nodes say to each other (DESIGN section 7). Plain values: the transport decides how they travel.
+// Every message carries the step it describes (its stamp) and the generation of the run.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+/// Why an aura is in a batch, as bits.
+enum AuraFlags : std::uint8_t {
+  kAuraAsleep = 1,  ///< does not move until the next update; its state is as fresh as its source's last batch
+  kAuraGhost = 2,   ///< handed to `host` at the aura's stamp; the source guards it until the new host can
+  kAuraAll = 3,
+};
+
+/// One body that may meet bodies of other regions: where it is, how it moves, how fast its cluster can be.
+struct AuraRecord {
+  BodyId id{};
+  Epoch epoch = 0;
+  RegionId host{};
+  PrototypeId prototype{};
+  std::uint8_t flags = 0;
+  Step stamp = 0;  ///< the state this describes; equals the batch's stamp except for ghosts
+  Step birth = 0;  ///< later than stamp: the body appears in that state
+  Pose pose;
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+  double speed_m_s = 0;  ///< no body of its cluster is faster (core/aura.h)
+};
+
+/// Sequence number of the last hand-off sent to `destination` up to a batch's stamp.
+struct HandOffMark {
+  RegionId destination{};
+  std::uint64_t last_sequence = 0;
+};
+
+struct BodyEpoch {
+  BodyId id{};
+  Epoch epoch = 0;
+};
+
+/// One per node and step, even when nothing changed: it also says "this step is done".
+struct AuraBatch {
+  RegionId source{};
+  Generation generation = 0;
+  Step stamp = 0;
+  std::uint64_t map_version = 0;
+  bool full = false;  ///< `updates` is the whole set; forget what was known of this source
+  double top_speed_m_s = 0;
+  double top_radius_m = 0;
+  std::uint64_t violations = 0;  ///< broken promises counted by the source so far
+  std::vector<AuraRecord> updates;
+  std::vector<BodyId> deletes;
+  std::vector<HandOffMark> hand_offs;
+  std::vector<RegionId> dead;      ///< regions that the source holds for dead
+  std::vector<BodyEpoch> claims;   ///< bodies adopted from regions now dead, so that nobody takes them back
+};
+
+enum class HandOffReason : std::uint8_t {
+  kAuraCollision = 0,      ///< AC
+  kBoundaryTraversal = 1,  ///< BT
+};
+
+/// One cluster on its way to a new host. `sequence` counts from 1 for each (source, destination).
+struct HandOff {
+  RegionId source{};
+  RegionId destination{};
+  Generation generation = 0;
+  Step stamp = 0;
+  std::uint64_t map_version = 0;
+  std::uint64_t sequence = 0;
+  HandOffReason reason = HandOffReason::kAuraCollision;
+  ClusterState cluster;  ///< each body's epoch is already the new one
+};
+
+/// "I have adopted these": answers every copy of a hand-off. `source` is the region that adopted.
+struct HandOffAck {
+  RegionId source{};
+  RegionId destination{};
+  Generation generation = 0;
+  Step stamp = 0;
+  std::uint64_t sequence = 0;  ///< of the hand-off it answers
+};
+
+enum class PeerChange : std::uint8_t { kLost, kJoined };
+
+/// The transport's word that a neighbour's liveliness ended or came (back).
+struct PeerEvent {
+  RegionId region{};
+  PeerChange change = PeerChange::kLost;
+};
+
+/// What a transport delivered since the last look, in order of arrival.
+struct Inbox {
+  std::vector<AuraBatch> auras;
+  std::vector<HandOff> hand_offs;
+  std::vector<HandOffAck> acks;
+  std::vector<PeerEvent> peers;
+
+  void clear();
+};
+
+/// What one step of one node says. The aura batch goes to every neighbour, the rest to its destination.
+struct Outbox {
+  AuraBatch aura;
+  std::vector<HandOff> hand_offs;
+  std::vector<HandOffAck> acks;
+
+  void clear();
+};
+
+}  // namespace aurasim::core

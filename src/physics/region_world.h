@@ -1,0 +1,98 @@
+// One region's Bullet world, set up so that the same bodies take the same path, to the last bit, whichever worlds
+// they visit on the way (DESIGN section 6). No Bullet header is needed to use it: the two precisions are two
+// libraries behind this one header.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/clearance.h"
+#include "core/ids.h"
+#include "core/scene.h"
+
+namespace aurasim::physics {
+
+struct Settings {
+  double step_s = 1.0 / 60;
+  int substeps = 4;
+  int solver_iterations = 10;
+};
+
+/// The first contact of a pair, seen before the solver acts on it.
+struct Collision {
+  core::Step step = 0;  ///< the state being computed when it was seen
+  core::BodyId a{};     ///< a < b
+  core::BodyId b{};
+  double penetration_m = 0;         ///< positive: the shapes overlap
+  double relative_speed_m_s = 0;    ///< of the two bodies at the contact point, before the solver
+  core::Vec3 p_W = core::Vec3::Zero();
+};
+
+/// Tells a listener about states that were made up in a scratch world (DESIGN section 6, catch-up):
+/// the records of the cluster's bodies in state `step`, in ascending order of id.
+using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
+
+class RegionWorld {
+ public:
+  /// The scene outlives the world. Statics are put in, the scene's bodies are not: the caller says who is hosted.
+  RegionWorld(const core::Scene& scene, const Settings& settings);
+  ~RegionWorld();
+  RegionWorld(RegionWorld&&) noexcept;
+  RegionWorld& operator=(RegionWorld&&) noexcept;
+
+  /// "single" or "double".
+  static const char* precision();
+
+  /// The state that the bodies are in; 0 at first.
+  core::Step step_number() const;
+
+  /// Puts in bodies without contact cache. A record whose birth is later than step_number() waits outside Bullet
+  /// until that state is computed; snapshots and releases include it, with its state at birth.
+  void add(std::span<const core::BodyRecord> bodies);
+
+  /// Takes over a cluster whose state is that of step `stamp` <= step_number(): it is first simulated up to
+  /// step_number() in a scratch world, then joins with its contact cache. Calls `caught_up` for every state made up.
+  void adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up = {});
+
+  /// Takes bodies out with everything that a hand-off has to carry. Every id must be here. Contacts with bodies
+  /// that stay behind are forgotten and counted (see severed_contacts).
+  core::ClusterState release(std::span<const core::BodyId> bodies);
+
+  /// The same record of bodies that stay (tests, key frames, state hash).
+  core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+
+  bool contains(core::BodyId id) const;
+  std::size_t body_count() const;
+
+  /// Computes the next state, in Settings::substeps substeps.
+  void step();
+
+  /// Bodies ascending by id (those not yet born included), contacts between bodies. Valid until the next change.
+  const core::Snapshot& snapshot();
+
+  /// Records of all born bodies in ascending order of id. Valid until the next change.
+  std::span<const core::BodyRecord> records();
+
+  /// First contacts seen while the last step was computed, ordered by (a, b).
+  const std::vector<Collision>& collisions() const;
+
+  /// Contacts that a release has cut so far: never more than 0 while clusters are whole.
+  std::uint64_t severed_contacts() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Bullet's GJK over the scene's shapes. Thread-compatible: one per thread.
+std::unique_ptr<core::ClearanceQuery> make_clearance_query(const core::Scene& scene);
+
+/// 64-bit hash of a body's id and full dynamic state (not its epoch). Equal bits, equal hash.
+std::uint64_t state_hash(const core::BodyRecord& body);
+
+}  // namespace aurasim::physics
