@@ -2,6 +2,7 @@
 // World frame W: right-handed, z up, metres, seconds, kilograms, radians. B is a body's own frame.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -63,6 +64,9 @@ struct BodyRecord {
   Vec3 w_WB = Vec3::Zero();
 };
 
+/// The same body as the protocol sees it. Awake: neither sleeping (2) nor disabled (5).
+BodyState state_of(const BodyRecord& record);
+
 /// Either end of a manifold: a body (>= 0, its id) or a static (< 0, -1 - its id).
 using ObjectRef = std::int64_t;
 constexpr ObjectRef ref_of(BodyId id) { return static_cast<ObjectRef>(value_of(id)); }
@@ -84,7 +88,7 @@ struct JointRecord {
 };
 
 /// Doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
-inline constexpr std::size_t kContactPointDoubles = 50;
+inline constexpr std::size_t kContactPointDoubles = 41;
 
 /// Bodies that move together, with everything that physics remembers about them.
 struct ClusterState {
@@ -94,5 +98,20 @@ struct ClusterState {
   std::vector<JointRecord> joints;
   std::vector<double> joint_values;
 };
+
+/// Takes the bodies out that `unwanted` names, and the manifolds that have lost one of theirs.
+template <class Unwanted>
+void remove_bodies(ClusterState& cluster, Unwanted&& unwanted) {
+  std::vector<BodyId> gone;
+  std::erase_if(cluster.bodies, [&](const BodyRecord& body) {
+    if (!unwanted(body)) return false;
+    gone.push_back(body.id);
+    return true;
+  });
+  const auto is_gone = [&](ObjectRef ref) {
+    return std::any_of(gone.begin(), gone.end(), [&](BodyId id) { return ref_of(id) == ref; });
+  };
+  std::erase_if(cluster.manifolds, [&](const ManifoldRecord& m) { return is_gone(m.object0) || is_gone(m.object1); });
+}
 
 }  // namespace aurasim::core

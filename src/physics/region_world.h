@@ -28,8 +28,8 @@ struct Collision {
   core::Step step = 0;  ///< the state being computed when it was seen
   core::BodyId a{};     ///< a < b
   core::BodyId b{};
-  double penetration_m = 0;         ///< positive: the shapes overlap
-  double relative_speed_m_s = 0;    ///< of the two bodies at the contact point, before the solver
+  double penetration_m = 0;       ///< positive: the shapes overlap
+  double relative_speed_m_s = 0;  ///< of the two bodies at the contact point, before the solver
   core::Vec3 p_W = core::Vec3::Zero();
 };
 

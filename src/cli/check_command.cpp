@@ -1,0 +1,33 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "config/launch.h"
+
+namespace aurasim::cli {
+
+void FileArguments::add_to(CLI::App& command) {
+  command.add_option("FILE", file, "launch file")->required();
+  command.add_option("--set", overrides, "change one key of the launch file: key.path=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_check(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("check", "validate a launch file and its scene");
+  const auto files = std::make_shared<FileArguments>();
+  files->add_to(*command);
+  command->callback([files, &action] {
+    action = [files] {
+      const config::Launch launch = config::read_launch(files->file, files->overrides);
+      fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
+                 files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
+                 launch.regions.size(), launch.lookahead(), listening_distance_m(launch));
+      return 0;
+    };
+  });
+}
+
+}  // namespace aurasim::cli

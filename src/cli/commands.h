@@ -1,0 +1,29 @@
+// One function per command. Each adds itself to the program's command line; what it returns is the exit code.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace aurasim::cli {
+
+/// Set by the command that was chosen; run after parsing.
+using Action = std::function<int()>;
+
+void add_check(CLI::App& program, Action& action);
+void add_node(CLI::App& program, Action& action);
+void add_launch(CLI::App& program, Action& action);
+void add_top(CLI::App& program, Action& action);
+void add_send(CLI::App& program, Action& action);
+
+/// The launch file and its overrides, as every command takes them.
+struct FileArguments {
+  std::string file;
+  std::vector<std::string> overrides;
+
+  void add_to(CLI::App& command);
+};
+
+}  // namespace aurasim::cli

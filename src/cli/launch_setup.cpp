@@ -1,0 +1,96 @@
+#include "cli/launch_setup.h"
+
+#include <algorithm>
+
+#include "core/aura.h"
+
+namespace aurasim::cli {
+namespace {
+
+core::AuraKind kind_of(config::AuraRadius radius) {
+  switch (radius) {
+    case config::AuraRadius::kNone: return core::AuraKind::kNone;
+    case config::AuraRadius::kThesis: return core::AuraKind::kThesis;
+    case config::AuraRadius::kTight: return core::AuraKind::kTight;
+    case config::AuraRadius::kSwept: return core::AuraKind::kSwept;
+  }
+  return core::AuraKind::kSwept;
+}
+
+core::SyncMode mode_of(config::Sync sync) {
+  switch (sync) {
+    case config::Sync::kFreeRunning: return core::SyncMode::kFreeRunning;
+    case config::Sync::kBounded: return core::SyncMode::kBounded;
+    case config::Sync::kDeterministic: return core::SyncMode::kDeterministic;
+  }
+  return core::SyncMode::kBounded;
+}
+
+}  // namespace
+
+dds::Settings dds_settings(const config::Launch& launch) {
+  dds::Settings settings;
+  settings.domain = static_cast<std::uint32_t>(launch.dds.domain);
+  settings.profiles = launch.dds.profiles;
+  settings.interfaces = launch.dds.interfaces;
+  settings.peers = launch.dds.peers;
+  switch (launch.dds.discovery) {
+    case config::Discovery::kMulticast: settings.discovery = dds::Discovery::kAsProfile; break;
+    case config::Discovery::kPeers: settings.discovery = dds::Discovery::kPeers; break;
+    case config::Discovery::kServer: settings.discovery = dds::Discovery::kServer; break;
+  }
+  return settings;
+}
+
+core::AuraRules aura_rules(const config::Launch& launch) {
+  core::AuraRules rules;
+  rules.kind = kind_of(launch.aura.radius);
+  rules.step_s = launch.step_s();
+  rules.substeps = launch.time.substeps;
+  rules.lookahead = launch.lookahead();
+  rules.top_speed_m_s = launch.tolerances.speed_m_s;
+  rules.frame_s = launch.tolerances.frame_s;
+  rules.latency_s = launch.tolerances.latency_s;
+  rules.uncertainty = launch.aura.uncertainty;
+  rules.gravity = launch.scene.gravity;
+  return rules;
+}
+
+double listening_distance_m(const config::Launch& launch) {
+  double radius = 0;
+  for (const core::Prototype& prototype : launch.scene.prototypes) {
+    radius = std::max(radius, core::bounding_radius(launch.scene.shapes[prototype.shape].shape));
+  }
+  const core::AuraRules rules = aura_rules(launch);
+  const double steps = 3.0 * rules.lookahead;
+  return std::max(launch.neighbour_distance_m, steps * rules.step_s * rules.top_speed_m_s + 2 * radius);
+}
+
+node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {
+  node::NodeSetup setup;
+  setup.protocol.self = region;
+  setup.protocol.generation = generation;
+  setup.protocol.sync = mode_of(launch.time.sync);
+  setup.protocol.aura = aura_rules(launch);
+  setup.protocol.neighbour_distance_m = listening_distance_m(launch);
+  setup.physics.step_s = launch.step_s();
+  setup.physics.substeps = launch.time.substeps;
+  setup.physics.solver_iterations = launch.physics.iterations;
+  return setup;
+}
+
+dds::WorldMap world_map(const config::Launch& launch) {
+  dds::WorldMap map;
+  map.map_version = launch.regions.version();
+  map.agreement = launch.agreement();
+  map.scene = launch.scene.name;
+  for (std::uint32_t r = 0; r < launch.regions.size(); ++r) map.regions.push_back(launch.regions.region(core::RegionId{r}));
+  return map;
+}
+
+std::filesystem::path executable_for(const std::string& precision) {
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  return self.parent_path() / (precision == "single" ? "aurasim-single" : "aurasim");
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,25 @@
+// From a launch file to what nodes, transports and worlds want to know.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/launch.h"
+#include "dds/control.h"
+#include "dds/settings.h"
+#include "node/node.h"
+
+namespace aurasim::cli {
+
+dds::Settings dds_settings(const config::Launch& launch);
+core::AuraRules aura_rules(const config::Launch& launch);
+/// How far apart regions may be that listen to each other: as configured, and never less than the reach of an aura.
+double listening_distance_m(const config::Launch& launch);
+node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
+dds::WorldMap world_map(const config::Launch& launch);
+
+/// The executable for a precision ("single" or "double"), beside the running one.
+std::filesystem::path executable_for(const std::string& precision);
+
+}  // namespace aurasim::cli

@@ -1,0 +1,168 @@
+#include "cli/launcher.h"
+
+#include <csignal>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/launch_setup.h"
+#include "cli/stop_signal.h"
+#include "node/report.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kShowEvery = 250ms;
+constexpr auto kStopGently = 900ms;   // after this, SIGTERM
+constexpr auto kStopSurely = 1600ms;  // after this, SIGKILL
+
+}  // namespace
+
+Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
+    : launch_(launch),
+      options_(options),
+      participant_(dds_settings(launch)),
+      control_(participant_, {launch.regions.version(), {}}) {}
+
+Launcher::~Launcher() {
+  signal_all(SIGKILL);
+  for (Child& child : children_) {
+    if (child.running) ::waitpid(child.pid, nullptr, 0);
+  }
+}
+
+ExitCode Launcher::run() {
+  catch_stop_signals();
+  start_nodes();
+  auto next_show = Clock::now();
+  bool stopping = false;
+  while (any_running()) {
+    control_.wait(20ms);
+    collect_exits();
+    if (stop_requested() && !stopping) {
+      stopping = true;
+      stop_all();
+    }
+    if (Clock::now() < next_show) continue;
+    next_show = Clock::now() + (view_.is_terminal() ? kShowEvery : 4 * kShowEvery);
+    show();
+  }
+  show();
+  return conclude();
+}
+
+std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
+  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(), "node", options_.files.file,
+                                    "--region", std::to_string(region),
+                                    "--start-time-out", std::to_string(options_.start_time_out_s)};
+  for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
+  if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
+  if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
+  return words;
+}
+
+void Launcher::start_nodes() {
+  for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
+    Child child;
+    child.region = core::RegionId{r};
+    child.pid = start_node(r);
+    children_.push_back(child);
+  }
+}
+
+pid_t Launcher::start_node(std::uint32_t region) const {
+  std::vector<std::string> words = arguments_of(region);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t pid = ::fork();
+  if (pid < 0) throw std::runtime_error("cannot start a process");
+  if (pid == 0) {
+    ::setpgid(0, 0);                     // Ctrl-C is the launcher's to handle
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // and nobody outlives it
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  return pid;
+}
+
+void Launcher::collect_exits() {
+  for (Child& child : children_) {
+    int status = 0;
+    if (!child.running || ::waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
+    child.running = false;
+    child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    child.died = child.exit_code != 0 && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
+                 child.exit_code != static_cast<int>(ExitCode::kRefused);
+    if (child.died) spdlog::error("the node of region {} died (exit code {})", core::value_of(child.region), child.exit_code);
+    // Without all of them the run cannot start: the others need not wait for their time-out.
+    if (child.exit_code == static_cast<int>(ExitCode::kRefused)) signal_all(SIGTERM);
+  }
+}
+
+bool Launcher::any_running() const {
+  return std::any_of(children_.begin(), children_.end(), [](const Child& c) { return c.running; });
+}
+
+void Launcher::signal_all(int signal) const {
+  for (const Child& child : children_) {
+    if (child.running) ::kill(child.pid, signal);
+  }
+}
+
+/// All at the same state, so that every body can be accounted for; those that do not listen are told more firmly.
+void Launcher::stop_all() {
+  RunSteering steering(launch_, control_);
+  if (steering.find_run(0ms)) steering.send(dds::RunCommandKind::kStop);
+  const auto begin = Clock::now();
+  bool told = false;
+  while (any_running()) {
+    control_.wait(20ms);
+    collect_exits();
+    if (!told && Clock::now() - begin > kStopGently) {
+      signal_all(SIGTERM);
+      told = true;
+    }
+    if (Clock::now() - begin > kStopSurely) signal_all(SIGKILL);
+  }
+}
+
+void Launcher::show() {
+  if (options_.headless) return;
+  view_.show(live_table(control_.statuses()));
+}
+
+ExitCode Launcher::conclude() {
+  ExitCode code = ExitCode::kOk;
+  for (const Child& child : children_) {
+    if (child.died) code = ExitCode::kFailed;
+    if (!child.died && child.exit_code != 0 && code == ExitCode::kOk) code = static_cast<ExitCode>(child.exit_code);
+  }
+  return options_.report && code != ExitCode::kRefused ? report_and_count(code) : code;
+}
+
+ExitCode Launcher::report_and_count(ExitCode so_far) {
+  node::RunFacts facts;
+  facts.regions = children_.size();
+  facts.step_s = launch_.step_s();
+  for (const Child& child : children_) {
+    if (child.died) facts.died.push_back(child.region);
+  }
+  const node::Accounts accounts = node::merge_report(*options_.report, facts);
+  fmt::print("report: {}\n", (*options_.report / "summary.json").string());
+  if (accounts.lost + accounts.duplicated == 0) return so_far;
+  spdlog::error("{} bodies lost, {} duplicated", accounts.lost, accounts.duplicated);
+  return ExitCode::kFailed;
+}
+
+}  // namespace aurasim::cli

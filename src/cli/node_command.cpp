@@ -1,0 +1,77 @@
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "cli/node_process.h"
+#include "cli/stop_signal.h"
+#include "physics/region_world.h"
+
+namespace aurasim::cli {
+namespace {
+
+struct Arguments {
+  FileArguments files;
+  std::uint32_t region = 0;
+  core::Step steps = -1;
+  std::string report;
+  int start_time_out_s = 30;
+};
+
+std::vector<std::string> own_command_line() {
+  std::ifstream file("/proc/self/cmdline");
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
+/// The other precision is another program with the same arguments; does not return if that is the one wanted.
+void become_the_right_precision(const config::Launch& launch) {
+  if (launch.physics.precision == physics::RegionWorld::precision()) return;
+  const std::string program = executable_for(launch.physics.precision).string();
+  std::vector<std::string> words = own_command_line();
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(program.c_str(), arguments.data());
+  throw std::runtime_error(fmt::format("cannot start {}", program));
+}
+
+int run_node(const Arguments& arguments) {
+  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  if (arguments.region >= launch.regions.size()) {
+    throw config::BadConfig({fmt::format("--region: found {}, allowed: 0 to {} ({} has {} regions)", arguments.region,
+                                         launch.regions.size() - 1, arguments.files.file, launch.regions.size())});
+  }
+  become_the_right_precision(launch);
+  spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
+  catch_stop_signals();
+  NodeOptions options;
+  options.region = core::RegionId{arguments.region};
+  options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
+  if (arguments.steps >= 0) options.steps = arguments.steps;
+  if (!arguments.report.empty()) options.report = arguments.report;
+  return static_cast<int>(NodeProcess(launch, options).run());
+}
+
+}  // namespace
+
+void add_node(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("node", "run one region");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->files.add_to(*command);
+  command->add_option("--region", arguments->region, "which region of the map")->required();
+  command->add_option("--steps", arguments->steps, "stop after this state");
+  command->add_option("--report", arguments->report, "folder for what the node records");
+  command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
+      ->check(CLI::Range(1, 3600));
+  command->callback([arguments, &action] { action = [arguments] { return run_node(*arguments); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,83 @@
+#include "cli/run_steering.h"
+
+#include <algorithm>
+
+#include "node/pacer.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Kind = dds::RunCommandKind;
+
+/// Long enough for a command to reach every node.
+constexpr double kNoticeS = 0.3;
+
+}  // namespace
+
+bool RunSteering::belongs(const dds::SeenStatus& seen) const {
+  return !seen.lost && seen.status.agreement == launch_.agreement() && seen.status.state != dds::NodeState::kFinished &&
+         seen.status.state != dds::NodeState::kFailed;
+}
+
+bool RunSteering::find_run(std::chrono::milliseconds time_out) {
+  const auto deadline = Clock::now() + time_out;
+  for (;;) {
+    const auto& statuses = control_.statuses();
+    std::size_t seen = 0;
+    for (const auto& [region, status] : statuses) seen += status.status.agreement == launch_.agreement();
+    const bool any = std::any_of(statuses.begin(), statuses.end(), [this](const auto& s) { return belongs(s.second); });
+    if (any && seen >= launch_.regions.size() && control_.listeners() > 0) return true;
+    if (Clock::now() > deadline) return any;
+    control_.wait(50ms);
+  }
+}
+
+dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
+  dds::RunCommand command;
+  command.kind = kind;
+  command.count = count;
+  bool running = false;
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (!belongs(seen)) continue;
+    command.generation = std::max(command.generation, seen.status.generation);
+    command.at_step = std::max(command.at_step, seen.status.step);
+    running = running || seen.status.state == dds::NodeState::kRunning;
+  }
+  const auto notice = static_cast<core::Step>(kNoticeS * launch_.time.step_hz) + 2 * launch_.lookahead() + 1;
+  if (running) command.at_step += notice;
+  if (kind == Kind::kStep) command.at_step += count;
+  const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);
+  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * delay_s);
+  command.request = control_.send(command);
+  return command;
+}
+
+bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& command) const {
+  switch (command.kind) {
+    case Kind::kPause:
+    case Kind::kStep: return status.state == dds::NodeState::kPaused && status.step >= command.at_step;
+    case Kind::kResume: return status.state == dds::NodeState::kRunning && status.step > command.at_step;
+    case Kind::kReset: return status.generation > command.generation;
+    case Kind::kStart: return status.state == dds::NodeState::kRunning;
+    case Kind::kStop: return status.state == dds::NodeState::kFinished;
+  }
+  return false;
+}
+
+bool RunSteering::wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out) {
+  const auto deadline = Clock::now() + time_out;
+  while (Clock::now() < deadline) {
+    const auto& statuses = control_.statuses();
+    const bool all = std::all_of(statuses.begin(), statuses.end(), [&](const auto& entry) {
+      const dds::SeenStatus& seen = entry.second;
+      return seen.lost || seen.status.agreement != launch_.agreement() || shows(seen.status, command);
+    });
+    if (all) return true;
+    control_.wait(20ms);
+  }
+  return false;
+}
+
+}  // namespace aurasim::cli

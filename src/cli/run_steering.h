@@ -1,0 +1,34 @@
+// Commands to a whole run. Each names the state at which it takes effect, far enough ahead that every node hears of it
+// before it gets there.
+#pragma once
+
+#include <chrono>
+
+#include "config/launch.h"
+#include "dds/control.h"
+
+namespace aurasim::cli {
+
+class RunSteering {
+ public:
+  /// Both outlive it.
+  RunSteering(const config::Launch& launch, dds::ControlBus& control) : launch_(launch), control_(control) {}
+
+  /// Waits until the statuses of all live regions of this launch have been seen; false at the time-out.
+  bool find_run(std::chrono::milliseconds time_out);
+
+  /// Sends a command that takes effect as soon as all nodes can have heard of it; returns what was sent.
+  dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
+
+  /// Waits until every live node shows the effect of `command`; false at the time-out.
+  bool wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out);
+
+ private:
+  bool belongs(const dds::SeenStatus& seen) const;
+  bool shows(const dds::Status& status, const dds::RunCommand& command) const;
+
+  const config::Launch& launch_;
+  dds::ControlBus& control_;
+};
+
+}  // namespace aurasim::cli

@@ -1,0 +1,41 @@
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "cli/live_table.h"
+#include "cli/stop_signal.h"
+#include "dds/control.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+int watch(const FileArguments& files, double seconds) {
+  const config::Launch launch = config::read_launch(files.file, files.overrides);
+  dds::Participant participant(dds_settings(launch));
+  dds::ControlBus control(participant, {});
+  TerminalView view;
+  catch_stop_signals();
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!stop_requested() && (seconds <= 0 || Clock::now() < end)) {
+    const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
+    while (!stop_requested() && Clock::now() < next) control.wait(50ms);
+    view.show(live_table(control.statuses()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_top(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("top", "watch the nodes of a run");
+  const auto files = std::make_shared<FileArguments>();
+  const auto seconds = std::make_shared<double>(0);
+  files->add_to(*command);
+  command->add_option("--duration", *seconds, "stop after so many seconds; 0: on Ctrl-C");
+  command->callback([files, seconds, &action] { action = [files, seconds] { return watch(*files, *seconds); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,164 @@
+// Launch::agreement(): a 64-bit hash over everything that decides what is computed. Paths, places in files, the
+// DDS domain and how the run is watched are left out.
+#include <bit>
+#include <string_view>
+
+#include "config/launch.h"
+
+namespace aurasim::config {
+namespace {
+
+/// FNV-1a over a canonical byte string: every value with its length or kind, so that no two lists run together.
+class Digest {
+ public:
+  void bytes(std::uint64_t value) {
+    for (int i = 0; i < 8; ++i, value >>= 8) hash_ = (hash_ ^ (value & 0xff)) * 1099511628211ull;
+  }
+  void add(double value) { bytes(std::bit_cast<std::uint64_t>(value + 0.0)); }
+  void add(std::string_view text) {
+    bytes(text.size());
+    for (const char c : text) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  }
+  template <class Derived>
+  void add(const Eigen::MatrixBase<Derived>& values) {
+    for (int i = 0; i < values.size(); ++i) add(values(i));
+  }
+  void add(const core::Pose& pose) {
+    add(pose.p_WB);
+    add(pose.q_WB.coeffs());
+  }
+  void add(const std::vector<core::Vec3>& points) {
+    bytes(points.size());
+    for (const core::Vec3& p : points) add(p);
+  }
+
+  std::uint64_t result() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 1469598103934665603ull;
+};
+
+class ShapeDigest {
+ public:
+  explicit ShapeDigest(Digest& digest) : d_(digest) {}
+
+  void operator()(const core::Sphere& s) const { d_.add(s.radius); }
+  void operator()(const core::Box& s) const { d_.add(s.half_extents); }
+  void operator()(const core::Capsule& s) const {
+    d_.add(s.radius);
+    d_.add(s.height);
+  }
+  void operator()(const core::Cylinder& s) const {
+    d_.add(s.radius);
+    d_.add(s.height);
+  }
+  void operator()(const core::ConvexHull& s) const { d_.add(s.points); }
+  void operator()(const core::TriangleMesh& s) const {
+    d_.add(s.points);
+    d_.bytes(s.triangles.size());
+    for (const auto& t : s.triangles) {
+      for (const std::uint32_t index : t) d_.bytes(index);
+    }
+  }
+  void operator()(const core::Plane& s) const {
+    d_.add(s.normal);
+    d_.add(s.offset);
+  }
+  void operator()(const core::Compound& s) const {
+    d_.bytes(s.parts.size());
+    for (const core::CompoundPart& part : s.parts) {
+      d_.bytes(part.shape.index());
+      std::visit(*this, part.shape);
+      d_.add(part.pose);
+    }
+  }
+
+ private:
+  Digest& d_;
+};
+
+void add_things(const core::Scene& scene, Digest& d) {
+  d.bytes(scene.shapes.size());
+  for (const core::NamedShape& shape : scene.shapes) {
+    d.add(shape.name);
+    d.bytes(shape.shape.index());
+    std::visit(ShapeDigest(d), shape.shape);
+  }
+  d.bytes(scene.materials.size());
+  for (const core::Material& m : scene.materials) {
+    d.add(m.name);
+    for (const double value :
+         {m.friction, m.rolling_friction, m.spinning_friction, m.restitution, m.linear_damping, m.angular_damping}) {
+      d.add(value);
+    }
+  }
+  d.bytes(scene.prototypes.size());
+  for (const core::Prototype& p : scene.prototypes) {
+    d.add(p.name);
+    d.bytes(p.shape);
+    d.bytes(p.material);
+    d.add(p.mass_kg);
+    d.bytes(p.can_sleep);
+  }
+}
+
+void add_bodies(const core::Scene& scene, Digest& d) {
+  d.bytes(scene.statics.size());
+  for (const core::StaticBody& s : scene.statics) {
+    d.add(s.name);
+    d.bytes(s.shape);
+    d.bytes(s.material);
+    d.add(s.pose);
+  }
+  d.bytes(scene.bodies.size());
+  for (const core::InitialBody& b : scene.bodies) {
+    d.bytes(value_of(b.id));
+    d.bytes(value_of(b.prototype));
+    d.add(b.pose);
+    d.add(b.v_WB);
+    d.add(b.w_WB);
+  }
+  d.bytes(scene.injectors.size());
+  for (const core::Injector& i : scene.injectors) {
+    d.add(i.name);
+    for (const std::uint64_t value : {i.seed, value_of(i.first_id), i.max_bodies}) d.bytes(value);
+    d.add(i.rate_per_s);
+    d.add(i.start_s);
+    for (const core::Vec3& v : {i.volume_min, i.volume_max, i.velocity_min, i.velocity_max}) d.add(v);
+    d.bytes(i.random_orientation);
+    d.bytes(i.prototypes.size());
+    for (const core::PrototypeId id : i.prototypes) d.bytes(value_of(id));
+  }
+}
+
+void add_settings(const Launch& launch, Digest& d) {
+  d.bytes(launch.regions.version());
+  d.add(launch.neighbour_distance_m);
+  d.add(launch.time.step_hz);
+  d.bytes(static_cast<std::uint64_t>(launch.time.substeps));
+  d.bytes(static_cast<std::uint64_t>(launch.time.sync));
+  d.bytes(static_cast<std::uint64_t>(launch.time.pace));
+  d.bytes(static_cast<std::uint64_t>(launch.lookahead()));
+  d.add(launch.tolerances.speed_m_s);
+  d.add(launch.tolerances.latency_s);
+  d.add(launch.tolerances.frame_s);
+  d.bytes(static_cast<std::uint64_t>(launch.aura.radius));
+  d.add(launch.aura.uncertainty);
+  d.add(std::string_view(launch.physics.precision));
+  d.add(std::string_view(launch.physics.solver));
+  d.bytes(static_cast<std::uint64_t>(launch.physics.iterations));
+}
+
+}  // namespace
+
+std::uint64_t Launch::agreement() const {
+  Digest d;
+  d.add(std::string_view(scene.name));
+  d.add(scene.gravity);
+  add_things(scene, d);
+  add_bodies(scene, d);
+  add_settings(*this, d);
+  return d.result();
+}
+
+}  // namespace aurasim::config

@@ -1,0 +1,45 @@
+// Collects everything that is wrong with a set of files, so that one run reports all of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aurasim::config {
+
+/// Where something was written: line and column of a file, from 1, or an override as a whole (line 0).
+struct Place {
+  std::uint32_t source = 0;  ///< number given by Errors::add_source
+  int line = 0;
+  int column = 0;
+};
+
+class Errors {
+ public:
+  /// A file or an override. Its name starts every message about it.
+  std::uint32_t add_source(std::string name);
+
+  /// `field` is a path such as "regions.count"; empty for the whole file.
+  void add(const Place& place, std::string_view field, std::string_view message);
+
+  bool empty() const { return count_ == 0; }
+
+  /// Throws BadConfig with the messages in the order of their places, unless there are none.
+  void throw_if_any() const;
+
+ private:
+  struct Entry {
+    Place place;
+    std::string text;
+  };
+
+  std::vector<std::string> sources_;
+  std::vector<Entry> entries_;
+  std::size_t count_ = 0;  ///< entries_ stops growing at a limit, this does not
+};
+
+/// Text of a file as it may stand in a message: quoted, control characters escaped, cut when long.
+std::string in_quotes(std::string_view text);
+
+}  // namespace aurasim::config

@@ -1,0 +1,176 @@
+#include "config/generators.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "config/bodies.h"
+#include "config/shapes.h"
+
+namespace aurasim::config {
+namespace {
+
+using core::Vec3;
+
+constexpr std::size_t kMostGenerators = 10'000;
+constexpr std::int64_t kMostInLine = 100'000;
+
+/// What all formations share. F is the formation's frame: origin at `position`, x along its rows, z up.
+struct Formation {
+  core::PrototypeId prototype{};
+  Bounds bounds;  ///< of the shape, in the frame of the body
+  core::Pose X_WF;
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+  double gap_m = 0;
+  std::vector<Vec3> centres_F;  ///< of the bodies' bounds, bottom at z = 0
+
+  double width_m() const { return bounds.size().x() + gap_m; }
+};
+
+double as_double(std::int64_t n) { return static_cast<double>(n); }
+
+void read_common(Fields& fields, Formation& formation, SceneDraft& draft) {
+  const Field prototype = fields.required("prototype");
+  if (const auto index = fields.given() ? draft.prototypes.find(prototype) : std::nullopt) {
+    formation.prototype = core::PrototypeId{*index};
+    formation.bounds = bounds_of(draft.scene.shapes[draft.scene.prototypes[*index].shape].shape);
+  }
+  Vec3& position = formation.X_WF.p_WB;
+  if (const Field p = fields.optional("position"); p.given()) position = p.vec3().value_or(position);
+  if (const Field yaw = fields.optional("yaw_deg"); yaw.given()) {
+    const double yaw_deg = yaw.number(Range::from_to(-3600, 3600)).value_or(0);
+    formation.X_WF.q_WB = core::Quat(Eigen::AngleAxisd(yaw_deg * std::numbers::pi / 180, Vec3::UnitZ()));
+  }
+  if (const Field v = fields.optional("velocity"); v.given()) formation.v_WB = v.vec3(kSpeed).value_or(Vec3::Zero());
+  if (const Field w = fields.optional("spin"); w.given()) formation.w_WB = w.vec3(kSpeed).value_or(Vec3::Zero());
+}
+
+void read_gap(Fields& fields, Formation& formation) {
+  if (const Field gap = fields.optional("gap"); gap.given()) {
+    formation.gap_m = gap.number(Range::from_to(0, 1e6)).value_or(0);
+  }
+}
+
+void place_stack(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field count_field = fields.required("count");
+  const auto count = count_field.integer(1, kMostInLine);
+  if (!count || !draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) return;
+  const double height = formation.bounds.size().z();
+  for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back({0, 0, (as_double(i) + 0.5) * height});
+}
+
+void place_wall(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  read_gap(fields, formation);
+  const auto rows = fields.required("rows").integer(1, kMostInLine);
+  const auto columns = fields.required("columns").integer(1, kMostInLine);
+  if (!rows || !columns) return;
+  if (!draft.has_room_for(static_cast<std::uint64_t>(*rows * *columns), fields.whole())) return;
+  const Vec3 size = formation.bounds.size();
+  for (std::int64_t row = 0; row < *rows; ++row) {
+    const double shift = row % 2 == 1 ? 0.5 : 0;
+    for (std::int64_t column = 0; column < *columns; ++column) {
+      const double x = (as_double(column) - 0.5 * as_double(*columns - 1) + shift) * formation.width_m();
+      formation.centres_F.push_back({x, 0, (as_double(row) + 0.5) * size.z()});
+    }
+  }
+}
+
+void place_pyramid(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  read_gap(fields, formation);
+  const Field rows_field = fields.required("rows");
+  const auto rows = rows_field.integer(1, kMostInLine);
+  if (!rows || !draft.has_room_for(static_cast<std::uint64_t>(*rows * (*rows + 1) / 2), rows_field)) return;
+  const Vec3 size = formation.bounds.size();
+  for (std::int64_t row = 0; row < *rows; ++row) {
+    const std::int64_t columns = *rows - row;
+    for (std::int64_t column = 0; column < columns; ++column) {
+      const double x = (as_double(column) - 0.5 * as_double(columns - 1)) * formation.width_m();
+      formation.centres_F.push_back({x, 0, (as_double(row) + 0.5) * size.z()});
+    }
+  }
+}
+
+void place_block(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field counts_field = fields.required("counts");
+  std::vector<std::int64_t> counts;
+  for (const Field& item : counts_field.items(3, 3)) {
+    if (const auto count = item.integer(1, kMostInLine)) counts.push_back(*count);
+  }
+  const Vec3 size = formation.bounds.size();
+  Vec3 spacing = size;
+  if (const Field s = fields.optional("spacing"); s.given()) spacing = s.vec3(kSize).value_or(spacing);
+  if (counts.size() != 3) return;
+  const std::int64_t in_layer = counts[0] * counts[1];
+  const std::int64_t all = in_layer > static_cast<std::int64_t>(kMostBodies) ? in_layer : in_layer * counts[2];
+  if (!draft.has_room_for(static_cast<std::uint64_t>(all), counts_field)) return;
+  for (std::int64_t z = 0; z < counts[2]; ++z) {
+    for (std::int64_t y = 0; y < counts[1]; ++y) {
+      for (std::int64_t x = 0; x < counts[0]; ++x) {
+        formation.centres_F.push_back({(as_double(x) - 0.5 * as_double(counts[0] - 1)) * spacing.x(),
+                                       (as_double(y) - 0.5 * as_double(counts[1] - 1)) * spacing.y(),
+                                       as_double(z) * spacing.z() + 0.5 * size.z()});
+      }
+    }
+  }
+}
+
+void place_row(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field count_field = fields.required("count");
+  const auto count = count_field.integer(1, kMostInLine);
+  const auto step = fields.required("step").vec3();
+  if (!count || !step || !draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) return;
+  const Vec3 first = 0.5 * (formation.bounds.low + formation.bounds.high);  // position is a body's centre here
+  for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back(first + as_double(i) * *step);
+}
+
+void add_bodies(const Formation& formation, SceneDraft& draft) {
+  const Vec3 p_BoC = 0.5 * (formation.bounds.low + formation.bounds.high);  // centre of the bounds in the body's frame
+  for (const Vec3& p_FC : formation.centres_F) {
+    DraftBody body;
+    body.body.prototype = formation.prototype;
+    body.body.pose.p_WB = formation.X_WF.p_WB + formation.X_WF.q_WB * (p_FC - p_BoC);
+    body.body.pose.q_WB = formation.X_WF.q_WB;
+    body.body.v_WB = formation.v_WB;
+    body.body.w_WB = formation.w_WB;
+    draft.bodies.push_back(body);
+  }
+}
+
+using Placement = void (*)(Fields&, Formation&, const SceneDraft&);
+
+void read_formation(const Field& field, Placement place, SceneDraft& draft) {
+  Fields fields(field);
+  Formation formation;
+  read_common(fields, formation, draft);
+  place(fields, formation, draft);
+  fields.close();
+  if (!draft.scene.prototypes.empty()) add_bodies(formation, draft);
+}
+
+void read_generator(const Field& field, SceneDraft& draft) {
+  constexpr std::pair<const char*, Placement> kKinds[] = {{"stack", place_stack},
+                                                          {"wall", place_wall},
+                                                          {"pyramid", place_pyramid},
+                                                          {"block", place_block},
+                                                          {"row", place_row}};
+  Fields fields(field);
+  int kinds = 0;
+  for (const auto& [kind, place] : kKinds) {
+    const Field formation = fields.optional(kind);
+    if (!formation.given()) continue;
+    ++kinds;
+    read_formation(formation, place, draft);
+  }
+  fields.close();
+  if (fields.given() && kinds != 1) field.refuse("one of stack, wall, pyramid, block, row");
+}
+
+}  // namespace
+
+void read_generators(const Field& field, SceneDraft& draft) {
+  if (!field.given()) return;
+  for (const Field& item : field.items(0, kMostGenerators)) read_generator(item, draft);
+}
+
+}  // namespace aurasim::config

@@ -1,0 +1,74 @@
+#include "config/launch_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace aurasim::config {
+namespace {
+
+constexpr std::size_t kMostNeighbours = 64;
+
+double largest_radius_m(const core::Scene& scene) {
+  double radius = 0;
+  for (const core::Prototype& prototype : scene.prototypes) {
+    radius = std::max(radius, core::bounding_radius(scene.shapes[prototype.shape].shape));
+  }
+  return radius;
+}
+
+/// Distance that a body at top speed makes in the steps of `multiple` K - 2 and the substeps.
+double way_m(const Launch& launch, int multiple) {
+  const double k = launch.lookahead();
+  const double s = launch.time.substeps;
+  return (multiple * k - 2 + 2 * (s - 1) / s) * launch.tolerances.speed_m_s * launch.step_s();
+}
+
+void check_neighbour_count(const Field& regions, const Launch& launch) {
+  for (std::size_t i = 0; i < launch.regions.size(); ++i) {
+    const core::RegionId id{static_cast<std::uint32_t>(i)};
+    const std::size_t count = launch.regions.neighbours(id, launch.neighbour_distance_m).size();
+    if (count <= kMostNeighbours) continue;
+    regions.complain(fmt::format("region {} has {} neighbours within {:.3g} m, allowed: at most {}", i, count,
+                                 launch.neighbour_distance_m, kMostNeighbours));
+    return;
+  }
+}
+
+}  // namespace
+
+double reach_m(const Launch& launch) { return way_m(launch, 3) + 2 * largest_radius_m(launch.scene); }
+
+// A body projects near foreign bodies wherever they are, (5 K - 2) steps ahead; where pulls chain at a corner the
+// distances grow by K steps for each of two bodies (DESIGN sections 3 and 4).
+double zone_m(const Launch& launch) { return way_m(launch, 7) + 2 * largest_radius_m(launch.scene); }
+
+void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch) {
+  if (launch.lookahead() > kLargestLookahead) {
+    regions.complain(fmt::format("tolerances and step_hz give a lookahead of {} steps, allowed: at most {}",
+                                 launch.lookahead(), kLargestLookahead));
+    return;
+  }
+  const double reach = reach_m(launch);
+  if (launch.regions.narrowest_m() < reach) {
+    regions.complain(fmt::format(
+        "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
+        "lookahead {}, {} substeps, largest bounding radius {:.4g} m",
+        launch.regions.narrowest_m(), reach, launch.tolerances.speed_m_s, launch.lookahead(), launch.time.substeps,
+        largest_radius_m(launch.scene)));
+    return;
+  }
+  const double zone = zone_m(launch);
+  launch.neighbour_distance_m = neighbour_distance_m.value_or(zone);
+  if (neighbour_distance_m && *neighbour_distance_m < zone) {
+    regions.complain(
+        fmt::format("neighbour_distance is {:.4g} m, allowed: at least {:.4g} m, the zone in which bodies "
+                    "project",
+                    *neighbour_distance_m, zone));
+    return;
+  }
+  check_neighbour_count(regions, launch);
+}
+
+}  // namespace aurasim::config

@@ -1,0 +1,151 @@
+#include "config/meshes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <system_error>
+#include <tuple>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+namespace aurasim::config {
+namespace {
+
+using core::TriangleMesh;
+using core::Vec3;
+
+constexpr std::uintmax_t kLargestMeshBytes = 256u << 20;
+constexpr std::size_t kMostTriangles = 1'000'000;
+constexpr std::size_t kMostHullPoints = 200;
+constexpr double kFarthest = 1e7;
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::string reason_not_to_read(const std::filesystem::path& file) {
+  const std::set<std::string> known = {".obj", ".stl", ".gltf", ".glb"};
+  if (!known.contains(lower_extension(file))) return "its name ends neither in .obj, .stl, .gltf nor .glb";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return "no such file";
+  if (!std::filesystem::is_regular_file(file, error)) return "it is not a regular file";
+  const auto size = std::filesystem::file_size(file, error);
+  if (error) return error.message();
+  if (size > kLargestMeshBytes) return fmt::format("it has {} bytes, at most {} are read", size, kLargestMeshBytes);
+  return "";
+}
+
+/// Joins equal points and drops triangles that have lost an edge by it.
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(const MeshRequest& request) : request_(request) {}
+
+  void add(const aiMesh& part) {
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;
+      const std::array<std::uint32_t, 3> t = {index_of(part.mVertices[face.mIndices[0]]),
+                                              index_of(part.mVertices[face.mIndices[1]]),
+                                              index_of(part.mVertices[face.mIndices[2]])};
+      if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) mesh_.triangles.push_back(t);
+    }
+  }
+
+  bool is_finite() const { return is_finite_; }
+  TriangleMesh take() { return std::move(mesh_); }
+
+ private:
+  std::uint32_t index_of(const aiVector3D& v) {
+    const Vec3 raw(v.x, v.y, v.z);
+    const Vec3 turned = request_.up == UpAxis::kY ? Vec3(raw.x(), -raw.z(), raw.y()) : raw;
+    const Vec3 p = turned.cwiseProduct(request_.scale) + Vec3::Zero();  // no negative zero
+    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthest) {
+      is_finite_ = false;
+      return 0;
+    }
+    const auto [at, is_new] = index_.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(index_.size()));
+    if (is_new) mesh_.points.push_back(p);
+    return at->second;
+  }
+
+  const MeshRequest& request_;
+  TriangleMesh mesh_;
+  std::map<std::tuple<double, double, double>, std::uint32_t> index_;
+  bool is_finite_ = true;
+};
+
+/// Directions spread evenly over the sphere (Fibonacci lattice).
+Vec3 direction(std::size_t i, std::size_t count) {
+  const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
+  const double angle = static_cast<double>(i) * std::numbers::pi * (3 - std::sqrt(5.0));
+  const double r = std::sqrt(1 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+}  // namespace
+
+UpAxis usual_up_axis(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".gltf" || extension == ".glb" ? UpAxis::kY : UpAxis::kZ;
+}
+
+std::variant<TriangleMesh, std::string> load_mesh(const MeshRequest& request) {
+  if (std::string why = reason_not_to_read(request.file); !why.empty()) return why;
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(
+      request.file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  if (scene == nullptr) return fmt::format("it cannot be read: {}", importer.GetErrorString());
+  std::size_t triangles = 0;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) triangles += scene->mMeshes[m]->mNumFaces;
+  if (triangles > kMostTriangles) return fmt::format("it has {} triangles, at most {}", triangles, kMostTriangles);
+  MeshBuilder builder(request);
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) builder.add(*scene->mMeshes[m]);
+  if (!builder.is_finite()) return fmt::format("it has points that are no numbers or beyond {} m", kFarthest);
+  TriangleMesh mesh = builder.take();
+  if (mesh.triangles.empty()) return "it has no triangles";
+  return mesh;
+}
+
+std::vector<Vec3> hull_points(const TriangleMesh& mesh) {
+  if (mesh.points.size() <= kMostHullPoints) return mesh.points;
+  std::set<std::size_t> extreme;
+  for (std::size_t i = 0; i < kMostHullPoints; ++i) {
+    const Vec3 d = direction(i, kMostHullPoints);
+    const auto farthest = std::max_element(mesh.points.begin(), mesh.points.end(),
+                                           [&](const Vec3& a, const Vec3& b) { return a.dot(d) < b.dot(d); });
+    extreme.insert(static_cast<std::size_t>(farthest - mesh.points.begin()));
+  }
+  std::vector<Vec3> points;
+  for (const std::size_t i : extreme) points.push_back(mesh.points[i]);
+  return points;
+}
+
+Vec3 centre_of_mass(const TriangleMesh& mesh) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : mesh.points) mean += p / static_cast<double>(mesh.points.size());
+  double volume = 0;  // of the tetrahedra between `mean` and the triangles, six times
+  Vec3 moment = Vec3::Zero();
+  double size = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.points[t[0]] - mean, b = mesh.points[t[1]] - mean, c = mesh.points[t[2]] - mean;
+    const double part = a.dot(b.cross(c));
+    volume += part;
+    moment += part * (a + b + c) / 4;
+    size = std::max({size, a.norm(), b.norm(), c.norm()});
+  }
+  if (std::abs(volume) < 1e-9 * size * size * size) return mean;
+  return mean + moment / volume;
+}
+
+}  // namespace aurasim::config

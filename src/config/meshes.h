@@ -1,0 +1,33 @@
+// Mesh files (OBJ, STL, glTF) as points and triangles, through assimp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace aurasim::config {
+
+enum class UpAxis { kY, kZ };
+
+struct MeshRequest {
+  std::filesystem::path file;
+  core::Vec3 scale = core::Vec3::Ones();
+  UpAxis up = UpAxis::kZ;  ///< kY: the file's y becomes our z, and its z our -y
+};
+
+/// The up axis that a file's format prescribes: y for glTF, z for all others.
+UpAxis usual_up_axis(const std::filesystem::path& file);
+
+/// All triangles of the file with equal points joined, or why there are none.
+std::variant<core::TriangleMesh, std::string> load_mesh(const MeshRequest& request);
+
+/// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
+std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);
+
+/// Centre of mass of the volume inside a closed mesh; the mean of its points if it encloses nothing.
+core::Vec3 centre_of_mass(const core::TriangleMesh& mesh);
+
+}  // namespace aurasim::config

@@ -1,0 +1,100 @@
+#include "config/scene_draft.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "config/shapes.h"
+
+namespace aurasim::config {
+namespace {
+
+constexpr double kSmallestQuaternion = 1e-6;
+
+core::Quat from_rpy_deg(const core::Vec3& rpy_deg) {
+  const core::Vec3 rpy = rpy_deg * (std::numbers::pi / 180);
+  return core::Quat(Eigen::AngleAxisd(rpy.z(), core::Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), core::Vec3::UnitY()) *
+                    Eigen::AngleAxisd(rpy.x(), core::Vec3::UnitX()));
+}
+
+core::Quat read_orientation(const Field& field) {
+  core::Quat q = core::Quat::Identity();
+  if (!field.given()) return q;
+  Fields fields(field);
+  const Field rpy_field = fields.optional("rpy_deg");
+  const Field quaternion_field = fields.optional("quaternion");
+  fields.close();
+  if (!fields.given()) return q;
+  if (rpy_field.given() == quaternion_field.given()) {
+    field.refuse("one of rpy_deg, quaternion");
+    return q;
+  }
+  if (rpy_field.given()) {
+    if (const auto rpy_deg = rpy_field.vec3(Range::from_to(-3600, 3600))) q = from_rpy_deg(*rpy_deg);
+    return q;
+  }
+  const auto wxyz = quaternion_field.numbers(4, kAnyNumber);
+  if (!wxyz) return q;
+  const core::Quat given((*wxyz)[0], (*wxyz)[1], (*wxyz)[2], (*wxyz)[3]);
+  if (given.norm() < kSmallestQuaternion) {
+    quaternion_field.complain("found a quaternion of length 0, allowed: [w, x, y, z] that can be normalised");
+    return q;
+  }
+  return given.normalized();
+}
+
+}  // namespace
+
+std::uint32_t Names::add(const std::string& name) {
+  const auto index = static_cast<std::uint32_t>(names_.size());
+  names_.push_back(name);
+  index_.emplace(name, index);
+  return index;
+}
+
+std::optional<std::uint32_t> Names::index_of(const std::string& name) const {
+  const auto found = index_.find(name);
+  return found == index_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::uint32_t> Names::find(const Field& field) const {
+  const auto index = field.is_text() ? index_of(field.node()->text) : std::nullopt;
+  if (index) return index;
+  field.refuse(fmt::format("a {} of this scene: {}", kind_, listed({names_.begin(), names_.end()})));
+  return std::nullopt;
+}
+
+bool SceneDraft::has_room_for(std::uint64_t count, const Field& blame) const {
+  const std::uint64_t taken = bodies.size() + injected_bodies;
+  if (count <= kMostBodies - std::min(taken, kMostBodies)) return true;
+  blame.complain(
+      fmt::format("found {} bodies after {} others, allowed: {} in the whole scene", count, taken, kMostBodies));
+  return false;
+}
+
+core::Pose read_pose(Fields& fields) {
+  core::Pose pose;
+  if (const Field position = fields.optional("position"); position.given()) {
+    pose.p_WB = position.vec3().value_or(pose.p_WB);
+  }
+  pose.q_WB = read_orientation(fields.optional("orientation"));
+  return pose;
+}
+
+std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft) {
+  if (!field.is_map()) return draft.shapes.find(field);
+  const auto shape = read_shape(field, draft.folder);
+  if (!shape) return std::nullopt;
+  draft.scene.shapes.push_back({own_name, *shape});
+  return draft.shapes.add(own_name);
+}
+
+std::optional<std::uint32_t> read_material_reference(const Field& field, SceneDraft& draft) {
+  if (field.given()) return draft.materials.find(field);
+  if (const auto index = draft.materials.index_of("default")) return index;
+  draft.scene.materials.push_back({.name = "default"});
+  return draft.materials.add("default");
+}
+
+}  // namespace aurasim::config

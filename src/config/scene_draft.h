@@ -1,0 +1,71 @@
+// A scene while it is being read: what the parts of the reader share.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "config/fields.h"
+#include "config/region_layout.h"
+#include "core/scene.h"
+
+namespace aurasim::config {
+
+/// Bodies of state 0 and of all injectors together.
+inline constexpr std::uint64_t kMostBodies = 1'000'000;
+/// Bullet's broadphase ids are ints; the last ones are left to it.
+inline constexpr std::int64_t kLargestBodyId = (std::int64_t{1} << 31) - 1001;
+
+/// Names of one kind of thing, in the order of the file, and their indices.
+class Names {
+ public:
+  explicit Names(std::string_view kind) : kind_(kind) {}
+
+  std::uint32_t add(const std::string& name);
+  std::optional<std::uint32_t> index_of(const std::string& name) const;
+  /// Index of the name that `field` says; complains if there is none.
+  std::optional<std::uint32_t> find(const Field& field) const;
+
+ private:
+  std::string kind_;
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, std::uint32_t> index_;
+};
+
+/// A body of state 0 that may not have its id yet.
+struct DraftBody {
+  std::optional<core::BodyId> id;
+  core::InitialBody body;
+};
+
+struct SceneDraft {
+  core::Scene scene;
+  std::filesystem::path folder;  ///< mesh files are relative to it
+  Names shapes{"shape"};
+  Names materials{"material"};
+  Names prototypes{"prototype"};
+  std::vector<DraftBody> bodies;
+  std::uint64_t injected_bodies = 0;
+  /// What `per` injectors are laid out by; nothing: the scene does not say, or what it says is wrong.
+  std::optional<RegionLayout> layout;
+  bool layout_is_wrong = false;
+
+  /// Whether `count` more bodies may be added; complains if not.
+  bool has_room_for(std::uint64_t count, const Field& blame) const;
+};
+
+/// `position` and `orientation` of a map: {rpy_deg: [roll, pitch, yaw]}, about the fixed axes x, y, z in this order,
+/// or {quaternion: [w, x, y, z]}, which is normalised. Both are optional.
+core::Pose read_pose(Fields& fields);
+
+/// `shape:` of a prototype, a static or a part: a name, or a shape in place, which gets the name `own_name`.
+std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft);
+
+/// `material:`; the material "default" if it is not given.
+std::optional<std::uint32_t> read_material_reference(const Field& field, SceneDraft& draft);
+
+}  // namespace aurasim::config

@@ -1,0 +1,285 @@
+#include "config/shapes.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "config/heightfield.h"
+#include "config/meshes.h"
+#include "config/scene_draft.h"
+
+namespace aurasim::config {
+namespace {
+
+using core::ConvexShape;
+using core::Shape;
+using core::Vec3;
+
+constexpr std::size_t kMostParts = 1000;
+constexpr std::size_t kMostPoints = 1000;
+
+std::optional<Shape> read_sphere(Fields& fields) {
+  const auto radius = fields.required("radius").number(kSize);
+  if (!radius) return std::nullopt;
+  return core::Sphere{*radius};
+}
+
+std::optional<Shape> read_box(Fields& fields) {
+  const auto size = fields.required("size").vec3(kSize);
+  if (!size) return std::nullopt;
+  return core::Box{*size / 2};
+}
+
+std::optional<Shape> read_capsule(Fields& fields) {
+  const auto radius = fields.required("radius").number(kSize);
+  const Field height_field = fields.optional("height");
+  const Field total_field = fields.optional("total_height");
+  if (height_field.given() == total_field.given()) {
+    fields.whole().refuse("one of height (between the cap centres), total_height");
+    return std::nullopt;
+  }
+  if (height_field.given()) {
+    const auto height = height_field.number(kSize);
+    if (!radius || !height) return std::nullopt;
+    return core::Capsule{*radius, *height};
+  }
+  const auto total = total_field.number(Range::above(2 * radius.value_or(0), kSize.high));
+  if (!radius || !total) return std::nullopt;
+  return core::Capsule{*radius, *total - 2 * *radius};
+}
+
+std::optional<Shape> read_cylinder(Fields& fields) {
+  const auto radius = fields.required("radius").number(kSize);
+  const auto height = fields.required("height").number(kSize);
+  if (!radius || !height) return std::nullopt;
+  return core::Cylinder{*radius, *height};
+}
+
+std::optional<Shape> read_plane(Fields& fields) {
+  const Field normal_field = fields.optional("normal");
+  const Field offset_field = fields.optional("offset");
+  const auto normal = normal_field.given() ? normal_field.vec3() : Vec3::UnitZ();
+  const auto offset = offset_field.given() ? offset_field.number(kAnyNumber) : 0;
+  if (!normal || !offset) return std::nullopt;
+  if (normal->norm() < 1e-6) {
+    normal_field.complain("found a normal of length 0, allowed: [x, y, z] that can be normalised");
+    return std::nullopt;
+  }
+  return core::Plane{normal->normalized(), *offset};
+}
+
+/// `mesh`/`file`, `scale` and `up` of a hull or a mesh.
+std::optional<core::TriangleMesh> read_mesh_file(const Field& file_field, Fields& fields,
+                                                 const std::filesystem::path& folder) {
+  const auto name = file_field.text("an OBJ, STL or glTF file");
+  MeshRequest request;
+  bool good = name.has_value();
+  if (name) request = {.file = (folder / *name).lexically_normal(), .up = usual_up_axis(*name)};
+  if (const Field scale = fields.optional("scale"); scale.given()) {
+    const auto each = scale.is_list() ? scale.vec3(kSize) : std::nullopt;
+    const auto all = scale.is_list() ? std::nullopt : scale.number(kSize);
+    good = good && (each || all);
+    request.scale = each ? *each : Vec3::Constant(all.value_or(1));
+  }
+  if (const Field up = fields.optional("up"); up.given()) {
+    const auto axis = up.choice<UpAxis>({{"y", UpAxis::kY}, {"z", UpAxis::kZ}});
+    good = good && axis;
+    request.up = axis.value_or(request.up);
+  }
+  if (!good) return std::nullopt;
+  auto loaded = load_mesh(request);
+  if (auto* mesh = std::get_if<core::TriangleMesh>(&loaded)) return std::move(*mesh);
+  file_field.refuse(fmt::format("a mesh file with triangles ({})", std::get<std::string>(loaded)));
+  return std::nullopt;
+}
+
+/// Whether the points enclose a volume: no thinner than a millionth of their extent.
+bool has_volume(const std::vector<Vec3>& points) {
+  const auto farthest = [&](auto measure) {
+    Vec3 best = Vec3::Zero();
+    for (const Vec3& p : points) {
+      if (measure(p - points[0]) > measure(best)) best = p - points[0];
+    }
+    return best;
+  };
+  const Vec3 a = farthest([](const Vec3& p) { return p.norm(); });
+  const Vec3 b = farthest([&](const Vec3& p) { return p.cross(a).norm(); });
+  const Vec3 c = farthest([&](const Vec3& p) { return std::abs(p.dot(a.cross(b))); });
+  const double extent = a.norm();
+  return std::abs(c.dot(a.cross(b))) > 1e-6 * extent * extent * extent;
+}
+
+std::optional<std::vector<Vec3>> read_points(const Field& field) {
+  std::vector<Vec3> points;
+  const std::vector<Field> items = field.items(4, kMostPoints);
+  for (const Field& item : items) {
+    if (const auto p = item.vec3()) points.push_back(*p);
+  }
+  if (points.empty() || points.size() != items.size()) return std::nullopt;
+  return points;
+}
+
+std::optional<Shape> read_convex_hull(Fields& fields, const std::filesystem::path& folder) {
+  const Field points_field = fields.optional("points");
+  const Field mesh_field = fields.optional("mesh");
+  if (points_field.given() == mesh_field.given()) {
+    fields.whole().refuse("one of points, mesh");
+    return std::nullopt;
+  }
+  std::optional<std::vector<Vec3>> points;
+  if (points_field.given()) {
+    points = read_points(points_field);
+  } else {
+    const Field recentre = fields.optional("recentre");
+    const auto mesh = read_mesh_file(mesh_field, fields, folder);
+    const Vec3 centre =
+        mesh && recentre.given() && recentre.flag().value_or(false) ? centre_of_mass(*mesh) : Vec3::Zero();
+    if (mesh) points = hull_points(*mesh);
+    for (std::size_t i = 0; points && i < points->size(); ++i) (*points)[i] -= centre;
+  }
+  if (!points) return std::nullopt;
+  if (!has_volume(*points)) {
+    fields.whole().refuse("at least 4 points that do not lie in one plane");
+    return std::nullopt;
+  }
+  return core::ConvexHull{std::move(*points)};
+}
+
+std::optional<Shape> read_mesh(Fields& fields, const std::filesystem::path& folder) {
+  auto mesh = read_mesh_file(fields.required("file"), fields, folder);
+  if (!mesh) return std::nullopt;
+  return std::move(*mesh);
+}
+
+std::optional<Shape> read_shape_kind(std::string_view kind, const Field& value, const std::filesystem::path& folder);
+
+std::optional<ConvexShape> as_convex(Shape&& shape) {
+  return std::visit(
+      [](auto&& s) -> std::optional<ConvexShape> {
+        using S = std::decay_t<decltype(s)>;
+        if constexpr (std::is_constructible_v<ConvexShape, S>) {
+          return std::optional<ConvexShape>(std::in_place, std::in_place_type<S>, std::move(s));
+        } else {
+          return std::nullopt;
+        }
+      },
+      std::move(shape));
+}
+
+/// A part is a map of one convex shape and, at will, position and orientation.
+std::optional<core::CompoundPart> read_part(const Field& field, const std::filesystem::path& folder) {
+  Fields fields(field);
+  std::optional<ConvexShape> shape;
+  int kinds = 0;
+  for (const char* kind : {"sphere", "box", "capsule", "cylinder", "convex_hull"}) {
+    const Field value = fields.optional(kind);
+    if (!value.given()) continue;
+    ++kinds;
+    if (auto read = read_shape_kind(kind, value, folder)) shape = as_convex(std::move(*read));
+  }
+  const core::Pose pose = read_pose(fields);
+  fields.close();
+  if (fields.given() && kinds != 1) field.refuse("one of sphere, box, capsule, cylinder, convex_hull");
+  if (!shape || kinds != 1) return std::nullopt;
+  return core::CompoundPart{std::move(*shape), pose};
+}
+
+std::optional<Shape> read_compound(Fields& fields, const std::filesystem::path& folder) {
+  core::Compound compound;
+  const std::vector<Field> items = fields.required("parts").items(1, kMostParts);
+  for (const Field& item : items) {
+    if (auto part = read_part(item, folder)) compound.parts.push_back(std::move(*part));
+  }
+  if (compound.parts.empty() || compound.parts.size() != items.size()) return std::nullopt;
+  return compound;
+}
+
+std::optional<Shape> read_shape_kind(std::string_view kind, const Field& value, const std::filesystem::path& folder) {
+  Fields fields(value);
+  std::optional<Shape> shape;
+  if (!fields.given()) {
+    value.refuse(fmt::format("a map, the sizes of the {}", kind));
+    return std::nullopt;
+  }
+  if (kind == "sphere") shape = read_sphere(fields);
+  if (kind == "box") shape = read_box(fields);
+  if (kind == "capsule") shape = read_capsule(fields);
+  if (kind == "cylinder") shape = read_cylinder(fields);
+  if (kind == "convex_hull") shape = read_convex_hull(fields, folder);
+  if (kind == "compound") shape = read_compound(fields, folder);
+  if (kind == "mesh") shape = read_mesh(fields, folder);
+  if (kind == "heightfield") shape = read_heightfield(fields);
+  if (kind == "plane") shape = read_plane(fields);
+  fields.close();
+  return shape;
+}
+
+Bounds hull_of(const std::vector<Vec3>& points) {
+  Bounds bounds{points.front(), points.front()};
+  for (const Vec3& p : points) bounds = {bounds.low.cwiseMin(p), bounds.high.cwiseMax(p)};
+  return bounds;
+}
+
+Bounds around(const Vec3& half) { return {-half, half}; }
+
+Bounds bounds_of_part(const core::CompoundPart& part);
+
+struct BoundsOf {
+  Bounds operator()(const core::Sphere& s) const { return around(Vec3::Constant(s.radius)); }
+  Bounds operator()(const core::Box& s) const { return around(s.half_extents); }
+  Bounds operator()(const core::Capsule& s) const { return around({s.radius, s.radius, s.height / 2 + s.radius}); }
+  Bounds operator()(const core::Cylinder& s) const { return around({s.radius, s.radius, s.height / 2}); }
+  Bounds operator()(const core::ConvexHull& s) const { return hull_of(s.points); }
+  Bounds operator()(const core::Compound& s) const {
+    Bounds bounds = bounds_of_part(s.parts.front());
+    for (const core::CompoundPart& part : s.parts) {
+      const Bounds other = bounds_of_part(part);
+      bounds = {bounds.low.cwiseMin(other.low), bounds.high.cwiseMax(other.high)};
+    }
+    return bounds;
+  }
+  Bounds operator()(const core::TriangleMesh&) const { return {}; }
+  Bounds operator()(const core::Plane&) const { return {}; }
+};
+
+/// Box around the turned box of a part: never too small.
+Bounds bounds_of_part(const core::CompoundPart& part) {
+  const Bounds own = std::visit(BoundsOf(), part.shape);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner((i & 1 ? own.high : own.low).x(), (i & 2 ? own.high : own.low).y(),
+                      (i & 4 ? own.high : own.low).z());
+    corners.push_back(part.pose.p_WB + part.pose.q_WB * corner);
+  }
+  return hull_of(corners);
+}
+
+}  // namespace
+
+std::optional<Shape> read_shape(const Field& field, const std::filesystem::path& folder) {
+  Fields fields(field);
+  std::optional<Shape> shape;
+  int kinds = 0;
+  for (const char* kind :
+       {"sphere", "box", "capsule", "cylinder", "convex_hull", "compound", "mesh", "heightfield", "plane"}) {
+    const Field value = fields.optional(kind);
+    if (!value.given()) continue;
+    ++kinds;
+    shape = read_shape_kind(kind, value, folder);
+  }
+  fields.close();
+  if (kinds == 1) return shape;
+  if (kinds > 1) field.refuse("a shape of one kind");
+  if (fields.given() && field.node()->children.empty()) field.refuse("a shape of one kind");
+  return std::nullopt;
+}
+
+bool can_move(const Shape& shape) {
+  return !std::holds_alternative<core::TriangleMesh>(shape) && !std::holds_alternative<core::Plane>(shape);
+}
+
+Bounds bounds_of(const Shape& shape) { return std::visit(BoundsOf(), shape); }
+
+}  // namespace aurasim::config

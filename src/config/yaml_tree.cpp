@@ -1,0 +1,241 @@
+#include "config/yaml_tree.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include "config/utf8.h"
+
+namespace aurasim::config {
+namespace {
+
+/// Something that YAML allows and we do not.
+struct RefusedYaml {
+  YAML::Mark mark;
+  std::string message;
+};
+
+std::size_t count_nodes(const YamlNode& node) {
+  std::size_t count = 1;
+  for (const YamlNode& child : node.children) count += count_nodes(child);
+  return count;
+}
+
+/// Builds the tree from the parser's events. Aliases become copies; every copy counts against the limit.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(const Place& at) : at_(at) {}
+
+  YamlNode take() { return std::move(root_); }
+  const YAML::Mark& start() const { return start_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { start_ = mark; }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    put(started(YamlNode::Kind::kNothing, mark, anchor));
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    Open open = started(YamlNode::Kind::kText, mark, anchor);
+    open.node.text = value;
+    open.node.quoted = tag != "?" && !tag.empty();
+    put(std::move(open));
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) throw RefusedYaml{mark, "an alias inside the value that it names"};
+    count(count_nodes(found->second), mark);
+    put({found->second, mark, YAML::NullAnchor, false});
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back(started(YamlNode::Kind::kList, mark, anchor));
+  }
+  void OnSequenceEnd() override { close(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open_.push_back(started(YamlNode::Kind::kMap, mark, anchor));
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    YamlNode node;
+    YAML::Mark mark;
+    YAML::anchor_t anchor = YAML::NullAnchor;
+    bool has_key = false;  ///< of a map: the last child waits for its value
+  };
+
+  Place place_of(const YAML::Mark& mark) const {
+    if (at_.line == 0) return at_;
+    return {at_.source, mark.line + 1, mark.column + 1};
+  }
+
+  void count(std::size_t nodes, const YAML::Mark& mark) {
+    nodes_ += nodes;
+    if (nodes_ > kMostYamlNodes) {
+      throw RefusedYaml{mark, fmt::format("more than {} values, aliases expanded", kMostYamlNodes)};
+    }
+  }
+
+  Open started(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
+    count(1, mark);
+    Open open;
+    open.node.kind = kind;
+    open.node.place = place_of(mark);
+    open.mark = mark;
+    open.anchor = anchor;
+    return open;
+  }
+
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    put(std::move(done));
+  }
+
+  void put(Open done) {
+    if (done.anchor != YAML::NullAnchor) {
+      count(count_nodes(done.node), done.mark);
+      anchors_[done.anchor] = done.node;
+    }
+    if (open_.empty()) {
+      root_ = std::move(done.node);
+    } else if (open_.back().node.kind == YamlNode::Kind::kList) {
+      open_.back().node.children.push_back(std::move(done.node));
+    } else {
+      put_in_map(open_.back(), std::move(done));
+    }
+  }
+
+  void put_in_map(Open& map, Open done) {
+    map.has_key = !map.has_key;
+    if (map.has_key) {
+      if (done.node.kind != YamlNode::Kind::kText) throw RefusedYaml{done.mark, "a key that is not text"};
+      YamlNode entry;
+      entry.key = std::move(done.node.text);
+      entry.key_place = done.node.place;
+      map.node.children.push_back(std::move(entry));
+      return;
+    }
+    YamlNode& entry = map.node.children.back();
+    // The parser notices that there is no value only at what comes next.
+    if (done.node.kind == YamlNode::Kind::kNothing) done.node.place = entry.key_place;
+    done.node.key = std::move(entry.key);
+    done.node.key_place = entry.key_place;
+    entry = std::move(done.node);
+  }
+
+  Place at_;
+  YAML::Mark start_;
+  YamlNode root_;
+  std::vector<Open> open_;
+  std::unordered_map<YAML::anchor_t, YamlNode> anchors_;
+  std::size_t nodes_ = 0;
+};
+
+void add_syntax_error(const Place& at, const YAML::Mark& mark, std::string_view message, Errors& errors) {
+  Place place = at;
+  if (at.line != 0 && !mark.is_null()) place = {at.source, mark.line + 1, mark.column + 1};
+  errors.add(place, "", fmt::format("found {}, allowed: one YAML document", message));
+}
+
+/// Control characters and broken UTF-8 are refused before the parser sees them: it takes some for the end.
+bool check_text(const std::string& text, const Place& at, Errors& errors) {
+  const std::size_t bad = first_unprintable(text);
+  if (bad == text.size()) return true;
+  Place place = at;
+  if (at.line != 0) {
+    const auto line_begin = text.rfind('\n', bad);
+    place.line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n'));
+    place.column = static_cast<int>(line_begin == std::string::npos || bad == 0 ? bad + 1 : bad - line_begin);
+  }
+  const auto byte = static_cast<unsigned char>(text[bad]);
+  errors.add(place, "", fmt::format("found the byte 0x{:02x}, allowed: printable text in UTF-8", byte));
+  return false;
+}
+
+}  // namespace
+
+const YamlNode* YamlNode::find(std::string_view wanted_key) const {
+  if (kind != Kind::kMap) return nullptr;
+  const auto found =
+      std::find_if(children.begin(), children.end(), [&](const YamlNode& child) { return child.key == wanted_key; });
+  return found == children.end() ? nullptr : &*found;
+}
+
+YamlNode* YamlNode::find(std::string_view wanted_key) {
+  return const_cast<YamlNode*>(std::as_const(*this).find(wanted_key));
+}
+
+std::optional<std::string> read_bytes(const std::filesystem::path& file, std::uintmax_t limit, std::string& why) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    why = error ? error.message() : "No such file or directory";
+  } else if (std::filesystem::is_directory(status)) {
+    why = "it is a directory";
+  } else if (!std::filesystem::is_regular_file(status)) {
+    why = "it is not a regular file";
+  } else if (const auto size = std::filesystem::file_size(file, error); error || size > limit) {
+    why = error ? error.message() : fmt::format("it has {} bytes, at most {} are read", size, limit);
+  } else {
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes(size, '\0');
+    if (in.read(bytes.data(), static_cast<std::streamsize>(size))) return bytes;
+    why = "it cannot be opened for reading";
+  }
+  return std::nullopt;
+}
+
+std::optional<YamlNode> parse_yaml(const std::string& text, const Place& at, Errors& errors) {
+  if (!check_text(text, at, errors)) return std::nullopt;
+  try {
+    // Without the last line end: yaml-cpp 0.7 closes an open quote there by itself.
+    std::istringstream in(text.substr(0, text.find_last_not_of(" \t\r\n") + 1));
+    YAML::Parser parser(in);
+    TreeBuilder builder(at);
+    const bool has_document = parser.HandleNextDocument(builder);
+    YamlNode root = builder.take();
+    if (!has_document) root.place = at;
+    TreeBuilder rest(at);
+    if (parser.HandleNextDocument(rest)) {
+      add_syntax_error(at, rest.start(), "a second document", errors);
+      return std::nullopt;
+    }
+    return root;
+  } catch (const RefusedYaml& refused) {
+    add_syntax_error(at, refused.mark, refused.message, errors);
+  } catch (const YAML::Exception& wrong) {
+    add_syntax_error(at, wrong.mark, wrong.msg, errors);
+  } catch (const std::exception& wrong) {
+    add_syntax_error(at, YAML::Mark::null_mark(), wrong.what(), errors);
+  }
+  return std::nullopt;
+}
+
+std::optional<YamlNode> read_yaml(const std::filesystem::path& file, Errors& errors) {
+  const Place at{errors.add_source(file.string()), 1, 1};
+  std::string why;
+  const std::optional<std::string> text = read_bytes(file, kLargestFileBytes, why);
+  if (!text) {
+    errors.add(at, "", fmt::format("found nothing to read: {}, allowed: a YAML file", why));
+    return std::nullopt;
+  }
+  return parse_yaml(*text, at, errors);
+}
+
+}  // namespace aurasim::config

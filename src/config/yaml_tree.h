@@ -1,0 +1,45 @@
+// A YAML file as a tree of values that know where they were written. Reads untrusted bytes: size, number of
+// values, encoding and aliases are limited, and everything that is wrong is reported, never thrown.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/errors.h"
+
+namespace aurasim::config {
+
+struct YamlNode {
+  enum class Kind : std::uint8_t { kNothing, kText, kList, kMap };
+
+  Kind kind = Kind::kNothing;
+  bool quoted = false;  ///< written in quotes or with a tag: text even if it looks like a number
+  Place place;
+  Place key_place;  ///< of its key, when it is in a map
+  std::string key;
+  std::string text;
+  std::vector<YamlNode> children;  ///< of a list, or of a map in the order of the file, copies of keys included
+
+  const YamlNode* find(std::string_view wanted_key) const;
+  YamlNode* find(std::string_view wanted_key);
+};
+
+/// Largest file that is read.
+inline constexpr std::uintmax_t kLargestFileBytes = 16u << 20;
+/// Most values that one file may have once its aliases are expanded.
+inline constexpr std::size_t kMostYamlNodes = 1'000'000;
+
+/// Text of a readable regular file of at most `limit` bytes; otherwise why not, in `why`.
+std::optional<std::string> read_bytes(const std::filesystem::path& file, std::uintmax_t limit, std::string& why);
+
+/// One YAML document. `at` is where its text begins: (source, 1, 1) for a file, (source, 0, 0) for an override.
+std::optional<YamlNode> parse_yaml(const std::string& text, const Place& at, Errors& errors);
+
+/// The document in a file, which becomes a source of `errors`.
+std::optional<YamlNode> read_yaml(const std::filesystem::path& file, Errors& errors);
+
+}  // namespace aurasim::config

@@ -1,0 +1,163 @@
+#include "core/aura.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aurasim::core {
+namespace {
+
+/// Contacts are sought at every substep, so the last (S-1)/S of a step counts, for both bodies.
+double substep_share(const AuraRules& r) { return 2.0 * (r.substeps - 1) / r.substeps; }
+
+/// Steps that the two bodies travel more when a pull can chain through `hops` regions.
+double chain_steps(const AuraRules& r, int hops) { return 2.0 * (hops - 1) * r.lookahead; }
+
+double thesis_reach(const AuraRules& r) {
+  const double delay_steps = std::ceil((2 * r.frame_s + r.latency_s) / r.step_s);
+  return (3 * delay_steps - 1) * r.step_s * r.top_speed_m_s;
+}
+
+constexpr double kRestSpeed = 0.05;    // m/s: a sleeping body may creep
+constexpr double kSpeedFloor = 0.1;    // m/s: contacts of slow bodies
+
+}  // namespace
+
+Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance) {
+  Path path;
+  path.prototype = body.prototype;
+  path.radius_m = clearance.bounding_radius(body.prototype);
+  path.pose = body.pose;
+  path.v_WB = body.v_WB;
+  path.w_WB = body.w_WB;
+  path.moves = body.awake;
+  path.unborn_steps = static_cast<double>(std::max<Step>(0, body.birth - now));
+  return path;
+}
+
+double Aura::reach(int hops) const {
+  if (rules_.kind == AuraKind::kThesis) return rules_.reach_scale * thesis_reach(rules_);
+  const double steps = 3.0 * rules_.lookahead - 2 + substep_share(rules_) + chain_steps(rules_, hops);
+  return rules_.reach_scale * steps * rules_.step_s * rules_.top_speed_m_s;
+}
+
+double Aura::foreign_reach(int hops) const {
+  if (rules_.kind == AuraKind::kThesis) return rules_.reach_scale * thesis_reach(rules_);
+  const double steps = 5.0 * rules_.lookahead - 2 + substep_share(rules_) + chain_steps(rules_, hops);
+  return rules_.reach_scale * steps * rules_.step_s * rules_.top_speed_m_s;
+}
+
+double Aura::cluster_reach(int hops) const {
+  if (rules_.kind == AuraKind::kThesis) return rules_.reach_scale * thesis_reach(rules_);
+  const double steps = 4.0 * rules_.lookahead - 3 + substep_share(rules_) + chain_steps(rules_, hops);
+  return rules_.reach_scale * steps * rules_.step_s * rules_.top_speed_m_s;
+}
+
+double Aura::speed_of(const BodyState& body) const {
+  if (rules_.kind != AuraKind::kSwept) return rules_.top_speed_m_s;
+  if (!body.awake) return kRestSpeed;
+  const double fall_s = std::max(1, 4 * rules_.lookahead - 3) * rules_.step_s;
+  return body.v_WB.norm() + rules_.gravity.norm() * fall_s + kSpeedFloor;
+}
+
+double Aura::drop_m(double steps) const {
+  const double t = steps * rules_.step_s;
+  return 0.5 * rules_.gravity.norm() * t * (t + rules_.step_s);
+}
+
+Pose Aura::ahead(const Path& path, double steps) const {
+  const double k = path.age_steps + steps - (path.unborn_steps > 0 ? path.age_steps + path.unborn_steps : 0);
+  if (!path.moves || k <= 0) return path.pose;
+  const double t = k * rules_.step_s;
+  const double h = rules_.step_s / rules_.substeps;
+  // Bullet integrates speed before place: m substeps of length h fall g h^2 m (m+1) / 2 = g t (t + h) / 2.
+  Pose pose{path.pose.p_WB + path.v_WB * t + rules_.gravity * (0.5 * t * (t + h)), path.pose.q_WB};
+  const double spin = path.w_WB.norm();
+  if (spin > 1e-6) pose.q_WB = Quat(Eigen::AngleAxisd(spin * t, path.w_WB / spin)) * path.pose.q_WB;
+  return pose;
+}
+
+bool Aura::spheres_within(const Path& a, const Path& b, double distance_m) const {
+  const double d = a.radius_m + b.radius_m + rules_.contact_margin_m + distance_m;
+  return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= d * d;
+}
+
+bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
+  switch (rules_.kind) {
+    case AuraKind::kNone: return false;
+    case AuraKind::kThesis:
+    case AuraKind::kTight: return spheres_within(foreign, own, reach(hops));
+    case AuraKind::kSwept: break;
+  }
+  return paths_meet(foreign, own, hops * rules_.lookahead);
+}
+
+bool Aura::linked(const Path& a, const Path& b, int hops) const {
+  switch (rules_.kind) {
+    case AuraKind::kNone: return false;
+    case AuraKind::kThesis:
+    case AuraKind::kTight: return spheres_within(a, b, cluster_reach(hops));
+    case AuraKind::kSwept: break;
+  }
+  return paths_meet(a, b, hops * rules_.lookahead);
+}
+
+bool Aura::meets_ghost(const Path& ghost, const Path& own, int hops) const {
+  return rules_.kind == AuraKind::kSwept ? meets(ghost, own, hops) : linked(ghost, own, hops);
+}
+
+double Aura::zone(double speed_m_s, int hops, double other_speed_m_s, double other_radius_m) const {
+  if (rules_.kind != AuraKind::kSwept) return reach(hops) + other_radius_m + rules_.contact_margin_m;
+  const double own_steps = (1 + hops) * rules_.lookahead;
+  const double other_steps = hops * rules_.lookahead;
+  const double way = (1 + rules_.uncertainty) * rules_.step_s * (speed_m_s * own_steps + other_speed_m_s * other_steps);
+  return way + drop_m(own_steps) + drop_m(other_steps) + other_radius_m + rules_.contact_margin_m;
+}
+
+double Aura::notice(double foreign_speed_m_s, double foreign_age_steps, double own_speed_m_s, int hops) const {
+  if (rules_.kind != AuraKind::kSwept) return foreign_reach(hops) + rules_.contact_margin_m;
+  const double own_steps = (1 + hops) * rules_.lookahead;
+  const double foreign_steps = foreign_age_steps + own_steps;
+  const double way =
+      (1 + rules_.uncertainty) * rules_.step_s * (own_speed_m_s * own_steps + foreign_speed_m_s * foreign_steps);
+  return way + rules_.contact_margin_m;  // both speeds already hold what gravity adds
+}
+
+double Aura::link_range(double speed_a_m_s, double speed_b_m_s, int hops) const {
+  if (rules_.kind != AuraKind::kSwept) return cluster_reach(hops) + rules_.contact_margin_m;
+  const double steps = hops * rules_.lookahead;
+  return (1 + rules_.uncertainty) * rules_.step_s * steps * (speed_a_m_s + speed_b_m_s) + 2 * drop_m(steps) +
+         rules_.contact_margin_m;
+}
+
+bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
+  const int substeps = rules_.substeps;
+  const double spread = rules_.uncertainty * rules_.step_s;
+  const double last = horizon_steps;
+  // The clearance shrinks at most this fast, in metres per step.
+  const double fall = rules_.gravity.norm() * (a.age_steps + b.age_steps + 2 * last) * rules_.step_s;
+  const double closing = rules_.step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m +
+                                          b.w_WB.norm() * b.radius_m + rules_.uncertainty * (a.speed_m_s + b.speed_m_s));
+  for (int i = 0; i < horizon_steps * substeps;) {
+    const double k = static_cast<double>(i) / substeps;
+    if (k + 1e-9 < std::max(a.unborn_steps, b.unborn_steps)) {
+      ++i;
+      continue;
+    }
+    const Pose at = ahead(a, k);
+    const Pose bt = ahead(b, k);
+    const double allowed =
+        rules_.reach_scale * (rules_.contact_margin_m +
+                              spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
+    double clearance = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
+    if (clearance <= allowed) {
+      const double limit = allowed + closing * (last - k);
+      clearance = clearance_.clearance(a.prototype, at, b.prototype, bt, limit);
+      if (clearance <= allowed) return true;
+    }
+    const double free_steps = closing > 0 ? (clearance - allowed) / closing : last;
+    i += std::max(1, static_cast<int>(std::min(free_steps, last) * substeps));
+  }
+  return false;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,94 @@
+// The aura: how far ahead, and how far away, two bodies must know of each other so that they share a host before
+// they can touch. Distances and their derivation: DESIGN section 3; eq. 3.4 of A. Brown's thesis for `kThesis`.
+#pragma once
+
+#include "core/body_state.h"
+#include "core/clearance.h"
+
+namespace aurasim::core {
+
+enum class AuraKind : std::uint8_t {
+  kNone,    ///< the naive control: a body goes where its centre is, and nobody is warned
+  kThesis,  ///< eq. 3.4, spheres, one top speed, frames not aligned
+  kTight,   ///< the bound for aligned frames, spheres, one top speed
+  kSwept,   ///< real shapes on predicted paths, a top speed for each cluster
+};
+
+/// What all nodes of a run agree on about auras.
+struct AuraRules {
+  AuraKind kind = AuraKind::kSwept;
+  double step_s = 1.0 / 60;      ///< T_P
+  int substeps = 4;              ///< S
+  int lookahead = 1;             ///< K
+  double top_speed_m_s = 32;     ///< V; promised by the user, used by kThesis and kTight
+  double frame_s = 0.015;        ///< T_F
+  double latency_s = 0.002;      ///< T_L
+  double uncertainty = 0.5;      ///< U: share of its speed by which a body may leave its predicted path
+  double contact_margin_m = 0.05;  ///< Bullet's contact breaking distance (0.02) and both collision margins
+  double reach_scale = 1;        ///< tests only: auras that are a little too small must fail
+  Vec3 gravity = {0, 0, -9.81};  ///< m/s^2
+};
+
+/// One body's predicted motion from the state in which it was last known.
+struct Path {
+  PrototypeId prototype{};
+  double radius_m = 0;
+  Pose pose;
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+  bool moves = true;         ///< false: asleep, stays where it is
+  double age_steps = 0;      ///< how long ago the state was known, seen from now
+  double unborn_steps = 0;   ///< the body appears this many steps from now
+  double speed_m_s = 0;      ///< top speed in its cluster, for the uncertainty
+};
+
+/// The path of one of our own bodies from its state now.
+Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance);
+
+class Aura {
+ public:
+  Aura(const AuraRules& rules, const ClearanceQuery& clearance) : rules_(rules), clearance_(clearance) {}
+
+  const AuraRules& rules() const { return rules_; }
+  const ClearanceQuery& clearance() const { return clearance_; }
+
+  /// Reaches of DESIGN section 3 for one top speed, beyond the bounding spheres, in metres. `hops` is the number of
+  /// regions through which a pull can chain (1 away from corners).
+  double reach(int hops) const;
+  double foreign_reach(int hops) const;
+  double cluster_reach(int hops) const;
+
+  /// Top speed that a body alone can have while a message about it is under way: its own, what gravity adds, and
+  /// 0.1 m/s; 0.05 m/s asleep. For kThesis and kTight the promised V.
+  double speed_of(const BodyState& body) const;
+
+  /// Where a body of `path` is `steps` from now.
+  Pose ahead(const Path& path, double steps) const;
+
+  /// Do two bodies have to share a host? A foreign body and one of ours, seen now.
+  bool meets(const Path& foreign, const Path& own, int hops) const;
+  /// Do two bodies of one host have to move together?
+  bool linked(const Path& a, const Path& b, int hops) const;
+  /// A body sent away a moment ago and one of ours.
+  bool meets_ghost(const Path& ghost, const Path& own, int hops) const;
+
+  /// A body whose surface is this near to another region's territory projects its aura (metres).
+  /// `other_speed_m_s`, `other_radius_m`: the largest over there.
+  double zone(double speed_m_s, int hops, double other_speed_m_s, double other_radius_m) const;
+
+  /// A body projects to the host of a foreign one when their bounding spheres are this near (metres), wherever it is.
+  double notice(double foreign_speed_m_s, double foreign_age_steps, double own_speed_m_s, int hops) const;
+
+  /// Largest distance between bounding spheres at which linked() can be true (metres).
+  double link_range(double speed_a_m_s, double speed_b_m_s, int hops) const;
+
+ private:
+  bool spheres_within(const Path& a, const Path& b, double distance_m) const;
+  bool paths_meet(const Path& a, const Path& b, int horizon_steps) const;
+  double drop_m(double steps) const;  ///< distance that gravity adds in `steps`
+
+  AuraRules rules_;
+  const ClearanceQuery& clearance_;
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,30 @@
+#include "core/body_phase.h"
+
+#include <array>
+
+namespace aurasim::core {
+namespace {
+
+using P = Phase;
+using Row = std::array<std::optional<Phase>, kPhaseEvents>;
+constexpr std::nullopt_t no = std::nullopt;
+
+// clang-format off
+// event:                        kFarFromBoundary  kNearBoundary             kOutside               kAuraHit  kIsland   kReleased
+constexpr std::array<Row, kPhases> kTable = {{
+/* kInjected             */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, no,       no,       no},
+/* kHostRegion           */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no,       no},
+/* kIntersectingBoundary */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no,       no},
+/* kBoundaryTraversed    */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, P::kSent, no},
+/* kSent                 */ Row{no,                no,                       no,                    no,       no,       P::kDestroyed},
+/* kDestroyed            */ Row{no,                no,                       no,                    no,       no,       no},
+}};
+// clang-format on
+
+}  // namespace
+
+std::optional<Phase> next_phase(Phase phase, PhaseEvent event) {
+  return kTable[static_cast<std::size_t>(phase)][static_cast<std::size_t>(event)];
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,37 @@
+// The state machine of a body in Aura Projection (thesis section 4.4): not where it is, but how it is treated.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace aurasim::core {
+
+enum class Phase : std::uint8_t {
+  kInjected,              ///< received or created, not yet looked at
+  kHostRegion,            ///< far from every boundary: nobody is told
+  kIntersectingBoundary,  ///< in a zone: projects its aura
+  kBoundaryTraversed,     ///< wholly outside its host's region: projects its aura, goes home as soon as it is an island
+  kSent,                  ///< in the hand-off buffer
+  kDestroyed,             ///< out of this host's world
+};
+inline constexpr int kPhases = 6;
+
+enum class PhaseEvent : std::uint8_t {
+  kFarFromBoundary,  ///< no region or foreign body within reach
+  kNearBoundary,     ///< within reach of another region or of a foreign body, not wholly outside its own
+  kOutside,          ///< wholly outside its own region
+  kAuraHit,          ///< AC: its cluster has met an aura of a region that outranks ours
+  kIsland,           ///< BT: its cluster has been an island for long enough
+  kReleased,         ///< taken out of the world
+};
+inline constexpr int kPhaseEvents = 6;
+
+/// The phase after `event`, or nothing where the thesis has no such transition.
+std::optional<Phase> next_phase(Phase phase, PhaseEvent event);
+
+/// In which phases a body's aura is with the other regions.
+constexpr bool projects(Phase phase) {
+  return phase == Phase::kIntersectingBoundary || phase == Phase::kBoundaryTraversed;
+}
+
+}  // namespace aurasim::core

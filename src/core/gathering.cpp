@@ -1,0 +1,170 @@
+#include "core/gathering.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace aurasim::core {
+
+Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
+
+void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
+                     std::span<const AuraRecord> ghosts) {
+  measure(snapshot);
+  gather_foreign(snapshot, neighbours, ghosts);
+  mark_regions();
+  clusters_.begin(paths_, speeds_, regions_, snapshot.contacts, snapshot.joints);
+  complete_near_boundaries();
+  pair_up();
+  judge();
+}
+
+void Gathering::measure(const Snapshot& snapshot) {
+  const auto n = snapshot.bodies.size();
+  paths_.resize(n);
+  speeds_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const BodyState& body = snapshot.bodies[i];
+    speeds_[i] = aura_.speed_of(body);
+    paths_[i] = path_of(body, snapshot.step, aura_.clearance());
+  }
+}
+
+void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
+                               std::span<const AuraRecord> ghosts) {
+  foreign_.clear();
+  live_.clear();
+  others_top_speed_ = others_top_radius_ = 0;
+  const auto is_local = [&](BodyId id) {
+    const auto found = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
+                                        [](const BodyState& b, BodyId x) { return b.id < x; });
+    return found != snapshot.bodies.end() && found->id == id;
+  };
+  for (const Neighbour& neighbour : neighbours) {
+    if (!neighbour.alive()) continue;
+    live_.push_back(neighbour.id());
+    // Before the first word of a neighbour, the promised top speed has to do.
+    const bool silent = neighbour.applied() < 0;
+    others_top_speed_ = std::max(others_top_speed_, silent ? aura_.rules().top_speed_m_s : neighbour.top_speed_m_s());
+    others_top_radius_ = std::max(others_top_radius_, neighbour.top_radius_m());
+    for (const AuraRecord& aura : neighbour.auras()) {
+      if (!is_local(aura.id)) add_foreign(aura, neighbour.applied(), snapshot.step);
+    }
+  }
+  for (const AuraRecord& ghost : ghosts) {
+    if (!is_local(ghost.id)) add_foreign(ghost, ghost.stamp, snapshot.step);
+  }
+}
+
+void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
+  const bool asleep = (aura.flags & kAuraAsleep) != 0;
+  const bool ghost = (aura.flags & kAuraGhost) != 0;
+  Foreign& f = foreign_.emplace_back();
+  f.id = aura.id;
+  f.host = aura.host;
+  f.ghost = ghost;
+  f.born = aura.birth <= aura.stamp;
+  f.path.prototype = aura.prototype;
+  f.path.radius_m = aura_.clearance().bounding_radius(aura.prototype);
+  f.path.pose = aura.pose;
+  f.path.v_WB = aura.v_WB;
+  f.path.w_WB = aura.w_WB;
+  f.path.moves = !asleep;
+  // Asleep and unchanged in its source's last batch: as fresh as that batch. A ghost has been out of sight since.
+  f.path.age_steps = static_cast<double>(now - (asleep && !ghost ? known : aura.stamp));
+  f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
+  f.path.speed_m_s = aura.speed_m_s;
+}
+
+double Gathering::band(double speed_m_s, int hops) const {
+  return aura_.zone(speed_m_s, hops, std::max(others_top_speed_, speed_m_s), others_top_radius_);
+}
+
+/// Which regions are in reach of each body. Where several are, pulls can chain, and the reach grows with them.
+void Gathering::mark_regions() {
+  const auto n = paths_.size();
+  regions_.assign(n, 0);
+  near_.clear();
+  double top_speed = NearIndex::kSlow;
+  for (std::size_t i = 0; i < n; ++i) {
+    top_speed = std::max(top_speed, speeds_[i]);
+    others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
+  }
+  const double slow_band = band(NearIndex::kSlow, 1);
+  const double fast_band = band(top_speed, 1);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const bool slow = speeds_[i] <= NearIndex::kSlow;
+    const Vec3& p = paths_[i].pose.p_WB;
+    if (vicinity_.deep_inside(p, (slow ? slow_band : fast_band) + paths_[i].radius_m)) continue;
+    near_.push_back(i);
+    int hops = 0;
+    for (int found = 1; found > hops; found = std::popcount(regions_[i])) {
+      hops = found;
+      regions_[i] = vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops) + paths_[i].radius_m);
+    }
+  }
+}
+
+void Gathering::complete_near_boundaries() {
+  for (const std::uint32_t i : near_) clusters_.complete(i);
+}
+
+/// Foreign auras and our bodies near them. A cluster that is completed here may turn out faster, and then reach
+/// further: repeated until nothing changes.
+void Gathering::pair_up() {
+  noticed_.assign(paths_.size(), 0);
+  for (bool changed = true; changed;) {
+    changed = false;
+    pairs_.clear();
+    const int most_hops = clusters_.most_hops();
+    for (std::uint32_t f = 0; f < foreign_.size(); ++f) {
+      const Path& path = foreign_[f].path;
+      const double slow = aura_.notice(path.speed_m_s, path.age_steps, NearIndex::kSlow, most_hops);
+      const double fast = aura_.notice(path.speed_m_s, path.age_steps, top_speed(), most_hops);
+      clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, slow, fast, [&](std::uint32_t i) {
+        const int hops = clusters_.hops(i);
+        const double reach = path.radius_m + paths_[i].radius_m +
+                             aura_.notice(path.speed_m_s, path.age_steps, clusters_.speed(i), hops);
+        if ((path.pose.p_WB - paths_[i].pose.p_WB).squaredNorm() <= reach * reach) pairs_.push_back({f, i});
+      });
+    }
+    for (const Pair& pair : pairs_) {
+      noticed_[pair.own] = 1;
+      changed = clusters_.add_regions(pair.own, vicinity_.bit_of(foreign_[pair.foreign].host)) || changed;
+      if (clusters_.is_complete(pair.own)) continue;
+      clusters_.complete(pair.own);
+      changed = true;
+    }
+  }
+}
+
+void Gathering::judge() {
+  touched_.assign(paths_.size(), 0);
+  pulled_to_.assign(paths_.size(), vicinity_.self);
+  for (const Pair& pair : pairs_) {
+    const Foreign& f = foreign_[pair.foreign];
+    const std::uint32_t cluster = clusters_.of(pair.own);
+    const bool pulls = f.host < pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host);
+    if (touched_[cluster] && !pulls) continue;
+    const int hops = clusters_.hops(pair.own);
+    const Path& own = paths_[pair.own];
+    if (!(f.ghost ? aura_.meets_ghost(f.path, own, hops) : aura_.meets(f.path, own, hops))) continue;
+    touched_[cluster] = 1;
+    if (pulls) pulled_to_[cluster] = f.host;
+  }
+}
+
+bool Gathering::must_be_announced(std::uint32_t i) const {
+  if (aura_.rules().kind == AuraKind::kNone) return false;
+  if (noticed_[i]) return true;
+  const double reach = band(clusters_.speed(i), clusters_.hops(i)) + paths_[i].radius_m;
+  return !vicinity_.deep_inside(paths_[i].pose.p_WB, reach);
+}
+
+bool Gathering::outside(std::uint32_t i) const {
+  const Vec3& p = paths_[i].pose.p_WB;
+  if (aura_.rules().kind == AuraKind::kNone) return !vicinity_.home().contains(p.x(), p.y());
+  return vicinity_.home().distance(p.x(), p.y()) > paths_[i].radius_m;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,86 @@
+// The seeing half of the protocol: which of our bodies belong together, which of them are touched by auras from
+// elsewhere, and which have to be announced. Looks at one state; remembers nothing but its buffers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/aura.h"
+#include "core/cluster.h"
+#include "core/messages.h"
+#include "core/neighbour.h"
+#include "core/vicinity.h"
+
+namespace aurasim::core {
+
+class Gathering {
+ public:
+  struct Foreign {
+    BodyId id;
+    Path path;
+    RegionId host;
+    bool ghost;
+    bool born;  ///< in the state that its aura describes
+  };
+  /// A foreign body and one of ours that are near enough to be told of each other: indices of foreign() and path().
+  struct Pair {
+    std::uint32_t foreign;
+    std::uint32_t own;
+  };
+
+  Gathering(const Aura& aura, const Vicinity& vicinity);
+
+  /// Looks at a state, given what the neighbours have said and our own ghosts (bodies just sent away).
+  void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts);
+
+  const Clusters& clusters() const { return clusters_; }
+  const Path& path(std::uint32_t i) const { return paths_[i]; }
+
+  /// Is body i near enough to another region, or to a foreign body, that others have to know of it?
+  bool must_be_announced(std::uint32_t i) const;
+  /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
+  bool outside(std::uint32_t i) const;
+  /// An aura from elsewhere has met the cluster of body i.
+  bool touched(std::uint32_t i) const { return touched_[clusters_.of(i)] != 0; }
+  /// The highest-ranked host among the auras that met the cluster and outrank us; our own region if there is none.
+  RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
+
+  /// A foreign aura is near body i.
+  bool noticed(std::uint32_t i) const { return noticed_[i] != 0; }
+  std::span<const Pair> pairs() const { return pairs_; }
+  const Foreign& foreign(std::uint32_t i) const { return foreign_[i]; }
+
+  std::size_t foreign_auras() const { return foreign_.size(); }
+  double top_speed() const { return clusters_.near().top_speed(); }
+  double top_radius() const { return clusters_.near().top_radius(); }
+
+ private:
+  void measure(const Snapshot& snapshot);
+  void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
+                      std::span<const AuraRecord> ghosts);
+  void add_foreign(const AuraRecord& aura, Step known, Step now);
+  void mark_regions();
+  void complete_near_boundaries();
+  void pair_up();
+  void judge();
+  double band(double speed_m_s, int hops) const;
+
+  const Aura& aura_;
+  const Vicinity& vicinity_;
+  Clusters clusters_;
+  std::vector<Path> paths_;
+  std::vector<double> speeds_;
+  std::vector<std::uint64_t> regions_;
+  std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
+  std::vector<Foreign> foreign_;
+  std::vector<Pair> pairs_;
+  std::vector<std::uint32_t> near_;
+  std::vector<std::uint8_t> noticed_;
+  std::vector<std::uint8_t> touched_;  ///< by cluster
+  std::vector<RegionId> pulled_to_;    ///< by cluster
+  double others_top_speed_ = 0;
+  double others_top_radius_ = 0;
+};
+
+}  // namespace aurasim::core

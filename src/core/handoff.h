@@ -1,0 +1,67 @@
+// Exactly once: who has sent which bodies, who has adopted them, and what happens when one of the two dies.
+// A hand-off is known by (source, destination, sequence); the epochs in it say which copy of a body is the valid one.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "core/messages.h"
+
+namespace aurasim::core {
+
+/// The sender's side: keeps every hand-off until it is acknowledged.
+class DepartureLedger {
+ public:
+  /// Numbers and keeps a hand-off; returns the kept copy.
+  const HandOff& record(HandOff hand_off);
+
+  /// Forgets it. Returns false when nothing is open under that number (a second acknowledgement).
+  bool acknowledge(RegionId destination, std::uint64_t sequence);
+
+  /// Appends copies of what has been open for `patience` steps or a multiple of it.
+  void due_again(Step now, Step patience, std::vector<HandOff>& out) const;
+
+  /// Takes out everything still open towards a region (it died).
+  std::vector<HandOff> take_open(RegionId destination);
+
+  std::uint64_t last_sequence(RegionId destination) const;
+  std::size_t open_bodies() const;
+  const std::deque<HandOff>& open() const { return open_; }
+
+ private:
+  std::map<RegionId, std::uint64_t> last_sequence_;
+  std::deque<HandOff> open_;
+};
+
+/// The receiver's side: tells first copies from later ones, and remembers adoptions for a while.
+class ArrivalLedger {
+ public:
+  /// True for the first copy of a hand-off from `source`.
+  bool first_copy(RegionId source, std::uint64_t sequence);
+
+  /// All hand-offs from `source` numbered up to `sequence` have come.
+  bool has_all_up_to(RegionId source, std::uint64_t sequence) const;
+
+  /// Remembers who was adopted from whom, so that nobody takes those bodies back when their last host dies.
+  void adopted(RegionId source, Step now, const ClusterState& cluster);
+  void forget_adoptions_before(Step step);
+  std::vector<BodyEpoch> adopted_from(RegionId source) const;
+
+ private:
+  struct Stream {
+    std::uint64_t contiguous = 0;
+    std::set<std::uint64_t> ahead;
+  };
+  struct Adoption {
+    Step step;
+    RegionId source;
+    BodyEpoch body;
+  };
+  std::map<RegionId, Stream> streams_;
+  std::deque<Adoption> adoptions_;
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,220 @@
+#include "core/intake.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace aurasim::core {
+namespace {
+
+/// Moves the messages that are for a later generation to the front and cuts the rest off.
+template <class Message, class Take>
+void take_all(std::vector<Message>& messages, Generation generation, Take take) {
+  auto kept = messages.begin();
+  for (Message& message : messages) {
+    if (message.generation > generation) {
+      if (&*kept != &message) *kept = std::move(message);
+      ++kept;
+    } else {
+      take(message);
+    }
+  }
+  messages.erase(kept, messages.end());
+}
+
+}  // namespace
+
+Intake::Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures)
+    : settings_(settings), vicinity_(vicinity), map_version_(vicinity.map.version()), departures_(departures) {
+  for (const RegionId id : vicinity.neighbours) neighbours_.emplace_back(id, vicinity.self);
+}
+
+Neighbour* Intake::find(RegionId id) {
+  const auto found = std::lower_bound(neighbours_.begin(), neighbours_.end(), id,
+                                      [](const Neighbour& n, RegionId region) { return n.id() < region; });
+  return found != neighbours_.end() && found->id() == id ? &*found : nullptr;
+}
+
+bool Intake::belongs(RegionId source, Generation generation, std::uint64_t map_version) {
+  const Neighbour* neighbour = find(source);
+  if (neighbour && neighbour->alive() && generation == settings_.generation && map_version == map_version_) return true;
+  ++counters_.strangers;
+  return false;
+}
+
+void Intake::accept(Inbox& inbox) {
+  take_all(inbox.auras, settings_.generation, [this](AuraBatch& batch) {
+    if (!belongs(batch.source, batch.generation, batch.map_version)) return;
+    Neighbour& neighbour = *find(batch.source);
+    if (!neighbour.accept(std::move(batch))) ++counters_.copies;
+  });
+  take_all(inbox.hand_offs, settings_.generation, [this](HandOff& hand_off) { accept(hand_off); });
+  take_all(inbox.acks, settings_.generation, [this](const HandOffAck& ack) {
+    if (ack.destination != vicinity_.self || !belongs(ack.source, ack.generation, map_version_)) return;
+    if (!departures_.acknowledge(ack.source, ack.sequence)) ++counters_.copies;
+  });
+  for (const PeerEvent& event : inbox.peers) accept(event);
+  inbox.peers.clear();
+  hear_of_deaths();
+}
+
+void Intake::accept(HandOff& hand_off) {
+  if (hand_off.destination != vicinity_.self) return;
+  if (!belongs(hand_off.source, hand_off.generation, hand_off.map_version)) return;
+  if (arrivals_.first_copy(hand_off.source, hand_off.sequence)) {
+    waiting_.push_back(std::move(hand_off));
+    return;
+  }
+  ++counters_.copies;
+  const bool waits = std::any_of(waiting_.begin(), waiting_.end(), [&](const HandOff& h) {
+    return h.source == hand_off.source && h.sequence == hand_off.sequence;
+  });
+  // A copy of one adopted long ago: its acknowledgement was lost. One that still waits has not been adopted.
+  if (!waits) acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence});
+}
+
+void Intake::accept(const PeerEvent& event) {
+  Neighbour* neighbour = find(event.region);
+  if (neighbour && neighbour->alive() && event.change == PeerChange::kLost) bury(*neighbour);
+}
+
+void Intake::bury(Neighbour& neighbour) {
+  neighbour.bury();
+  std::erase_if(waiting_, [&](const HandOff& h) { return h.source == neighbour.id(); });
+  for (HandOff& open : departures_.take_open(neighbour.id())) to_reclaim_.push_back(std::move(open));
+}
+
+/// What one neighbour holds for dead, all hold for dead: half a cluster may not wait for a region that the other half
+/// has given up.
+void Intake::hear_of_deaths() {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Neighbour& speaker : neighbours_) {
+      if (!speaker.alive()) continue;
+      for (const RegionId dead : speaker.dead()) {
+        if (dead == vicinity_.self) fenced_ = true;
+        Neighbour* neighbour = find(dead);
+        if (neighbour && neighbour->alive()) {
+          bury(*neighbour);
+          changed = true;
+        }
+      }
+    }
+  }
+}
+
+bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
+  const Step needed = n - settings_.lookahead;
+  if (!neighbour.alive() || needed < 0) return false;
+  return neighbour.received() < needed || !arrivals_.has_all_up_to(neighbour.id(), neighbour.hand_offs_until(needed));
+}
+
+bool Intake::ready(Step n) const {
+  if (settings_.sync == SyncMode::kFreeRunning) return true;
+  return std::none_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) { return keeps_waiting(q, n); });
+}
+
+std::vector<RegionId> Intake::missing(Step n) const {
+  std::vector<RegionId> regions;
+  for (const Neighbour& neighbour : neighbours_) {
+    if (keeps_waiting(neighbour, n)) regions.push_back(neighbour.id());
+  }
+  return regions;
+}
+
+/// Stamps up to this one take effect in state `n`: exactly K steps late in deterministic mode, else as soon as they
+/// are here, but never before the state that they describe.
+Step Intake::effect_limit(Step n) const {
+  return settings_.sync == SyncMode::kDeterministic ? n - settings_.lookahead : n - 1;
+}
+
+std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations) {
+  const Step limit = effect_limit(n);
+  for (Neighbour& neighbour : neighbours_) {
+    if (!neighbour.alive()) continue;
+    neighbour.apply_until(limit);
+    const Step age = n - neighbour.applied();
+    if (age > settings_.lookahead && n > settings_.lookahead) {
+      violations.add({ViolationKind::kLatency, n, neighbour.id(), {}, double(age), double(settings_.lookahead)});
+    }
+  }
+  adopt_due(limit, n, violations);
+  reclaim(n);
+  arrivals_.forget_adoptions_before(n - settings_.adoption_memory_steps);
+  return std::exchange(adoptions_, {});
+}
+
+void Intake::adopt_due(Step limit, Step n, ViolationLog& violations) {
+  std::sort(waiting_.begin(), waiting_.end(), [](const HandOff& a, const HandOff& b) {
+    return std::tie(a.stamp, a.source, a.sequence) < std::tie(b.stamp, b.source, b.sequence);
+  });
+  auto due_end = waiting_.begin();
+  for (; due_end != waiting_.end() && due_end->stamp <= limit; ++due_end) {
+    if (n - due_end->stamp > settings_.lookahead) {
+      violations.add({ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp),
+                      double(settings_.lookahead)});
+    }
+    acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence});
+    adopt(*due_end, n, false);
+  }
+  waiting_.erase(waiting_.begin(), due_end);
+}
+
+void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
+  if (hand_off.cluster.bodies.empty()) return;
+  counters_.adopted += reclaimed ? 0 : hand_off.cluster.bodies.size();
+  counters_.reclaimed += reclaimed ? hand_off.cluster.bodies.size() : 0;
+  const RegionId source = reclaimed ? hand_off.destination : hand_off.source;
+  arrivals_.adopted(source, n, hand_off.cluster);
+  adoptions_.push_back(
+      {source, hand_off.stamp, hand_off.sequence, hand_off.reason, reclaimed, std::move(hand_off.cluster)});
+}
+
+/// Bodies on their way to a dead region come back under a higher epoch. Before its death it may have adopted them and
+/// sent them on, without us hearing of it: so first every live neighbour has to know of the death (from then on it
+/// adopts nothing from there) and to claim what it did adopt.
+void Intake::reclaim(Step n) {
+  const auto all_know = [this](RegionId dead) {
+    return std::all_of(neighbours_.begin(), neighbours_.end(),
+                       [&](const Neighbour& q) { return !q.alive() || q.holds_for_dead(dead); });
+  };
+  const auto claims = [](std::span<const BodyEpoch> claims, const BodyRecord& body) {
+    return std::any_of(claims.begin(), claims.end(),
+                       [&](const BodyEpoch& c) { return c.id == body.id && c.epoch > body.epoch; });
+  };
+  std::erase_if(to_reclaim_, [&](HandOff& hand_off) {
+    if (!all_know(hand_off.destination)) return false;
+    const std::vector<BodyEpoch> came_back = arrivals_.adopted_from(hand_off.destination);
+    remove_bodies(hand_off.cluster, [&](const BodyRecord& body) {
+      return claims(came_back, body) || std::any_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
+               return claims(q.claims(), body);
+             });
+    });
+    for (BodyRecord& body : hand_off.cluster.bodies) ++body.epoch;
+    adopt(hand_off, n, true);
+    return true;
+  });
+}
+
+std::vector<RegionId> Intake::dead_regions() const {
+  std::vector<RegionId> dead;
+  for (const Neighbour& neighbour : neighbours_) {
+    if (!neighbour.alive()) dead.push_back(neighbour.id());
+  }
+  return dead;
+}
+
+void Intake::fill(Outbox& outbox, Step stamp) {
+  for (HandOffAck& ack : acks_) {
+    ack.stamp = stamp;
+    outbox.acks.push_back(ack);
+  }
+  acks_.clear();
+  outbox.aura.dead = dead_regions();
+  for (const RegionId dead : outbox.aura.dead) {
+    const std::vector<BodyEpoch> claims = arrivals_.adopted_from(dead);
+    outbox.aura.claims.insert(outbox.aura.claims.end(), claims.begin(), claims.end());
+  }
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,94 @@
+// The hearing half of the protocol: sorts what arrives, says when the next state may be computed, which bodies join
+// before it, and what becomes of bodies that were on their way to a region that died.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/handoff.h"
+#include "core/messages.h"
+#include "core/neighbour.h"
+#include "core/vicinity.h"
+#include "core/violation.h"
+
+namespace aurasim::core {
+
+enum class SyncMode : std::uint8_t { kFreeRunning, kBounded, kDeterministic };
+
+struct IntakeSettings {
+  Generation generation = 0;
+  SyncMode sync = SyncMode::kBounded;
+  int lookahead = 1;
+  Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
+};
+
+/// A cluster that joins this node; its state is that of `stamp`.
+struct Adoption {
+  RegionId source{};
+  Step stamp = 0;
+  std::uint64_t sequence = 0;
+  HandOffReason reason{};
+  bool reclaimed = false;  ///< it had been sent to a region that died before it said that it adopted
+  ClusterState cluster;
+};
+
+/// Counted since the start.
+struct IntakeCounters {
+  std::uint64_t adopted = 0;         ///< bodies
+  std::uint64_t reclaimed = 0;       ///< bodies
+  std::uint64_t copies = 0;          ///< messages that came again
+  std::uint64_t strangers = 0;       ///< messages of unknown, dead or differently configured senders
+};
+
+class Intake {
+ public:
+  Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures);
+
+  /// Takes in what arrived; messages of the next generation stay in `inbox`.
+  void accept(Inbox& inbox);
+
+  bool ready(Step n) const;
+  std::vector<RegionId> missing(Step n) const;
+
+  /// Lets messages take effect before state `n` is computed; who joins, in the order in which they join.
+  std::vector<Adoption> receive(Step n, ViolationLog& violations);
+
+  std::span<const Neighbour> neighbours() const { return neighbours_; }
+  std::vector<RegionId> dead_regions() const;
+  bool fenced() const { return fenced_; }
+  /// Bodies sent to a region that died, which may not be taken back yet.
+  const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
+  const IntakeCounters& counters() const { return counters_; }
+
+  /// For the step's outbox: acknowledgements, deaths and claims. Acks are given out once, claims as long as useful.
+  void fill(Outbox& outbox, Step stamp);
+
+ private:
+  Neighbour* find(RegionId id);
+  bool keeps_waiting(const Neighbour& neighbour, Step n) const;
+  bool belongs(RegionId source, Generation generation, std::uint64_t map_version);
+  void accept(HandOff& hand_off);
+  void accept(const PeerEvent& event);
+  void bury(Neighbour& neighbour);
+  void hear_of_deaths();
+  void adopt_due(Step limit, Step n, ViolationLog& violations);
+  void adopt(HandOff& hand_off, Step n, bool reclaimed);
+  void reclaim(Step n);
+  Step effect_limit(Step n) const;
+
+  IntakeSettings settings_;
+  const Vicinity& vicinity_;
+  std::uint64_t map_version_;
+  std::vector<Neighbour> neighbours_;
+  DepartureLedger& departures_;
+  ArrivalLedger arrivals_;
+  std::vector<HandOff> waiting_;     ///< received, not yet in effect
+  std::vector<HandOff> to_reclaim_;  ///< on their way to regions that died; taken back once every neighbour knows
+  std::vector<HandOffAck> acks_;
+  std::vector<Adoption> adoptions_;
+  bool fenced_ = false;
+  IntakeCounters counters_;
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,33 @@
+#include "core/near_index.h"
+
+#include <algorithm>
+
+namespace aurasim::core {
+
+void NearIndex::build(std::span<const Path> paths, std::span<const double> speeds) {
+  double sum = 0;
+  top_speed_ = top_radius_ = small_radius_ = 0;
+  for (const Path& path : paths) sum += path.radius_m;
+  const double mean = paths.empty() ? 1 : sum / static_cast<double>(paths.size());
+  const double large = 4 * mean;
+  const double cell = std::max(2 * mean, 1e-3);
+  slow_.clear(cell);
+  fast_.clear(2 * cell);
+  always_.clear();
+  for (std::uint32_t i = 0; i < paths.size(); ++i) {
+    top_speed_ = std::max(top_speed_, speeds[i]);
+    top_radius_ = std::max(top_radius_, paths[i].radius_m);
+    if (paths[i].radius_m > large) {
+      always_.push_back(i);
+      continue;
+    }
+    small_radius_ = std::max(small_radius_, paths[i].radius_m);
+    (speeds[i] <= kSlow ? slow_ : fast_).add(i, paths[i].pose.p_WB);
+  }
+  slow_.build();
+  fast_.build();
+}
+
+void NearIndex::raise(std::uint32_t i) { always_.push_back(i); }
+
+}  // namespace aurasim::core

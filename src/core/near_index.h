@@ -1,0 +1,48 @@
+// Which of a node's own bodies are near a place? Slow bodies, fast bodies and very large ones are kept apart, so that
+// one fast or one large body does not widen every query.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/aura.h"
+#include "core/spatial_grid.h"
+
+namespace aurasim::core {
+
+class NearIndex {
+ public:
+  /// Bodies whose cluster is slower than this are slow (m/s).
+  static constexpr double kSlow = 3.0;
+
+  /// Indexes `paths`; `speeds[i]` is the top speed of body i's cluster as far as it is known.
+  void build(std::span<const Path> paths, std::span<const double> speeds);
+
+  /// Body `i` was indexed as slow, and its cluster turned out to be fast.
+  void raise(std::uint32_t i);
+
+  double top_speed() const { return top_speed_; }
+  double top_radius() const { return top_radius_; }
+
+  /// Calls `visit(index)` for at least every body whose bounding sphere comes within `slow_range_m` (slow bodies) or
+  /// `fast_range_m` (fast ones) of the sphere of `radius_m` around `p`. Some are visited twice.
+  template <class Visit>
+  void for_each_near(const Vec3& p, double radius_m, double slow_range_m, double fast_range_m, Visit&& visit) const {
+    const Vec3 slow = Vec3::Constant(radius_m + slow_range_m + small_radius_);
+    slow_.for_each_in(p - slow, p + slow, visit);
+    const Vec3 fast = Vec3::Constant(radius_m + fast_range_m + small_radius_);
+    if (!fast_.empty()) fast_.for_each_in(p - fast, p + fast, visit);
+    for (const std::uint32_t i : always_) visit(i);
+  }
+
+ private:
+  SpatialGrid slow_;
+  SpatialGrid fast_;
+  std::vector<std::uint32_t> always_;  ///< large, or raised
+  double small_radius_ = 0;            ///< largest radius of the bodies in the grids
+  double top_speed_ = 0;
+  double top_radius_ = 0;
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,87 @@
+#include "core/neighbour.h"
+
+#include <algorithm>
+
+namespace aurasim::core {
+namespace {
+
+/// The gate asks for a stamp at most this far behind the newest batch in effect.
+constexpr Step kGateHistory = 64;
+
+bool by_id(const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; }
+
+}  // namespace
+
+bool Neighbour::accept(AuraBatch batch) {
+  const Step stamp = batch.stamp;
+  if (stamp <= received_ || !waiting_.try_emplace(stamp, std::move(batch)).second) return false;
+  while (waiting_.contains(received_ + 1)) note_marks(waiting_.at(++received_));
+  return true;
+}
+
+void Neighbour::note_marks(const AuraBatch& batch) {
+  for (const HandOffMark& mark : batch.hand_offs) {
+    if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
+  }
+  // News of a death may not wait for its turn: whoever waits for the dead would wait for ever.
+  dead_ = batch.dead;
+  claims_ = batch.claims;
+}
+
+void Neighbour::apply_until(Step last) {
+  last = std::min(last, received_);
+  while (!waiting_.empty() && waiting_.begin()->first <= last) {
+    apply(waiting_.begin()->second);
+    waiting_.erase(waiting_.begin());
+  }
+}
+
+void Neighbour::apply(AuraBatch& batch) {
+  applied_ = batch.stamp;
+  while (marks_.size() > 1 && marks_[1].stamp < applied_ - kGateHistory) marks_.erase(marks_.begin());
+  top_speed_m_s_ = batch.top_speed_m_s;
+  top_radius_m_ = batch.top_radius_m;
+  violations_ = batch.violations;
+  if (batch.full) auras_.clear();
+  merge(batch);
+}
+
+void Neighbour::merge(AuraBatch& batch) {
+  if (batch.updates.empty() && batch.deletes.empty()) return;
+  std::stable_sort(batch.updates.begin(), batch.updates.end(), by_id);
+  std::sort(batch.deletes.begin(), batch.deletes.end());
+  merged_.clear();
+  auto old = auras_.begin();
+  auto gone = batch.deletes.begin();
+  const auto keep = [&](const AuraRecord& aura) {
+    while (gone != batch.deletes.end() && *gone < aura.id) ++gone;
+    if (gone == batch.deletes.end() || *gone != aura.id) merged_.push_back(aura);
+  };
+  for (const AuraRecord& update : batch.updates) {
+    for (; old != auras_.end() && old->id < update.id; ++old) keep(*old);
+    if (old != auras_.end() && old->id == update.id) ++old;
+    merged_.push_back(update);
+  }
+  for (; old != auras_.end(); ++old) keep(*old);
+  std::swap(auras_, merged_);
+}
+
+std::uint64_t Neighbour::hand_offs_until(Step stamp) const {
+  std::uint64_t last = 0;
+  for (const Mark& mark : marks_) {
+    if (mark.stamp <= stamp) last = std::max(last, mark.last_sequence);
+  }
+  return last;
+}
+
+void Neighbour::bury() {
+  alive_ = false;
+  auras_.clear();
+  waiting_.clear();
+}
+
+bool Neighbour::holds_for_dead(RegionId region) const {
+  return std::find(dead_.begin(), dead_.end(), region) != dead_.end();
+}
+
+}  // namespace aurasim::core

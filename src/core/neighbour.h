@@ -1,0 +1,68 @@
+// What one neighbour has told us: its aura batches in order of stamp, and the auras that they add up to.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "core/messages.h"
+
+namespace aurasim::core {
+
+class Neighbour {
+ public:
+  Neighbour(RegionId id, RegionId self) : id_(id), self_(self) {}
+
+  RegionId id() const { return id_; }
+  bool alive() const { return alive_; }
+
+  /// Keeps a batch until its turn. False when it is a copy of one already seen.
+  bool accept(AuraBatch batch);
+
+  /// Stamp up to which every batch has come, -1 at first.
+  Step received() const { return received_; }
+  /// Stamp of the newest batch that has taken effect, -1 at first.
+  Step applied() const { return applied_; }
+
+  /// Lets the received batches with stamp <= `last` take effect, in order.
+  void apply_until(Step last);
+
+  /// Sequence of its last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
+  std::uint64_t hand_offs_until(Step stamp) const;
+
+  /// It died: nothing that it said holds any longer.
+  void bury();
+
+  const std::vector<AuraRecord>& auras() const { return auras_; }  ///< ascending id
+  double top_speed_m_s() const { return top_speed_m_s_; }
+  double top_radius_m() const { return top_radius_m_; }
+  std::uint64_t violations() const { return violations_; }
+  bool holds_for_dead(RegionId region) const;
+  const std::vector<RegionId>& dead() const { return dead_; }
+  const std::vector<BodyEpoch>& claims() const { return claims_; }
+
+ private:
+  void apply(AuraBatch& batch);
+  void note_marks(const AuraBatch& batch);
+  void merge(AuraBatch& batch);
+
+  RegionId id_;
+  RegionId self_;
+  bool alive_ = true;
+  Step received_ = -1;
+  Step applied_ = -1;
+  std::map<Step, AuraBatch> waiting_;  ///< received, not yet in effect
+  struct Mark {
+    Step stamp;
+    std::uint64_t last_sequence;
+  };
+  std::vector<Mark> marks_;  ///< hand-offs to us, ascending stamp; of those in effect only the last is kept
+  std::vector<AuraRecord> auras_, merged_;
+  double top_speed_m_s_ = 0;
+  double top_radius_m_ = 0;
+  std::uint64_t violations_ = 0;
+  std::vector<RegionId> dead_;
+  std::vector<BodyEpoch> claims_;
+};
+
+}  // namespace aurasim::core

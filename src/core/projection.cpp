@@ -1,0 +1,179 @@
+#include "core/projection.h"
+
+#include <algorithm>
+
+namespace aurasim::core {
+namespace {
+
+/// Is there anything in `now` that the others could not know from `said`?
+bool has_news(const AuraRecord& said, const AuraRecord& now) {
+  const bool asleep = (now.flags & kAuraAsleep) != 0;
+  return !asleep || said.flags != now.flags || said.speed_m_s != now.speed_m_s || said.epoch != now.epoch ||
+         said.pose.p_WB != now.pose.p_WB;
+}
+
+}  // namespace
+
+void Projection::follow(const Snapshot& snapshot) {
+  std::swap(tracks_, before_);
+  tracks_.clear();
+  auto old = before_.begin();
+  for (const BodyState& body : snapshot.bodies) {
+    while (old != before_.end() && old->id < body.id) ++old;
+    if (old != before_.end() && old->id == body.id && old->epoch == body.epoch) {
+      tracks_.push_back(*old);
+    } else {
+      Track& fresh = tracks_.emplace_back();
+      fresh.id = body.id;
+      fresh.epoch = body.epoch;
+    }
+  }
+}
+
+const Track* Projection::find(BodyId id) const {
+  const auto found =
+      std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const Track& t, BodyId x) { return t.id < x; });
+  return found != tracks_.end() && found->id == id ? &*found : nullptr;
+}
+
+void Projection::move(Track& track, PhaseEvent event) {
+  const std::optional<Phase> next = next_phase(track.phase, event);
+  if (!next) {
+    ++counters_.bad_phase_changes;
+    return;
+  }
+  track.phase = *next;
+}
+
+AuraRecord Projection::describe(const BodyState& body, double speed_m_s, Step stamp) const {
+  AuraRecord aura;
+  aura.id = body.id;
+  aura.epoch = body.epoch;
+  aura.host = vicinity_.self;
+  aura.prototype = body.prototype;
+  aura.flags = body.awake ? 0 : kAuraAsleep;
+  aura.stamp = stamp;
+  aura.birth = body.birth;
+  aura.pose = body.pose;
+  aura.v_WB = body.v_WB;
+  aura.w_WB = body.w_WB;
+  aura.speed_m_s = speed_m_s;
+  return aura;
+}
+
+void Projection::say(Track& track, const AuraRecord& aura, AuraBatch& batch) {
+  if (track.projected && !has_news(track.said, aura)) return;
+  ++(track.projected ? counters_.updated : counters_.created);
+  if (!track.projected) track.promise = aura;
+  track.projected = true;
+  track.said = aura;
+  batch.updates.push_back(aura);
+}
+
+void Projection::classify(const Snapshot& snapshot, const Gathering& gathering) {
+  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
+    move(tracks_[i], gathering.outside(i)              ? PhaseEvent::kOutside
+                     : gathering.must_be_announced(i) ? PhaseEvent::kNearBoundary
+                                                       : PhaseEvent::kFarFromBoundary);
+  }
+}
+
+void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, AuraBatch& batch,
+                       ViolationLog& violations) {
+  projecting_ = 0;
+  for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    if (track.phase == Phase::kSent) continue;
+    const BodyState& body = snapshot.bodies[i];
+    check_speed(track, body, snapshot.step, violations);
+    if (projects(track.phase) && aura_.rules().kind != AuraKind::kNone) {
+      ++projecting_;
+      check_promise(track, body, snapshot.step, violations);
+      check_span(track, body, snapshot.step, violations);
+      say(track, describe(body, gathering.clusters().speed(i), snapshot.step), batch);
+    } else if (track.projected) {
+      ++counters_.deleted;
+      track.projected = false;
+      batch.deletes.push_back(track.id);
+    }
+  }
+  expire_ghosts(snapshot, batch);
+}
+
+void Projection::depart(const BodyState& body, std::uint32_t i, double speed_m_s, RegionId destination, PhaseEvent why,
+                        AuraBatch& batch) {
+  Track& track = tracks_[i];
+  move(track, why);
+  AuraRecord ghost = describe(body, speed_m_s, batch.stamp);
+  ghost.host = destination;
+  ghost.epoch = body.epoch + 1;
+  ghost.flags |= kAuraGhost;
+  if (aura_.rules().kind == AuraKind::kNone) return;
+  ++(track.projected ? counters_.updated : counters_.created);
+  std::erase_if(ghosts_, [&](const AuraRecord& g) { return g.id == body.id; });
+  ghosts_.push_back(ghost);
+  batch.updates.push_back(ghost);
+}
+
+/// A ghost is kept for 2K steps: until the first aura of the new host can have come. One that came back is no ghost.
+void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
+  std::erase_if(ghosts_, [&](const AuraRecord& ghost) {
+    const Track* here = find(ghost.id);
+    if (here && here->phase != Phase::kSent) {
+      if (!here->projected) {
+        ++counters_.deleted;
+        batch.deletes.push_back(ghost.id);
+      }
+      return true;
+    }
+    if (snapshot.step < ghost.stamp + 2 * aura_.rules().lookahead) return false;
+    ++counters_.deleted;
+    batch.deletes.push_back(ghost.id);
+    return true;
+  });
+}
+
+/// After 2K steps the body has to be within what its aura said then: the path, plus U v age.
+void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
+  if (!track.projected || aura_.rules().kind != AuraKind::kSwept) return;
+  const AuraRecord& promise = track.promise;
+  const auto age = static_cast<double>(now - promise.stamp);
+  if (age < 2 * aura_.rules().lookahead) return;
+  Path path;
+  path.pose = promise.pose;
+  path.v_WB = promise.v_WB;
+  path.w_WB = promise.w_WB;
+  path.moves = (promise.flags & kAuraAsleep) == 0;
+  path.unborn_steps = static_cast<double>(std::max<Step>(0, promise.birth - promise.stamp));
+  const double off = (aura_.ahead(path, age).p_WB - body.pose.p_WB).norm();
+  const double allowed = aura_.rules().contact_margin_m +
+                         aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
+  if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
+  track.promise = track.said;
+}
+
+void Projection::check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
+  const double speed = body.v_WB.norm();
+  const bool too_fast = speed > aura_.rules().top_speed_m_s;
+  if (too_fast && !track.too_fast) {
+    violations.add({ViolationKind::kSpeed, now, vicinity_.self, body.id, speed, aura_.rules().top_speed_m_s});
+  }
+  track.too_fast = too_fast;
+}
+
+/// A body over a region that does not listen to us can be hit by bodies that we never hear of.
+void Projection::check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
+  const Vec3& p = body.pose.p_WB;
+  bool out = false;
+  if (!vicinity_.home().contains(p.x(), p.y())) {
+    const RegionId over = vicinity_.map.owner(p);
+    out = over != vicinity_.self && !vicinity_.is_neighbour(over);
+    if (out && !track.out_of_span) {
+      violations.add({ViolationKind::kSpan, now, vicinity_.self, body.id,
+                      vicinity_.home().distance(vicinity_.map.region(over)), 0});
+    }
+  }
+  track.out_of_span = out;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,226 @@
+#include "core/protocol.h"
+
+#include <algorithm>
+
+namespace aurasim::core {
+
+Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)
+    : settings_(settings),
+      vicinity_(map, settings.self, settings.neighbour_distance_m),
+      map_version_(map.version()),
+      aura_(settings.aura, clearance),
+      intake_({settings.generation, settings.sync, settings.aura.lookahead}, vicinity_, departures_),
+      gathering_(aura_, vicinity_),
+      projection_(aura_, vicinity_) {}
+
+const Changes& Protocol::receive(Step n) {
+  violations_.start_step();
+  changes_.adoptions.clear();
+  changes_.let_go.clear();
+  std::vector<Adoption> arrived = intake_.receive(n, violations_);
+  let_go_of_what_others_own();
+  for (Adoption& adoption : arrived) take_if_newer(adoption);
+  hear_violations();
+  return changes_;
+}
+
+/// The highest epoch owns: a copy of what is here already is refused, an older one here gives way.
+void Protocol::take_if_newer(Adoption& adoption) {
+  remove_bodies(adoption.cluster, [this](const BodyRecord& body) {
+    const Track* here = projection_.find(body.id);
+    const bool gone = !here || here->phase == Phase::kSent;
+    if (!gone && here->epoch >= body.epoch) {
+      ++counters_.stale_arrivals;
+      return true;
+    }
+    if (!gone) let_go(body.id);
+    return false;
+  });
+  if (!adoption.cluster.bodies.empty()) changes_.adoptions.push_back(std::move(adoption));
+}
+
+void Protocol::let_go_of_what_others_own() {
+  for (const Neighbour& neighbour : intake_.neighbours()) {
+    for (const AuraRecord& aura : neighbour.auras()) {
+      if (aura.host == vicinity_.self) continue;
+      const Track* here = projection_.find(aura.id);
+      if (here && here->phase != Phase::kSent && here->epoch < aura.epoch) let_go(aura.id);
+    }
+  }
+}
+
+void Protocol::let_go(BodyId id) {
+  if (std::find(changes_.let_go.begin(), changes_.let_go.end(), id) != changes_.let_go.end()) return;
+  ++counters_.let_go;
+  changes_.let_go.push_back(id);
+}
+
+void Protocol::hear_violations() {
+  std::uint64_t heard = 0;
+  for (const Neighbour& neighbour : intake_.neighbours()) heard += neighbour.violations();
+  if (heard != violations_heard_) {
+    Step newest = violations_.last_step();
+    for (const Neighbour& neighbour : intake_.neighbours()) newest = std::max(newest, neighbour.applied());
+    last_violation_step_ = std::max(last_violation_step_, newest);
+  }
+  violations_heard_ = heard;
+  last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
+}
+
+const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
+  outbox_.clear();
+  departing_.clear();
+  outbox_.aura.stamp = snapshot.step;
+  projection_.follow(snapshot);
+  gathering_.look(snapshot, intake_.neighbours(), projection_.ghosts());
+  projection_.classify(snapshot, gathering_);
+  decide(snapshot);
+  projection_.speak(snapshot, gathering_, outbox_.aura, violations_);
+  last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
+  fill_header();
+  return departing_;
+}
+
+void Protocol::decide(const Snapshot& snapshot) {
+  decided_.assign(snapshot.bodies.size(), 0);
+  largest_cluster_ = 0;
+  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
+    if (aura_.rules().kind == AuraKind::kNone) {
+      decide_naively(i, snapshot);
+      continue;
+    }
+    const std::uint32_t cluster = gathering_.clusters().of(i);
+    if (!gathering_.clusters().is_complete(i) || decided_[cluster]) continue;
+    decided_[cluster] = 1;
+    largest_cluster_ = std::max(largest_cluster_, gathering_.clusters().size(i));
+    decide_for_cluster(i, snapshot);
+  }
+}
+
+/// AC before BT: a touched cluster is never an island.
+void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
+  const RegionId pulled_to = gathering_.pulled_to(i);
+  if (pulled_to != vicinity_.self) {
+    depart(i, pulled_to, HandOffReason::kAuraCollision, snapshot);
+  } else if (settles_elsewhere(i, snapshot.step)) {
+    const RegionId home = lowest_owner(i);
+    const bool listens = vicinity_.is_neighbour(home);
+    const std::vector<RegionId> dead = intake_.dead_regions();
+    if (listens && std::find(dead.begin(), dead.end(), home) == dead.end()) {
+      depart(i, home, HandOffReason::kBoundaryTraversal, snapshot);
+    }
+  }
+}
+
+void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
+  const RegionId owner = vicinity_.map.owner(snapshot.bodies[i].pose.p_WB);
+  if (owner != vicinity_.self && vicinity_.is_neighbour(owner)) {
+    depart(i, owner, HandOffReason::kBoundaryTraversal, snapshot);
+  }
+}
+
+/// Has the cluster of body i been an island for 2K+1 states in a row?
+bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
+  bool island = !gathering_.touched(i);
+  if (island) {
+    gathering_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && gathering_.outside(j); });
+  }
+  Step since = 0;
+  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
+    Track& track = projection_.track(j);
+    if (!island) {
+      track.island_since = -1;
+    } else if (track.island_since < 0) {
+      track.island_since = now;
+    }
+    since = std::max(since, track.island_since);
+  });
+  return island && now - since >= 2 * aura_.rules().lookahead + 1;
+}
+
+RegionId Protocol::lowest_owner(std::uint32_t i) const {
+  RegionId lowest{~0u};
+  gathering_.clusters().for_each_member(
+      i, [&](std::uint32_t j) { lowest = std::min(lowest, vicinity_.map.owner(gathering_.path(j).pose.p_WB)); });
+  return lowest;
+}
+
+void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot) {
+  Departure& departure = departing_.emplace_back();
+  departure.destination = destination;
+  departure.reason = reason;
+  const double speed = gathering_.clusters().speed(i);
+  const bool collision = reason == HandOffReason::kAuraCollision;
+  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
+    departure.bodies.push_back(snapshot.bodies[j].id);
+    projection_.depart(snapshot.bodies[j], j, speed, destination,
+                       collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
+  });
+  std::sort(departure.bodies.begin(), departure.bodies.end());
+}
+
+void Protocol::hand_over(const Departure& departure, ClusterState cluster) {
+  for (BodyRecord& body : cluster.bodies) ++body.epoch;
+  counters_.handed_over += cluster.bodies.size();
+  HandOff hand_off;
+  hand_off.source = vicinity_.self;
+  hand_off.destination = departure.destination;
+  hand_off.generation = settings_.generation;
+  hand_off.stamp = outbox_.aura.stamp;
+  hand_off.map_version = map_version_;
+  hand_off.reason = departure.reason;
+  hand_off.cluster = std::move(cluster);
+  const HandOff& kept = departures_.record(std::move(hand_off));
+  outbox_.hand_offs.push_back(kept);
+  std::erase_if(outbox_.aura.hand_offs, [&](const HandOffMark& m) { return m.destination == kept.destination; });
+  outbox_.aura.hand_offs.push_back({kept.destination, kept.sequence});
+}
+
+void Protocol::fill_header() {
+  AuraBatch& batch = outbox_.aura;
+  batch.source = vicinity_.self;
+  batch.generation = settings_.generation;
+  batch.map_version = map_version_;
+  batch.full = batch.stamp == 0;
+  batch.top_speed_m_s = gathering_.top_speed();
+  batch.top_radius_m = gathering_.top_radius();
+  batch.violations = violations_.total();
+  std::sort(batch.updates.begin(), batch.updates.end(),
+            [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
+  departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
+  intake_.fill(outbox_, batch.stamp);
+}
+
+void Protocol::report_frame(Step step, double frame_s) {
+  if (frame_s <= aura_.rules().frame_s) return;
+  violations_.add({ViolationKind::kFrame, step, vicinity_.self, {}, frame_s, aura_.rules().frame_s});
+}
+
+std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules, const ClearanceQuery& clearance,
+                                   const Snapshot& scene) {
+  std::vector<RegionId> hosts(scene.bodies.size());
+  for (std::size_t i = 0; i < hosts.size(); ++i) hosts[i] = map.owner(scene.bodies[i].pose.p_WB);
+  if (rules.kind == AuraKind::kNone || map.size() == 1) return hosts;
+  // For the first 2K steps nobody hears of anybody: the clusters of state 0 have to look that much further ahead.
+  AuraRules early = rules;
+  early.lookahead = 4 * rules.lookahead;
+  const Aura aura(early, clearance);
+  std::vector<Path> paths;
+  std::vector<double> speeds;
+  for (const BodyState& body : scene.bodies) {
+    paths.push_back(path_of(body, scene.step, clearance));
+    speeds.push_back(aura.speed_of(body));
+  }
+  const std::vector<std::uint64_t> no_regions(scene.bodies.size(), 0);
+  Clusters clusters(aura);
+  clusters.begin(paths, speeds, no_regions, scene.contacts, scene.joints);
+  for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
+  for (std::uint32_t i = 0; i < hosts.size(); ++i) {
+    RegionId lowest = hosts[i];
+    clusters.for_each_member(i, [&](std::uint32_t j) { lowest = std::min(lowest, map.owner(scene.bodies[j].pose.p_WB)); });
+    hosts[i] = lowest;
+  }
+  return hosts;
+}
+
+}  // namespace aurasim::core

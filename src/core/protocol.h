@@ -1,0 +1,138 @@
+// Aura Projection on one node: what it hears from its neighbours, what it tells them, which bodies go where.
+// No clock, thread, socket or physics in here: time, messages and snapshots are passed in, so a whole cluster of
+// nodes can run inside one test. One step of a node (DESIGN section 4):
+//   receive(n)         ->  bodies to adopt or to let go          [physics computes state n]
+//   observe(snapshot)  ->  auras, clusters, bodies to release    [physics takes them out]
+//   hand_over(...)     ->  hand-offs in the outbox
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/aura.h"
+#include "core/gathering.h"
+#include "core/handoff.h"
+#include "core/intake.h"
+#include "core/messages.h"
+#include "core/projection.h"
+#include "core/region_map.h"
+#include "core/vicinity.h"
+#include "core/violation.h"
+
+namespace aurasim::core {
+
+struct ProtocolSettings {
+  RegionId self{};
+  Generation generation = 0;
+  SyncMode sync = SyncMode::kBounded;
+  AuraRules aura;
+  double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other
+  Step resend_after_steps = 120;    ///< an unacknowledged hand-off is sent again every so often
+};
+
+struct Changes {
+  std::vector<Adoption> adoptions;  ///< in the order in which they join
+  std::vector<BodyId> let_go;       ///< another node has a higher epoch of these: take them out first
+};
+
+/// A cluster that has to leave: release it from physics and give it to hand_over().
+struct Departure {
+  RegionId destination{};
+  HandOffReason reason{};
+  std::vector<BodyId> bodies;  ///< ascending
+};
+
+/// Bodies, counted since the start.
+struct ProtocolCounters {
+  std::uint64_t handed_over = 0;
+  std::uint64_t let_go = 0;
+  std::uint64_t stale_arrivals = 0;  ///< refused: here already, with the same or a higher epoch
+};
+
+class Protocol {
+ public:
+  /// `map` and `clearance` outlive the protocol.
+  Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance);
+  Protocol(const Protocol&) = delete;
+  Protocol& operator=(const Protocol&) = delete;
+
+  const Vicinity& vicinity() const { return vicinity_; }
+  const Aura& aura() const { return aura_; }
+
+  /// Takes in what arrived, at any time; messages of a later generation stay in `inbox`.
+  void accept(Inbox& inbox) { intake_.accept(inbox); }
+
+  /// May state `n` be computed? In kFreeRunning always; otherwise when every live neighbour's batch of stamp n - K,
+  /// and the hand-offs up to it, are here.
+  bool ready(Step n) const { return intake_.ready(n); }
+  /// The live neighbours that keep state `n` waiting.
+  std::vector<RegionId> missing(Step n) const { return intake_.missing(n); }
+
+  /// What changes before state `n` is computed. Valid until the next call.
+  const Changes& receive(Step n);
+
+  /// Looks at a state and says who has to leave. Valid until the next call.
+  const std::vector<Departure>& observe(const Snapshot& snapshot);
+
+  /// The physics of a departure; once for each, in order.
+  void hand_over(const Departure& departure, ClusterState cluster);
+
+  /// What the step says: complete after the last hand_over().
+  const Outbox& outbox() const { return outbox_; }
+
+  /// The node's clock says that computing `step` took `frame_s`.
+  void report_frame(Step step, double frame_s);
+
+  /// Some neighbour holds this node for dead: it has to stop, its bodies have other hosts.
+  bool fenced() const { return intake_.fenced(); }
+
+  const Intake& intake() const { return intake_; }
+  const Gathering& gathering() const { return gathering_; }
+  const Projection& projection() const { return projection_; }
+  const DepartureLedger& departures() const { return departures_; }
+  const ProtocolCounters& counters() const { return counters_; }
+  const ViolationLog& violations() const { return violations_; }
+  /// Newest step at which this node, or a neighbour by its own word, broke a promise.
+  Step last_violation_step() const { return last_violation_step_; }
+  /// Bodies of the largest cluster near a boundary in the last state.
+  std::size_t largest_cluster() const { return largest_cluster_; }
+
+ private:
+  void take_if_newer(Adoption& adoption);
+  void let_go_of_what_others_own();
+  void let_go(BodyId id);
+  void decide(const Snapshot& snapshot);
+  void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
+  void decide_naively(std::uint32_t i, const Snapshot& snapshot);
+  bool settles_elsewhere(std::uint32_t i, Step now);
+  RegionId lowest_owner(std::uint32_t i) const;
+  void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
+  void fill_header();
+  void hear_violations();
+
+  ProtocolSettings settings_;
+  Vicinity vicinity_;
+  std::uint64_t map_version_;
+  Aura aura_;
+  DepartureLedger departures_;
+  Intake intake_;
+  Gathering gathering_;
+  Projection projection_;
+  Changes changes_;
+  std::vector<Departure> departing_;
+  std::vector<std::uint8_t> decided_;
+  Outbox outbox_;
+  ProtocolCounters counters_;
+  ViolationLog violations_;
+  std::uint64_t violations_heard_ = 0;
+  Step last_violation_step_ = -1'000'000;
+  std::size_t largest_cluster_ = 0;
+};
+
+/// Who hosts which body in state 0, the same on every node: clusters of the whole scene, each on the lowest region
+/// that owns the centre of one of its members. `bodies` ascending by id; returns one region per body.
+std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules, const ClearanceQuery& clearance,
+                                   const Snapshot& scene);
+
+}  // namespace aurasim::core

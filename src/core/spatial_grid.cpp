@@ -1,0 +1,49 @@
+#include "core/spatial_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace aurasim::core {
+
+void SpatialGrid::clear(double cell_m) {
+  cell_m_ = cell_m;
+  points_.clear();
+}
+
+void SpatialGrid::add(std::uint32_t index, const Vec3& p) { points_.push_back({cell_of(p), index, 0}); }
+
+void SpatialGrid::build() {
+  const auto buckets = std::bit_ceil(std::max<std::uint32_t>(16, 2 * static_cast<std::uint32_t>(points_.size())));
+  mask_ = buckets - 1;
+  starts_.assign(buckets + 1, 0);
+  for (Point& point : points_) {
+    point.bucket = bucket_of(point.cell);
+    ++starts_[point.bucket + 1];
+  }
+  for (std::uint32_t b = 0; b < buckets; ++b) starts_[b + 1] += starts_[b];
+  sorted_.resize(points_.size());
+  for (auto point = points_.rbegin(); point != points_.rend(); ++point) {
+    sorted_[--starts_[point->bucket + 1]] = *point;  // leaves starts_[b + 1] at the start of bucket b
+  }
+  for (std::uint32_t b = 0; b < buckets; ++b) starts_[b] = starts_[b + 1];
+  starts_[buckets] = static_cast<std::uint32_t>(points_.size());
+}
+
+SpatialGrid::Cell SpatialGrid::cell_of(const Vec3& p) const {
+  // Far out (or not a number) everything shares the last cell: slower, never wrong.
+  const auto along = [this](double x) {
+    const double c = std::floor(x / cell_m_);
+    return static_cast<std::int64_t>(std::clamp(std::isfinite(c) ? c : 0.0, -1e9, 1e9));
+  };
+  return {along(p.x()), along(p.y()), along(p.z())};
+}
+
+std::uint32_t SpatialGrid::bucket_of(const Cell& cell) const {
+  std::uint64_t h = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15ull;
+  h ^= static_cast<std::uint64_t>(cell.y) * 0xC2B2AE3D27D4EB4Full;
+  h ^= static_cast<std::uint64_t>(cell.z) * 0x165667B19E3779F9ull;
+  return static_cast<std::uint32_t>(h ^ (h >> 29)) & mask_;
+}
+
+}  // namespace aurasim::core

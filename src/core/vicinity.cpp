@@ -1,0 +1,38 @@
+#include "core/vicinity.h"
+
+#include <algorithm>
+
+namespace aurasim::core {
+
+Vicinity::Vicinity(const RegionMap& region_map, RegionId region, double neighbour_distance_m)
+    : map(region_map), self(region), neighbours(region_map.neighbours(region, neighbour_distance_m)) {
+  if (neighbours.size() > 64) {
+    throw BadRegionMap("region " + std::to_string(value_of(region)) + " has " + std::to_string(neighbours.size()) +
+                       " neighbours; at most 64 are allowed");
+  }
+}
+
+std::uint64_t Vicinity::within(const Vec3& p, double distance_m) const {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    if (map.distance(neighbours[i], p) <= distance_m) bits |= std::uint64_t{1} << i;
+  }
+  return bits;
+}
+
+bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
+  const Rectangle& r = home();
+  return p.x() - r.x0 > distance_m && r.x1 - p.x() > distance_m && p.y() - r.y0 > distance_m &&
+         r.y1 - p.y() > distance_m;
+}
+
+bool Vicinity::is_neighbour(RegionId id) const {
+  return std::binary_search(neighbours.begin(), neighbours.end(), id);
+}
+
+std::uint64_t Vicinity::bit_of(RegionId id) const {
+  const auto found = std::lower_bound(neighbours.begin(), neighbours.end(), id);
+  return found != neighbours.end() && *found == id ? std::uint64_t{1} << (found - neighbours.begin()) : 0;
+}
+
+}  // namespace aurasim::core

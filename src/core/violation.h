@@ -1,0 +1,56 @@
+// Broken promises: the world may be wrong, and the node knows it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+enum class ViolationKind : std::uint8_t {
+  kSpeed,    ///< a body is faster than the promised V (value and allowed in m/s)
+  kLatency,  ///< a message took effect later than K steps after its stamp (steps)
+  kFrame,    ///< a step took longer than T_F (s)
+  kPromise,  ///< a body is not where its last aura said it could be (m)
+  kSpan,     ///< a body is near a region that does not listen to its host (m: distance between the two regions)
+};
+inline constexpr int kViolationKinds = 5;
+
+struct Violation {
+  ViolationKind kind{};
+  Step step = 0;
+  RegionId region{};  ///< whose promise: the neighbour for kLatency, the reporting node otherwise
+  BodyId body{};      ///< for kSpeed, kPromise, kSpan
+  double value = 0;
+  double allowed = 0;
+};
+
+/// Counts all of them, and keeps the last few of the current step for the report.
+class ViolationLog {
+ public:
+  void start_step() { recent_.clear(); }
+  void add(const Violation& violation) {
+    ++counts_[static_cast<std::size_t>(violation.kind)];
+    last_step_ = violation.step;
+    if (recent_.size() < 32) recent_.push_back(violation);
+  }
+
+  std::uint64_t count(ViolationKind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
+  std::uint64_t total() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t c : counts_) sum += c;
+    return sum;
+  }
+  /// The step of the newest one; far in the past if there was none.
+  Step last_step() const { return last_step_; }
+  const std::vector<Violation>& recent() const { return recent_; }
+
+ private:
+  std::array<std::uint64_t, kViolationKinds> counts_{};
+  Step last_step_ = -1'000'000;
+  std::vector<Violation> recent_;
+};
+
+}  // namespace aurasim::core

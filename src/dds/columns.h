@@ -1,0 +1,82 @@
+// Arrays of structs as columns of numbers, and the checks that columns from the wire need.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/body_state.h"
+
+namespace aurasim::dds {
+
+/// column[i] = of(rows[i]). Keeps the column's memory.
+template <class Number, class Row, class Of>
+void fill(std::vector<Number>& column, const std::vector<Row>& rows, Of of) {
+  column.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    column[i] = of(rows[i]);
+  }
+}
+
+/// Like fill, for vectors and matrices of `width` numbers; `put(row, out)` writes them.
+template <std::size_t width, class Row, class Put>
+void fill_wide(std::vector<double>& column, const std::vector<Row>& rows, Put put) {
+  column.resize(rows.size() * width);
+  double* out = column.data();
+  for (const Row& row : rows) {
+    put(row, out);
+    out += width;
+  }
+}
+
+inline void put_vector(const core::Vec3& v, double* out) {
+  out[0] = v.x();
+  out[1] = v.y();
+  out[2] = v.z();
+}
+
+inline core::Vec3 vector_at(const std::vector<double>& column, std::size_t i) {
+  return core::Vec3(column[3 * i], column[3 * i + 1], column[3 * i + 2]);
+}
+
+/// No NaN, no infinity. Branch-free, so that it vectorizes.
+inline bool all_finite(const std::vector<double>& column) {
+  constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000U;
+  std::uint64_t bad = 0;
+  for (const double x : column) {
+    bad |= static_cast<std::uint64_t>((std::bit_cast<std::uint64_t>(x) & kExponent) == kExponent);
+  }
+  return bad == 0;
+}
+
+inline bool none_negative(const std::vector<double>& column) {
+  return std::ranges::all_of(column, [](double x) { return x >= 0; });
+}
+inline bool none_negative(const std::vector<std::int64_t>& column) {
+  return std::ranges::all_of(column, [](std::int64_t x) { return x >= 0; });
+}
+
+inline bool all_below(const std::vector<std::uint32_t>& column, std::uint32_t bound) {
+  return std::ranges::all_of(column, [bound](std::uint32_t x) { return x < bound; });
+}
+
+/// Body ids are used as signed references too.
+inline bool all_body_ids(const std::vector<std::uint64_t>& column) {
+  return std::ranges::all_of(column, [](std::uint64_t x) {
+    return x <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  });
+}
+
+/// All columns of `rows` rows; each argument is a pair {column size, entries per row}.
+struct Width {
+  std::size_t size = 0;
+  std::size_t per_row = 1;
+};
+inline bool same_rows(std::size_t rows, std::initializer_list<Width> columns) {
+  return std::ranges::all_of(columns, [rows](const Width& column) { return column.size == rows * column.per_row; });
+}
+
+}  // namespace aurasim::dds

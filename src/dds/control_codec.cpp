@@ -1,0 +1,234 @@
+#include "dds/control_codec.h"
+
+#include <cmath>
+#include <initializer_list>
+
+#include "aurasim.h"
+#include "dds/columns.h"
+#include "dds/header_check.h"
+
+namespace aurasim::dds {
+
+using core::RegionId;
+using core::value_of;
+
+namespace {
+
+using MaybeError = std::optional<WireError>;
+
+bool finite_and_not_negative(std::initializer_list<double> values) {
+  return std::ranges::all_of(values, [](double x) { return std::isfinite(x) && x >= 0; });
+}
+
+/// Infinite sides are fine; NaN and inside-out are not.
+bool is_rectangle(const core::Rectangle& r) { return r.x0 < r.x1 && r.y0 < r.y1; }
+
+/// The bounded string type of the IDL, which cuts on assignment; not within a UTF-8 character.
+std::string cut_to_wire(const std::string& text) {
+  constexpr std::size_t kMax = 256;
+  if (text.size() <= kMax) {
+    return text;
+  }
+  std::size_t end = kMax;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
+    --end;
+  }
+  return text.substr(0, end);
+}
+
+void encode_durations(const Status& status, wire::NodeStatus& out) {
+  out.frame_p50_ms(status.frame.p50_ms);
+  out.frame_p99_ms(status.frame.p99_ms);
+  out.frame_max_ms(status.frame.max_ms);
+  out.physics_p50_ms(status.physics.p50_ms);
+  out.physics_p99_ms(status.physics.p99_ms);
+  out.physics_max_ms(status.physics.max_ms);
+  out.protocol_p50_ms(status.protocol.p50_ms);
+  out.protocol_p99_ms(status.protocol.p99_ms);
+  out.protocol_max_ms(status.protocol.max_ms);
+  out.transport_p50_ms(status.transport.p50_ms);
+  out.transport_p99_ms(status.transport.p99_ms);
+  out.transport_max_ms(status.transport.max_ms);
+}
+
+void decode_durations(const wire::NodeStatus& in, Status& status) {
+  status.frame = {in.frame_p50_ms(), in.frame_p99_ms(), in.frame_max_ms()};
+  status.physics = {in.physics_p50_ms(), in.physics_p99_ms(), in.physics_max_ms()};
+  status.protocol = {in.protocol_p50_ms(), in.protocol_p99_ms(), in.protocol_max_ms()};
+  status.transport = {in.transport_p50_ms(), in.transport_p99_ms(), in.transport_max_ms()};
+}
+
+void encode_counts(const Status& status, wire::NodeStatus& out) {
+  out.bodies(status.bodies);
+  out.awake(status.awake);
+  out.foreign_auras(status.foreign_auras);
+  out.hand_offs_out(status.hand_offs_out);
+  out.hand_offs_in(status.hand_offs_in);
+  out.violations_speed(status.violations.speed);
+  out.violations_latency(status.violations.latency);
+  out.violations_frame(status.violations.frame);
+  out.violations_promise(status.violations.promise);
+  out.violations_span(status.violations.span);
+  out.largest_cluster(status.largest_cluster);
+}
+
+void decode_counts(const wire::NodeStatus& in, Status& status) {
+  status.bodies = in.bodies();
+  status.awake = in.awake();
+  status.foreign_auras = in.foreign_auras();
+  status.hand_offs_out = in.hand_offs_out();
+  status.hand_offs_in = in.hand_offs_in();
+  status.violations = {in.violations_speed(), in.violations_latency(), in.violations_frame(), in.violations_promise(),
+                       in.violations_span()};
+  status.largest_cluster = in.largest_cluster();
+}
+
+MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
+  const bool finite = finite_and_not_negative(
+      {in.frame_p50_ms(), in.frame_p99_ms(), in.frame_max_ms(), in.physics_p50_ms(), in.physics_p99_ms(),
+       in.physics_max_ms(), in.protocol_p50_ms(), in.protocol_p99_ms(), in.protocol_max_ms(), in.transport_p50_ms(),
+       in.transport_p99_ms(), in.transport_max_ms(), in.real_time_factor()});
+  if (!finite) {
+    return WireError::kNotFinite;
+  }
+  if (in.state() > static_cast<std::uint8_t>(NodeState::kFailed)) {
+    return WireError::kEnum;
+  }
+  const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
+                        in.lookahead() >= 0 && all_below(in.dead(), expected.region_count);
+  return in_range ? MaybeError{} : WireError::kRange;
+}
+
+MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
+  if (const auto error = check_header(in, expected)) {
+    return error;
+  }
+  if (const auto error = check_source(in, expected)) {
+    return error;
+  }
+  if (in.dead().size() > kMaxRows) {
+    return WireError::kTooLarge;
+  }
+  return check_values(in, expected);
+}
+
+}  // namespace
+
+void encode(const Status& status, wire::NodeStatus& out) {
+  out.source(value_of(status.region));
+  out.version(kProtocolVersion);
+  out.generation(status.generation);
+  out.stamp(status.step);
+  out.map_version(status.map_version);
+  out.agreement(status.agreement);
+  out.pid(status.pid);
+  out.state(static_cast<std::uint8_t>(status.state));
+  encode_counts(status, out);
+  encode_durations(status, out);
+  out.real_time_factor(status.real_time_factor);
+  out.footprint_x0(status.footprint.x0);
+  out.footprint_y0(status.footprint.y0);
+  out.footprint_x1(status.footprint.x1);
+  out.footprint_y1(status.footprint.y1);
+  out.lookahead(status.lookahead);
+  out.text(cut_to_wire(status.text));
+  fill(out.dead(), status.dead, [](RegionId region) { return value_of(region); });
+}
+
+Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
+  if (const auto error = check(in, expected)) {
+    return *error;
+  }
+  Status status;
+  status.region = static_cast<RegionId>(in.source());
+  status.generation = in.generation();
+  status.step = in.stamp();
+  status.map_version = in.map_version();
+  status.agreement = in.agreement();
+  status.pid = in.pid();
+  status.state = static_cast<NodeState>(in.state());
+  decode_counts(in, status);
+  decode_durations(in, status);
+  status.real_time_factor = in.real_time_factor();
+  status.footprint = {in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()};
+  status.lookahead = in.lookahead();
+  status.text = in.text().to_string();
+  fill(status.dead, in.dead(), [](std::uint32_t region) { return static_cast<RegionId>(region); });
+  return status;
+}
+
+void encode(const WorldMap& map, wire::RegionMap& out) {
+  out.map_version(map.map_version);
+  out.version(kProtocolVersion);
+  out.generation(map.generation);
+  out.stamp(map.from_step);
+  out.agreement(map.agreement);
+  fill(out.x0(), map.regions, [](const core::Rectangle& r) { return r.x0; });
+  fill(out.y0(), map.regions, [](const core::Rectangle& r) { return r.y0; });
+  fill(out.x1(), map.regions, [](const core::Rectangle& r) { return r.x1; });
+  fill(out.y1(), map.regions, [](const core::Rectangle& r) { return r.y1; });
+  out.scene(cut_to_wire(map.scene));
+}
+
+Decoded<WorldMap> decode(const wire::RegionMap& in, const Expected& expected) {
+  if (const auto error = check_header(in, expected)) {
+    return *error;
+  }
+  const std::size_t regions = in.x0().size();
+  if (regions > kMaxRows) {
+    return WireError::kTooLarge;
+  }
+  if (!same_rows(regions, {{in.y0().size()}, {in.x1().size()}, {in.y1().size()}})) {
+    return WireError::kLength;
+  }
+  WorldMap map;
+  map.map_version = in.map_version();
+  map.agreement = in.agreement();
+  map.generation = in.generation();
+  map.from_step = in.stamp();
+  map.scene = in.scene().to_string();
+  for (std::size_t i = 0; i < regions; ++i) {
+    map.regions.push_back({in.x0()[i], in.y0()[i], in.x1()[i], in.y1()[i]});
+  }
+  if (regions == 0 || !std::ranges::all_of(map.regions, is_rectangle)) {
+    return WireError::kRange;
+  }
+  return map;
+}
+
+void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& out) {
+  out.sender(sender);
+  out.version(kProtocolVersion);
+  out.generation(command.generation);
+  out.stamp(command.at_step);
+  out.map_version(command.map_version);
+  out.request(command.request);
+  out.kind(static_cast<std::uint8_t>(command.kind));
+  out.count(command.count);
+  out.epoch_ns(command.epoch_ns);
+}
+
+Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected) {
+  Expected any_map = expected;
+  if (in.map_version() == 0) {
+    any_map.map_version = std::uint64_t{0};
+  }
+  if (const auto error = check_header(in, any_map)) {
+    return *error;
+  }
+  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kStop)) {
+    return WireError::kEnum;
+  }
+  if (in.request() == 0 || in.count() < 0 || in.epoch_ns() < 0) {
+    return WireError::kRange;
+  }
+  return RunCommand{.request = in.request(),
+                    .kind = static_cast<RunCommandKind>(in.kind()),
+                    .generation = in.generation(),
+                    .map_version = in.map_version(),
+                    .at_step = in.stamp(),
+                    .count = in.count(),
+                    .epoch_ns = in.epoch_ns()};
+}
+
+}  // namespace aurasim::dds

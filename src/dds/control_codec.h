@@ -1,0 +1,25 @@
+// The messages of control.h as wire types, and back. As in codec.h.
+#pragma once
+
+#include <variant>
+
+#include "dds/codec.h"
+#include "dds/control.h"
+
+namespace aurasim::wire {
+class NodeStatus;
+class RegionMap;
+class RunControl;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const Status& status, wire::NodeStatus& out);
+void encode(const WorldMap& map, wire::RegionMap& out);
+void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& out);
+
+Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected);
+Decoded<WorldMap> decode(const wire::RegionMap& in, const Expected& expected);
+Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected);
+
+}  // namespace aurasim::dds

@@ -1,0 +1,285 @@
+#include "dds/dds_transport.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "aurasim.h"
+#include "dds/codec.h"
+#include "dds/endpoints.h"
+
+namespace aurasim::dds {
+
+using core::RegionId;
+using core::value_of;
+
+namespace {
+
+/// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
+struct Link {
+  Link(Domain& domain, RegionId self, RegionId neighbour, Bell& bell)
+      : region(neighbour),
+        aura_reader(domain, {TopicId::kAura, {partition_of(neighbour)}, self}, bell),
+        migration_reader(domain, {TopicId::kMigration, {partition_of(neighbour, self)}, self}, bell),
+        migration_writer(domain, {TopicId::kMigration, {partition_of(self, neighbour)}, self}, bell),
+        ack_reader(domain, {TopicId::kMigrationAck, {partition_of(neighbour, self)}, self}, bell),
+        ack_writer(domain, {TopicId::kMigrationAck, {partition_of(self, neighbour)}, self}, bell) {}
+
+  RegionId region;
+  Reader aura_reader;
+  Reader migration_reader;
+  Writer migration_writer;
+  Reader ack_reader;
+  Writer ack_writer;
+
+  std::uint64_t match = 0;  ///< RemoteWriter::order of the neighbour's aura writer that we know; 0: none yet
+  bool lost = false;
+  bool dropped = false;
+};
+
+void count_sent(TopicCounters& counters, WriteResult result, std::size_t bytes) {
+  if (result == WriteResult::kFailed) {
+    ++counters.send_failed;
+    return;
+  }
+  ++counters.sent;
+  counters.sent_bytes += bytes;
+  counters.retried += result == WriteResult::kSentAtSecondTry ? 1 : 0;
+}
+
+template <class WireMessage>
+std::size_t bytes_of(const WireMessage& sample) {
+  return WireMessage::getCdrSerializedSize(sample);
+}
+
+/// Takes all samples of a reader into `inbox`; what decode refuses is counted.
+template <class WireMessage, class Message>
+void drain(Reader& reader, WireMessage& sample, const Expected& expected, std::vector<Message>& inbox,
+           TopicCounters& counters) {
+  while (reader.take(&sample)) {
+    ++counters.received;
+    counters.received_bytes += bytes_of(sample);
+    auto decoded = decode(sample, expected);
+    if (const auto* error = std::get_if<WireError>(&decoded)) {
+      counters.refused.add(*error);
+    } else {
+      inbox.push_back(std::move(std::get<Message>(decoded)));
+    }
+  }
+}
+
+Expected expected_of(const TransportSettings& settings) {
+  return {.map_version = settings.map_version,
+          .generation = std::nullopt,
+          .source = std::nullopt,
+          .destination = settings.region,
+          .region_count = settings.region_count,
+          .prototype_count = settings.prototype_count,
+          .static_count = settings.static_count,
+          .joint_count = settings.joint_count};
+}
+
+void check_settings(const TransportSettings& settings) {
+  std::set<RegionId> seen = {settings.region};
+  if (value_of(settings.region) >= settings.region_count) {
+    throw std::invalid_argument(fmt::format("region {} of only {}", value_of(settings.region), settings.region_count));
+  }
+  for (const RegionId neighbour : settings.neighbours) {
+    if (!seen.insert(neighbour).second || value_of(neighbour) >= settings.region_count) {
+      throw std::invalid_argument(
+          fmt::format("region {}: neighbour {} is itself, named twice, or not one of {} regions",
+                      value_of(settings.region), value_of(neighbour), settings.region_count));
+    }
+  }
+}
+
+}  // namespace
+
+struct DdsTransport::Impl {
+  Impl(Participant& participant, const TransportSettings& settings);
+
+  Link* find(RegionId region);
+  /// Which of the link's endpoints have no counterpart yet.
+  std::vector<std::string> unmatched(const Link& link) const;
+  std::vector<std::string> missing_neighbours(std::vector<RegionId>& regions) const;
+  void take_peer_changes(std::vector<core::PeerEvent>& peers);
+  void send_aura(const core::AuraBatch& batch);
+  void send_hand_off(const core::HandOff& hand_off);
+  void send_ack(const core::HandOffAck& ack);
+
+  TransportSettings settings;
+  Expected expected;
+  Participant& participant;
+  Bell bell;
+  Writer aura_writer;
+  std::vector<std::unique_ptr<Link>> links;  ///< in the order of settings.neighbours
+  wire::AuraBatch aura;                      // reused for every sample
+  wire::Migration migration;
+  wire::MigrationAck ack;
+  TransportCounters counters;
+};
+
+DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& settings_in)
+    : settings(settings_in),
+      expected(expected_of(settings_in)),
+      participant(participant_in),
+      aura_writer(participant.domain(), {TopicId::kAura, {partition_of(settings.region)}, settings.region}, bell) {
+  for (const RegionId neighbour : settings.neighbours) {
+    links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, bell));
+  }
+}
+
+Link* DdsTransport::Impl::find(RegionId region) {
+  const auto found = std::ranges::find_if(links, [&](const auto& link) { return link->region == region; });
+  return found == links.end() ? nullptr : found->get();
+}
+
+std::vector<std::string> DdsTransport::Impl::unmatched(const Link& link) const {
+  std::vector<std::string> missing;
+  const auto need = [&](bool there, const char* name) {
+    if (!there) {
+      missing.emplace_back(name);
+    }
+  };
+  need(link.aura_reader.watch().any_matched(), "its aura writer");
+  need(aura_writer.reaches(link.region), "its aura reader");
+  need(link.migration_reader.watch().any_matched(), "its migration writer");
+  need(link.migration_writer.reaches(link.region), "its migration reader");
+  need(link.ack_reader.watch().any_matched(), "its migration_ack writer");
+  need(link.ack_writer.reaches(link.region), "its migration_ack reader");
+  return missing;
+}
+
+std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<RegionId>& regions) const {
+  constexpr std::size_t kEndpoints = 6;
+  std::vector<std::string> texts;
+  for (const auto& link : links) {
+    const auto missing = unmatched(*link);
+    if (missing.empty() || link->lost) {
+      continue;
+    }
+    regions.push_back(link->region);
+    texts.push_back(missing.size() == kEndpoints
+                        ? fmt::format("region {} (nothing heard of it)", value_of(link->region))
+                        : fmt::format("region {} ({})", value_of(link->region), fmt::join(missing, ", ")));
+  }
+  return texts;
+}
+
+void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) {
+  for (const auto& link : links) {
+    const RemoteWriter writer = link->aura_reader.watch().latest();
+    if (link->match == 0) {
+      link->match = writer.order;
+    }
+    const bool other_match = writer.order != link->match;
+    if (!link->lost && (writer.lost || other_match)) {
+      link->lost = true;
+      peers.push_back({link->region, core::PeerChange::kLost});
+    }
+    if (link->lost && writer.alive && (!link->dropped || other_match) && unmatched(*link).empty()) {
+      link->lost = false;
+      link->dropped = false;
+      link->match = writer.order;
+      peers.push_back({link->region, core::PeerChange::kJoined});
+    }
+  }
+}
+
+void DdsTransport::Impl::send_aura(const core::AuraBatch& batch) {
+  encode(batch, aura);
+  count_sent(counters.aura, aura_writer.write(&aura), bytes_of(aura));
+}
+
+void DdsTransport::Impl::send_hand_off(const core::HandOff& hand_off) {
+  Link* link = find(hand_off.destination);
+  if (link == nullptr || link->lost) {
+    ++counters.migration.not_sent;
+    return;
+  }
+  encode(hand_off, migration);
+  count_sent(counters.migration, link->migration_writer.write(&migration), bytes_of(migration));
+}
+
+void DdsTransport::Impl::send_ack(const core::HandOffAck& message) {
+  Link* link = find(message.destination);
+  if (link == nullptr || link->lost) {
+    ++counters.migration_ack.not_sent;
+    return;
+  }
+  encode(message, settings.map_version, ack);
+  count_sent(counters.migration_ack, link->ack_writer.write(&ack), bytes_of(ack));
+}
+
+DdsTransport::DdsTransport(Participant& participant, const TransportSettings& settings)
+    : impl_((check_settings(settings), std::make_unique<Impl>(participant, settings))) {}
+
+DdsTransport::~DdsTransport() = default;
+
+void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {
+  const auto deadline = std::chrono::steady_clock::now() + time_out;
+  while (!all_matched()) {
+    impl_->participant.progress();
+    const auto left = deadline - std::chrono::steady_clock::now();
+    if (left <= std::chrono::nanoseconds::zero()) {
+      std::vector<RegionId> regions;
+      const auto texts = impl_->missing_neighbours(regions);
+      throw NeighboursMissing(fmt::format("region {} waited {:.1f} s in vain for {}", value_of(impl_->settings.region),
+                                          std::chrono::duration<double>(time_out).count(), fmt::join(texts, ", ")),
+                              regions);
+    }
+    impl_->bell.wait(std::min<std::chrono::nanoseconds>(left, std::chrono::seconds(1)));
+  }
+}
+
+bool DdsTransport::all_matched() const {
+  return std::ranges::all_of(impl_->links,
+                             [&](const auto& link) { return link->lost || impl_->unmatched(*link).empty(); });
+}
+
+void DdsTransport::take(core::Inbox& inbox) {
+  impl_->participant.progress();
+  impl_->bell.quiet();
+  TransportCounters& counters = impl_->counters;
+  for (const auto& link : impl_->links) {
+    Expected expected = impl_->expected;
+    expected.source = link->region;
+    drain(link->aura_reader, impl_->aura, expected, inbox.auras, counters.aura);
+    drain(link->migration_reader, impl_->migration, expected, inbox.hand_offs, counters.migration);
+    drain(link->ack_reader, impl_->ack, expected, inbox.acks, counters.migration_ack);
+  }
+  impl_->take_peer_changes(inbox.peers);
+}
+
+void DdsTransport::send(const core::Outbox& outbox) {
+  impl_->participant.progress();
+  for (const auto& hand_off : outbox.hand_offs) {
+    impl_->send_hand_off(hand_off);
+  }
+  for (const auto& ack : outbox.acks) {
+    impl_->send_ack(ack);
+  }
+  impl_->send_aura(outbox.aura);
+}
+
+void DdsTransport::wait_for_arrival(std::chrono::nanoseconds time_out) {
+  impl_->participant.progress();
+  impl_->bell.wait(time_out);
+  impl_->participant.progress();
+}
+
+void DdsTransport::drop(RegionId region) {
+  if (Link* link = impl_->find(region)) {
+    link->match = link->aura_reader.watch().latest().order;
+    link->lost = true;
+    link->dropped = true;
+  }
+}
+
+const TransportCounters& DdsTransport::counters() const { return impl_->counters; }
+
+}  // namespace aurasim::dds

@@ -1,0 +1,67 @@
+// What stands behind a Participant: the Fast DDS participant, its types and topics, and what all endpoints share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+
+#include "dds/profiles.h"
+#include "dds/pulse.h"
+#include "dds/settings.h"
+#include "dds/watch.h"
+
+namespace aurasim::dds {
+
+/// The topics of DESIGN section 7 that there are so far.
+enum class TopicId : std::uint8_t { kAura, kMigration, kMigrationAck, kNodeStatus, kRegionMap, kRunControl };
+inline constexpr std::size_t kTopicCount = 6;
+/// "aura", "migration", ...: also the first part of the profile names.
+const char* name_of(TopicId topic);
+
+// Partitions of DESIGN section 7.
+inline const std::string kWorldPartition = "world";
+inline const std::string kEveryRegionPartition = "region/*";
+std::string partition_of(core::RegionId source);
+std::string partition_of(core::RegionId source, core::RegionId destination);
+
+/// Thread-safe.
+class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  explicit Domain(const Settings& settings);
+  ~Domain() override;
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+
+  eprosima::fastdds::dds::DomainParticipant& participant() { return *participant_; }
+  /// Created when first asked for.
+  eprosima::fastdds::dds::Topic& topic(TopicId id);
+  Profiles& profiles() { return profiles_; }
+  Directory& directory() { return directory_; }
+  Pulse& pulse() { return *pulse_; }
+
+ private:
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void register_types();
+
+  Profiles profiles_;
+  Directory directory_;
+  std::mutex topics_mutex_;
+  std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
+  struct Leave {
+    void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
+  };
+  std::unique_ptr<eprosima::fastdds::dds::DomainParticipant, Leave> participant_;
+  std::unique_ptr<Pulse> pulse_;  // last: stops first
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,126 @@
+#include "dds/endpoints.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace aurasim::dds {
+
+using eprosima::fastdds::dds::DataReaderQos;
+using eprosima::fastdds::dds::DataWriterQos;
+using eprosima::fastdds::dds::HANDLE_NIL;
+using eprosima::fastdds::dds::PublisherQos;
+using eprosima::fastdds::dds::SampleInfo;
+using eprosima::fastdds::dds::StatusMask;
+using eprosima::fastdds::dds::SubscriberQos;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+void set_partitions(eprosima::fastdds::dds::PartitionQosPolicy& policy, const std::vector<std::string>& partitions) {
+  policy.clear();
+  for (const auto& partition : partitions) {
+    policy.push_back(partition.c_str());
+  }
+}
+
+[[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
+  throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
+                             what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
+}
+
+}  // namespace
+
+Writer::Writer(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(domain), watch_(bell) {
+  PublisherQos publisher_qos;
+  set_partitions(publisher_qos.partition(), spec.partitions);
+  publisher_ = domain.participant().create_publisher(publisher_qos);
+  if (publisher_ == nullptr) {
+    throw_not_created("publisher", spec);
+  }
+  DataWriterQos qos = domain.profiles().writer(*publisher_, std::string(name_of(spec.topic)) + "_writer");
+  if (spec.region) {
+    qos.user_data().setValue(user_data_of(*spec.region));
+  }
+  writer_ = publisher_->create_datawriter(&domain.topic(spec.topic), qos, &watch_, StatusMask::publication_matched());
+  if (writer_ == nullptr) {
+    throw_not_created("writer", spec);
+  }
+  if (spec.region) {
+    domain.directory().add(writer_->guid(), *spec.region);
+  }
+  if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
+    domain.pulse().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()));
+  }
+}
+
+Writer::~Writer() {
+  domain_.pulse().remove(writer_);
+  writer_->set_listener(nullptr);
+  publisher_->delete_datawriter(writer_);
+  domain_.participant().delete_publisher(publisher_);
+}
+
+WriteResult Writer::write(void* sample) {
+  if (writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK) {
+    return WriteResult::kSent;
+  }
+  const bool sent = writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK;
+  return sent ? WriteResult::kSentAtSecondTry : WriteResult::kFailed;
+}
+
+bool Writer::reaches(core::RegionId region) const {
+  return std::ranges::any_of(watch_.readers(), [&](const Guid& reader) {
+    return domain_.directory().region_of(reader) == std::int64_t{core::value_of(region)};
+  });
+}
+
+std::size_t Writer::foreign_reader_count() const {
+  const auto readers = watch_.readers();
+  return static_cast<std::size_t>(std::ranges::count_if(
+      readers, [&](const Guid& reader) { return reader.guidPrefix != writer_->guid().guidPrefix; }));
+}
+
+Reader::Reader(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(domain), watch_(bell) {
+  SubscriberQos subscriber_qos;
+  set_partitions(subscriber_qos.partition(), spec.partitions);
+  subscriber_ = domain.participant().create_subscriber(subscriber_qos);
+  if (subscriber_ == nullptr) {
+    throw_not_created("subscriber", spec);
+  }
+  DataReaderQos qos = domain.profiles().reader(*subscriber_, std::string(name_of(spec.topic)) + "_reader");
+  if (spec.region) {
+    qos.user_data().setValue(user_data_of(*spec.region));
+  }
+  reader_ = subscriber_->create_datareader(
+      &domain.topic(spec.topic), qos, &watch_,
+      StatusMask::data_available() << StatusMask::subscription_matched() << StatusMask::liveliness_changed());
+  if (reader_ == nullptr) {
+    throw_not_created("reader", spec);
+  }
+  if (spec.region) {
+    domain.directory().add(reader_->guid(), *spec.region);
+  }
+}
+
+Reader::~Reader() {
+  reader_->set_listener(nullptr);
+  subscriber_->delete_datareader(reader_);
+  domain_.participant().delete_subscriber(subscriber_);
+}
+
+bool Reader::take(void* sample) {
+  SampleInfo info;
+  while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
+    if (info.valid_data) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> Reader::partitions() const { return subscriber_->get_qos().partition().names(); }
+
+}  // namespace aurasim::dds

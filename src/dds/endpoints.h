@@ -1,0 +1,72 @@
+// One writer or reader with the publisher or subscriber that gives it its partitions, by profile name.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+
+#include "core/ids.h"
+#include "dds/domain.h"
+#include "dds/watch.h"
+
+namespace aurasim::dds {
+
+struct EndpointSpec {
+  TopicId topic = TopicId::kAura;
+  std::vector<std::string> partitions;
+  std::optional<core::RegionId> region;  ///< whose endpoint this is; peers are told (user data)
+};
+
+enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
+
+/// QoS by profile `<topic>_writer`. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the domain's pulse.
+class Writer {
+ public:
+  Writer(Domain& domain, const EndpointSpec& spec, Bell& bell);
+  ~Writer();
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// `sample` is the generated type of the topic.
+  WriteResult write(void* sample);
+  /// True when a reader of `region` is matched.
+  bool reaches(core::RegionId region) const;
+  std::size_t reader_count() const { return watch_.readers().size(); }
+  /// Matched readers in other processes.
+  std::size_t foreign_reader_count() const;
+
+ private:
+  Domain& domain_;
+  WriterWatch watch_;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
+};
+
+/// QoS by profile `<topic>_reader`.
+class Reader {
+ public:
+  Reader(Domain& domain, const EndpointSpec& spec, Bell& bell);
+  ~Reader();
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  /// Takes the next sample that carries data into `sample` (the generated type). False when there is none.
+  bool take(void* sample);
+
+  const ReaderWatch& watch() const { return watch_; }
+  /// As the QoS says.
+  std::vector<std::string> partitions() const;
+
+ private:
+  Domain& domain_;
+  ReaderWatch watch_;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,124 @@
+#include "dds/participant_qos.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
+
+namespace aurasim::dds {
+
+using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::Locator_t;
+
+namespace {
+
+constexpr std::uint16_t kDiscoveryServerPort = 11811;
+
+/// Puts `interfaces` in place of every transport's white list. Copies the descriptors: the profile's are shared.
+void set_interfaces(DomainParticipantQos& qos, const std::vector<std::string>& interfaces) {
+  const bool all = std::ranges::find(interfaces, "*") != interfaces.end();
+  auto& transports = qos.transport().user_transports;
+  bool replaced = false;
+  for (auto& transport : transports) {
+    const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport);
+    if (udp == nullptr) {
+      throw DdsError("dds.interfaces can be given only with profiles whose transports are all UDPv4");
+    }
+    auto copy = std::make_shared<UDPv4TransportDescriptor>(*udp);
+    copy->interfaceWhiteList = all ? std::vector<std::string>{} : interfaces;
+    transport = copy;
+    replaced = true;
+  }
+  if (!replaced) {
+    auto udp = std::make_shared<UDPv4TransportDescriptor>();
+    udp->interfaceWhiteList = all ? std::vector<std::string>{} : interfaces;
+    transports.push_back(udp);
+  }
+  qos.transport().use_builtin_transports = false;
+}
+
+/// "address" or "address:port".
+Locator_t locator_of(const std::string& peer, std::uint16_t default_port) {
+  const auto colon = peer.find(':');
+  const std::string address = peer.substr(0, colon);
+  std::uint16_t port = default_port;
+  if (colon != std::string::npos) {
+    const char* last = peer.data() + peer.size();
+    const auto [end, error] = std::from_chars(peer.data() + colon + 1, last, port);
+    if (error != std::errc{} || end != last) {
+      throw DdsError(fmt::format("dds.peers: '{}' is not \"address\" or \"address:port\"", peer));
+    }
+  }
+  Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = port;
+  if (!IPLocator::setIPv4(locator, address)) {
+    throw DdsError(fmt::format("dds.peers: '{}' is not an IPv4 address", address));
+  }
+  return locator;
+}
+
+/// Announce to the peers only. Naming an own locator for discovery switches multicast off.
+void set_peers(DomainParticipantQos& qos, const Settings& settings) {
+  auto& builtin = qos.wire_protocol().builtin;
+  if (!settings.peers.empty()) {
+    builtin.initialPeersList.clear();
+    for (const auto& peer : settings.peers) {
+      builtin.initialPeersList.push_back(locator_of(peer, 0));
+    }
+  }
+  if (builtin.initialPeersList.empty()) {
+    throw DdsError("dds.discovery is peers, but neither dds.peers nor the profile names a peer");
+  }
+  if (!settings.interfaces.empty() && settings.interfaces.front() != "*") {
+    builtin.metatrafficUnicastLocatorList.clear();
+    for (const auto& address : settings.interfaces) {
+      builtin.metatrafficUnicastLocatorList.push_back(locator_of(address, 0));
+    }
+  }
+  if (builtin.metatrafficUnicastLocatorList.empty()) {
+    throw DdsError(
+        "dds.discovery is peers, but no own address is known: name it in dds.interfaces or in the profile's "
+        "metatrafficUnicastLocatorList");
+  }
+}
+
+/// Discovery by `fast-discovery-server -i N`, where N is the position in the list. Super client: sees every endpoint.
+void set_servers(DomainParticipantQos& qos, const Settings& settings) {
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.discoveryProtocol = eprosima::fastrtps::rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  if (settings.peers.empty() && discovery.m_DiscoveryServers.empty()) {
+    throw DdsError("dds.discovery is server, but neither dds.peers nor the profile names a server");
+  }
+  if (settings.peers.empty()) {
+    return;
+  }
+  discovery.m_DiscoveryServers.clear();
+  for (std::size_t i = 0; i < settings.peers.size(); ++i) {
+    eprosima::fastdds::rtps::RemoteServerAttributes server;
+    server.ReadguidPrefix(fmt::format("44.53.{:02x}.5f.45.50.52.4f.53.49.4d.41", i).c_str());
+    server.metatrafficUnicastLocatorList.push_back(locator_of(settings.peers[i], kDiscoveryServerPort));
+    discovery.m_DiscoveryServers.push_back(server);
+  }
+}
+
+}  // namespace
+
+DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings) {
+  DomainParticipantQos qos = profiles.participant();
+  if (!settings.interfaces.empty()) {
+    set_interfaces(qos, settings.interfaces);
+  }
+  if (settings.discovery == Discovery::kPeers) {
+    set_peers(qos, settings);
+  } else if (settings.discovery == Discovery::kServer) {
+    set_servers(qos, settings);
+  }
+  return qos;
+}
+
+}  // namespace aurasim::dds

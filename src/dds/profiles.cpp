@@ -1,0 +1,89 @@
+#include "dds/profiles.h"
+
+#include <mutex>
+#include <set>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fmt/format.h>
+
+#include "dds/settings.h"
+
+namespace aurasim::dds {
+
+using eprosima::fastdds::dds::DomainParticipantFactory;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+/// Fast DDS keeps one set of profiles per process and refuses a name that it has already, so each file is loaded once.
+void load_once(const std::filesystem::path& file) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> loaded;
+  const std::lock_guard lock(mutex);
+  std::error_code error;
+  const auto path = std::filesystem::canonical(file, error);
+  if (error) {
+    throw DdsError(fmt::format("{}: cannot read the DDS profiles: {}", file.string(), error.message()));
+  }
+  if (loaded.contains(path)) {
+    return;
+  }
+  if (DomainParticipantFactory::get_instance()->load_XML_profiles_file(path.string()) != ReturnCode_t::RETCODE_OK) {
+    throw DdsError(fmt::format(
+        "{}: Fast DDS refuses these profiles (its message is on standard error): an unknown element, a wrong value, or "
+        "a profile name that another loaded file has too",
+        file.string()));
+  }
+  loaded.insert(path);
+}
+
+}  // namespace
+
+Profiles::Profiles(std::filesystem::path file)
+    : file_(std::move(file)), shared_file_(file_.parent_path() / "aurasim.xml") {
+  if (file_.empty()) {
+    throw DdsError("no file with DDS profiles given (dds.profiles)");
+  }
+  load_once(file_);
+}
+
+template <class Qos, class Get>
+Qos Profiles::find(std::string_view kind, std::string_view own_name, std::string_view shared_name, Get get) {
+  Qos qos;
+  const auto found = [&](std::string_view name) { return get(std::string(name), qos) == ReturnCode_t::RETCODE_OK; };
+  if (found(own_name) || found(shared_name)) {
+    return qos;
+  }
+  if (std::filesystem::exists(shared_file_)) {
+    load_once(shared_file_);
+    if (found(shared_name)) {
+      return qos;
+    }
+  }
+  throw DdsError(fmt::format("{}: no {} profile named '{}' or '{}', and none named '{}' in {}", file_.string(), kind,
+                             own_name, shared_name, shared_name, shared_file_.string()));
+}
+
+eprosima::fastdds::dds::DomainParticipantQos Profiles::participant() {
+  return find<eprosima::fastdds::dds::DomainParticipantQos>(
+      "participant", file_.stem().string() + "_participant", "aurasim_participant",
+      [](const std::string& name, auto& qos) {
+        return DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, qos);
+      });
+}
+
+eprosima::fastdds::dds::DataWriterQos Profiles::writer(eprosima::fastdds::dds::Publisher& publisher,
+                                                       std::string_view name) {
+  return find<eprosima::fastdds::dds::DataWriterQos>(
+      "data_writer", fmt::format("{}_{}", file_.stem().string(), name), name,
+      [&](const std::string& profile, auto& qos) { return publisher.get_datawriter_qos_from_profile(profile, qos); });
+}
+
+eprosima::fastdds::dds::DataReaderQos Profiles::reader(eprosima::fastdds::dds::Subscriber& subscriber,
+                                                       std::string_view name) {
+  return find<eprosima::fastdds::dds::DataReaderQos>(
+      "data_reader", fmt::format("{}_{}", file_.stem().string(), name), name,
+      [&](const std::string& profile, auto& qos) { return subscriber.get_datareader_qos_from_profile(profile, qos); });
+}
+
+}  // namespace aurasim::dds

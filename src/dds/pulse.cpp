@@ -1,0 +1,56 @@
+#include "dds/pulse.h"
+
+#include <algorithm>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+
+namespace aurasim::dds {
+
+Pulse::Pulse(std::chrono::nanoseconds hang_limit)
+    : hang_limit_(hang_limit), last_progress_ns_(now_ns()), thread_([this] { run(); }) {}
+
+Pulse::~Pulse() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  condition_.notify_one();
+  thread_.join();
+}
+
+void Pulse::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease) {
+  progress();
+  {
+    const std::lock_guard lock(mutex_);
+    writers_.push_back(writer);
+    interval_ = std::min(interval_, lease / 4);
+  }
+  condition_.notify_one();
+}
+
+void Pulse::remove(eprosima::fastdds::dds::DataWriter* writer) {
+  const std::lock_guard lock(mutex_);
+  std::erase(writers_, writer);
+}
+
+void Pulse::progress() { last_progress_ns_.store(now_ns(), std::memory_order_relaxed); }
+
+void Pulse::run() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (!owner_hangs()) {
+      for (auto* writer : writers_) {
+        writer->assert_liveliness();
+      }
+    }
+    condition_.wait_for(lock, interval_);
+  }
+}
+
+bool Pulse::owner_hangs() const {
+  return now_ns() - last_progress_ns_.load(std::memory_order_relaxed) > hang_limit_.count();
+}
+
+std::int64_t Pulse::now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+
+}  // namespace aurasim::dds

@@ -1,0 +1,47 @@
+// Proof of life: renews the liveliness of writers while their owner makes progress. So a long frame is not a death, but
+// a process that hangs is.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace eprosima::fastdds::dds {
+class DataWriter;
+}
+
+namespace aurasim::dds {
+
+class Pulse {
+ public:
+  explicit Pulse(std::chrono::nanoseconds hang_limit);
+  ~Pulse();
+
+  /// Renews `writer` every `lease` / 4 from now on.
+  void add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease);
+  /// After this the writer is not touched any more.
+  void remove(eprosima::fastdds::dds::DataWriter* writer);
+
+  /// Any thread.
+  void progress();
+
+ private:
+  void run();
+  bool owner_hangs() const;
+  static std::int64_t now_ns();
+
+  const std::chrono::nanoseconds hang_limit_;
+  std::atomic<std::int64_t> last_progress_ns_;
+  std::mutex mutex_;
+  std::condition_variable condition_;
+  bool stopping_ = false;
+  std::chrono::nanoseconds interval_ = std::chrono::hours(1);
+  std::vector<eprosima::fastdds::dds::DataWriter*> writers_;
+  std::thread thread_;  // last: starts when all else is there
+};
+
+}  // namespace aurasim::dds

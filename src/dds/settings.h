@@ -1,0 +1,40 @@
+// What a process has to know to join a run's DDS domain. Filled from a launch file by the caller.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace aurasim::dds {
+
+/// How participants find each other.
+enum class Discovery : std::uint8_t {
+  kAsProfile,  ///< as the XML file says (qos/aurasim.xml: multicast, on loopback)
+  kPeers,      ///< no multicast: announcements go to `peers`
+  kServer,     ///< by the discovery servers in `peers`
+};
+
+struct Settings {
+  std::uint32_t domain = 0;
+  /// XML profiles. Profile `x` is taken from this file as `<stem>_x` (hosts.xml: `hosts_aura_writer`) or else as `x`;
+  /// what the file lacks comes from `aurasim.xml` beside it.
+  std::filesystem::path profiles;
+  /// Addresses that may carry traffic. Not empty: replaces the white list of every transport of the profile, whatever
+  /// the file says; {"*"} removes the white list. Empty: the file decides.
+  std::vector<std::string> interfaces;
+  Discovery discovery = Discovery::kAsProfile;
+  std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
+  /// A process whose owner has not called any transport or bus for this long no longer counts as alive.
+  std::chrono::nanoseconds hang_limit = std::chrono::seconds(10);
+};
+
+/// A profile, an endpoint or a peer is missing or wrong; what() names it and the file.
+class DdsError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,137 @@
+#include "dds/watch.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+
+namespace aurasim::dds {
+
+using eprosima::fastrtps::rtps::iHandle2GUID;
+
+namespace {
+
+constexpr std::string_view kUserDataKey = "region=";
+/// Dead writers are remembered so that observers can say "lost"; no more than this many per reader.
+constexpr std::size_t kMaxLost = 1000;
+
+}  // namespace
+
+void ReaderWatch::on_data_available(eprosima::fastdds::dds::DataReader*) { bell_.ring(); }
+
+void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
+                                          const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
+  const Guid guid = iHandle2GUID(status.last_publication_handle);
+  {
+    const std::lock_guard lock(mutex_);
+    if (status.current_count_change > 0) {
+      RemoteWriter writer;
+      writer.guid = guid;
+      writer.order = ++order_;
+      writers_.push_back(writer);
+    } else if (RemoteWriter* writer = find_matched(guid)) {
+      writer->matched = false;
+      writer->alive = false;
+      writer->lost = true;
+      forget_all_but_newest_lost();
+    }
+  }
+  bell_.ring();
+}
+
+void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
+                                        const eprosima::fastdds::dds::LivelinessChangedStatus& status) {
+  const Guid guid = iHandle2GUID(status.last_publication_handle);
+  {
+    const std::lock_guard lock(mutex_);
+    RemoteWriter* writer = find_matched(guid);
+    if (writer == nullptr || status.alive_count_change == 0) {
+      return;
+    }
+    writer->alive = status.alive_count_change > 0;
+    writer->lost = !writer->alive;
+  }
+  bell_.ring();
+}
+
+std::vector<RemoteWriter> ReaderWatch::writers() const {
+  const std::lock_guard lock(mutex_);
+  return writers_;
+}
+
+RemoteWriter ReaderWatch::latest() const {
+  const std::lock_guard lock(mutex_);
+  return writers_.empty() ? RemoteWriter{} : writers_.back();
+}
+
+bool ReaderWatch::any_matched() const {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(writers_, &RemoteWriter::matched);
+}
+
+RemoteWriter* ReaderWatch::find_matched(const Guid& guid) {
+  const auto found =
+      std::ranges::find_if(writers_, [&](const RemoteWriter& writer) { return writer.matched && writer.guid == guid; });
+  return found == writers_.end() ? nullptr : &*found;
+}
+
+void ReaderWatch::forget_all_but_newest_lost() {
+  while (writers_.size() > kMaxLost) {
+    const auto oldest = std::ranges::find(writers_, false, &RemoteWriter::matched);
+    if (oldest == writers_.end()) {
+      return;
+    }
+    writers_.erase(oldest);
+  }
+}
+
+void WriterWatch::on_publication_matched(eprosima::fastdds::dds::DataWriter*,
+                                         const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
+  const Guid guid = iHandle2GUID(status.last_subscription_handle);
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase(readers_, guid);
+    if (status.current_count_change > 0) {
+      readers_.push_back(guid);
+    }
+  }
+  bell_.ring();
+}
+
+std::vector<Guid> WriterWatch::readers() const {
+  const std::lock_guard lock(mutex_);
+  return readers_;
+}
+
+void Directory::add(const Guid& endpoint, core::RegionId region) {
+  const std::lock_guard lock(mutex_);
+  regions_.insert_or_assign(endpoint, region);
+}
+
+std::int64_t Directory::region_of(const Guid& endpoint) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = regions_.find(endpoint);
+  return found == regions_.end() ? -1 : std::int64_t{core::value_of(found->second)};
+}
+
+std::vector<unsigned char> user_data_of(core::RegionId region) {
+  const std::string text = std::string(kUserDataKey) + std::to_string(core::value_of(region));
+  return {text.begin(), text.end()};
+}
+
+std::int64_t region_in(const std::vector<unsigned char>& user_data) {
+  const std::string text(user_data.begin(), user_data.end());
+  if (!text.starts_with(kUserDataKey)) {
+    return -1;
+  }
+  std::uint32_t region = 0;
+  const char* first = text.data() + kUserDataKey.size();
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, region);
+  return error == std::errc{} && end == last ? std::int64_t{region} : -1;
+}
+
+}  // namespace aurasim::dds

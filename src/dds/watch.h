@@ -1,0 +1,89 @@
+// Who is at the other end of an endpoint. The listeners run in DDS threads with DDS locks held: they note what happened
+// and ring the owner's bell, nothing else.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/rtps/common/Guid.h>
+
+#include "core/ids.h"
+#include "dds/bell.h"
+
+namespace aurasim::dds {
+
+using Guid = eprosima::fastrtps::rtps::GUID_t;
+
+/// One match of a reader with a writer. A writer that is matched anew is a new entry.
+struct RemoteWriter {
+  Guid guid;
+  std::uint64_t order = 0;  ///< counts matches, from 1
+  bool matched = true;
+  bool alive = false;  ///< has proved its life and the proof has not run out
+  bool lost = false;   ///< unmatched, or its proof has run out
+};
+
+/// Listener of a reader. Thread-safe.
+class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
+ public:
+  explicit ReaderWatch(Bell& bell) : bell_(bell) {}
+
+  void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
+  void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
+                               const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
+  void on_liveliness_changed(eprosima::fastdds::dds::DataReader* reader,
+                             const eprosima::fastdds::dds::LivelinessChangedStatus& status) override;
+
+  /// Writers in order of match; those that are gone are kept.
+  std::vector<RemoteWriter> writers() const;
+  /// The writer matched last; order 0 when there never was one.
+  RemoteWriter latest() const;
+  bool any_matched() const;
+
+ private:
+  RemoteWriter* find_matched(const Guid& guid);
+  void forget_all_but_newest_lost();
+
+  Bell& bell_;
+  mutable std::mutex mutex_;
+  std::vector<RemoteWriter> writers_;
+  std::uint64_t order_ = 0;
+};
+
+/// Listener of a writer. Thread-safe.
+class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
+ public:
+  explicit WriterWatch(Bell& bell) : bell_(bell) {}
+
+  void on_publication_matched(eprosima::fastdds::dds::DataWriter* writer,
+                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+
+  std::vector<Guid> readers() const;
+
+ private:
+  Bell& bell_;
+  mutable std::mutex mutex_;
+  std::vector<Guid> readers_;
+};
+
+/// Which region an endpoint belongs to, as its user data says. Thread-safe.
+class Directory {
+ public:
+  void add(const Guid& endpoint, core::RegionId region);
+  /// The region, or -1 for an endpoint of no region (observers, tools).
+  std::int64_t region_of(const Guid& endpoint) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<Guid, core::RegionId> regions_;
+};
+
+/// The user data of an endpoint of `region`, and back. Text ("region=3"), so that tools can print it.
+std::vector<unsigned char> user_data_of(core::RegionId region);
+std::int64_t region_in(const std::vector<unsigned char>& user_data);
+
+}  // namespace aurasim::dds

@@ -1,0 +1,75 @@
+// Late and missed collisions (DESIGN section 9), as one node can see them.
+// Late: when two bodies first touch, they already overlap by more than one step of their relative speed.
+// Missed: two bodies of different hosts overlap in the same state.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/clearance.h"
+#include "core/gathering.h"
+#include "core/ids.h"
+#include "physics/region_world.h"
+
+namespace aurasim::node {
+
+struct SeenCollision {
+  physics::Collision collision;
+  bool late = false;
+  bool missed = false;
+  bool flagged = false;  ///< a violation before it may explain it
+};
+
+class CollisionWatch {
+ public:
+  CollisionWatch(double step_s, double gravity_m_s2, int lookahead, const core::ClearanceQuery& clearance)
+      : step_s_(step_s), gravity_m_s2_(gravity_m_s2), lookahead_(lookahead), clearance_(clearance) {}
+
+  /// Bodies of age less than a step: where they appear is the scene's doing.
+  void newborn(core::BodyId body, core::Step birth);
+
+  /// Judges the first contacts of a step. `last_violation` is the newest step with a broken promise.
+  void judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
+             std::vector<SeenCollision>& out);
+
+  /// Compares foreign auras with where our own bodies were in the auras' states.
+  void compare(const core::Snapshot& snapshot, const core::Gathering& gathering, core::Step last_violation,
+               std::vector<SeenCollision>& out);
+
+  std::uint64_t late() const { return late_; }
+  std::uint64_t missed() const { return missed_; }
+  std::uint64_t unflagged() const { return unflagged_; }
+
+ private:
+  struct Remembered {
+    core::BodyId id;
+    core::Pose pose;
+  };
+  struct State {
+    core::Step step;
+    std::vector<Remembered> bodies;  ///< those near foreign auras, ascending id
+  };
+
+  bool is_late(const physics::Collision& c) const;
+  bool was_just_born(const physics::Collision& c) const;
+  bool flagged(core::Step step, core::Step last_violation) const;
+  const core::Pose* remembered(core::Step step, core::BodyId id) const;
+  void remember(const core::Snapshot& snapshot, const core::Gathering& gathering);
+
+  double step_s_;
+  double gravity_m_s2_;
+  int lookahead_;
+  const core::ClearanceQuery& clearance_;
+  std::vector<std::pair<core::BodyId, core::Step>> births_;
+  std::deque<State> states_;
+  std::set<std::pair<core::BodyId, core::BodyId>> overlapping_;  ///< already counted as missed
+  std::uint64_t late_ = 0;
+  std::uint64_t missed_ = 0;
+  std::uint64_t unflagged_ = 0;
+};
+
+}  // namespace aurasim::node

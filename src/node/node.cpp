@@ -1,0 +1,213 @@
+#include "node/node.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace aurasim::node {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the time between its construction and its end to a duration.
+class Timed {
+ public:
+  explicit Timed(double& seconds) : seconds_(seconds), begin_(Clock::now()) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point begin_;
+};
+
+std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
+  std::uint64_t sum = 0;
+  for (const core::BodyRecord& body : bodies) sum += physics::state_hash(body);
+  return sum;
+}
+
+}  // namespace
+
+Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map,
+           transport::Transport& transport)
+    : setup_(setup),
+      scene_(scene),
+      map_(map),
+      transport_(transport),
+      clearance_(physics::make_clearance_query(scene)),
+      protocol_(setup.protocol, map, *clearance_),
+      world_(scene, setup.physics),
+      watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_) {}
+
+const StepReport& Node::start() {
+  report_ = {};
+  host_initial_bodies();
+  finish_state();
+  return report_;
+}
+
+/// Bodies of state 0, and those born so soon after it that nobody could be told in time.
+void Node::host_initial_bodies() {
+  std::vector<core::BodyRecord> records;
+  for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
+  const core::Step notice = birth_notice(setup_.protocol.aura.lookahead);
+  for (const core::Injector& injector : scene_.injectors) {
+    const std::uint64_t count = core::injected_count(injector, notice, setup_.physics.step_s);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (auto record = core::injected_body(injector, i, setup_.physics.step_s)) records.push_back(*record);
+    }
+    next_injection_.push_back(count);
+  }
+  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  core::Snapshot all;
+  for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
+  const std::vector<core::RegionId> hosts = core::assign_hosts(map_, setup_.protocol.aura, *clearance_, all);
+  std::vector<core::BodyRecord> ours;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (hosts[i] != region()) continue;
+    ours.push_back(records[i]);
+    report_.births.push_back({records[i].id, records[i].birth});
+    if (records[i].birth > 0) watch_.newborn(records[i].id, records[i].birth);
+  }
+  world_.add(ours);
+}
+
+/// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
+void Node::announce_births(core::Step state) {
+  const core::Step birth = state + birth_notice(setup_.protocol.aura.lookahead);
+  for (std::size_t k = 0; k < scene_.injectors.size(); ++k) {
+    const core::Injector& injector = scene_.injectors[k];
+    const std::uint64_t count = core::injected_count(injector, birth, setup_.physics.step_s);
+    for (; next_injection_[k] < count; ++next_injection_[k]) {
+      const auto record = core::injected_body(injector, next_injection_[k], setup_.physics.step_s);
+      if (!record || map_.owner(record->p_WB) != region()) continue;
+      world_.add({&*record, 1});
+      watch_.newborn(record->id, record->birth);
+      report_.births.push_back({record->id, record->birth});
+    }
+  }
+}
+
+bool Node::ready() {
+  const Timed timed(mail_s_);
+  transport_.take(inbox_);
+  protocol_.accept(inbox_);
+  return protocol_.ready(current_step() + 1);
+}
+
+const StepReport& Node::step() {
+  const core::Step n = current_step() + 1;
+  report_.durations = {};
+  report_.durations.transport_s = std::exchange(mail_s_, 0);
+  report_.departures.clear();
+  report_.arrivals.clear();
+  report_.collisions.clear();
+  report_.hash.clear();
+  report_.births.clear();
+  const core::Changes* changes = nullptr;
+  {
+    const Timed timed(report_.durations.protocol_s);
+    changes = &protocol_.receive(n);
+  }
+  {
+    const Timed timed(report_.durations.physics_s);
+    apply(*changes);
+    announce_births(n);
+    world_.step();
+  }
+  finish_state();
+  return report_;
+}
+
+void Node::apply(const core::Changes& changes) {
+  if (!changes.let_go.empty()) world_.release(changes.let_go);
+  for (const core::Adoption& adoption : changes.adoptions) {
+    physics::CatchUpListener add_hash;
+    if (setup_.hash_states) {
+      add_hash = [this](core::Step step, std::span<const core::BodyRecord> bodies) {
+        report_.hash.push_back({step, hash_sum(bodies)});
+      };
+    }
+    world_.adopt(adoption.cluster, adoption.stamp, add_hash);
+    note_arrivals(adoption);
+  }
+}
+
+void Node::note_arrivals(const core::Adoption& adoption) {
+  for (const core::BodyRecord& body : adoption.cluster.bodies) {
+    HandOffRow& row = report_.arrivals.emplace_back();
+    row.stamp = adoption.stamp;
+    row.joined = current_step() + 1;
+    row.body = body.id;
+    row.epoch = body.epoch;
+    row.source = adoption.source;
+    row.destination = region();
+    row.reason = adoption.reason;
+    row.reclaimed = adoption.reclaimed;
+    if (body.birth > 0) watch_.newborn(body.id, body.birth);
+  }
+}
+
+/// The second half of a step: look at the state, tell the others, let go.
+void Node::finish_state() {
+  const core::Snapshot* snapshot = nullptr;
+  {
+    const Timed timed(report_.durations.physics_s);
+    snapshot = &world_.snapshot();
+  }
+  if (setup_.hash_states) report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
+  count(*snapshot);
+  const std::vector<core::Departure>* departures = nullptr;
+  {
+    const Timed timed(report_.durations.protocol_s);
+    departures = &protocol_.observe(*snapshot);
+  }
+  watch_.judge(world_.collisions(), protocol_.last_violation_step(), report_.collisions);
+  watch_.compare(*snapshot, protocol_.gathering(), protocol_.last_violation_step(), report_.collisions);
+  note_contacts(*snapshot);
+  report_.foreign_auras = protocol_.gathering().foreign_auras();
+  report_.projecting = protocol_.projection().projecting();
+  report_.largest_cluster = protocol_.largest_cluster();
+  for (const core::Departure& departure : *departures) release(departure);
+  const Timed timed(report_.durations.transport_s);
+  transport_.send(protocol_.outbox());
+}
+
+void Node::note_contacts(const core::Snapshot& snapshot) {
+  for (const core::Contact& contact : snapshot.contacts) {
+    for (const core::BodyId id : {snapshot.bodies[contact.a].id, snapshot.bodies[contact.b].id}) touched_.insert(id);
+  }
+}
+
+void Node::release(const core::Departure& departure) {
+  core::ClusterState cluster;
+  {
+    const Timed timed(report_.durations.physics_s);
+    cluster = world_.release(departure.bodies);
+  }
+  for (const core::BodyRecord& body : cluster.bodies) {
+    HandOffRow& row = report_.departures.emplace_back();
+    row.stamp = current_step();
+    row.body = body.id;
+    row.epoch = body.epoch + 1;
+    row.source = region();
+    row.destination = departure.destination;
+    row.reason = departure.reason;
+    row.touched = touched_.erase(body.id) > 0;
+  }
+  const Timed timed(report_.durations.protocol_s);
+  protocol_.hand_over(departure, std::move(cluster));
+}
+
+void Node::count(const core::Snapshot& snapshot) {
+  report_.step = snapshot.step;
+  report_.bodies = report_.awake = 0;
+  for (const core::BodyState& body : snapshot.bodies) {
+    if (body.birth > snapshot.step) continue;
+    ++report_.bodies;
+    report_.awake += body.awake;
+  }
+}
+
+}  // namespace aurasim::node

@@ -1,0 +1,127 @@
+// One region's node: protocol, physics and mail, one step at a time (DESIGN section 4). Knows no wall clock but for
+// measuring its own phases; the caller says when to step. The same class runs in a process over DDS and, many at a
+// time, inside a test in virtual time.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "core/protocol.h"
+#include "core/region_map.h"
+#include "core/scene.h"
+#include "node/collision_watch.h"
+#include "physics/region_world.h"
+#include "transport/transport.h"
+
+namespace aurasim::node {
+
+struct NodeSetup {
+  core::ProtocolSettings protocol;
+  physics::Settings physics;
+  bool hash_states = true;
+};
+
+/// One body's change of host, as the receiver or (on reclaim) the sender saw it.
+struct HandOffRow {
+  core::Step stamp = 0;    ///< state in which it left
+  core::Step joined = 0;   ///< state in whose computation it takes part first; 0 in the sender's rows
+  core::BodyId body{};
+  core::Epoch epoch = 0;   ///< the new one
+  core::RegionId source{};
+  core::RegionId destination{};
+  core::HandOffReason reason{};
+  bool reclaimed = false;
+  bool touched = false;    ///< it had a contact since its last change of host (sender's rows)
+};
+
+/// A body's first host, and the state in which it exists first.
+struct Birth {
+  core::BodyId body{};
+  core::Step birth = 0;
+};
+
+struct HashPart {
+  core::Step step = 0;
+  std::uint64_t sum = 0;
+};
+
+/// Seconds spent in the phases of one step.
+struct Durations {
+  double physics_s = 0;    ///< apply, step, snapshot, release
+  double protocol_s = 0;   ///< receive, observe
+  double transport_s = 0;  ///< take, decode, encode, send
+};
+
+/// What one step did. Valid until the next.
+struct StepReport {
+  core::Step step = 0;
+  Durations durations;
+  std::size_t bodies = 0;
+  std::size_t awake = 0;
+  std::size_t foreign_auras = 0;
+  std::size_t projecting = 0;
+  std::size_t largest_cluster = 0;
+  std::vector<Birth> births;  ///< bodies that this node has announced or taken over at the start
+  std::vector<HandOffRow> departures;
+  std::vector<HandOffRow> arrivals;
+  std::vector<SeenCollision> collisions;
+  std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
+};
+
+class Node {
+ public:
+  /// Scene, map and transport outlive the node.
+  Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map, transport::Transport& transport);
+
+  /// Takes the bodies of state 0 that are this region's and tells the neighbours. Once, before anything else.
+  const StepReport& start();
+
+  /// Takes in the mail. True when the next state may be computed.
+  bool ready();
+
+  /// Computes the next state. Only when ready().
+  const StepReport& step();
+
+  core::RegionId region() const { return setup_.protocol.self; }
+  core::Step current_step() const { return world_.step_number(); }
+  const core::Protocol& protocol() const { return protocol_; }
+  core::Protocol& protocol() { return protocol_; }
+  physics::RegionWorld& world() { return world_; }
+  const CollisionWatch& collision_watch() const { return watch_; }
+  /// Messages of a later generation, for the node that takes over after a reset.
+  core::Inbox& mail() { return inbox_; }
+  void accept_early_mail(core::Inbox mail) { inbox_ = std::move(mail); }
+
+ private:
+  void host_initial_bodies();
+  void announce_births(core::Step state);
+  void apply(const core::Changes& changes);
+  void finish_state();
+  void note_contacts(const core::Snapshot& snapshot);
+  void note_arrivals(const core::Adoption& adoption);
+  void release(const core::Departure& departure);
+  void count(const core::Snapshot& snapshot);
+
+  NodeSetup setup_;
+  const core::Scene& scene_;
+  const core::RegionMap& map_;
+  transport::Transport& transport_;
+  std::unique_ptr<core::ClearanceQuery> clearance_;
+  core::Protocol protocol_;
+  physics::RegionWorld world_;
+  CollisionWatch watch_;
+  core::Inbox inbox_;
+  std::vector<std::uint64_t> next_injection_;  ///< by injector: first index not yet announced
+  std::unordered_set<core::BodyId> touched_;   ///< had a contact since they came here; asked by id only
+  double mail_s_ = 0;                          ///< time spent with the mail since the last step
+  StepReport report_;
+};
+
+/// Steps before its birth at which a body is announced: long enough for every neighbour to have answered.
+constexpr core::Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
+
+}  // namespace aurasim::node

@@ -1,0 +1,264 @@
+#include "node/report.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "node/csv.h"
+#include "node/durations.h"
+#include "node/recorder.h"
+
+namespace aurasim::node {
+namespace {
+
+using Json = nlohmann::json;
+using Cells = std::vector<std::string_view>;
+
+double number(std::string_view text) {
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+std::uint64_t whole(std::string_view text, int base = 10) {
+  std::uint64_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value, base);
+  return value;
+}
+
+/// A change of host as the records tell it.
+struct Move {
+  std::uint64_t stamp = 0;
+  std::uint64_t body = 0;
+  std::uint64_t epoch = 0;
+  std::uint64_t source = 0;
+  std::uint64_t destination = 0;
+  bool pulled = false;  ///< by AC
+  bool reclaimed = false;
+  bool touched = true;
+};
+
+class Merge {
+ public:
+  Merge(const std::filesystem::path& folder, const RunFacts& facts) : folder_(folder), facts_(facts) {}
+
+  Accounts run() {
+    for (const char* name : {"steps.csv", "collisions.csv", "migrations.csv", "violations.csv"}) join(name);
+    read_moves();
+    read_bodies();
+    read_nodes();
+    add_hashes();
+    count_bodies();
+    count_thrashing();
+    write_summary();
+    return accounts_;
+  }
+
+ private:
+  std::filesystem::path of_region(std::size_t region, const char* name) const {
+    return Recorder::region_folder(folder_, core::RegionId{static_cast<std::uint32_t>(region)}) / name;
+  }
+
+  bool died(std::uint64_t region) const {
+    return std::any_of(facts_.died.begin(), facts_.died.end(),
+                       [&](core::RegionId id) { return core::value_of(id) == region; });
+  }
+
+  void join(const char* name) const {
+    std::ofstream out(folder_ / name);
+    if (!out) throw std::runtime_error(fmt::format("cannot write {}", (folder_ / name).string()));
+    bool header = false;
+    for (std::size_t r = 0; r < facts_.regions; ++r) {
+      std::ifstream in(of_region(r, name));
+      std::string line;
+      if (!std::getline(in, line)) continue;
+      if (!header) out << line << '\n';
+      header = true;
+      while (std::getline(in, line) && !in.eof()) out << line << '\n';
+    }
+  }
+
+  void read_moves() {
+    std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // by body and epoch: two reports of one move
+    read_csv(folder_ / "migrations.csv", [&](const Cells& c) {
+      if (c.size() != 11) return;
+      Move& move = moves[{whole(c[4]), whole(c[5])}];
+      const bool departure = c[1] == "out";
+      move.stamp = whole(c[2]);
+      move.body = whole(c[4]);
+      move.epoch = whole(c[5]);
+      move.source = whole(c[6]);
+      move.destination = whole(c[7]);
+      move.pulled = c[8] == "aura_collision";
+      move.reclaimed = c[9] == "1";
+      if (departure) move.touched = c[10] == "1";
+    });
+    for (const auto& [key, move] : moves) moves_[move.body].push_back(move);
+  }
+
+  void read_bodies() {
+    for (std::size_t r = 0; r < facts_.regions; ++r) {
+      read_csv(of_region(r, "births.csv"), [&](const Cells& c) {
+        if (c.size() == 3) first_host_.try_emplace(whole(c[1]), whole(c[0]));
+      });
+      read_csv(of_region(r, "bodies.csv"), [&](const Cells& c) {
+        if (c.size() != 5) return;
+        const std::uint64_t body = whole(c[1]);
+        if (c[4] == "here") ++hosts_[body];
+        alive_.insert(body);
+      });
+    }
+    for (const std::uint64_t body : alive_) first_host_.try_emplace(body, 0);
+  }
+
+  void read_nodes() {
+    for (std::size_t r = 0; r < facts_.regions; ++r) {
+      std::ifstream in(of_region(r, "node.json"));
+      Json node = in ? Json::parse(in, nullptr, false) : Json();
+      if (!node.is_object()) node = Json{{"region", r}, {"outcome", "died"}};
+      nodes_.push_back(std::move(node));
+    }
+  }
+
+  void add_hashes() const {
+    std::map<std::uint64_t, std::uint64_t> sums;
+    for (std::size_t r = 0; r < facts_.regions; ++r) {
+      read_csv(of_region(r, "state_hash.csv"), [&](const Cells& c) { sums[whole(c[0])] += whole(c[1], 16); });
+    }
+    std::ofstream out(folder_ / "state_hash.csv");
+    out << "step,hash\n";
+    for (const auto& [step, sum] : sums) out << fmt::format("{},{:016x}\n", step, sum);
+  }
+
+  void count_bodies() {
+    for (const auto& [body, count] : hosts_) accounts_.duplicated += count > 1;
+    for (const auto& [body, first] : first_host_) {
+      if (alive_.contains(body)) continue;
+      std::uint64_t host = first;
+      std::uint64_t epoch = 0;
+      for (const Move& move : moves_[body]) {
+        if (move.epoch > epoch) host = move.destination;
+        epoch = std::max(epoch, move.epoch);
+      }
+      if (died(host)) {
+        with_dead_[host].push_back(body);
+      } else {
+        ++accounts_.lost;
+        lost_.push_back(body);
+      }
+    }
+  }
+
+  /// Two pulls in opposite directions with no contact between them: thesis section 3.7.
+  void count_thrashing() {
+    for (auto& [body, moves] : moves_) {
+      std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.epoch < b.epoch; });
+      for (std::size_t i = 0; i < moves.size(); ++i) {
+        migrations_ += !moves[i].reclaimed;
+        reclaimed_ += moves[i].reclaimed;
+        if (i == 0 || !moves[i].pulled || !moves[i - 1].pulled || moves[i].touched) continue;
+        thrashed_ += moves[i].destination == moves[i - 1].source && moves[i].source == moves[i - 1].destination;
+      }
+    }
+  }
+
+  Json frame_times() const {
+    std::map<std::uint64_t, std::map<std::string, std::vector<double>>> columns;
+    const std::vector<std::pair<std::string, std::size_t>> wanted = {
+        {"frame_ms", 2}, {"wait_ms", 3}, {"physics_ms", 4}, {"protocol_ms", 5}, {"transport_ms", 6}};
+    read_csv(folder_ / "steps.csv", [&](const Cells& c) {
+      if (c.size() < 15 || c[1] == "0") return;
+      for (const auto& [name, column] : wanted) columns[whole(c[0])][name].push_back(number(c[column]));
+    });
+    Json regions = Json::array();
+    for (auto& [region, times] : columns) {
+      Json entry = {{"region", region}};
+      for (auto& [name, values] : times) {
+        const double p50 = percentile(values, 0.5);
+        const double p99 = percentile(values, 0.99);
+        entry[name] = {{"p50", p50}, {"p99", p99}, {"max", percentile(values, 1)}};
+      }
+      regions.push_back(entry);
+    }
+    return regions;
+  }
+
+  std::uint64_t sum_over_nodes(const char* key) const {
+    std::uint64_t sum = 0;
+    for (const Json& node : nodes_) sum += node.value(key, std::uint64_t{0});
+    return sum;
+  }
+
+  void write_summary() const {
+    std::uint64_t violations = 0;
+    Json by_kind = Json::object();
+    double factor = 1e9;
+    std::uint64_t steps = 0;
+    for (const Json& node : nodes_) {
+      if (!node.contains("violations")) continue;
+      for (const auto& [kind, count] : node["violations"].items()) {
+        by_kind[kind] = by_kind.value(kind, std::uint64_t{0}) + count.get<std::uint64_t>();
+        violations += count.get<std::uint64_t>();
+      }
+      factor = std::min(factor, node.value("real_time_factor", 0.0));
+      steps = std::max(steps, node.value("steps", std::uint64_t{0}));
+    }
+    Json dead = Json::array();
+    std::uint64_t with_dead = 0;
+    for (const core::RegionId region : facts_.died) {
+      const auto found = with_dead_.find(core::value_of(region));
+      const std::vector<std::uint64_t> bodies = found == with_dead_.end() ? std::vector<std::uint64_t>{} : found->second;
+      with_dead += bodies.size();
+      dead.push_back({{"region", core::value_of(region)}, {"bodies", bodies}});
+    }
+    const Json summary = {
+        {"steps", steps},
+        {"step_s", facts_.step_s},
+        {"real_time_factor", nodes_.empty() || factor > 1e8 ? 0 : factor},
+        {"bodies_spawned", first_host_.size()},
+        {"bodies_removed", 0},
+        {"bodies_alive", alive_.size()},
+        {"bodies_lost", accounts_.lost},
+        {"lost", lost_},
+        {"bodies_duplicated", accounts_.duplicated},
+        {"bodies_with_dead_regions", with_dead},
+        {"dead_regions", dead},
+        {"migrations", migrations_},
+        {"reclaimed", reclaimed_},
+        {"thrashed", thrashed_},
+        {"late_collisions", sum_over_nodes("late_collisions")},
+        {"missed_collisions", sum_over_nodes("missed_collisions")},
+        {"late_without_violation", sum_over_nodes("late_without_violation")},
+        {"severed_contacts", sum_over_nodes("severed_contacts")},
+        {"violations", violations},
+        {"violations_by_kind", by_kind},
+        {"regions", frame_times()},
+        {"nodes", nodes_},
+    };
+    std::ofstream(folder_ / "summary.json") << summary.dump(2) << '\n';
+  }
+
+  std::filesystem::path folder_;
+  RunFacts facts_;
+  std::map<std::uint64_t, std::vector<Move>> moves_;        ///< by body, ascending epoch
+  std::map<std::uint64_t, std::uint64_t> first_host_;       ///< by body
+  std::map<std::uint64_t, int> hosts_;                      ///< by body: how many nodes host it at the end
+  std::set<std::uint64_t> alive_;
+  std::map<std::uint64_t, std::vector<std::uint64_t>> with_dead_;  ///< by region
+  std::vector<std::uint64_t> lost_;
+  std::vector<Json> nodes_;
+  Accounts accounts_;
+  std::uint64_t migrations_ = 0, reclaimed_ = 0, thrashed_ = 0;
+};
+
+}  // namespace
+
+Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts) { return Merge(folder, facts).run(); }
+
+}  // namespace aurasim::node

@@ -1,0 +1,29 @@
+// Merges what the nodes of a run have left on disk into one report (DESIGN section 8), and counts bodies: who is
+// here, who went down with a dead node, who is lost, who is there twice. Nothing is guessed: a body counts as gone
+// with a dead node only if the records say that it was there.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace aurasim::node {
+
+struct RunFacts {
+  std::size_t regions = 0;
+  double step_s = 1.0 / 60;
+  std::vector<core::RegionId> died;  ///< regions whose process ended before its time
+};
+
+struct Accounts {
+  std::uint64_t lost = 0;
+  std::uint64_t duplicated = 0;
+};
+
+/// Reads `folder`/region_*; writes summary.json, steps.csv, collisions.csv, migrations.csv, violations.csv and
+/// state_hash.csv into `folder`. Throws std::runtime_error when it cannot write.
+Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts);
+
+}  // namespace aurasim::node

@@ -1,0 +1,77 @@
+#include "physics/body_table.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "physics/bullet_convert.h"
+
+namespace aurasim::physics {
+namespace {
+
+bool before(const HostedBody& a, const HostedBody& b) { return a.id < b.id; }
+
+}  // namespace
+
+core::BodyRecord HostedBody::record() const {
+  core::BodyRecord record;
+  record.id = id;
+  record.epoch = epoch;
+  record.prototype = prototype;
+  record.birth = birth;
+  record.activation_state = rigid->getActivationState();
+  record.deactivation_time = rigid->getDeactivationTime();
+  record.p_WB = from_bullet(rigid->getWorldTransform().getOrigin());
+  record.R_WB = from_bullet(rigid->getWorldTransform().getBasis());
+  record.v_WB = from_bullet(rigid->getLinearVelocity());
+  record.w_WB = from_bullet(rigid->getAngularVelocity());
+  return record;
+}
+
+core::BodyState HostedBody::state() const {
+  core::BodyState state;
+  state.id = id;
+  state.epoch = epoch;
+  state.prototype = prototype;
+  state.awake = rigid->isActive();
+  state.birth = birth;
+  state.pose.p_WB = from_bullet(rigid->getWorldTransform().getOrigin());
+  state.pose.q_WB = core::Quat(from_bullet(rigid->getWorldTransform().getBasis()));
+  state.v_WB = from_bullet(rigid->getLinearVelocity());
+  state.w_WB = from_bullet(rigid->getAngularVelocity());
+  return state;
+}
+
+const HostedBody* BodyTable::find(core::BodyId id) const {
+  const auto place = std::lower_bound(bodies_.begin(), bodies_.end(), id,
+                                      [](const HostedBody& body, core::BodyId wanted) { return body.id < wanted; });
+  return place != bodies_.end() && place->id == id ? &*place : nullptr;
+}
+
+HostedBody* BodyTable::find(core::BodyId id) {
+  return const_cast<HostedBody*>(static_cast<const BodyTable&>(*this).find(id));
+}
+
+void BodyTable::insert(std::vector<HostedBody> arrivals) {
+  std::sort(arrivals.begin(), arrivals.end(), before);
+  const auto old_size = static_cast<std::ptrdiff_t>(bodies_.size());
+  std::move(arrivals.begin(), arrivals.end(), std::back_inserter(bodies_));
+  std::inplace_merge(bodies_.begin(), bodies_.begin() + old_size, bodies_.end(), before);
+  number();
+}
+
+void BodyTable::erase(const std::vector<bool>& leaving) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (leaving[i]) continue;
+    if (kept != i) bodies_[kept] = std::move(bodies_[i]);
+    ++kept;
+  }
+  bodies_.resize(kept);
+  number();
+}
+
+void BodyTable::number() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].rigid->setUserIndex(static_cast<int>(i));
+}
+
+}  // namespace aurasim::physics

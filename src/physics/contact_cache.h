@@ -1,0 +1,59 @@
+// What Bullet remembers about a contact, as numbers: exact both ways, so that a contact goes on in another world as if
+// nothing had happened.
+//
+// Columns of one row (world frame, metres, newton seconds; A is the manifold's body0, B its body1):
+//    0- 2  point on A in A's frame                28  applied impulse, along the normal
+//    3- 5  point on B in B's frame                29  right-hand side of the last solve
+//    6- 8  point on B                             30  applied impulse, first lateral direction
+//    9-11  point on A                             31  applied impulse, second lateral direction
+//   12-14  normal on B, towards A                 32  contact motion, first lateral direction
+//   15-17  first lateral direction of friction    33  contact motion, second lateral direction
+//   18-20  second lateral direction               34  constraint force mixing (or contact stiffness)
+//   21     distance, negative: overlap            35  error reduction (or contact damping)
+//   22     friction of the two materials          36  constraint force mixing of friction
+//   23     rolling friction                       37  part of A: -1, or of the mesh
+//   24     spinning friction                      38  part of B
+//   25     restitution                            39  index in A: child of a compound, triangle of a mesh, or -1
+//   26     contact flags                          40  index in B
+//   27     age in substeps
+#pragma once
+
+#include <compare>
+#include <vector>
+
+#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
+
+#include "core/body_state.h"
+
+class btPersistentManifold;
+struct btBroadphasePair;
+
+namespace aurasim::physics {
+
+/// `row` has core::kContactPointDoubles numbers.
+void write_point(const btManifoldPoint& point, double* row);
+btManifoldPoint read_point(const double* row);
+
+/// Which children of two compounds a manifold is about; -1 where a body is no compound.
+struct Parts {
+  int part0 = -1;
+  int part1 = -1;
+
+  auto operator<=>(const Parts&) const = default;
+};
+
+/// Of a manifold with at least one point.
+Parts parts_of(const btPersistentManifold& manifold);
+/// The same from a row of the first point.
+Parts parts_of(const double* row, bool compound0, bool compound1);
+
+struct PartManifold {
+  btPersistentManifold* manifold = nullptr;
+  Parts parts;
+};
+
+/// All manifolds of a pair, empty ones too, in the order of its children. A pair of compounds has one for each pair
+/// of children whose bounds overlap.
+void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result);
+
+}  // namespace aurasim::physics

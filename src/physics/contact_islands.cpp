@@ -1,0 +1,135 @@
+#include "physics/contact_islands.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+namespace aurasim::physics {
+namespace {
+
+bool is_asleep(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
+
+/// Two user indices in one number, in the order of (index0, index1); statics' are negative.
+std::uint64_t both_indices(const btPersistentManifold& manifold) {
+  const auto shifted = [](const btCollisionObject* object) {
+    return static_cast<std::uint32_t>(std::int64_t{object->getUserIndex()} - std::numeric_limits<std::int32_t>::min());
+  };
+  return std::uint64_t{shifted(manifold.getBody0())} << 32 | shifted(manifold.getBody1());
+}
+
+int island_of(const btPersistentManifold& manifold) {
+  return std::max(manifold.getBody0()->getIslandTag(), manifold.getBody1()->getIslandTag());  // statics: -1
+}
+
+}  // namespace
+
+void ContactIslands::updateActivationState(btCollisionWorld* world, btDispatcher* dispatcher) {
+  int moving = 0;
+  btCollisionObjectArray& objects = world->getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i) {
+    if (!objects[i]->isStaticOrKinematicObject()) objects[i]->setIslandTag(moving++);
+  }
+  initUnionFind(moving);
+  for (int i = 0; i < dispatcher->getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
+    if (manifold.getNumContacts() == 0) continue;
+    const btCollisionObject* const body0 = manifold.getBody0();
+    const btCollisionObject* const body1 = manifold.getBody1();
+    if (body0->mergesSimulationIslands() && body1->mergesSimulationIslands()) {
+      getUnionFind().unite(body0->getIslandTag(), body1->getIslandTag());
+    }
+  }
+}
+
+/// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
+void ContactIslands::settle(btCollisionWorld& world, int first, int last) {
+  btCollisionObjectArray& objects = world.getCollisionObjectArray();
+  const auto body = [&](int element) -> btCollisionObject& {
+    return *objects[getUnionFind().getElement(element).m_sz];
+  };
+  bool sleeps = true;
+  for (int i = first; i < last && sleeps; ++i) {
+    const int state = body(i).getActivationState();
+    sleeps = state != ACTIVE_TAG && state != DISABLE_DEACTIVATION;
+  }
+  for (int i = first; i < last; ++i) {
+    if (sleeps) {
+      body(i).setActivationState(ISLAND_SLEEPING);
+    } else if (is_asleep(body(i))) {
+      body(i).setActivationState(WANTS_DEACTIVATION);
+      body(i).setDeactivationTime(0);
+    }
+  }
+}
+
+void ContactIslands::collect_awake_manifolds(btDispatcher& dispatcher) {
+  entries_.clear();
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    btPersistentManifold* const manifold = dispatcher.getManifoldByIndexInternal(i);
+    if (manifold->getNumContacts() == 0) continue;
+    const btCollisionObject* const body0 = manifold->getBody0();
+    const btCollisionObject* const body1 = manifold->getBody1();
+    if (is_asleep(*body0) && is_asleep(*body1)) continue;
+    if (!dispatcher.needsResponse(body0, body1)) continue;
+    entries_.push_back({island_of(*manifold), both_indices(*manifold), parts_of(*manifold), manifold});
+  }
+  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.island, a.bodies, a.parts) < std::tie(b.island, b.bodies, b.parts);
+  });
+  manifolds_.clear();
+  for (const Entry& entry : entries_) manifolds_.push_back(entry.manifold);
+}
+
+int ContactIslands::end_of_island(int first) {
+  int last = first + 1;
+  while (last < getUnionFind().getNumElements() &&
+         getUnionFind().getElement(last).m_id == getUnionFind().getElement(first).m_id) {
+    ++last;
+  }
+  return last;
+}
+
+void ContactIslands::solve(btCollisionWorld& world, btConstraintSolver& solver, const btContactSolverInfo& info) {
+  btDispatcher& dispatcher = *world.getDispatcher();
+  const auto solve_group = [&](std::vector<btCollisionObject*>& bodies, btPersistentManifold** first, int count) {
+    if (bodies.empty()) return;
+    solver.solveGroup(bodies.data(), static_cast<int>(bodies.size()), first, count, nullptr, 0, info, nullptr,
+                      &dispatcher);
+  };
+  getUnionFind().sortIslands();
+  const int elements = getUnionFind().getNumElements();
+  for (int first = 0, last = 0; first < elements; first = last) {
+    last = end_of_island(first);
+    settle(world, first, last);
+  }
+  collect_awake_manifolds(dispatcher);
+
+  lonely_.clear();
+  std::size_t manifold = 0;
+  for (int first = 0, last = 0; first < elements; first = last) {
+    last = end_of_island(first);
+    const std::size_t first_manifold = manifold;
+    const int island = getUnionFind().getElement(first).m_id;
+    while (manifold < entries_.size() && entries_[manifold].island == island) ++manifold;
+    island_.clear();
+    bool awake = false;
+    for (int i = first; i < last; ++i) {
+      island_.push_back(world.getCollisionObjectArray()[getUnionFind().getElement(i).m_sz]);
+      awake = awake || island_.back()->isActive();
+    }
+    if (!awake) continue;
+    if (manifold == first_manifold) {
+      lonely_.insert(lonely_.end(), island_.begin(), island_.end());
+    } else {
+      solve_group(island_, &manifolds_[first_manifold], static_cast<int>(manifold - first_manifold));
+    }
+  }
+  solve_group(lonely_, nullptr, 0);
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,33 @@
+#include "physics/contact_pairs.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Written into the filter mask of bodies that have no pairs any more; nobody reads it as a filter after that.
+constexpr int kLeaving = 0;
+
+bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilterMask == kLeaving; }
+
+}  // namespace
+
+void ContactPairs::remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher) {
+  for (btBroadphaseProxy* proxy : leaving) proxy->m_collisionFilterMask = kLeaving;
+  btBroadphasePairArray& pairs = getOverlappingPairArray();
+  for (int i = 0; i < pairs.size();) {
+    if (is_leaving(*pairs[i].m_pProxy0) || is_leaving(*pairs[i].m_pProxy1)) {
+      removeOverlappingPair(pairs[i].m_pProxy0, pairs[i].m_pProxy1, &dispatcher);  // moves the last pair here
+    } else {
+      ++i;
+    }
+  }
+}
+
+void ContactPairs::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+  if (!is_leaving(*proxy)) btHashedOverlappingPairCache::cleanProxyFromPairs(proxy, dispatcher);
+}
+
+void ContactPairs::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+  if (!is_leaving(*proxy)) btHashedOverlappingPairCache::removeOverlappingPairsContainingProxy(proxy, dispatcher);
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,47 @@
+#include "physics/dispatcher.h"
+
+#include <algorithm>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <LinearMath/btAabbUtil2.h>
+
+namespace aurasim::physics {
+namespace {
+
+bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
+  return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
+}
+
+/// The broadphase keeps pairs whose bounds were near once; how long differs from world to world. Here a pair lives
+/// exactly as long as its bounds of this substep overlap.
+void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  if (bounds_overlap(*pair.m_pProxy0, *pair.m_pProxy1)) {
+    btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+  } else if (pair.m_algorithm != nullptr) {
+    pair.m_algorithm->~btCollisionAlgorithm();
+    dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+    pair.m_algorithm = nullptr;
+  }
+}
+
+}  // namespace
+
+/// Two compounds are treated as a compound of compounds: Bullet's algorithm for two needs the trees that shapes.cpp
+/// leaves out, and hides which manifold belongs to which parts.
+Dispatcher::Dispatcher(btCollisionConfiguration& configuration) : btCollisionDispatcher(&configuration) {
+  setNearCallback(near_callback);
+  registerCollisionCreateFunc(
+      COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE,
+      configuration.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE));
+}
+
+btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {
+  btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(body0, body1);
+  const btScalar limit = static_cast<btScalar>(kContactMargin);
+  manifold->setContactBreakingThreshold(std::min(manifold->getContactBreakingThreshold(), limit));
+  return manifold;
+}
+
+}  // namespace aurasim::physics

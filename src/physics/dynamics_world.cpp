@@ -1,0 +1,114 @@
+#include "physics/dynamics_world.h"
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "physics/bullet_convert.h"
+#include "physics/contact_islands.h"
+#include "physics/contact_pairs.h"
+#include "physics/dispatcher.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Bullet's world with our islands, and a look at the contacts before they are solved.
+class Stepper final : public btDiscreteDynamicsWorld {
+ public:
+  Stepper(btDispatcher& dispatcher, btBroadphaseInterface& broadphase, btConstraintSolver& solver,
+          btCollisionConfiguration& configuration)
+      : btDiscreteDynamicsWorld(&dispatcher, &broadphase, &solver, &configuration) {
+    m_islandManager->~btSimulationIslandManager();
+    btAlignedFree(m_islandManager);
+    islands_ = new (btAlignedAlloc(sizeof(ContactIslands), 16)) ContactIslands;
+    m_islandManager = islands_;  // which Bullet destroys
+  }
+
+  void solveConstraints(btContactSolverInfo& info) override {
+    first_contacts_.look(*getDispatcher(), *getPairCache());
+    m_constraintSolver->prepareSolve(getNumCollisionObjects(), getDispatcher()->getNumManifolds());
+    islands_->solve(*this, *m_constraintSolver, info);
+    m_constraintSolver->allSolved(info, nullptr);
+  }
+
+  FirstContacts& first_contacts() { return first_contacts_; }
+
+ private:
+  ContactIslands* islands_ = nullptr;
+  FirstContacts first_contacts_;
+};
+
+/// Makes a body awake for as long as this lives: Bullet does not look at pairs of sleepers.
+class Awake {
+ public:
+  explicit Awake(btCollisionObject& body) : body_(body), state_(body.getActivationState()) {
+    body_.forceActivationState(ACTIVE_TAG);
+  }
+  ~Awake() { body_.forceActivationState(state_); }
+  Awake(const Awake&) = delete;
+  Awake& operator=(const Awake&) = delete;
+
+ private:
+  btCollisionObject& body_;
+  int state_;
+};
+
+}  // namespace
+
+struct DynamicsWorld::Bullet {
+  btDefaultCollisionConfiguration configuration;
+  Dispatcher dispatcher{configuration};
+  ContactPairs pairs;
+  btDbvtBroadphase broadphase{&pairs};
+  btSequentialImpulseConstraintSolver solver;
+  Stepper world{dispatcher, broadphase, solver, configuration};
+};
+
+DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, int solver_iterations) : bullet_(std::make_unique<Bullet>()) {
+  bullet_->broadphase.m_cupdates = 100;  // per cent of the pairs checked in each substep: stale ones cost time
+  bullet_->world.setGravity(to_bullet(gravity));
+  bullet_->world.getSolverInfo().m_numIterations = solver_iterations;
+}
+
+DynamicsWorld::~DynamicsWorld() {
+  btCollisionObjectArray& objects = bullet_->world.getCollisionObjectArray();
+  while (objects.size() > 0) bullet_->world.removeCollisionObject(objects[objects.size() - 1]);
+}
+
+void DynamicsWorld::insert(btRigidBody& body, int rank) {
+  bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
+  bullet_->world.addRigidBody(&body);
+}
+
+void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
+  std::vector<btBroadphaseProxy*> proxies;
+  for (btRigidBody* body : bodies) proxies.push_back(body->getBroadphaseProxy());
+  bullet_->pairs.remove_pairs_of(proxies, bullet_->dispatcher);
+  for (btRigidBody* body : bodies) bullet_->world.removeRigidBody(body);
+}
+
+void DynamicsWorld::step(double substep_s) {
+  const btScalar dt = static_cast<btScalar>(substep_s);
+  bullet_->world.stepSimulation(dt, /*maxSubSteps=*/0, dt);
+}
+
+std::span<btPersistentManifold* const> DynamicsWorld::manifolds() {
+  return {bullet_->dispatcher.getInternalManifoldPointer(),
+          static_cast<std::size_t>(bullet_->dispatcher.getNumManifolds())};
+}
+
+void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result) {
+  result.clear();
+  const Awake awake(a.isStaticObject() ? b : a);
+  btBroadphasePair* const pair = bullet_->pairs.addOverlappingPair(a.getBroadphaseProxy(), b.getBroadphaseProxy());
+  if (pair == nullptr) return;
+  btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world.getDispatchInfo());
+  collect_manifolds(*pair, result);
+  for (const PartManifold& made : result) made.manifold->clearManifold();
+}
+
+FirstContacts& DynamicsWorld::first_contacts() { return bullet_->world.first_contacts(); }
+
+}  // namespace aurasim::physics

@@ -1,0 +1,42 @@
+// A Bullet world that is set up for equal bits (DESIGN section 6), and the few things that are done to it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "physics/contact_cache.h"
+#include "physics/first_contacts.h"
+
+class btRigidBody;
+
+namespace aurasim::physics {
+
+class DynamicsWorld {
+ public:
+  DynamicsWorld(const core::Vec3& gravity, int solver_iterations);
+  ~DynamicsWorld();
+
+  /// `rank` > 0 is the same in every world and fixes which one of a pair is body0. Nothing else may depend on the
+  /// order of insertion, but insert in the order of ranks all the same.
+  void insert(btRigidBody& body, int rank);
+  /// With all contacts.
+  void remove(std::span<btRigidBody* const> bodies);
+
+  void step(double substep_s);
+
+  std::span<btPersistentManifold* const> manifolds();
+
+  /// Makes the manifolds of a pair, even if both bodies sleep, and empties them. `result` names them; any that Bullet
+  /// does not make here would not outlive the next collision detection.
+  void make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result);
+
+  FirstContacts& first_contacts();
+
+ private:
+  struct Bullet;
+  std::unique_ptr<Bullet> bullet_;
+};
+
+}  // namespace aurasim::physics

@@ -1,0 +1,49 @@
+// Which pairs of bodies have just come into contact, seen after collision detection and before the solver acts.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/body_state.h"
+#include "physics/contact_cache.h"
+
+class btDispatcher;
+class btOverlappingPairCache;
+class btPersistentManifold;
+
+namespace aurasim::physics {
+
+/// Bodies are named by their user index.
+struct FirstContact {
+  int body0 = 0;
+  int body1 = 0;
+  double penetration_m = 0;       ///< of the deepest point
+  double relative_speed_m_s = 0;  ///< at that point
+  core::Vec3 p_W = core::Vec3::Zero();
+};
+
+/// Keeps its notes in two fields of the manifolds that Bullet does not use: m_companionIdA is the substep in which the
+/// manifold last had a point, m_companionIdB the first one of that unbroken time.
+class FirstContacts {
+ public:
+  /// Call once per substep, between collision detection and solver.
+  void look(btDispatcher& dispatcher, btOverlappingPairCache& pairs);
+
+  /// A contact that has come with its cache from another world is not a new one.
+  void know(btPersistentManifold& manifold) const;
+
+  /// Since the last clear(), in order of substeps; a pair may be listed more than once.
+  const std::vector<FirstContact>& found() const { return found_; }
+  void clear() { found_.clear(); }
+
+ private:
+  bool touched_before(const btPersistentManifold& manifold) const;
+  void report_pair(const btPersistentManifold& manifold, btOverlappingPairCache& pairs);
+
+  std::uint32_t now_ = 2;  ///< substep; may wrap around
+  std::vector<btPersistentManifold*> new_;
+  std::vector<PartManifold> of_pair_;
+  std::vector<FirstContact> found_;
+};
+
+}  // namespace aurasim::physics

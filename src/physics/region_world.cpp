@@ -1,0 +1,76 @@
+#include "physics/region_world.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "physics/scratch_world.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+
+class RegionWorld::Impl {
+ public:
+  Impl(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
+      : simulation(scene, settings, shapes), scratch(scene, settings, shapes) {}
+
+  Simulation simulation;
+  ScratchWorld scratch;
+  std::vector<Collision> made_up;  ///< first contacts of clusters that caught up since the last step
+  std::vector<Collision> collisions;
+};
+
+RegionWorld::RegionWorld(const core::Scene& scene, const Settings& settings)
+    : impl_(std::make_unique<Impl>(scene, settings, std::make_shared<const ShapeSet>(scene))) {}
+
+RegionWorld::~RegionWorld() = default;
+RegionWorld::RegionWorld(RegionWorld&&) noexcept = default;
+RegionWorld& RegionWorld::operator=(RegionWorld&&) noexcept = default;
+
+const char* RegionWorld::precision() { return sizeof(btScalar) == sizeof(double) ? "double" : "single"; }
+
+core::Step RegionWorld::step_number() const { return impl_->simulation.step_number(); }
+
+void RegionWorld::add(std::span<const core::BodyRecord> bodies) { impl_->simulation.add(bodies); }
+
+void RegionWorld::adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up) {
+  if (stamp > step_number()) throw std::invalid_argument("a cluster cannot be adopted before its time");
+  if (stamp == step_number()) {
+    impl_->simulation.join(cluster);
+  } else {
+    impl_->simulation.join(impl_->scratch.catch_up(cluster, stamp, step_number(), caught_up, impl_->made_up));
+  }
+}
+
+core::ClusterState RegionWorld::release(std::span<const core::BodyId> bodies) {
+  return impl_->simulation.release(bodies);
+}
+
+core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const {
+  return impl_->simulation.peek(bodies);
+}
+
+bool RegionWorld::contains(core::BodyId id) const { return impl_->simulation.contains(id); }
+
+std::size_t RegionWorld::body_count() const { return impl_->simulation.body_count(); }
+
+void RegionWorld::step() {
+  impl_->simulation.step();
+  impl_->collisions.swap(impl_->made_up);
+  impl_->made_up.clear();
+  const std::vector<Collision>& seen = impl_->simulation.collisions();
+  impl_->collisions.insert(impl_->collisions.end(), seen.begin(), seen.end());
+  std::sort(impl_->collisions.begin(), impl_->collisions.end(), [](const Collision& x, const Collision& y) {
+    return std::tie(x.a, x.b, x.step) < std::tie(y.a, y.b, y.step);
+  });
+}
+
+const core::Snapshot& RegionWorld::snapshot() { return impl_->simulation.snapshot(); }
+
+std::span<const core::BodyRecord> RegionWorld::records() { return impl_->simulation.records(); }
+
+const std::vector<Collision>& RegionWorld::collisions() const { return impl_->collisions; }
+
+std::uint64_t RegionWorld::severed_contacts() const { return impl_->simulation.severed_contacts(); }
+
+}  // namespace aurasim::physics

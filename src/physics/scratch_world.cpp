@@ -1,0 +1,21 @@
+#include "physics/scratch_world.h"
+
+namespace aurasim::physics {
+
+ScratchWorld::ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
+    : scene_(&scene), settings_(settings), shapes_(std::move(shapes)) {}
+
+core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
+                                          const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
+  if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_);
+  simulation_->start_at(from);
+  simulation_->join(cluster);
+  while (simulation_->step_number() < to) {
+    simulation_->step();
+    collisions.insert(collisions.end(), simulation_->collisions().begin(), simulation_->collisions().end());
+    if (caught_up) caught_up(simulation_->step_number(), simulation_->records());
+  }
+  return simulation_->release(simulation_->body_ids());
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,29 @@
+// Where bodies that arrive late make up the steps that they have missed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+
+/// Empty between two uses; made when it is first needed.
+class ScratchWorld {
+ public:
+  ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes);
+
+  /// The cluster, whose state is that of step `from`, in the state of step `to`. Contacts that begin on the way are
+  /// appended to `collisions`.
+  core::ClusterState catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
+                              const CatchUpListener& caught_up, std::vector<Collision>& collisions);
+
+ private:
+  const core::Scene* scene_;
+  Settings settings_;
+  std::shared_ptr<const ShapeSet> shapes_;
+  std::optional<Simulation> simulation_;
+};
+
+}  // namespace aurasim::physics

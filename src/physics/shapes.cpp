@@ -1,0 +1,170 @@
+#include "physics/shapes.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+#include <LinearMath/btConvexHullComputer.h>
+
+#include "physics/bullet_convert.h"
+#include "physics/inertia.h"
+
+namespace aurasim::physics {
+namespace {
+
+btScalar scalar(double x) { return static_cast<btScalar>(x); }
+
+std::unique_ptr<btConvexHullShape> hull_through(const btVector3* points, int count) {
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < count; ++i) hull->addPoint(points[i], false);
+  hull->recalcLocalAabb();
+  return hull;
+}
+
+std::unique_ptr<btConvexHullShape> exact_hull(const core::ConvexHull& shape, double margin_m) {
+  std::vector<btVector3> points;
+  for (const core::Vec3& p : shape.points) points.push_back(to_bullet(p));
+  auto hull = hull_through(points.data(), static_cast<int>(points.size()));
+  hull->setMargin(scalar(margin_m));
+  return hull;
+}
+
+/// Bullet puts a hull's margin outside, so the faces are moved inwards by as much first.
+std::unique_ptr<btConvexHullShape> shrunken_hull(const core::ConvexHull& shape) {
+  constexpr double kMargin = 0.04;             // m, Bullet's default
+  constexpr double kShareOfInnerRadius = 0.1;  // as Bullet's safe margin of boxes
+  constexpr double kMarginOfFlatHull = 0.001;  // share of the bounding radius
+  if (shape.points.size() >= 4) {
+    btConvexHullComputer computer;
+    const btScalar moved =
+        computer.compute(shape.points.front().data(), sizeof(core::Vec3), static_cast<int>(shape.points.size()),
+                         scalar(kMargin), scalar(kShareOfInnerRadius));
+    if (moved > 0 && computer.vertices.size() >= 4) {
+      auto hull = hull_through(&computer.vertices[0], computer.vertices.size());
+      hull->setMargin(moved);
+      return hull;
+    }
+  }
+  return exact_hull(shape, kMarginOfFlatHull * core::bounding_radius(shape));
+}
+
+template <class Rounded>
+std::unique_ptr<btConvexShape> with_margin(std::unique_ptr<Rounded> shape, Margin margin) {
+  if (margin == Margin::kNone) shape->setMargin(0);
+  return shape;
+}
+
+/// Spheres and capsules are a point and a segment with a margin: exact either way.
+struct MakeConvex {
+  Margin margin;
+
+  std::unique_ptr<btConvexShape> operator()(const core::Sphere& s) const {
+    return std::make_unique<btSphereShape>(scalar(s.radius));
+  }
+  std::unique_ptr<btConvexShape> operator()(const core::Capsule& s) const {
+    return std::make_unique<btCapsuleShapeZ>(scalar(s.radius), scalar(s.height));
+  }
+  std::unique_ptr<btConvexShape> operator()(const core::Box& s) const {
+    return with_margin(std::make_unique<btBoxShape>(to_bullet(s.half_extents)), margin);
+  }
+  std::unique_ptr<btConvexShape> operator()(const core::Cylinder& s) const {
+    const core::Vec3 half_extents(s.radius, s.radius, s.height / 2);
+    return with_margin(std::make_unique<btCylinderShapeZ>(to_bullet(half_extents)), margin);
+  }
+  std::unique_ptr<btConvexShape> operator()(const core::ConvexHull& s) const {
+    if (margin == Margin::kNone) return exact_hull(s, 0);
+    return shrunken_hull(s);
+  }
+};
+
+std::unique_ptr<btTriangleMesh> triangles_of(const core::TriangleMesh& s) {
+  auto mesh = std::make_unique<btTriangleMesh>(/*use32bitIndices=*/true, /*use4componentVertices=*/false);
+  for (const auto& corners : s.triangles) {
+    mesh->addTriangle(to_bullet(s.points.at(corners[0])), to_bullet(s.points.at(corners[1])),
+                      to_bullet(s.points.at(corners[2])));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+std::unique_ptr<btConvexShape> make_convex(const core::ConvexShape& shape, Margin margin) {
+  return std::visit(MakeConvex{margin}, shape);
+}
+
+/// A shape after what it points at, so that it dies first.
+struct ShapeSet::Built {
+  std::unique_ptr<btStridingMeshInterface> mesh;
+  std::vector<std::unique_ptr<btConvexShape>> parts;
+  std::unique_ptr<btCollisionShape> shape;
+
+  struct Make;
+};
+
+struct ShapeSet::Built::Make {
+  template <class Convex>
+  Built operator()(const Convex& s) const {
+    Built built;
+    built.shape = make_convex(s, Margin::kInside);
+    return built;
+  }
+
+  /// Without Bullet's tree over the parts: it culls by other boxes than those by which Bullet drops a part's contacts,
+  /// so a part's contacts would depend on when the pair met. That is, on hand-offs.
+  Built operator()(const core::Compound& s) const {
+    Built built;
+    auto compound =
+        std::make_unique<btCompoundShape>(/*enableDynamicAabbTree=*/false, static_cast<int>(s.parts.size()));
+    for (const core::CompoundPart& part : s.parts) {
+      built.parts.push_back(make_convex(part.shape, Margin::kInside));
+      compound->addChildShape(to_bullet(part.pose), built.parts.back().get());
+    }
+    built.shape = std::move(compound);
+    return built;
+  }
+
+  /// A mesh has nothing inside to round, so its margin would lie on top: bodies would hover.
+  Built operator()(const core::TriangleMesh& s) const {
+    Built built;
+    built.mesh = triangles_of(s);
+    auto mesh = std::make_unique<btBvhTriangleMeshShape>(built.mesh.get(), /*useQuantizedAabbCompression=*/true);
+    mesh->setMargin(0);
+    built.shape = std::move(mesh);
+    return built;
+  }
+
+  Built operator()(const core::Plane& s) const {
+    Built built;
+    const double length = s.normal.norm();
+    built.shape =
+        std::make_unique<btStaticPlaneShape>(to_bullet(core::Vec3(s.normal / length)), scalar(s.offset / length));
+    return built;
+  }
+};
+
+ShapeSet::ShapeSet(const core::Scene& scene) {
+  for (const core::NamedShape& named : scene.shapes) {
+    shapes_.push_back(std::visit(Built::Make{}, named.shape));
+  }
+  for (const core::Prototype& prototype : scene.prototypes) {
+    inertias_.push_back(inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg));
+  }
+}
+
+ShapeSet::~ShapeSet() = default;
+
+btCollisionShape* ShapeSet::shape(std::uint32_t index) const { return shapes_.at(index).shape.get(); }
+
+const core::Vec3& ShapeSet::inertia(core::PrototypeId prototype) const {
+  return inertias_.at(core::value_of(prototype));
+}
+
+}  // namespace aurasim::physics

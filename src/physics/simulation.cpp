@@ -1,0 +1,315 @@
+#include "physics/simulation.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "physics/bullet_convert.h"
+
+namespace aurasim::physics {
+namespace {
+
+btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btCollisionShape* shape,
+                                                         const core::Vec3& inertia, const core::Material& material) {
+  const auto scalar = [](double x) { return static_cast<btScalar>(x); };
+  btRigidBody::btRigidBodyConstructionInfo info(scalar(mass), nullptr, shape, to_bullet(inertia));
+  info.m_friction = scalar(material.friction);
+  info.m_rollingFriction = scalar(material.rolling_friction);
+  info.m_spinningFriction = scalar(material.spinning_friction);
+  info.m_restitution = scalar(material.restitution);
+  info.m_linearDamping = scalar(material.linear_damping);
+  info.m_angularDamping = scalar(material.angular_damping);
+  return info;
+}
+
+bool is_static(int user_index) { return user_index < 0; }
+
+}  // namespace
+
+Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
+    : scene_(&scene),
+      settings_(settings),
+      shapes_(std::move(shapes)),
+      world_(scene.gravity, settings.solver_iterations) {
+  insert_statics();
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::insert_statics() {
+  for (std::size_t i = 0; i < scene_->statics.size(); ++i) {
+    const core::StaticBody& body = scene_->statics[i];
+    auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
+    info.m_startWorldTransform = to_bullet(body.pose);
+    statics_.push_back(std::make_unique<btRigidBody>(info));
+    statics_.back()->setUserIndex(-1 - static_cast<int>(i));
+    world_.insert(*statics_.back(), 1 + static_cast<int>(i));
+  }
+}
+
+/// Statics come first, then bodies by id.
+int Simulation::rank_of(core::BodyId id) const {
+  const auto room = static_cast<std::uint64_t>(std::numeric_limits<int>::max()) - statics_.size() - 1;
+  if (core::value_of(id) > room) {
+    throw std::invalid_argument("body id " + std::to_string(core::value_of(id)) + " is above " + std::to_string(room) +
+                                ", the largest that Bullet's broadphase can tell apart in this scene");
+  }
+  return static_cast<int>(core::value_of(id) + statics_.size() + 1);
+}
+
+void Simulation::start_at(core::Step step) {
+  assert(table_.size() == 0);
+  step_ = step;
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+HostedBody Simulation::make_body(const core::BodyRecord& record) const {
+  if (contains(record.id)) {
+    throw std::invalid_argument("body " + std::to_string(core::value_of(record.id)) + " is here already");
+  }
+  rank_of(record.id);  // or throws
+  const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
+  auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
+                              scene_->materials.at(prototype.material));
+  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB));
+
+  HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
+  body.rigid->setLinearVelocity(to_bullet(record.v_WB));
+  body.rigid->setAngularVelocity(to_bullet(record.w_WB));
+  body.rigid->forceActivationState(prototype.can_sleep ? record.activation_state : DISABLE_DEACTIVATION);
+  body.rigid->setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
+  return body;
+}
+
+void Simulation::add(std::span<const core::BodyRecord> bodies) {
+  std::vector<HostedBody> arrivals;
+  arrivals.reserve(bodies.size());
+  for (const core::BodyRecord& record : bodies) arrivals.push_back(make_body(record));
+  table_.insert(std::move(arrivals));
+  insert_born();
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+void Simulation::insert_born() {
+  for (HostedBody& body : table_.bodies()) {
+    if (body.born || body.birth > step_) continue;
+    world_.insert(*body.rigid, rank_of(body.id));
+    body.born = true;
+  }
+}
+
+void Simulation::join(const core::ClusterState& cluster) {
+  add(cluster.bodies);
+  restore_contacts(cluster);
+}
+
+/// Null for what is not here (any more).
+btRigidBody* Simulation::find_object(core::ObjectRef ref) {
+  if (ref < 0) {
+    const auto place = static_cast<std::size_t>(-1 - ref);
+    return place < statics_.size() ? statics_[place].get() : nullptr;
+  }
+  const HostedBody* const body = table_.find(core::BodyId{static_cast<std::uint64_t>(ref)});
+  return body != nullptr && body->born ? body->rigid.get() : nullptr;
+}
+
+core::ObjectRef Simulation::ref_of(const btCollisionObject& object) const {
+  const int index = object.getUserIndex();
+  if (is_static(index)) return index;  // -1 - its id, as in an ObjectRef
+  return core::ref_of(table_[static_cast<std::size_t>(index)].id);
+}
+
+/// Two compounds may have manifolds in both orders, so records are grouped by pair first.
+void Simulation::restore_contacts(const core::ClusterState& cluster) {
+  std::vector<std::uint32_t> order(cluster.manifolds.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto pair_of = [&](std::uint32_t i) {
+    return std::minmax(cluster.manifolds[i].object0, cluster.manifolds[i].object1);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return pair_of(i) < pair_of(j); });
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    while (last < order.size() && pair_of(order[last]) == pair_of(order[first])) ++last;
+    restore_pair(cluster, std::span(order).subspan(first, last - first));
+  }
+}
+
+void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records) {
+  const core::ManifoldRecord& any = cluster.manifolds[records.front()];
+  btRigidBody* const a = find_object(any.object0);
+  btRigidBody* const b = find_object(any.object1);
+  if (a == nullptr || b == nullptr || a == b || (a->isStaticObject() && b->isStaticObject())) return;
+  world_.make_manifolds(*a, *b, of_pair_);
+  for (const std::uint32_t index : records) {
+    const core::ManifoldRecord& record = cluster.manifolds[index];
+    if (record.point_count == 0) continue;
+    const btRigidBody* const body0 = record.object0 == any.object0 ? a : b;
+    const btRigidBody* const body1 = body0 == a ? b : a;
+    const double* row = &cluster.points.at(record.first_point * core::kContactPointDoubles);
+    const Parts parts =
+        parts_of(row, body0->getCollisionShape()->isCompound(), body1->getCollisionShape()->isCompound());
+    const auto made = std::find_if(of_pair_.begin(), of_pair_.end(), [&](const PartManifold& candidate) {
+      return candidate.manifold->getBody0() == body0 && candidate.parts == parts;
+    });
+    if (made == of_pair_.end()) continue;
+    for (std::uint32_t i = 0; i < record.point_count; ++i, row += core::kContactPointDoubles) {
+      made->manifold->addManifoldPoint(read_point(row));
+    }
+    world_.first_contacts().know(*made->manifold);
+  }
+}
+
+std::vector<bool> Simulation::places_of(std::span<const core::BodyId> bodies) const {
+  std::vector<bool> members(table_.size());
+  for (const core::BodyId id : bodies) {
+    const HostedBody* const body = table_.find(id);
+    if (body == nullptr) throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is not here");
+    members[static_cast<std::size_t>(body - table_.bodies().data())] = true;
+  }
+  return members;
+}
+
+core::ClusterState Simulation::copy(const std::vector<bool>& members) const {
+  core::ClusterState cluster;
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    if (members[i]) cluster.bodies.push_back(table_[i].record());
+  }
+  const auto goes_along = [&](const btCollisionObject& object) {
+    return is_static(object.getUserIndex()) || members[static_cast<std::size_t>(object.getUserIndex())];
+  };
+  struct Entry {
+    core::ObjectRef object0, object1;
+    Parts parts;
+    const btPersistentManifold* manifold;
+  };
+  std::vector<Entry> entries;
+  for (const btPersistentManifold* manifold : world_.manifolds()) {
+    const btCollisionObject& body0 = *manifold->getBody0();
+    const btCollisionObject& body1 = *manifold->getBody1();
+    if (manifold->getNumContacts() == 0 || !goes_along(body0) || !goes_along(body1)) continue;
+    entries.push_back({ref_of(body0), ref_of(body1), parts_of(*manifold), manifold});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.object0, a.object1, a.parts) < std::tie(b.object0, b.object1, b.parts);
+  });
+  for (const Entry& entry : entries) {
+    const auto first_point = static_cast<std::uint32_t>(cluster.points.size() / core::kContactPointDoubles);
+    const auto point_count = static_cast<std::uint32_t>(entry.manifold->getNumContacts());
+    cluster.manifolds.push_back({entry.object0, entry.object1, first_point, point_count});
+    for (int i = 0; i < entry.manifold->getNumContacts(); ++i) {
+      cluster.points.resize(cluster.points.size() + core::kContactPointDoubles);
+      write_point(entry.manifold->getContactPoint(i), &*cluster.points.end() - core::kContactPointDoubles);
+    }
+  }
+  return cluster;
+}
+
+std::uint64_t Simulation::count_contacts_across(const std::vector<bool>& members) const {
+  std::uint64_t count = 0;
+  for (const btPersistentManifold* manifold : world_.manifolds()) {
+    const int index0 = manifold->getBody0()->getUserIndex();
+    const int index1 = manifold->getBody1()->getUserIndex();
+    if (manifold->getNumContacts() == 0 || is_static(index0) || is_static(index1)) continue;
+    count += members[static_cast<std::size_t>(index0)] != members[static_cast<std::size_t>(index1)];
+  }
+  return count;
+}
+
+core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const { return copy(places_of(bodies)); }
+
+core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
+  const std::vector<bool> members = places_of(bodies);
+  core::ClusterState cluster = copy(members);
+  severed_contacts_ += count_contacts_across(members);
+  std::vector<btRigidBody*> leaving;
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    if (members[i] && table_[i].born) leaving.push_back(table_[i].rigid.get());
+  }
+  world_.remove(leaving);
+  table_.erase(members);
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+  return cluster;
+}
+
+std::vector<core::BodyId> Simulation::body_ids() const {
+  std::vector<core::BodyId> ids;
+  for (const HostedBody& body : table_.bodies()) ids.push_back(body.id);
+  return ids;
+}
+
+void Simulation::step() {
+  world_.first_contacts().clear();
+  for (int i = 0; i < settings_.substeps; ++i) world_.step(settings_.step_s / settings_.substeps);
+  ++step_;
+  collect_collisions();
+  insert_born();
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+void Simulation::collect_collisions() {
+  collisions_.clear();
+  for (const FirstContact& found : world_.first_contacts().found()) {
+    const auto [a, b] = std::minmax(found.body0, found.body1);
+    collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
+                           found.penetration_m, found.relative_speed_m_s, found.p_W});
+  }
+  const auto pair_of = [](const Collision& c) { return std::tie(c.a, c.b); };
+  std::stable_sort(collisions_.begin(), collisions_.end(),
+                   [&](const auto& a, const auto& b) { return pair_of(a) < pair_of(b); });
+  const auto end = std::unique(collisions_.begin(), collisions_.end(),
+                               [&](const auto& a, const auto& b) { return pair_of(a) == pair_of(b); });
+  collisions_.erase(end, collisions_.end());
+}
+
+const core::Snapshot& Simulation::snapshot() {
+  if (!snapshot_is_fresh_) {
+    snapshot_.step = step_;
+    snapshot_.bodies.clear();
+    for (const HostedBody& body : table_.bodies()) snapshot_.bodies.push_back(body.state());
+    list_contacts();
+    snapshot_is_fresh_ = true;
+  }
+  return snapshot_;
+}
+
+/// Sorted by counting: the manifolds come in no order, and there are several for each body.
+void Simulation::list_contacts() {
+  unsorted_contacts_.clear();
+  contacts_before_.assign(table_.size() + 1, 0);
+  for (const btPersistentManifold* manifold : world_.manifolds()) {
+    const auto [a, b] = std::minmax({manifold->getBody0()->getUserIndex(), manifold->getBody1()->getUserIndex()});
+    if (manifold->getNumContacts() == 0 || is_static(a)) continue;  // points are never farther than kContactMargin
+    unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+    ++contacts_before_[static_cast<std::size_t>(a) + 1];
+  }
+  for (std::size_t i = 1; i < contacts_before_.size(); ++i) contacts_before_[i] += contacts_before_[i - 1];
+
+  std::vector<core::Contact>& contacts = snapshot_.contacts;
+  contacts.resize(unsorted_contacts_.size());
+  for (const core::Contact& contact : unsorted_contacts_) contacts[contacts_before_[contact.a]++] = contact;
+  std::size_t first = 0;
+  for (std::size_t a = 0; a < table_.size(); ++a) {  // each has by now grown to the end of its body's contacts
+    const auto of_body = std::span(contacts).subspan(first, contacts_before_[a] - first);
+    std::sort(of_body.begin(), of_body.end(), [](const auto& x, const auto& y) { return x.b < y.b; });
+    first = contacts_before_[a];
+  }
+  const auto same = [](const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; };
+  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
+}
+
+std::span<const core::BodyRecord> Simulation::records() {
+  if (!records_are_fresh_) {
+    records_.clear();
+    for (const HostedBody& body : table_.bodies()) {
+      if (body.born) records_.push_back(body.record());
+    }
+    records_are_fresh_ = true;
+  }
+  return records_;
+}
+
+}  // namespace aurasim::physics

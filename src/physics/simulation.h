@@ -1,0 +1,81 @@
+// Bodies in a Bullet world, as records in and out: what the world of a region and the scratch world have in common.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/scene.h"
+#include "physics/body_table.h"
+#include "physics/dynamics_world.h"
+#include "physics/region_world.h"
+#include "physics/shapes.h"
+
+namespace aurasim::physics {
+
+/// The functions mean what those of the same name mean in RegionWorld.
+class Simulation {
+ public:
+  /// The scene outlives the simulation.
+  Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes);
+  ~Simulation();
+
+  core::Step step_number() const { return step_; }
+  /// Only while there are no bodies.
+  void start_at(core::Step step);
+
+  void add(std::span<const core::BodyRecord> bodies);
+  /// As add, but with contacts. The cluster's state is that of step_number().
+  void join(const core::ClusterState& cluster);
+  core::ClusterState release(std::span<const core::BodyId> bodies);
+  core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+
+  bool contains(core::BodyId id) const { return table_.find(id) != nullptr; }
+  std::size_t body_count() const { return table_.size(); }
+  std::vector<core::BodyId> body_ids() const;
+
+  void step();
+
+  const core::Snapshot& snapshot();
+  std::span<const core::BodyRecord> records();
+  const std::vector<Collision>& collisions() const { return collisions_; }
+  std::uint64_t severed_contacts() const { return severed_contacts_; }
+
+ private:
+  void insert_statics();
+  void insert_born();
+  HostedBody make_body(const core::BodyRecord& record) const;
+  int rank_of(core::BodyId id) const;
+  btRigidBody* find_object(core::ObjectRef ref);
+  core::ObjectRef ref_of(const btCollisionObject& object) const;
+  void restore_contacts(const core::ClusterState& cluster);
+  void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
+  std::vector<bool> places_of(std::span<const core::BodyId> bodies) const;
+  core::ClusterState copy(const std::vector<bool>& members) const;
+  std::uint64_t count_contacts_across(const std::vector<bool>& members) const;
+  void collect_collisions();
+  void list_contacts();
+
+  const core::Scene* scene_;
+  Settings settings_;
+  std::shared_ptr<const ShapeSet> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
+  BodyTable table_;
+  mutable DynamicsWorld world_;  ///< mutable: Bullet hands out its manifolds from non-const functions only
+
+  core::Step step_ = 0;
+  std::uint64_t severed_contacts_ = 0;
+  std::vector<Collision> collisions_;
+
+  bool snapshot_is_fresh_ = false;
+  core::Snapshot snapshot_;
+  bool records_are_fresh_ = false;
+  std::vector<core::BodyRecord> records_;
+  std::vector<core::Contact> unsorted_contacts_;
+  std::vector<std::uint32_t> contacts_before_;  ///< for each body: contacts of all bodies before it
+  std::vector<PartManifold> of_pair_;
+};
+
+}  // namespace aurasim::physics

@@ -1,0 +1,57 @@
+// A network inside one process, in virtual time: whole clusters of nodes run inside one test, thousands of times
+// faster than life. Faults come from a FaultModel (faulty_transport.h).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "transport/faulty_transport.h"
+#include "transport/transport.h"
+
+namespace aurasim::transport {
+
+class MemoryNetwork {
+ public:
+  /// `listeners[r]`: the regions that hear region r's aura batches. Delays are in seconds of virtual time.
+  MemoryNetwork(std::vector<std::vector<core::RegionId>> listeners, const Faults& faults, std::uint64_t seed);
+  ~MemoryNetwork();
+
+  /// The transport of one region; lives as long as the network.
+  Transport& endpoint(core::RegionId region);
+
+  /// Messages that arrive until `now_s` can be taken from now on.
+  void advance_to(double now_s);
+  double now_s() const { return now_s_; }
+
+  /// What is sent from now on leaves this much later (the sender's frame time).
+  void set_send_delay(double delay_s) { send_delay_s_ = delay_s; }
+
+  /// The region's process is gone: it sends and takes nothing more. What it sent before still arrives, but for the
+  /// messages not yet on the link; the others hear of its death `lease_s` later.
+  void crash(core::RegionId region, double lease_s);
+
+  FaultModel& faults() { return faults_; }
+
+ private:
+  class Endpoint;
+  using Message = std::variant<core::AuraBatch, core::HandOff, core::HandOffAck, core::PeerEvent>;
+
+  void post(core::RegionId from, core::RegionId to, const Message& message);
+  void send(core::RegionId from, const core::Outbox& outbox);
+
+  std::vector<std::vector<core::RegionId>> listeners_;
+  FaultModel faults_;
+  std::vector<std::unique_ptr<Endpoint>> endpoints_;
+  struct Delivery {
+    core::RegionId to;
+    Message message;
+  };
+  std::multimap<double, Delivery> in_flight_;  ///< by time of arrival
+  double now_s_ = 0;
+  double send_delay_s_ = 0;
+};
+
+}  // namespace aurasim::transport

@@ -1,0 +1,158 @@
+#include "cluster/cluster_sim.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace aurasim::test {
+
+using core::BodyId;
+using core::RegionId;
+using core::Step;
+
+ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
+    : scene_(scene), options_(options), random_(options.seed * 0x9E3779B97F4A7C15ull + 1) {
+  std::vector<std::vector<RegionId>> listeners;
+  const auto regions = static_cast<std::uint32_t>(options_.map.size());
+  for (std::uint32_t r = 0; r < regions; ++r) {
+    listeners.push_back(options_.map.neighbours(RegionId{r}, options_.neighbour_distance_m));
+  }
+  network_ = std::make_unique<transport::MemoryNetwork>(listeners, options_.faults, options_.seed);
+  for (std::uint32_t r = 0; r < regions; ++r) {
+    node::NodeSetup setup;
+    setup.protocol.self = RegionId{r};
+    setup.protocol.sync = options_.sync;
+    setup.protocol.aura = options_.aura;
+    setup.protocol.neighbour_distance_m = options_.neighbour_distance_m;
+    setup.physics.step_s = options_.aura.step_s;
+    setup.physics.substeps = options_.aura.substeps;
+    members_.push_back({std::make_unique<node::Node>(setup, scene_, options_.map, network_->endpoint(RegionId{r}))});
+  }
+}
+
+ClusterSim::~ClusterSim() = default;
+
+double ClusterSim::chance() {
+  random_ = random_ * 6364136223846793005ull + 1442695040888963407ull;
+  return static_cast<double>(random_ >> 11) * 0x1p-53;
+}
+
+Outcome ClusterSim::run(Step steps) {
+  outcome_ = {};
+  outcome_.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
+  for (Member& member : members_) take_report(member, member.node->start());
+  const double slice = options_.aura.step_s / 8;
+  const auto behind = [&] {
+    return std::any_of(members_.begin(), members_.end(),
+                       [&](const Member& m) { return m.alive && m.node->current_step() < steps; });
+  };
+  for (double t = 0; behind(); t += slice) {
+    if (t > 60 * static_cast<double>(steps) * options_.aura.step_s + 60) throw std::runtime_error("the cluster stands still");
+    network_->advance_to(t);
+    for (Member& member : members_) step_if_due(member, steps);
+  }
+  settle();
+  account(outcome_);
+  return outcome_;
+}
+
+void ClusterSim::step_if_due(Member& member, Step last) {
+  const double now = network_->now_s();
+  if (!member.alive || now < member.busy_until_s || member.node->current_step() >= last) return;
+  const Step next = member.node->current_step() + 1;
+  if (now < static_cast<double>(next) * options_.aura.step_s || !member.node->ready()) return;
+  const double frame = options_.frame_s + options_.frame_jitter_s * chance();
+  network_->set_send_delay(frame);
+  member.busy_until_s = now + frame;
+  take_report(member, member.node->step());
+  member.node->protocol().report_frame(next, frame);
+  check_single_host();
+  maybe_crash(member);
+}
+
+void ClusterSim::take_report(Member& member, const node::StepReport& report) {
+  for (const node::SeenCollision& seen : report.collisions) {
+    if (!seen.missed) outcome_.contacts.push_back(seen.collision);
+    if (seen.late || seen.missed) outcome_.wrong.push_back({member.node->region(), seen});
+  }
+  for (const node::HashPart& part : report.hash) {
+    if (part.step < static_cast<Step>(outcome_.hash.size())) outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
+  }
+  outcome_.largest_cluster = std::max(outcome_.largest_cluster, report.largest_cluster);
+  moves.insert(moves.end(), report.departures.begin(), report.departures.end());
+  outcome_.hand_offs += report.departures.size();
+  for (const node::HandOffRow& row : report.departures) {
+    const auto [before, first] = last_departure_.try_emplace(row.body, row);
+    if (first) continue;
+    const node::HandOffRow& last = before->second;
+    const bool both_pulled = row.reason == core::HandOffReason::kAuraCollision && last.reason == row.reason;
+    if (both_pulled && row.destination == last.source && !row.touched) ++outcome_.thrashed;
+    before->second = row;
+  }
+}
+
+/// On every step each body has at most one host.
+void ClusterSim::check_single_host() {
+  std::set<BodyId> hosted;
+  for (Member& member : members_) {
+    if (!member.alive) continue;
+    for (const core::BodyState& body : member.node->world().snapshot().bodies) {
+      seen_.insert(body.id);
+      if (!hosted.insert(body.id).second) doubled_.insert(body.id);
+    }
+  }
+}
+
+void ClusterSim::maybe_crash(Member& member) {
+  if (!options_.crash || member.node->region() != options_.crash->region) return;
+  if (member.node->current_step() < options_.crash->step || !member.alive) return;
+  member.alive = false;
+  network_->crash(member.node->region(), options_.crash->lease_s);
+  for (const core::BodyState& body : member.node->world().snapshot().bodies) with_dead_.insert(body.id);
+  for (const core::HandOff& open : member.node->protocol().departures().open()) {
+    for (const core::BodyRecord& body : open.cluster.bodies) with_dead_.insert(body.id);
+  }
+}
+
+/// Every message that is under way arrives; nothing new is said.
+void ClusterSim::settle() {
+  outcome_.slowest_s = network_->now_s();
+  network_->advance_to(network_->now_s() + 1e6);
+  for (Member& member : members_) {
+    if (member.alive) member.node->ready();
+  }
+}
+
+void ClusterSim::account(Outcome& outcome) {
+  std::set<BodyId> found;
+  for (Member& member : members_) {
+    if (!member.alive) continue;
+    for (const core::BodyState& body : member.node->world().snapshot().bodies) found.insert(body.id);
+    for (const core::HandOff& open : member.node->protocol().departures().open()) {
+      for (const core::BodyRecord& body : open.cluster.bodies) found.insert(body.id);
+    }
+    const core::Protocol& protocol = member.node->protocol();
+    for (const core::HandOff& open : protocol.intake().to_reclaim()) {
+      for (const core::BodyRecord& body : open.cluster.bodies) found.insert(body.id);
+    }
+    outcome.late += member.node->collision_watch().late();
+    outcome.missed += member.node->collision_watch().missed();
+    outcome.unflagged += member.node->collision_watch().unflagged();
+    outcome.violations += protocol.violations().total();
+    outcome.reclaimed += protocol.intake().counters().reclaimed;
+    outcome.severed += member.node->world().severed_contacts();
+    outcome.bad_phases += protocol.projection().counters().bad_phase_changes;
+  }
+  outcome.doubled = doubled_.size();
+  for (const BodyId id : seen_) {
+    if (found.contains(id)) continue;
+    ++(with_dead_.contains(id) ? outcome.with_dead : outcome.lost);
+  }
+}
+
+Outcome run_central(const core::Scene& scene, ClusterOptions options, Step steps) {
+  options.map = core::RegionMap::columns(1, 1);
+  options.crash.reset();
+  return ClusterSim(scene, options).run(steps);
+}
+
+}  // namespace aurasim::test

@@ -1,0 +1,95 @@
+// A whole cluster of nodes in one process, in virtual time, over a seeded network that misbehaves. The real protocol,
+// the real physics; only clock and wire are simulated. Checks the invariants of DESIGN section 5 on every step.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "node/node.h"
+#include "transport/memory_transport.h"
+
+namespace aurasim::test {
+
+struct Crash {
+  core::RegionId region{};
+  core::Step step = 0;      ///< after computing this state
+  double lease_s = 0.2;
+};
+
+struct ClusterOptions {
+  core::RegionMap map = core::RegionMap::columns(1, 1);
+  core::AuraRules aura;
+  core::SyncMode sync = core::SyncMode::kBounded;
+  transport::Faults faults;
+  std::uint64_t seed = 1;
+  double frame_s = 0.004;         ///< of every node and step
+  double frame_jitter_s = 0;      ///< uniform extra
+  double neighbour_distance_m = 1e9;
+  std::optional<Crash> crash;
+};
+
+struct Outcome {
+  std::uint64_t hand_offs = 0;  ///< bodies
+  std::uint64_t late = 0;
+  std::uint64_t missed = 0;
+  std::uint64_t unflagged = 0;  ///< late or missed, without a violation before
+  std::uint64_t violations = 0;
+  std::uint64_t thrashed = 0;
+  std::uint64_t doubled = 0;    ///< bodies ever seen on two live nodes at once
+  std::uint64_t lost = 0;
+  std::uint64_t with_dead = 0;
+  std::uint64_t reclaimed = 0;
+  std::uint64_t severed = 0;    ///< contacts cut by a hand-off
+  std::uint64_t bad_phases = 0;
+  std::size_t largest_cluster = 0;
+  double slowest_s = 0;         ///< virtual time at the end
+  std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
+  std::vector<physics::Collision> contacts;  ///< first contacts
+  std::vector<std::uint64_t> hash;  ///< by step; only complete without a crash
+};
+
+class ClusterSim {
+ public:
+  ClusterSim(const core::Scene& scene, const ClusterOptions& options);
+  ~ClusterSim();
+
+  /// Runs until every live node has computed state `steps`, then lets the dust settle.
+  Outcome run(core::Step steps);
+
+  node::Node& node(std::uint32_t region) { return *members_[region].node; }
+  std::vector<node::HandOffRow> moves;
+
+ private:
+  struct Member {
+    std::unique_ptr<node::Node> node;
+    double busy_until_s = 0;
+    bool alive = true;
+  };
+
+  void step_if_due(Member& member, core::Step last);
+  void take_report(Member& member, const node::StepReport& report);
+  void check_single_host();
+  void maybe_crash(Member& member);
+  void settle();
+  void account(Outcome& outcome);
+  double chance();
+
+  const core::Scene& scene_;
+  ClusterOptions options_;
+  std::unique_ptr<transport::MemoryNetwork> network_;
+  std::vector<Member> members_;
+  std::uint64_t random_;
+  std::set<core::BodyId> seen_, doubled_, with_dead_;
+  std::map<core::BodyId, node::HandOffRow> last_departure_;
+  Outcome outcome_;
+};
+
+/// The same scene in one world.
+Outcome run_central(const core::Scene& scene, ClusterOptions options, core::Step steps);
+
+}  // namespace aurasim::test

@@ -1,0 +1,51 @@
+#include "cluster/scenes.h"
+
+#include <random>
+
+namespace aurasim::test {
+
+using core::Vec3;
+
+core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s,
+                          std::uint64_t seed) {
+  core::Scene scene;
+  scene.name = "thrown_bodies";
+  scene.shapes = {{"box", core::Box{{0.3, 0.3, 0.5}}},
+                  {"sphere", core::Sphere{0.4}},
+                  {"capsule", core::Capsule{0.3, 0.6}},
+                  {"ground", core::Plane{}}};
+  core::Material material;
+  material.rolling_friction = 0.02;
+  material.linear_damping = 0.05;
+  material.angular_damping = 0.3;
+  scene.materials = {material};
+  scene.prototypes = {{"box", 0, 0, 1, true}, {"sphere", 1, 0, 1, true}, {"capsule", 2, 0, 1, true}};
+  scene.statics = {{"ground", 3, 0, {}}};
+  std::mt19937_64 random(seed);
+  const auto u = [&random] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  const std::size_t injected = count / 10;
+  for (std::size_t i = 0; i < count - injected; ++i) {
+    core::InitialBody body;
+    body.id = core::BodyId{i};
+    body.prototype = core::PrototypeId{static_cast<std::uint32_t>(random() % 3)};
+    body.pose.p_WB = {0.5 * width_x_m * u(), 0.5 * width_y_m * u(), 6 + 5 * u()};
+    body.v_WB = {speed_m_s * u(), speed_m_s * u(), 3 * u()};
+    scene.bodies.push_back(body);
+  }
+  core::Injector injector;
+  injector.name = "rain";
+  injector.seed = seed;
+  injector.first_id = core::BodyId{count};
+  injector.max_bodies = injected;
+  injector.rate_per_s = 20;
+  injector.volume_min = {-0.5 * width_x_m, -0.5 * width_y_m, 4};
+  injector.volume_max = {0.5 * width_x_m, 0.5 * width_y_m, 12};
+  injector.velocity_min = {-speed_m_s, -speed_m_s, -3};
+  injector.velocity_max = {speed_m_s, speed_m_s, 3};
+  injector.random_orientation = true;
+  injector.prototypes = {core::PrototypeId{0}, core::PrototypeId{1}, core::PrototypeId{2}};
+  scene.injectors = {injector};
+  return scene;
+}
+
+}  // namespace aurasim::test

@@ -1,0 +1,195 @@
+#include "config/workspace.h"
+
+namespace aurasim::config {
+namespace {
+
+const std::string kTwo = "scene: scene.yaml\nregions: {layout: columns, count: 2, width: 40}\n";
+
+const std::vector<BadCase> kBadLaunches = {
+    {"UnknownKey",
+     kTwo + "speed: 3\n",
+     {"launch.yaml:3:1: speed: unknown key, allowed: scene, regions, time, tolerances, aura, physics, dds, observe"}},
+    {"KeyGivenTwice",
+     kTwo + "scene: other.yaml\n",
+     {"launch.yaml:3:1: scene: found a second time, first at line 1, allowed: once"}},
+    {"KeyGivenTwiceInside",
+     kTwo + "time: {substeps: 2, substeps: 4}\n",
+     {"launch.yaml:3:21: time.substeps: found a second time, first at line 3, allowed: once"}},
+    {"NoScene", "regions: {count: 1}\n", {"launch.yaml:1:1: scene: missing, allowed: a scene file"}},
+    {"NoRegions", "scene: scene.yaml\n", {"launch.yaml:1:1: regions: missing, allowed: a map such as"}},
+    {"SceneDoesNotExist",
+     "scene: nowhere.yaml\nregions: {count: 1}\n",
+     {"launch.yaml:1:8: scene: found \"nowhere.yaml\", allowed: a scene file (nowhere.yaml: No such file"}},
+    {"SceneIsADirectory", "scene: .\nregions: {count: 1}\n", {"launch.yaml:1:8: scene: found \".\", allowed: a scene"}},
+    {"SceneIsAList",
+     "scene: [a]\nregions: {count: 1}\n",
+     {"launch.yaml:1:8: scene: found a list of 1, allowed: a scene file"}},
+    {"RegionsIsANumber",
+     "scene: scene.yaml\nregions: 4\n",
+     {"launch.yaml:2:10: regions: found \"4\", allowed: a map of layout, count, width, rows"}},
+    {"RegionsIsEmpty", "scene: scene.yaml\nregions:\n", {"launch.yaml:2:1: regions: found nothing, allowed: a map"}},
+    {"NegativeCount",
+     "scene: scene.yaml\nregions: {layout: columns, count: -3, width: 40}\n",
+     {"launch.yaml:2:35: regions.count: found \"-3\", allowed: an integer from 1 to 1024"}},
+    {"AbsurdCount",
+     "scene: scene.yaml\nregions: {layout: columns, count: 1000000, width: 40}\n",
+     {"launch.yaml:2:35: regions.count: found \"1000000\", allowed: an integer from 1 to 1024"}},
+    {"FractionalCount",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2.5, width: 40}\n",
+     {"launch.yaml:2:35: regions.count: found \"2.5\", allowed: an integer from 1 to 1024"}},
+    {"CountInQuotes",
+     "scene: scene.yaml\nregions: {layout: columns, count: \"2\", width: 40}\n",
+     {"launch.yaml:2:35: regions.count: found \"2\", allowed: an integer"}},
+    {"WidthMissing",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2}\n",
+     {"launch.yaml:2:10: regions.width: missing, allowed: a number above 0"}},
+    {"WidthZero",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: 0}\n",
+     {"launch.yaml:2:45: regions.width: found \"0\", allowed: a number above 0"}},
+    {"WidthNotANumber",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: .nan}\n",
+     {"launch.yaml:2:45: regions.width: found \".nan\", allowed: a number above 0"}},
+    {"WidthNan",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: nan}\n",
+     {"launch.yaml:2:45: regions.width: found \"nan\""}},
+    {"WidthInfinite",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: inf}\n",
+     {"launch.yaml:2:45: regions.width: found \"inf\""}},
+    {"WidthOverflows",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: 1e999}\n",
+     {"launch.yaml:2:45: regions.width: found \"1e999\""}},
+    {"WidthWithUnit",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: 40 m}\n",
+     {"launch.yaml:2:45: regions.width: found \"40 m\""}},
+    {"UnknownLayout",
+     "scene: scene.yaml\nregions: {layout: hexagons, count: 2}\n",
+     {"launch.yaml:2:19: regions.layout: found \"hexagons\", allowed: columns, grid, brick, boxes"}},
+    {"KeyOfAnotherLayout",
+     "scene: scene.yaml\nregions: {layout: columns, count: 2, width: 40, rows: 2}\n",
+     {"launch.yaml:2:49: regions.rows: unknown key, allowed: layout, count, width, neighbour_distance"}},
+    {"GridWithoutCell",
+     "scene: scene.yaml\nregions: {layout: grid, rows: 2, columns: 2}\n",
+     {"launch.yaml:2:10: regions.cell: missing, allowed: a list of 2"}},
+    {"GridOfTooManyRegions",
+     "scene: scene.yaml\nregions: {layout: grid, rows: 40, columns: 40, cell: [40, 40]}\n",
+     {"launch.yaml:2:44: regions.columns: found \"40\", allowed: at most 1024 regions"}},
+    {"CellOfOneNumber",
+     "scene: scene.yaml\nregions: {layout: grid, rows: 2, columns: 2, cell: [40]}\n",
+     {"launch.yaml:2:52: regions.cell: found a list of 1, allowed: a list of 2"}},
+    {"CellWithANegativeSide",
+     "scene: scene.yaml\nregions: {layout: brick, rows: 2, columns: 2, cell: [40, -40]}\n",
+     {"launch.yaml:2:58: regions.cell[1]: found \"-40\", allowed: a number above 0"}},
+    {"OverlappingBoxes",
+     "scene: scene.yaml\nregions: {layout: boxes, boxes: [[0, 0, 40, 40], [30, 0, 80, 40]]}\n",
+     {"launch.yaml:2:33: regions.boxes: boxes 0 [0.000000, 0.000000, 40.000000, 40.000000] and 1"}},
+    {"GapBetweenBoxes",
+     "scene: scene.yaml\nregions: {layout: boxes, boxes: [[0, 0, 40, 40], [50, 0, 90, 40]]}\n",
+     {"launch.yaml:2:33: regions.boxes: the boxes leave a gap"}},
+    {"BoxInsideOut",
+     "scene: scene.yaml\nregions: {layout: boxes, boxes: [[40, 0, 0, 40]]}\n",
+     {"launch.yaml:2:34: regions.boxes[0]: found a list of 4, allowed: [x0, y0, x1, y1] with x0 < x1"}},
+    {"NoBoxes",
+     "scene: scene.yaml\nregions: {layout: boxes, boxes: []}\n",
+     {"launch.yaml:2:33: regions.boxes: found a list of 0, allowed: a list of 1 to 256"}},
+    {"RegionsNarrowerThanTheReach",
+     "scene: scene.yaml\nregions: {layout: columns, count: 4, width: 3}\n",
+     {"launch.yaml:2:10: regions: the narrowest region is 3 m wide, allowed: at least 3.933 m, the reach of an aura: "
+      "speed 32 m/s, lookahead 2, 4 substeps, largest bounding radius 0.5 m"}},
+    {"NeighbourDistanceBelowTheZone",
+     kTwo.substr(0, kTwo.size() - 2) + ", neighbour_distance: 1}\n",
+     {"launch.yaml:2:10: regions: neighbour_distance is 1 m, allowed: at least"}},
+    {"TooManyNeighbours",
+     "scene: scene.yaml\nregions: {layout: grid, rows: 20, columns: 20, cell: [10, 10], neighbour_distance: 500}\n",
+     {"launch.yaml:2:10: regions: region 0 has 399 neighbours within 500 m, allowed: at most 64"}},
+    {"StepRateZero",
+     kTwo + "time: {step_hz: 0}\n",
+     {"launch.yaml:3:17: time.step_hz: found \"0\", allowed: a number from 1 to 10000"}},
+    {"TooManySubsteps",
+     kTwo + "time: {substeps: 65}\n",
+     {"launch.yaml:3:18: time.substeps: found \"65\", allowed: an integer from 1 to 64"}},
+    {"UnknownSync",
+     kTwo + "time: {sync: sometimes}\n",
+     {"launch.yaml:3:14: time.sync: found \"sometimes\", allowed: free_running, bounded, deterministic"}},
+    {"LookaheadZero",
+     kTwo + "time: {lookahead: 0}\n",
+     {"launch.yaml:3:19: time.lookahead: found \"0\", allowed: auto, or an integer from 1 to 64"}},
+    {"LookaheadAWord",
+     kTwo + "time: {lookahead: far}\n",
+     {"launch.yaml:3:19: time.lookahead: found \"far\", allowed: auto, or an integer from 1 to 64"}},
+    {"LookaheadAList",
+     kTwo + "time: {lookahead: [1]}\n",
+     {"launch.yaml:3:19: time.lookahead: found a list of 1, allowed: auto, or an integer from 1 to 64"}},
+    {"LookaheadFromTolerancesTooLong",
+     kTwo + "tolerances: {frame: 9}\n",
+     {"launch.yaml:2:10: regions: tolerances and step_hz give a lookahead of 541 steps, allowed: at most 64"}},
+    {"SpeedToleranceZero",
+     kTwo + "tolerances: {speed: 0, latency: -1, frame: 0}\n",
+     {"launch.yaml:3:21: tolerances.speed: found \"0\"", "launch.yaml:3:33: tolerances.latency: found \"-1\"",
+      "launch.yaml:3:44: tolerances.frame: found \"0\""}},
+    {"UnknownAura",
+     kTwo + "aura: {radius: wide}\n",
+     {"launch.yaml:3:16: aura.radius: found \"wide\", allowed: none, thesis, tight, swept"}},
+    {"UnknownPrecision",
+     kTwo + "physics: {precision: half, iterations: 0}\n",
+     {"launch.yaml:3:22: physics.precision: found \"half\", allowed: double, single",
+      "launch.yaml:3:40: physics.iterations: found \"0\", allowed: an integer from 1 to 1000"}},
+    {"DomainOutOfRange",
+     kTwo + "dds: {domain: 233}\n",
+     {"launch.yaml:3:15: dds.domain: found \"233\", allowed: an integer from 0 to 232"}},
+    {"ProfilesMissing",
+     kTwo + "dds: {profiles: none.xml}\n",
+     {"launch.yaml:3:17: dds.profiles: found \"none.xml\", allowed: an XML file (none.xml is none)"}},
+    {"NoInterfaces",
+     kTwo + "dds: {interfaces: []}\n",
+     {"launch.yaml:3:19: dds.interfaces: found a list of 0, allowed: a list of 1 to 256"}},
+    {"PeersMissing", kTwo + "dds: {discovery: server}\n", {"launch.yaml:3:6: dds: needs peers"}},
+    {"TickRateTooHigh",
+     kTwo + "observe: {tick_hz: 100000}\n",
+     {"launch.yaml:3:20: observe.tick_hz: found \"100000\", allowed: a number above 0 and up to 1000"}},
+};
+
+class BadLaunch : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadLaunch, IsRefusedWithPlaceFieldAndReason) {
+  const Workspace workspace;
+  expect_errors(workspace.launch_errors(GetParam().text), GetParam().errors);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadLaunch, testing::ValuesIn(kBadLaunches),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(BadLaunchFile, AllErrorsAreCollectedInTheOrderOfTheFile) {
+  const Workspace workspace;
+  workspace.write("scene.yaml", "gravity: 9.81\nprototypes: {ball: {shape: ball, mass: -1}}\n");
+  const std::string text = "colour: red\nscene: scene.yaml\nregions: {layout: columns, count: 0, width: -1}\n";
+  const auto file = workspace.write("launch.yaml", text);
+  expect_errors(workspace.errors_of([&] { read_launch(file); }),
+                {"launch.yaml:1:1: colour: unknown key", "launch.yaml:3:35: regions.count: found \"0\"",
+                 "launch.yaml:3:45: regions.width: found \"-1\"", "scene.yaml:1:10: gravity: found \"9.81\"",
+                 "scene.yaml:2:28: prototypes.ball.shape: found \"ball\", allowed: a shape of this scene: nothing",
+                 "scene.yaml:2:40: prototypes.ball.mass: found \"-1\", allowed: a number above 0"});
+}
+
+TEST(BadLaunchFile, AThousandErrorsAreCutAndCounted) {
+  const Workspace workspace;
+  std::string text = kTwo;
+  for (int i = 0; i < 1000; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  const auto errors = workspace.launch_errors(text);
+  ASSERT_EQ(errors.size(), 201u);
+  EXPECT_THAT(errors.back(), testing::HasSubstr("800 more errors are not shown"));
+}
+
+TEST(BadLaunchFile, WhatIsWrongIsAlsoTheMessageOfTheException) {
+  const Workspace workspace;
+  try {
+    workspace.launch("scene: scene.yaml\nregions: {count: 0}\nx: 1\n");
+    FAIL() << "must throw";
+  } catch (const BadConfig& bad) {
+    EXPECT_EQ(bad.errors().size(), 3u);
+    EXPECT_THAT(bad.what(), testing::HasSubstr("regions.count"));
+    EXPECT_THAT(bad.what(), testing::HasSubstr("x: unknown key"));
+  }
+}
+
+}  // namespace
+}  // namespace aurasim::config

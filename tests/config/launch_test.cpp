@@ -1,0 +1,100 @@
+#include "config/workspace.h"
+
+namespace aurasim::config {
+namespace {
+
+TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
+  const Workspace workspace;
+  const Launch launch = workspace.launch(kSmallLaunch);
+  EXPECT_EQ(launch.regions.size(), 2u);
+  EXPECT_EQ(launch.time.step_hz, 60);
+  EXPECT_EQ(launch.time.substeps, 4);
+  EXPECT_EQ(launch.time.sync, Sync::kBounded);
+  EXPECT_FALSE(launch.time.lookahead);
+  EXPECT_EQ(launch.time.pace, Pace::kWall);
+  EXPECT_EQ(launch.tolerances.speed_m_s, 32);
+  EXPECT_EQ(launch.tolerances.latency_s, 0.002);
+  EXPECT_EQ(launch.tolerances.frame_s, 0.015);
+  EXPECT_EQ(launch.aura.radius, AuraRadius::kSwept);
+  EXPECT_EQ(launch.aura.uncertainty, 0.5);
+  EXPECT_EQ(launch.physics.precision, "double");
+  EXPECT_EQ(launch.physics.solver, "sequential_impulse");
+  EXPECT_EQ(launch.physics.iterations, 10);
+  EXPECT_EQ(launch.dds.domain, 0);
+  EXPECT_EQ(launch.dds.discovery, Discovery::kMulticast);
+  EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("127.0.0.1"));
+  EXPECT_TRUE(launch.dds.profiles.is_absolute());
+  EXPECT_EQ(launch.observe.tick_hz, 20);
+}
+
+TEST(LaunchFile, EveryKeyIsRead) {
+  const Workspace workspace;
+  workspace.write("qos.xml", "<dds/>");
+  const Launch launch = workspace.launch(R"(scene: scene.yaml
+regions: {layout: grid, rows: 1, columns: 3, cell: [50, 60], neighbour_distance: 70}
+time: {step_hz: 120, substeps: 2, sync: deterministic, lookahead: 3, pace: none}
+tolerances: {speed: 20, latency: 0.001, frame: 0.005}
+aura: {radius: tight, uncertainty: 1}
+physics: {precision: single, solver: sequential_impulse, iterations: 30}
+dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"]}
+observe: {tick_hz: 30}
+)");
+  EXPECT_EQ(launch.regions.size(), 3u);
+  EXPECT_EQ(launch.neighbour_distance_m, 70);
+  EXPECT_EQ(launch.time.step_hz, 120);
+  EXPECT_EQ(launch.time.substeps, 2);
+  EXPECT_EQ(launch.time.sync, Sync::kDeterministic);
+  EXPECT_EQ(launch.time.pace, Pace::kNone);
+  EXPECT_EQ(launch.lookahead(), 3);
+  EXPECT_EQ(launch.tolerances.speed_m_s, 20);
+  EXPECT_EQ(launch.aura.radius, AuraRadius::kTight);
+  EXPECT_EQ(launch.aura.uncertainty, 1);
+  EXPECT_EQ(launch.physics.precision, "single");
+  EXPECT_EQ(launch.physics.iterations, 30);
+  EXPECT_EQ(launch.dds.domain, 7);
+  EXPECT_EQ(launch.dds.profiles, workspace.folder() / "qos.xml");
+  EXPECT_EQ(launch.dds.discovery, Discovery::kPeers);
+  EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("10.0.0.1", "127.0.0.1"));
+  EXPECT_THAT(launch.dds.peers, testing::ElementsAre("10.0.0.2:7400"));
+  EXPECT_EQ(launch.observe.tick_hz, 30);
+}
+
+TEST(LaunchFile, PathsAreRelativeToTheFileTheyStandIn) {
+  const Workspace workspace;
+  workspace.write("a/b/scene.yaml", kSmallScene);
+  const auto file = workspace.write("a/launch.yaml", "scene: b/scene.yaml\nregions: {count: 1}\n");
+  EXPECT_EQ(read_launch(file).scene_file, workspace.folder() / "a/b/scene.yaml");
+  EXPECT_EQ(read_launch(workspace.folder() / "a/b/../launch.yaml").file, file);
+}
+
+TEST(LaunchFile, LookaheadCoversFrameAndLatency) {
+  const Workspace workspace;
+  const auto lookahead = [&](const std::string& tolerances) {
+    return workspace.launch(kSmallLaunch + ("tolerances: " + tolerances + "\n")).lookahead();
+  };
+  EXPECT_EQ(lookahead("{frame: 0.015, latency: 0.001}"), 1);
+  EXPECT_EQ(lookahead("{frame: 0.015, latency: 0.002}"), 2);
+  EXPECT_EQ(lookahead("{frame: 0.001, latency: 0}"), 1);
+  EXPECT_EQ(lookahead("{frame: 0.05, latency: 0}"), 3) << "exactly three steps";
+  EXPECT_EQ(workspace.launch(std::string(kSmallLaunch) + "time: {lookahead: auto}\n").lookahead(), 2);
+  EXPECT_EQ(workspace.launch(std::string(kSmallLaunch) + "time: {lookahead: 5}\n").lookahead(), 5);
+}
+
+TEST(LaunchFile, NeighboursListenAtLeastAsFarAsBodiesProject) {
+  const Workspace workspace;
+  const Launch slow = workspace.launch(std::string(kSmallLaunch) + "tolerances: {speed: 10}\n");
+  const Launch fast = workspace.launch(std::string(kSmallLaunch) + "tolerances: {speed: 32}\n");
+  EXPECT_GT(slow.neighbour_distance_m, 0);
+  EXPECT_GT(fast.neighbour_distance_m, slow.neighbour_distance_m);
+}
+
+TEST(LaunchFile, AliasesOfYamlWork) {
+  const Workspace workspace;
+  const Launch launch = workspace.launch(
+      "scene: scene.yaml\nregions: {layout: columns, count: &n 2, width: 40}\ntime: {substeps: *n, lookahead: *n}\n");
+  EXPECT_EQ(launch.time.substeps, 2);
+  EXPECT_EQ(launch.time.lookahead, 2);
+}
+
+}  // namespace
+}  // namespace aurasim::config

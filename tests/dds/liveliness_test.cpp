@@ -1,0 +1,149 @@
+// Neighbours that die, hang, dawdle and come back. Domains 107 to 112. The lease of qos/aurasim.xml is 1 s.
+#include <gtest/gtest.h>
+
+#include "child.h"
+#include "transport_fixture.h"
+
+namespace aurasim::dds {
+namespace {
+
+using core::PeerChange;
+using core::RegionId;
+using testing::Child;
+using testing::Peer;
+using testing::take_until;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// Region 0 in this process, region 1 in a child.
+class Neighbour : public ::testing::Test {
+ protected:
+  void meet(std::uint32_t domain, const std::string& mode, std::chrono::milliseconds time = 0ms) {
+    domain_ = domain;
+    here_ = std::make_unique<Peer>(domain, 0, std::initializer_list<std::uint32_t>{1});
+    start(mode, time);
+    here_->transport.wait_until_matched(testing::kDeadline);
+    ASSERT_EQ(there_->read_line(), "ready");
+    ASSERT_TRUE(take_until(*here_, [&] { return !here_->inbox.auras.empty(); }));
+    ASSERT_TRUE(here_->inbox.peers.empty());
+  }
+
+  void start(const std::string& mode, std::chrono::milliseconds time = 0ms) {
+    there_ = std::make_unique<Child>(std::vector<std::string>{
+        AURASIM_BINARY_DIR "/dds_peer_process", std::to_string(domain_), "1", "0", mode, std::to_string(time.count())});
+  }
+
+  bool wait_for_peer_events(std::size_t count, std::chrono::nanoseconds time_out = testing::kDeadline) {
+    return take_until(
+        *here_, [&] { return here_->inbox.peers.size() >= count; }, time_out);
+  }
+
+  void expect_event(std::size_t index, PeerChange change) {
+    ASSERT_GT(here_->inbox.peers.size(), index);
+    EXPECT_EQ(here_->inbox.peers[index].region, RegionId{1});
+    EXPECT_EQ(here_->inbox.peers[index].change, change);
+  }
+
+  std::uint32_t domain_ = 0;
+  std::unique_ptr<Peer> here_;
+  std::unique_ptr<Child> there_;
+};
+
+TEST_F(Neighbour, ThatIsKilledIsLostOnceWithinTheLease) {
+  meet(107, "run");
+  there_->kill(SIGKILL);
+  const auto killed = Clock::now();
+  ASSERT_TRUE(wait_for_peer_events(1));
+  const auto taken = Clock::now() - killed;
+  expect_event(0, PeerChange::kLost);
+  EXPECT_LT(taken, 1500ms) << "the lease is 1 s";
+  EXPECT_FALSE(wait_for_peer_events(2, 1500ms)) << "lost twice";
+}
+
+TEST_F(Neighbour, ThatComesBackJoinsAndIsHeardAgain) {
+  meet(108, "run");
+  there_->kill(SIGKILL);
+  ASSERT_TRUE(wait_for_peer_events(1));
+  here_->inbox.clear();
+  start("run");
+  ASSERT_TRUE(wait_for_peer_events(1));
+  expect_event(0, PeerChange::kJoined);
+  here_->inbox.auras.clear();
+  EXPECT_TRUE(take_until(*here_, [&] { return !here_->inbox.auras.empty(); }));
+}
+
+TEST_F(Neighbour, ThatRestartsBeforeItsLossShowsIsLostAndThenJoins) {
+  meet(109, "run");
+  there_->kill(SIGKILL);
+  start("run");
+  ASSERT_TRUE(wait_for_peer_events(2));
+  expect_event(0, PeerChange::kLost);
+  expect_event(1, PeerChange::kJoined);
+  EXPECT_FALSE(wait_for_peer_events(3, 1500ms)) << "the end of the old process must not count again";
+}
+
+TEST_F(Neighbour, WhoseOwnerHangsIsLost) {
+  meet(110, "hang", 200ms);
+  ASSERT_TRUE(wait_for_peer_events(1));
+  expect_event(0, PeerChange::kLost);
+}
+
+TEST_F(Neighbour, ThatIsStoppedIsLostAndJoinsWhenItGoesOn) {
+  meet(111, "run");
+  there_->kill(SIGSTOP);
+  ASSERT_TRUE(wait_for_peer_events(1));
+  expect_event(0, PeerChange::kLost);
+  there_->kill(SIGCONT);
+  ASSERT_TRUE(wait_for_peer_events(2));
+  expect_event(1, PeerChange::kJoined);
+}
+
+TEST_F(Neighbour, WithFramesLongerThanTheLeaseIsNotLost) {
+  meet(112, "long_frames");
+  EXPECT_FALSE(wait_for_peer_events(1, 4s));
+}
+
+TEST_F(Neighbour, ThatIsDroppedIsNotSentHandOffsUntilItIsBack) {
+  meet(113, "run");
+  here_->transport.drop(RegionId{1});
+  core::Outbox outbox;
+  outbox.aura = testing::batch_of(0, RegionId{0});
+  outbox.hand_offs = {testing::hand_off_of(1, RegionId{0}, RegionId{1})};
+  outbox.acks = {testing::ack_of(1, RegionId{0}, RegionId{1})};
+  here_->transport.send(outbox);
+  EXPECT_EQ(here_->transport.counters().migration.not_sent, 1U);
+  EXPECT_EQ(here_->transport.counters().migration_ack.not_sent, 1U);
+  EXPECT_TRUE(here_->transport.all_matched()) << "nobody waits for a dropped region";
+  EXPECT_FALSE(wait_for_peer_events(1, 300ms)) << "the old process does not count as a return";
+
+  there_->kill(SIGKILL);
+  start("run");
+  ASSERT_TRUE(wait_for_peer_events(1));
+  expect_event(0, PeerChange::kJoined);
+  here_->transport.send(outbox);
+  EXPECT_EQ(here_->transport.counters().migration.sent, 1U);
+}
+
+TEST_F(Neighbour, ThatIsDeadNeverBlocksASend) {
+  meet(114, "run");
+  there_->kill(SIGKILL);
+  core::Outbox outbox;
+  outbox.aura = testing::batch_of(100, RegionId{0});
+  outbox.hand_offs = {testing::hand_off_of(10, RegionId{0}, RegionId{1})};
+  auto longest = Clock::duration::zero();
+  const auto end = Clock::now() + 2s;
+  while (Clock::now() < end) {
+    const auto start = Clock::now();
+    here_->transport.send(outbox);
+    longest = std::max(longest, Clock::now() - start);
+    here_->transport.take(here_->inbox);
+    std::this_thread::sleep_for(5ms);
+  }
+  expect_event(0, PeerChange::kLost);
+  EXPECT_EQ(here_->transport.counters().aura.send_failed, 0U);
+  EXPECT_EQ(here_->transport.counters().migration.send_failed, 0U);
+  EXPECT_LT(longest, 200ms);
+}
+
+}  // namespace
+}  // namespace aurasim::dds

@@ -1,0 +1,176 @@
+// Messages with something in every field, and the comparison of any two, bit by bit.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "core/messages.h"
+
+namespace aurasim::dds::testing {
+
+inline core::Quat turn(double angle) {
+  return core::Quat(Eigen::AngleAxisd(angle, core::Vec3(1, 2, -0.5).normalized()));
+}
+
+inline core::AuraRecord aura_of(std::uint64_t id) {
+  core::AuraRecord aura;
+  aura.id = static_cast<core::BodyId>(id);
+  aura.epoch = static_cast<core::Epoch>(id + 1);
+  aura.host = static_cast<core::RegionId>(id % 4);
+  aura.prototype = static_cast<core::PrototypeId>(id % 7);
+  aura.flags = static_cast<std::uint8_t>(id % 4);
+  aura.stamp = static_cast<core::Step>(id) + 3;
+  aura.birth = static_cast<core::Step>(id % 11);
+  const auto x = static_cast<double>(id);
+  aura.pose = {.p_WB = core::Vec3(0.1 * x, -x / 3, 1e-300), .q_WB = turn(x)};
+  aura.v_WB = core::Vec3(1 / 3.0, -0.0, x);
+  aura.w_WB = core::Vec3(-x, 5e-324, 2.5);
+  aura.speed_m_s = 0.1 + x;
+  return aura;
+}
+
+inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core::RegionId{1}) {
+  core::AuraBatch batch;
+  batch.source = source;
+  batch.generation = 7;
+  batch.stamp = 1'234'567'890'123;
+  batch.map_version = 0xfedc'ba98'7654'3210U;
+  batch.full = true;
+  batch.top_speed_m_s = 31.4;
+  batch.top_radius_m = 0.87;
+  batch.violations = 5;
+  for (std::size_t i = 0; i < auras; ++i) {
+    batch.updates.push_back(aura_of(i));
+  }
+  batch.deletes = {core::BodyId{90}, core::BodyId{91}};
+  batch.hand_offs = {{core::RegionId{0}, 17}, {core::RegionId{2}, 0}};
+  batch.dead = {core::RegionId{3}};
+  batch.claims = {{core::BodyId{44}, 8}};
+  return batch;
+}
+
+inline core::BodyRecord body_of(std::uint64_t id) {
+  core::BodyRecord body;
+  body.id = static_cast<core::BodyId>(id);
+  body.epoch = 3;
+  body.prototype = static_cast<core::PrototypeId>(id % 7);
+  body.birth = 2;
+  body.activation_state = static_cast<std::int32_t>(1 + id % 5);
+  body.deactivation_time = 0.1 * static_cast<double>(id);
+  body.p_WB = core::Vec3(1.1, 2.2, static_cast<double>(id));
+  body.R_WB = turn(static_cast<double>(id)).toRotationMatrix();
+  body.v_WB = core::Vec3(-1, 0.5, 1e-20);
+  body.w_WB = core::Vec3(3, -2, 0.1);
+  return body;
+}
+
+/// `bodies` in a row, each with two contact points to the next and one to a static; one joint.
+inline core::HandOff hand_off_of(std::size_t bodies, core::RegionId source = core::RegionId{1},
+                                 core::RegionId destination = core::RegionId{0}) {
+  core::HandOff hand_off;
+  hand_off.source = source;
+  hand_off.destination = destination;
+  hand_off.generation = 7;
+  hand_off.stamp = 99;
+  hand_off.map_version = 0xfedc'ba98'7654'3210U;
+  hand_off.sequence = 12;
+  hand_off.reason = core::HandOffReason::kBoundaryTraversal;
+  core::ClusterState& cluster = hand_off.cluster;
+  const auto add_manifold = [&](core::ObjectRef a, core::ObjectRef b, std::uint32_t points) {
+    const auto first = static_cast<std::uint32_t>(cluster.points.size() / core::kContactPointDoubles);
+    cluster.manifolds.push_back({.object0 = a, .object1 = b, .first_point = first, .point_count = points});
+    for (std::size_t i = 0; i < points * core::kContactPointDoubles; ++i) {
+      cluster.points.push_back(1.0 / static_cast<double>(i + 1));
+    }
+  };
+  for (std::size_t i = 0; i < bodies; ++i) {
+    cluster.bodies.push_back(body_of(10 * i));
+    add_manifold(core::ref_of(core::BodyId{10 * i}), core::ref_of(core::StaticId{2}), 1);
+    if (i > 0) {
+      add_manifold(core::ref_of(core::BodyId{10 * (i - 1)}), core::ref_of(core::BodyId{10 * i}), 2);
+    }
+  }
+  cluster.joints.push_back({.id = core::JointId{5}, .first_value = 0, .value_count = 3});
+  cluster.joint_values = {0.1, 0.2, 0.3};
+  return hand_off;
+}
+
+inline core::HandOffAck ack_of(std::uint64_t sequence, core::RegionId source = core::RegionId{0},
+                               core::RegionId destination = core::RegionId{1}) {
+  return {.source = source, .destination = destination, .generation = 7, .stamp = 100, .sequence = sequence};
+}
+
+// ---- equality to the bit: -0.0 is not 0.0
+
+inline bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+template <class Matrix>
+bool same_bits(const Matrix& a, const Matrix& b) {
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    if (!same(a.data()[i], b.data()[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+inline bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return same(x, y); });
+}
+
+template <class Row, class Same>
+bool same_rows(const std::vector<Row>& a, const std::vector<Row>& b, Same same_row) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same_row);
+}
+
+inline bool same(const core::AuraRecord& a, const core::AuraRecord& b) {
+  return a.id == b.id && a.epoch == b.epoch && a.host == b.host && a.prototype == b.prototype && a.flags == b.flags &&
+         a.stamp == b.stamp && a.birth == b.birth && same_bits(a.pose.p_WB, b.pose.p_WB) &&
+         same_bits(a.pose.q_WB.coeffs(), b.pose.q_WB.coeffs()) && same_bits(a.v_WB, b.v_WB) &&
+         same_bits(a.w_WB, b.w_WB) && same(a.speed_m_s, b.speed_m_s);
+}
+
+inline bool same(const core::AuraBatch& a, const core::AuraBatch& b) {
+  return a.source == b.source && a.generation == b.generation && a.stamp == b.stamp && a.map_version == b.map_version &&
+         a.full == b.full && same(a.top_speed_m_s, b.top_speed_m_s) && same(a.top_radius_m, b.top_radius_m) &&
+         a.violations == b.violations &&
+         same_rows(a.updates, b.updates, [](const auto& x, const auto& y) { return same(x, y); }) &&
+         a.deletes == b.deletes && a.dead == b.dead &&
+         same_rows(a.hand_offs, b.hand_offs,
+                   [](const auto& x, const auto& y) {
+                     return x.destination == y.destination && x.last_sequence == y.last_sequence;
+                   }) &&
+         same_rows(a.claims, b.claims, [](const auto& x, const auto& y) { return x.id == y.id && x.epoch == y.epoch; });
+}
+
+inline bool same(const core::BodyRecord& a, const core::BodyRecord& b) {
+  return a.id == b.id && a.epoch == b.epoch && a.prototype == b.prototype && a.birth == b.birth &&
+         a.activation_state == b.activation_state && same(a.deactivation_time, b.deactivation_time) &&
+         same_bits(a.p_WB, b.p_WB) && same_bits(a.R_WB, b.R_WB) && same_bits(a.v_WB, b.v_WB) &&
+         same_bits(a.w_WB, b.w_WB);
+}
+
+inline bool same(const core::HandOff& a, const core::HandOff& b) {
+  return a.source == b.source && a.destination == b.destination && a.generation == b.generation && a.stamp == b.stamp &&
+         a.map_version == b.map_version && a.sequence == b.sequence && a.reason == b.reason &&
+         same_rows(a.cluster.bodies, b.cluster.bodies, [](const auto& x, const auto& y) { return same(x, y); }) &&
+         same_rows(a.cluster.manifolds, b.cluster.manifolds,
+                   [](const auto& x, const auto& y) {
+                     return x.object0 == y.object0 && x.object1 == y.object1 && x.first_point == y.first_point &&
+                            x.point_count == y.point_count;
+                   }) &&
+         same(a.cluster.points, b.cluster.points) &&
+         same_rows(a.cluster.joints, b.cluster.joints,
+                   [](const auto& x, const auto& y) {
+                     return x.id == y.id && x.first_value == y.first_value && x.value_count == y.value_count;
+                   }) &&
+         same(a.cluster.joint_values, b.cluster.joint_values);
+}
+
+inline bool same(const core::HandOffAck& a, const core::HandOffAck& b) {
+  return a.source == b.source && a.destination == b.destination && a.generation == b.generation && a.stamp == b.stamp &&
+         a.sequence == b.sequence;
+}
+
+}  // namespace aurasim::dds::testing

@@ -1,0 +1,202 @@
+// The QoS files, and what settings replace in them. Domains 121 and 122.
+#include "dds/profiles.h"
+
+#include <fstream>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dds/domain.h"
+#include "dds/participant_qos.h"
+#include "transport_fixture.h"
+
+namespace aurasim::dds {
+namespace {
+
+using eprosima::fastdds::dds::DataReaderQos;
+using eprosima::fastdds::dds::DataWriterQos;
+using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::settings_for;
+using namespace std::chrono_literals;
+
+DomainParticipantQos qos_for(const Settings& settings) {
+  Profiles profiles(settings.profiles);
+  return participant_qos(profiles, settings);
+}
+
+/// The white list of the only transport; fails when there is any other way out.
+std::vector<std::string> white_list(const DomainParticipantQos& qos) {
+  EXPECT_FALSE(qos.transport().use_builtin_transports);
+  EXPECT_EQ(qos.transport().user_transports.size(), 1U);
+  const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(qos.transport().user_transports.at(0));
+  return udp == nullptr ? std::vector<std::string>{"not UDP"} : udp->interfaceWhiteList;
+}
+
+std::string error_of(const Settings& settings) {
+  try {
+    qos_for(settings);
+  } catch (const DdsError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Interfaces, AreLoopbackAloneByDefault) {
+  EXPECT_THAT(white_list(qos_for(settings_for(0))), ElementsAre("127.0.0.1"));
+}
+
+TEST(Interfaces, OfTheSettingsReplaceThoseOfTheFile) {
+  for (const char* file : {"aurasim.xml", "hosts.xml", "peers.xml"}) {
+    Settings settings = settings_for(0, file);
+    settings.interfaces = {"10.1.2.3", "127.0.0.1"};
+    EXPECT_THAT(white_list(qos_for(settings)), ElementsAre("10.1.2.3", "127.0.0.1")) << file;
+  }
+}
+
+TEST(Interfaces, OfTheSettingsDoNotChangeTheNextParticipant) {
+  Settings settings = settings_for(0);
+  settings.interfaces = {"10.1.2.3"};
+  qos_for(settings);
+  EXPECT_THAT(white_list(qos_for(settings_for(0))), ElementsAre("127.0.0.1"));
+}
+
+TEST(Interfaces, AreAllOnlyWhenSaidSo) {
+  Settings settings = settings_for(0);
+  settings.interfaces = {"*"};
+  EXPECT_THAT(white_list(qos_for(settings)), IsEmpty());
+  EXPECT_THAT(white_list(qos_for(settings_for(0, "hosts.xml"))), IsEmpty());
+}
+
+TEST(Peers, ReplaceMulticastAndThePeersOfTheFile) {
+  Settings settings = settings_for(0);
+  settings.discovery = Discovery::kPeers;
+  settings.interfaces = {"127.0.0.1"};
+  settings.peers = {"127.0.0.1", "127.0.0.1:7410"};
+  const DomainParticipantQos qos = qos_for(settings);
+  const auto& builtin = qos.wire_protocol().builtin;
+  EXPECT_EQ(builtin.initialPeersList.size(), 2U);
+  EXPECT_EQ(builtin.metatrafficUnicastLocatorList.size(), 1U);
+}
+
+TEST(Peers, ThatCannotBeUsedAreNamed) {
+  Settings settings = settings_for(0);
+  settings.discovery = Discovery::kPeers;
+  EXPECT_THAT(error_of(settings), HasSubstr("neither dds.peers nor the profile names a peer"));
+  settings.peers = {"127.0.0.1:"};
+  EXPECT_THAT(error_of(settings), HasSubstr("'127.0.0.1:' is not"));
+  settings.peers = {"127.0.0.1:99999"};
+  EXPECT_THAT(error_of(settings), HasSubstr("'127.0.0.1:99999' is not"));
+  settings.peers = {"lathe.example"};
+  EXPECT_THAT(error_of(settings), HasSubstr("'lathe.example' is not an IPv4 address"));
+  settings.peers = {"127.0.0.1"};
+  EXPECT_THAT(error_of(settings), HasSubstr("no own address is known"));
+}
+
+TEST(Servers, AreClientsOfTheListedOnes) {
+  Settings settings = settings_for(0);
+  settings.discovery = Discovery::kServer;
+  EXPECT_THAT(error_of(settings), HasSubstr("names a server"));
+  settings.peers = {"127.0.0.1", "127.0.0.1:11888"};
+  const DomainParticipantQos qos = qos_for(settings);
+  const auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  EXPECT_EQ(discovery.discoveryProtocol, eprosima::fastrtps::rtps::DiscoveryProtocol_t::SUPER_CLIENT);
+  EXPECT_EQ(discovery.m_DiscoveryServers.size(), 2U);
+}
+
+TEST(PeersFile, LetsTwoRegionsMeetWithoutMulticast) {
+  testing::Peer a(settings_for(121, "peers.xml"), 0, {1});
+  testing::Peer b(settings_for(121, "peers.xml"), 1, {0});
+  std::jthread other([&] { b.transport.wait_until_matched(testing::kDeadline); });
+  EXPECT_NO_THROW(a.transport.wait_until_matched(testing::kDeadline));
+}
+
+TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
+  Settings loopback = settings_for(122);
+  Domain domain(loopback);
+  Profiles hosts(settings_for(122, "hosts.xml").profiles);
+  auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
+  auto* subscriber = domain.participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
+  for (const std::string topic : {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control"}) {
+    DataWriterQos writer = hosts.writer(*publisher, topic + "_writer");
+    const DataWriterQos default_writer = domain.profiles().writer(*publisher, topic + "_writer");
+    DataReaderQos reader = hosts.reader(*subscriber, topic + "_reader");
+    const DataReaderQos default_reader = domain.profiles().reader(*subscriber, topic + "_reader");
+    const bool longer = topic == "aura" || topic == "node_status";
+    EXPECT_EQ(writer.liveliness().lease_duration == default_writer.liveliness().lease_duration, !longer) << topic;
+    EXPECT_EQ(reader.liveliness().lease_duration == default_reader.liveliness().lease_duration, !longer) << topic;
+    writer.liveliness(default_writer.liveliness());
+    reader.liveliness(default_reader.liveliness());
+    EXPECT_TRUE(writer == default_writer) << topic;
+    EXPECT_TRUE(reader == default_reader) << topic;
+  }
+}
+
+/// A folder with one profile file of our own.
+class OwnFile : public ::testing::Test {
+ protected:
+  Settings write(const std::string& name, const std::string& profiles) {
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) / ("aurasim_profiles_" + std::to_string(getpid()) + "_" +
+                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / name) << R"(<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>)"
+                                  << profiles << "</profiles></dds>\n";
+    Settings settings;
+    settings.profiles = folder_ / name;
+    return settings;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(OwnFile, ThatIsNotThereIsNamed) {
+  Settings settings = write("here.xml", "");
+  settings.profiles = folder_ / "nowhere.xml";
+  EXPECT_THAT(error_of(settings), AllOf(HasSubstr("nowhere.xml"), HasSubstr("cannot read")));
+  settings.profiles.clear();
+  EXPECT_THAT(error_of(settings), HasSubstr("dds.profiles"));
+}
+
+TEST_F(OwnFile, WithAnUnknownElementIsRefusedAsAWhole) {
+  const Settings settings = write("odd.xml", R"(<participant profile_name="odd_participant"><rtps>
+      <name>x</name><frobnicate>1</frobnicate></rtps></participant>)");
+  EXPECT_THAT(error_of(settings), AllOf(HasSubstr("odd.xml"), HasSubstr("Fast DDS refuses")));
+}
+
+TEST_F(OwnFile, WithoutTheProfileIsNamedWithTheNamesLookedFor) {
+  const Settings settings = write("bare.xml", R"(<data_writer profile_name="bare_x"></data_writer>)");
+  Profiles profiles(settings.profiles);
+  Domain domain(settings_for(122));
+  auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
+  try {
+    profiles.writer(*publisher, "replica_writer");
+    FAIL() << "there is no such profile";
+  } catch (const DdsError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("bare.xml: no data_writer profile named 'bare_replica_writer'"),
+                                    HasSubstr("'replica_writer'")));
+  }
+}
+
+TEST_F(OwnFile, ChangesARunWithoutARebuild) {
+  Settings settings = write("own.xml", R"(<data_writer profile_name="own_aura_writer"><qos>
+      <reliability><kind>BEST_EFFORT</kind></reliability></qos></data_writer>)");
+  Profiles profiles(settings.profiles);
+  Domain domain(settings_for(122));
+  auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
+  EXPECT_EQ(profiles.writer(*publisher, "aura_writer").reliability().kind,
+            eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS);
+  EXPECT_EQ(domain.profiles().writer(*publisher, "aura_writer").reliability().kind,
+            eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS);
+}
+
+}  // namespace
+}  // namespace aurasim::dds
