@@ -178,6 +178,7 @@ ExitCode NodeProcess::run_steps() {
   // Whoever leaves from now on has finished, too: that is no death.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (!fenced) linger();
+  if (recorder_ && !fenced) recorder_->write_settling(node_->settle());
   if (recorder_) recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead});
   return fenced ? ExitCode::kFenced : ExitCode::kOk;
 }
@@ -303,15 +304,11 @@ void NodeProcess::linger() {
   const auto deadline = Clock::now() + kLinger;
   const auto all_done = [this] {
     const auto& statuses = control_.statuses();
-    return std::all_of(statuses.begin(), statuses.end(), [](const auto& entry) {
+    return node_->ready_to_settle() && std::all_of(statuses.begin(), statuses.end(), [](const auto& entry) {
       return entry.second.lost || entry.second.status.state == dds::NodeState::kFinished;
     });
   };
-  while (Clock::now() < deadline && !all_done()) {
-    node_->ready();
-    control_.wait(10ms);
-  }
-  node_->ready();
+  while (Clock::now() < deadline && !all_done()) control_.wait(10ms);
 }
 
 }  // namespace aurasim::cli

@@ -34,7 +34,8 @@ void read_common(Fields& fields, Formation& formation, SceneDraft& draft) {
   const Field prototype = fields.required("prototype");
   if (const auto index = fields.given() ? draft.prototypes.find(prototype) : std::nullopt) {
     formation.prototype = core::PrototypeId{*index};
-    formation.bounds = bounds_of(draft.scene.shapes[draft.scene.prototypes[*index].shape].shape);
+    const std::uint32_t shape = draft.scene.prototypes[*index].shape;
+    if (shape < draft.scene.shapes.size()) formation.bounds = bounds_of(draft.scene.shapes[shape].shape);
   }
   Vec3& position = formation.X_WF.p_WB;
   if (const Field p = fields.optional("position"); p.given()) position = p.vec3().value_or(position);

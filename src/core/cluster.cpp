@@ -5,6 +5,15 @@
 #include <numeric>
 
 namespace aurasim::core {
+namespace {
+
+/// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead than that has
+/// made no difference in any run, and costs (docs/decisions/0006-hops.md).
+constexpr int kMostHops = 3;
+
+int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, kMostHops); }
+
+}  // namespace
 
 void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std::span<const std::uint64_t> regions,
                      std::span<const Contact> contacts, std::span<const Contact> joints) {
@@ -39,8 +48,7 @@ std::uint32_t Clusters::of(std::uint32_t i) const {
   return i;
 }
 
-static int capped(int n){ static const int cap = getenv("HCAP") ? atoi(getenv("HCAP")) : 2; return std::clamp(n, 1, cap);}
-int Clusters::hops(std::uint32_t i) const { return capped(std::popcount(regions_[of(i)])); }
+int Clusters::hops(std::uint32_t i) const { return hops_of(regions_[of(i)]); }
 
 bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
   const std::uint32_t cluster = of(i);
@@ -67,7 +75,7 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
 }
 
 void Clusters::note_hops(std::uint64_t regions) {
-  most_hops_ = std::max(most_hops_, capped(std::popcount(regions)));
+  most_hops_ = std::max(most_hops_, hops_of(regions));
 }
 
 void Clusters::push_members(std::uint32_t i) {

@@ -139,7 +139,7 @@ std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations) {
     }
   }
   adopt_due(limit, n, violations);
-  reclaim(n);
+  reclaim(n, violations);
   arrivals_.forget_adoptions_before(n - settings_.adoption_memory_steps);
   return std::exchange(adoptions_, {});
 }
@@ -173,7 +173,7 @@ void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
 /// Bodies on their way to a dead region come back under a higher epoch. Before its death it may have adopted them and
 /// sent them on, without us hearing of it: so first every live neighbour has to know of the death (from then on it
 /// adopts nothing from there) and to claim what it did adopt.
-void Intake::reclaim(Step n) {
+void Intake::reclaim(Step n, ViolationLog& violations) {
   const auto all_know = [this](RegionId dead) {
     return std::all_of(neighbours_.begin(), neighbours_.end(),
                        [&](const Neighbour& q) { return !q.alive() || q.holds_for_dead(dead); });
@@ -191,6 +191,9 @@ void Intake::reclaim(Step n) {
              });
     });
     for (BodyRecord& body : hand_off.cluster.bodies) ++body.epoch;
+    // Nobody has guarded these bodies since they left.
+    violations.add({ViolationKind::kLatency, n, hand_off.destination, {}, double(n - hand_off.stamp),
+                    double(settings_.lookahead)});
     adopt(hand_off, n, true);
     return true;
   });

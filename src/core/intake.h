@@ -74,7 +74,7 @@ class Intake {
   void hear_of_deaths();
   void adopt_due(Step limit, Step n, ViolationLog& violations);
   void adopt(HandOff& hand_off, Step n, bool reclaimed);
-  void reclaim(Step n);
+  void reclaim(Step n, ViolationLog& violations);
   Step effect_limit(Step n) const;
 
   IntakeSettings settings_;

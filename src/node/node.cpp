@@ -89,22 +89,41 @@ void Node::announce_births(core::Step state) {
   }
 }
 
-bool Node::ready() {
+void Node::take_mail() {
   const Timed timed(mail_s_);
   transport_.take(inbox_);
   protocol_.accept(inbox_);
+}
+
+bool Node::ready() {
+  take_mail();
   return protocol_.ready(current_step() + 1);
 }
 
-const StepReport& Node::step() {
-  const core::Step n = current_step() + 1;
+bool Node::ready_to_settle() {
+  take_mail();
+  return protocol_.ready(current_step() + setup_.protocol.aura.lookahead);
+}
+
+const StepReport& Node::settle() {
+  clear_report();
+  apply(protocol_.receive(current_step() + setup_.protocol.aura.lookahead));
+  return report_;
+}
+
+void Node::clear_report() {
   report_.durations = {};
-  report_.durations.transport_s = std::exchange(mail_s_, 0);
   report_.departures.clear();
   report_.arrivals.clear();
   report_.collisions.clear();
   report_.hash.clear();
   report_.births.clear();
+}
+
+const StepReport& Node::step() {
+  const core::Step n = current_step() + 1;
+  clear_report();
+  report_.durations.transport_s = std::exchange(mail_s_, 0);
   const core::Changes* changes = nullptr;
   {
     const Timed timed(report_.durations.protocol_s);

@@ -86,6 +86,11 @@ class Node {
   /// Computes the next state. Only when ready().
   const StepReport& step();
 
+  /// After the last step: may what is still under way be taken in?
+  bool ready_to_settle();
+  /// Takes in the bodies that are still under way to this region, so that every state's hash is whole.
+  const StepReport& settle();
+
   core::RegionId region() const { return setup_.protocol.self; }
   core::Step current_step() const { return world_.step_number(); }
   const core::Protocol& protocol() const { return protocol_; }
@@ -97,6 +102,8 @@ class Node {
   void accept_early_mail(core::Inbox mail) { inbox_ = std::move(mail); }
 
  private:
+  void take_mail();
+  void clear_report();
   void host_initial_bodies();
   void announce_births(core::Step state);
   void apply(const core::Changes& changes);

@@ -71,6 +71,11 @@ void Recorder::write(const StepReport& r, const FrameTimes& times, const Node& n
   }
 }
 
+void Recorder::write_settling(const StepReport& report) {
+  write_hand_offs(report);
+  for (const HashPart& part : report.hash) hash_[part.step] += part.sum;
+}
+
 void Recorder::write_hand_offs(const StepReport& report) {
   const auto row = [this](const char* direction, const HandOffRow& h) {
     fmt::print(migrations_.get(), "{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp,

@@ -34,6 +34,9 @@ class Recorder {
 
   void write(const StepReport& report, const FrameTimes& times, const Node& node);
 
+  /// What came in after the last step.
+  void write_settling(const StepReport& report);
+
   /// The last word: who is here, who is on the way, all counters, and how fast it went.
   void finish(Node& node, const Ending& ending);
 

@@ -118,8 +118,11 @@ void ClusterSim::settle() {
   outcome_.slowest_s = network_->now_s();
   network_->advance_to(network_->now_s() + 1e6);
   for (Member& member : members_) {
-    if (member.alive) member.node->ready();
+    if (!member.alive) continue;
+    member.node->ready_to_settle();
+    take_report(member, member.node->settle());
   }
+  check_single_host();
 }
 
 void ClusterSim::account(Outcome& outcome) {

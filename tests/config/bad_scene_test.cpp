@@ -176,6 +176,13 @@ TEST(BadSceneFile, LayoutLaunchNeedsALaunchFile) {
                 {"scene.yaml:1:9: layout: found \"launch\", allowed: a layout of its own"});
 }
 
+TEST(BadSceneFile, AGeneratorOfAPrototypeWithoutAShapeIsNoFurtherError) {
+  const Workspace workspace;
+  expect_errors(
+      workspace.scene_errors("prototypes: {a: {shape: b, mass: 1}}\ngenerators: [{stack: {prototype: a, count: 2}}]\n"),
+      {"scene.yaml:1:25: prototypes.a.shape: found \"b\""});
+}
+
 TEST(BadSceneFile, AShapeThatCannotBeReadIsOneErrorAndNotOneForEachUse) {
   const Workspace workspace;
   const std::string text =

@@ -1,5 +1,6 @@
 // Bytes that are almost messages. Whatever arrives, reading it neither crashes nor throws nor asks for absurd memory.
 // AURASIM_SEED replays a run.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -95,7 +96,7 @@ Verdicts read_mutations(typename PubSubType::type message) {
     Bytes bytes = original;
     mutate(bytes, random);
     SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));  // to the byte, so that ASan sees overruns
-    std::memcpy(payload.data, bytes.data(), bytes.size());
+    std::copy(bytes.begin(), bytes.end(), payload.data);
     payload.length = static_cast<std::uint32_t>(bytes.size());
     EXPECT_TRUE(type.deserialize(&payload, &sample));
     const auto decoded = decode(sample, Expected{});
