@@ -6,6 +6,14 @@
 
 namespace aurasim::core {
 
+namespace {
+
+/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead: that long, the
+/// others may act upon auras from before it left. So auras have to be known that much earlier, too.
+constexpr int kHomewardHops = 1;
+
+}  // namespace
+
 Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
 
 void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
@@ -90,8 +98,8 @@ void Gathering::mark_regions() {
     top_speed = std::max(top_speed, speeds_[i]);
     others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
   }
-  const double slow_band = band(NearIndex::kSlow, 1);
-  const double fast_band = band(top_speed, 1);
+  const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
+  const double fast_band = band(top_speed, 1 + kHomewardHops);
   for (std::uint32_t i = 0; i < n; ++i) {
     const bool slow = speeds_[i] <= NearIndex::kSlow;
     const Vec3& p = paths_[i].pose.p_WB;
@@ -116,13 +124,13 @@ void Gathering::pair_up() {
   for (bool changed = true; changed;) {
     changed = false;
     pairs_.clear();
-    const int most_hops = clusters_.most_hops();
+    const int most_hops = clusters_.most_hops() + kHomewardHops;
     for (std::uint32_t f = 0; f < foreign_.size(); ++f) {
       const Path& path = foreign_[f].path;
       const double slow = aura_.notice(path.speed_m_s, path.age_steps, NearIndex::kSlow, most_hops);
       const double fast = aura_.notice(path.speed_m_s, path.age_steps, top_speed(), most_hops);
       clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, slow, fast, [&](std::uint32_t i) {
-        const int hops = clusters_.hops(i);
+        const int hops = clusters_.hops(i) + kHomewardHops;
         const double reach = path.radius_m + paths_[i].radius_m +
                              aura_.notice(path.speed_m_s, path.age_steps, clusters_.speed(i), hops);
         if ((path.pose.p_WB - paths_[i].pose.p_WB).squaredNorm() <= reach * reach) pairs_.push_back({f, i});
@@ -140,24 +148,33 @@ void Gathering::pair_up() {
 
 void Gathering::judge() {
   touched_.assign(paths_.size(), 0);
+  expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
-  for (const Pair& pair : pairs_) {
-    const Foreign& f = foreign_[pair.foreign];
-    const std::uint32_t cluster = clusters_.of(pair.own);
-    const bool pulls = f.host < pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host);
-    if (touched_[cluster] && !pulls) continue;
-    const int hops = clusters_.hops(pair.own);
-    const Path& own = paths_[pair.own];
-    if (!(f.ghost ? aura_.meets_ghost(f.path, own, hops) : aura_.meets(f.path, own, hops))) continue;
+  for (const Pair& pair : pairs_) judge(pair);
+}
+
+bool Gathering::meets(const Foreign& foreign, const Path& own, int hops) const {
+  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops) : aura_.meets(foreign.path, own, hops);
+}
+
+void Gathering::judge(const Pair& pair) {
+  const Foreign& f = foreign_[pair.foreign];
+  const Path& own = paths_[pair.own];
+  const std::uint32_t cluster = clusters_.of(pair.own);
+  const int hops = clusters_.hops(pair.own);
+  const bool pulls = f.host < pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host);
+  if ((!touched_[cluster] || pulls) && meets(f, own, hops)) {
     touched_[cluster] = 1;
     if (pulls) pulled_to_[cluster] = f.host;
   }
+  if (touched_[cluster] || expected_[cluster] || !outside(pair.own)) return;
+  expected_[cluster] = meets(f, own, hops + kHomewardHops) ? 1 : 0;
 }
 
 bool Gathering::must_be_announced(std::uint32_t i) const {
   if (aura_.rules().kind == AuraKind::kNone) return false;
   if (noticed_[i]) return true;
-  const double reach = band(clusters_.speed(i), clusters_.hops(i)) + paths_[i].radius_m;
+  const double reach = band(clusters_.speed(i), clusters_.hops(i) + kHomewardHops) + paths_[i].radius_m;
   return !vicinity_.deep_inside(paths_[i].pose.p_WB, reach);
 }
 

@@ -43,6 +43,9 @@ class Gathering {
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
   bool touched(std::uint32_t i) const { return touched_[clusters_.of(i)] != 0; }
+  /// An aura from elsewhere may meet the cluster soon enough that another node could already be sending bodies here
+  /// because of it. Only known for bodies outside our region; whoever goes home then would pass them on the way.
+  bool expected(std::uint32_t i) const { return expected_[clusters_.of(i)] != 0; }
   /// The highest-ranked host among the auras that met the cluster and outrank us; our own region if there is none.
   RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
 
@@ -64,6 +67,8 @@ class Gathering {
   void complete_near_boundaries();
   void pair_up();
   void judge();
+  void judge(const Pair& pair);
+  bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;
 
   const Aura& aura_;
@@ -78,6 +83,7 @@ class Gathering {
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
   std::vector<std::uint8_t> touched_;  ///< by cluster
+  std::vector<std::uint8_t> expected_;  ///< by cluster
   std::vector<RegionId> pulled_to_;    ///< by cluster
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;

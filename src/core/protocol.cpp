@@ -121,7 +121,7 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
 
 /// Has the cluster of body i been an island for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
-  bool island = !gathering_.touched(i);
+  bool island = !gathering_.touched(i) && !gathering_.expected(i);
   if (island) {
     gathering_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && gathering_.outside(j); });
   }

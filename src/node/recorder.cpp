@@ -111,13 +111,16 @@ void Recorder::finish(Node& node, const Ending& ending) {
 }
 
 void Recorder::write_bodies(Node& node) const {
-  const File bodies = open("bodies.csv", "region,body,epoch,birth_step,where\n");
-  const auto row = [&](core::BodyId id, core::Epoch epoch, core::Step birth, const char* where) {
-    fmt::print(bodies.get(), "{},{},{},{},{}\n", core::value_of(region_), core::value_of(id), epoch, birth, where);
+  const File bodies = open("bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz\n");
+  const auto row = [&](const core::BodyState& b, const char* where) {
+    const core::Vec3& p = b.pose.p_WB;
+    const core::Quat& q = b.pose.q_WB;
+    fmt::print(bodies.get(), "{},{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), core::value_of(b.id),
+               b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
   };
-  for (const core::BodyState& b : node.world().snapshot().bodies) row(b.id, b.epoch, b.birth, "here");
+  for (const core::BodyState& body : node.world().snapshot().bodies) row(body, "here");
   const auto under_way = [&](const core::HandOff& h) {
-    for (const core::BodyRecord& b : h.cluster.bodies) row(b.id, b.epoch, b.birth, "under_way");
+    for (const core::BodyRecord& body : h.cluster.bodies) row(core::state_of(body), "under_way");
   };
   for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
   for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);

@@ -108,7 +108,7 @@ class Merge {
         if (c.size() == 3) first_host_.try_emplace(whole(c[1]), whole(c[0]));
       });
       read_csv(of_region(r, "bodies.csv"), [&](const Cells& c) {
-        if (c.size() != 5) return;
+        if (c.size() != 12) return;
         const std::uint64_t body = whole(c[1]);
         if (c[4] == "here") ++hosts_[body];
         alive_.insert(body);

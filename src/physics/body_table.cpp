@@ -52,26 +52,27 @@ HostedBody* BodyTable::find(core::BodyId id) {
 }
 
 void BodyTable::insert(std::vector<HostedBody> arrivals) {
+  if (arrivals.empty()) return;
   std::sort(arrivals.begin(), arrivals.end(), before);
   const auto old_size = static_cast<std::ptrdiff_t>(bodies_.size());
+  const auto first_moved = std::lower_bound(bodies_.begin(), bodies_.end(), arrivals.front(), before) - bodies_.begin();
   std::move(arrivals.begin(), arrivals.end(), std::back_inserter(bodies_));
-  std::inplace_merge(bodies_.begin(), bodies_.begin() + old_size, bodies_.end(), before);
-  number();
+  std::inplace_merge(bodies_.begin() + first_moved, bodies_.begin() + old_size, bodies_.end(), before);
+  number_from(static_cast<std::size_t>(first_moved));
 }
 
 void BodyTable::erase(const std::vector<bool>& leaving) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (leaving[i]) continue;
-    if (kept != i) bodies_[kept] = std::move(bodies_[i]);
-    ++kept;
+  const auto first_left = static_cast<std::size_t>(std::find(leaving.begin(), leaving.end(), true) - leaving.begin());
+  std::size_t kept = first_left;
+  for (std::size_t i = first_left; i < bodies_.size(); ++i) {
+    if (!leaving[i]) bodies_[kept++] = std::move(bodies_[i]);
   }
   bodies_.resize(kept);
-  number();
+  number_from(first_left);
 }
 
-void BodyTable::number() {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].rigid->setUserIndex(static_cast<int>(i));
+void BodyTable::number_from(std::size_t first) {
+  for (std::size_t i = first; i < bodies_.size(); ++i) bodies_[i].rigid->setUserIndex(static_cast<int>(i));
 }
 
 }  // namespace aurasim::physics

@@ -41,7 +41,7 @@ class BodyTable {
   void erase(const std::vector<bool>& leaving);
 
  private:
-  void number();
+  void number_from(std::size_t first);
 
   std::vector<HostedBody> bodies_;
 };

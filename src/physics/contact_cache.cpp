@@ -1,6 +1,9 @@
 #include "physics/contact_cache.h"
 
+#include <algorithm>
 #include <cassert>
+#include <tuple>
+#include <type_traits>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -87,6 +90,26 @@ Parts parts_of(const btPersistentManifold& manifold) {
 
 Parts parts_of(const double* row, bool compound0, bool compound1) {
   return {compound0 ? static_cast<int>(row[kIndexInA]) : -1, compound1 ? static_cast<int>(row[kIndexInB]) : -1};
+}
+
+void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster) {
+  std::sort(manifolds.begin(), manifolds.end(), [](const KeyedManifold& a, const KeyedManifold& b) {
+    if (std::tie(a.object0, a.object1) != std::tie(b.object0, b.object1)) {
+      return std::tie(a.object0, a.object1) < std::tie(b.object0, b.object1);
+    }
+    return parts_of(*a.manifold) < parts_of(*b.manifold);
+  });
+  for (const auto& [object0, object1, manifold] : manifolds) {
+    const std::size_t first_point = cluster.points.size() / core::kContactPointDoubles;
+    const auto point_count = static_cast<std::size_t>(manifold->getNumContacts());
+    cluster.manifolds.push_back(
+        {object0, object1, static_cast<std::uint32_t>(first_point), static_cast<std::uint32_t>(point_count)});
+    cluster.points.resize((first_point + point_count) * core::kContactPointDoubles);
+    for (std::size_t i = 0; i < point_count; ++i) {
+      write_point(manifold->getContactPoint(static_cast<int>(i)),
+                  &cluster.points[(first_point + i) * core::kContactPointDoubles]);
+    }
+  }
 }
 
 void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result) {

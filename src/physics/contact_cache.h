@@ -56,4 +56,14 @@ struct PartManifold {
 /// of children whose bounds overlap.
 void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result);
 
+/// A manifold of at least one point and what it is between.
+struct KeyedManifold {
+  core::ObjectRef object0 = 0;
+  core::ObjectRef object1 = 0;
+  const btPersistentManifold* manifold = nullptr;
+};
+
+/// Puts the manifolds into the cluster, in the order of objects and parts.
+void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster);
+
 }  // namespace aurasim::physics

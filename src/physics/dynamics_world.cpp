@@ -94,7 +94,7 @@ void DynamicsWorld::step(double substep_s) {
   bullet_->world.stepSimulation(dt, /*maxSubSteps=*/0, dt);
 }
 
-std::span<btPersistentManifold* const> DynamicsWorld::manifolds() {
+std::span<btPersistentManifold* const> DynamicsWorld::manifolds() const {
   return {bullet_->dispatcher.getInternalManifoldPointer(),
           static_cast<std::size_t>(bullet_->dispatcher.getNumManifolds())};
 }

@@ -26,7 +26,7 @@ class DynamicsWorld {
 
   void step(double substep_s);
 
-  std::span<btPersistentManifold* const> manifolds();
+  std::span<btPersistentManifold* const> manifolds() const;
 
   /// Makes the manifolds of a pair, even if both bodies sleep, and empties them. `result` names them; any that Bullet
   /// does not make here would not outlive the next collision detection.

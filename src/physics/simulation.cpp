@@ -4,6 +4,7 @@
 #include <cassert>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -28,6 +29,18 @@ btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btCollisio
 }
 
 bool is_static(int user_index) { return user_index < 0; }
+
+[[noreturn]] void refuse_twin(core::BodyId id) {
+  throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is here already");
+}
+
+void refuse_twins(const std::vector<HostedBody>& bodies) {
+  std::vector<core::BodyId> ids;
+  for (const HostedBody& body : bodies) ids.push_back(body.id);
+  std::sort(ids.begin(), ids.end());
+  const auto twin = std::adjacent_find(ids.begin(), ids.end());
+  if (twin != ids.end()) refuse_twin(*twin);
+}
 
 }  // namespace
 
@@ -69,9 +82,7 @@ void Simulation::start_at(core::Step step) {
 }
 
 HostedBody Simulation::make_body(const core::BodyRecord& record) const {
-  if (contains(record.id)) {
-    throw std::invalid_argument("body " + std::to_string(core::value_of(record.id)) + " is here already");
-  }
+  if (contains(record.id)) refuse_twin(record.id);
   rank_of(record.id);  // or throws
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
@@ -90,6 +101,7 @@ void Simulation::add(std::span<const core::BodyRecord> bodies) {
   std::vector<HostedBody> arrivals;
   arrivals.reserve(bodies.size());
   for (const core::BodyRecord& record : bodies) arrivals.push_back(make_body(record));
+  refuse_twins(arrivals);
   table_.insert(std::move(arrivals));
   insert_born();
   snapshot_is_fresh_ = records_are_fresh_ = false;
@@ -173,66 +185,50 @@ std::vector<bool> Simulation::places_of(std::span<const core::BodyId> bodies) co
   return members;
 }
 
-core::ClusterState Simulation::copy(const std::vector<bool>& members) const {
+struct Simulation::Copy {
   core::ClusterState cluster;
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (members[i]) cluster.bodies.push_back(table_[i].record());
-  }
-  const auto goes_along = [&](const btCollisionObject& object) {
-    return is_static(object.getUserIndex()) || members[static_cast<std::size_t>(object.getUserIndex())];
-  };
-  struct Entry {
-    core::ObjectRef object0, object1;
-    Parts parts;
-    const btPersistentManifold* manifold;
-  };
-  std::vector<Entry> entries;
-  for (const btPersistentManifold* manifold : world_.manifolds()) {
-    const btCollisionObject& body0 = *manifold->getBody0();
-    const btCollisionObject& body1 = *manifold->getBody1();
-    if (manifold->getNumContacts() == 0 || !goes_along(body0) || !goes_along(body1)) continue;
-    entries.push_back({ref_of(body0), ref_of(body1), parts_of(*manifold), manifold});
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.object0, a.object1, a.parts) < std::tie(b.object0, b.object1, b.parts);
-  });
-  for (const Entry& entry : entries) {
-    const auto first_point = static_cast<std::uint32_t>(cluster.points.size() / core::kContactPointDoubles);
-    const auto point_count = static_cast<std::uint32_t>(entry.manifold->getNumContacts());
-    cluster.manifolds.push_back({entry.object0, entry.object1, first_point, point_count});
-    for (int i = 0; i < entry.manifold->getNumContacts(); ++i) {
-      cluster.points.resize(cluster.points.size() + core::kContactPointDoubles);
-      write_point(entry.manifold->getContactPoint(i), &*cluster.points.end() - core::kContactPointDoubles);
-    }
-  }
-  return cluster;
-}
+  std::uint64_t contacts_across = 0;  ///< with bodies that are no members
+};
 
-std::uint64_t Simulation::count_contacts_across(const std::vector<bool>& members) const {
-  std::uint64_t count = 0;
+Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
+  Copy copy;
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    if (members[i]) copy.cluster.bodies.push_back(table_[i].record());
+  }
+  std::vector<KeyedManifold> manifolds;
   for (const btPersistentManifold* manifold : world_.manifolds()) {
+    if (manifold->getNumContacts() == 0) continue;
     const int index0 = manifold->getBody0()->getUserIndex();
     const int index1 = manifold->getBody1()->getUserIndex();
-    if (manifold->getNumContacts() == 0 || is_static(index0) || is_static(index1)) continue;
-    count += members[static_cast<std::size_t>(index0)] != members[static_cast<std::size_t>(index1)];
+    const bool member0 = !is_static(index0) && members[static_cast<std::size_t>(index0)];
+    const bool member1 = !is_static(index1) && members[static_cast<std::size_t>(index1)];
+    if (!member0 && !member1) continue;
+    if ((member0 || is_static(index0)) && (member1 || is_static(index1))) {
+      manifolds.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
+    } else {
+      ++copy.contacts_across;
+    }
   }
-  return count;
+  append_manifolds(std::move(manifolds), copy.cluster);
+  return copy;
 }
 
-core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const { return copy(places_of(bodies)); }
+core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const {
+  return copy(places_of(bodies)).cluster;
+}
 
 core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
   const std::vector<bool> members = places_of(bodies);
-  core::ClusterState cluster = copy(members);
-  severed_contacts_ += count_contacts_across(members);
-  std::vector<btRigidBody*> leaving;
+  Copy leaving = copy(members);
+  severed_contacts_ += leaving.contacts_across;
+  std::vector<btRigidBody*> born;
   for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (members[i] && table_[i].born) leaving.push_back(table_[i].rigid.get());
+    if (members[i] && table_[i].born) born.push_back(table_[i].rigid.get());
   }
-  world_.remove(leaving);
+  world_.remove(born);
   table_.erase(members);
   snapshot_is_fresh_ = records_are_fresh_ = false;
-  return cluster;
+  return std::move(leaving.cluster);
 }
 
 std::vector<core::BodyId> Simulation::body_ids() const {

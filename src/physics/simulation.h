@@ -53,8 +53,8 @@ class Simulation {
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   std::vector<bool> places_of(std::span<const core::BodyId> bodies) const;
-  core::ClusterState copy(const std::vector<bool>& members) const;
-  std::uint64_t count_contacts_across(const std::vector<bool>& members) const;
+  struct Copy;
+  Copy copy(const std::vector<bool>& members) const;
   void collect_collisions();
   void list_contacts();
 
@@ -63,7 +63,7 @@ class Simulation {
   std::shared_ptr<const ShapeSet> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
   BodyTable table_;
-  mutable DynamicsWorld world_;  ///< mutable: Bullet hands out its manifolds from non-const functions only
+  DynamicsWorld world_;
 
   core::Step step_ = 0;
   std::uint64_t severed_contacts_ = 0;

@@ -40,6 +40,7 @@ class Workspace {
 
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((folder_ / name).parent_path());
+    std::filesystem::remove(folder_ / name);  // ext4 waits for the disk when a file is overwritten
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Includes go one way:
+#   core <- physics, transport, config <- dds, node <- overseer, experiment <- cli
+# and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
+#   scripts/check_includes.sh [SRC]      SRC: the folder to check (src)
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../src}"
+
+mapfile -t files < <(find . -mindepth 1 \( -name '*.h' -o -name '*.cpp' \) -printf '%P\n' | LC_ALL=C sort)
+[[ ${#files[@]} -gt 0 ]] || { echo "check_includes.sh: no source files in $PWD" >&2; exit 1; }
+
+awk '
+  BEGIN {
+    allow("core", "core")
+    allow("physics", "core physics")
+    allow("transport", "core transport")
+    allow("config", "core config")
+    allow("dds", "core transport config dds")
+    allow("node", "core physics transport node")
+    below = "core physics transport config dds node"
+    allow("overseer", below " overseer")
+    allow("experiment", below " experiment")
+    allow("cli", below " overseer experiment cli")
+
+    wrap("physics", "BulletCollision BulletDynamics LinearMath bullet")
+    wrap("dds", "fastdds fastrtps fastcdr")
+    wrap("config", "yaml-cpp assimp")
+    wrap("cli", "CLI")
+    wrap("overseer", "boost")
+  }
+
+  function allow(folder, others,    list, n, i) {
+    known[folder] = 1
+    n = split(others, list, " ")
+    for (i = 1; i <= n; ++i) allowed[folder, list[i]] = 1
+  }
+
+  function wrap(folder, libraries,    list, n, i) {
+    n = split(libraries, list, " ")
+    for (i = 1; i <= n; ++i) wrapper[list[i]] = folder
+  }
+
+  function refuse(why) {
+    printf "src/%s:%d: includes %s: %s\n", FILENAME, FNR, included, why
+    ++refused
+  }
+
+  # "folder/file.h", from the root of src.
+  function check_own(name,    parts) {
+    if (name ~ /^aurasim[A-Za-z]*\.h$/) {  # generated from idl/
+      if (folder != "dds") refuse("only dds knows the wire types")
+      return
+    }
+    split(name, parts, "/")
+    if (!(parts[1] in known) || name !~ /\//) refuse("write the path from src, as in \"core/ids.h\"")
+    else if (!((folder, parts[1]) in allowed)) refuse(folder " may not know " parts[1])
+  }
+
+  function check_library(name,    parts, library) {
+    if (folder == "core" && name !~ /^Eigen\// && name !~ /^[a-z_0-9]+$/) {
+      refuse("core knows Eigen and the standard library only")
+      return
+    }
+    split(name, parts, "/")
+    library = name ~ /^bt[A-Z]/ ? "bullet" : parts[1]
+    if (library in wrapper && wrapper[library] != folder) refuse("only " wrapper[library] " knows this library")
+  }
+
+  FNR == 1 {
+    folder = FILENAME
+    sub(/\/.*/, "", folder)
+    if (!(folder in known)) {
+      printf "src/%s: in no folder whose includes are known; add it to scripts/check_includes.sh\n", FILENAME
+      ++refused
+    }
+  }
+
+  /^[ \t]*#[ \t]*include[ \t]*["<]/ && folder in known {
+    included = $0
+    sub(/^[^"<]*/, "", included)
+    quoted = included ~ /^"/
+    name = substr(included, 2)
+    name = substr(name, 1, index(name, quoted ? "\"" : ">") - 1)
+    included = substr(included, 1, length(name) + 2)
+    if (quoted) check_own(name)
+    else check_library(name)
+  }
+
+  END {
+    if (refused) exit 1
+    printf "includes: %d files\n", ARGC - 1
+  }
+' "${files[@]}"

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Installs what aurasim is built, run and tested with: packages of Debian 12, nothing else.
+# Run it as often as you like; when everything is there it changes nothing and takes no time.
+set -euo pipefail
+
+packages=(
+  # compiler and build; the format check uses clang-format
+  g++ cmake ninja-build ccache clang-format
+  # Fast DDS (its package brings Asio, OpenSSL, TinyXML2 and foonathan memory) and its IDL compiler, a Java program
+  # whose package does not ask for Java
+  libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+  # physics in both precisions, mathematics
+  libbullet-dev libeigen3-dev
+  # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
+  libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  # tests and benchmarks, and the tools that tests of real processes use
+  libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+)
+
+fail() {
+  printf 'setup.sh: %s\n' "$*" >&2
+  exit 1
+}
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  fail "this is not Debian. Install by other means what these packages of Debian 12 hold: ${packages[*]}"
+fi
+
+# Leaves out of the list what is installed. dpkg-query also fails when it does not know a package: that one is missing.
+installed=$(dpkg-query --show --showformat '${Package} ${db:Status-Status}\n' "${packages[@]}" 2>/dev/null || true)
+missing=()
+for package in "${packages[@]}"; do
+  grep -qxF "$package installed" <<<"$installed" || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+  command -v sudo >/dev/null || fail "needs root or sudo, to install: ${missing[*]}"
+  as_root=(sudo)
+fi
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
+}
+
+printf 'setup.sh: installing %s\n' "${missing[*]}"
+apt update
+apt install --yes --no-install-recommends "${missing[@]}"

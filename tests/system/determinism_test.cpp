@@ -1,0 +1,78 @@
+// DESIGN section 6: the hash of every state is equal on any number of nodes. Domains 150 to 156.
+#include <sstream>
+
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+class Determinism : public SystemTest {
+ protected:
+  /// The hash of every state, by `steps` states computed as fast as it goes.
+  std::string hashes(const std::string& name, const std::string& scene, int domain, int steps,
+                     const Words& overrides = {}) {
+    Process& run = launch(
+        name, launch_file(scene), domain,
+        Words{"--steps", std::to_string(steps)} + set(Words{"time.sync=deterministic", "time.pace=none"} + overrides));
+    expect_exit(run, 0, 60s);
+    expect_all_bodies_accounted_for(report_of(name));
+    return report_of(name).state_hash();
+  }
+
+  std::int64_t hand_offs(const std::string& name) const { return report_of(name).count("migrations"); }
+};
+
+/// Where two lists of hashes part; empty if they are equal.
+std::string first_difference(const std::string& a, const std::string& b) {
+  std::istringstream in_a(a), in_b(b);
+  std::string line_a, line_b;
+  for (;;) {
+    const bool more_a = static_cast<bool>(std::getline(in_a, line_a));
+    const bool more_b = static_cast<bool>(std::getline(in_b, line_b));
+    if (!more_a && !more_b) return {};
+    if (more_a != more_b || line_a != line_b) return line_a + " and " + line_b;
+  }
+}
+
+TEST_F(Determinism, DeterministicRunsAreEqual) {
+  const std::string first = hashes("first", "demo", 150, 300);
+  EXPECT_GT(hand_offs("first"), 50);
+  EXPECT_EQ(first_difference(first, hashes("again", "demo", 150, 300)), "");
+  EXPECT_EQ(first_difference(first, hashes("central", "demo", 150, 300, {"regions.count=1"})), "");
+  EXPECT_EQ(hand_offs("central"), 0);
+  EXPECT_EQ(
+      first_difference(first, hashes("columns", "demo", 150, 300, {"regions={layout: columns, count: 2, width: 40}"})),
+      "");
+}
+
+TEST_F(Determinism, WithoutAurasTheRunDiffersFromTheCentralOne) {
+  const std::string naive = hashes("naive", "demo", 151, 300, {"aura.radius=none"});
+  const std::string central = hashes("central", "demo", 151, 300, {"regions.count=1"});
+  EXPECT_NE(first_difference(naive, central), "") << "or this test could not see a difference";
+}
+
+struct Scene {
+  const char* name;
+  int steps;
+  int domain;
+};
+
+void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
+
+class EveryScene : public Determinism, public ::testing::WithParamInterface<Scene> {};
+
+TEST_P(EveryScene, IsEqualToTheCentralRun) {
+  const auto [name, steps, domain] = GetParam();
+  const std::string distributed = hashes("distributed", name, domain, steps);
+  EXPECT_GT(hand_offs("distributed"), 0);
+  EXPECT_EQ(first_difference(distributed, hashes("central", name, domain, steps, {"regions.count=1"})), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryScene,
+                         ::testing::Values(Scene{"two_spheres", 300, 152}, Scene{"island", 600, 153},
+                                           Scene{"three_way", 600, 154}, Scene{"tower", 600, 155},
+                                           Scene{"columns_rain", 400, 156}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace aurasim::system_test

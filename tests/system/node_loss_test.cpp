@@ -1,0 +1,101 @@
+// Nodes and launchers that are killed. Domains 133 to 136. The liveliness lease of qos/aurasim.xml is 1 s.
+#include <algorithm>
+#include <csignal>
+#include <map>
+#include <set>
+
+#include <unistd.h>
+
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+constexpr double kLongestWaitMs = 2500;  // the lease, and margin for a busy host
+
+class NodeLoss : public SystemTest {
+ protected:
+  pid_t node_of(const Process& launcher, int region) const {
+    for (const pid_t child : children_of(launcher.pid())) {
+      const Words words = command_line_of(child);
+      const auto flag = std::find(words.begin(), words.end(), "--region");
+      if (flag != words.end() && flag + 1 != words.end() && *(flag + 1) == std::to_string(region)) return child;
+    }
+    return 0;
+  }
+
+  void kill_node(const Process& launcher, int region) const {
+    const pid_t node = node_of(launcher, region);
+    ASSERT_GT(node, 0);
+    ::kill(node, SIGKILL);
+  }
+
+  void expect_survivors_finish(const Report& report, int dead, std::int64_t last) const {
+    std::map<int, std::int64_t> reached;
+    std::map<int, double> longest_wait_ms;
+    const Table steps = report.steps();
+    for (std::size_t row = 0; row < steps.rows(); ++row) {
+      const int region = static_cast<int>(steps.whole(row, "region"));
+      reached[region] = std::max(reached[region], steps.whole(row, "step"));
+      longest_wait_ms[region] = std::max(longest_wait_ms[region], steps.number(row, "wait_ms"));
+    }
+    for (const auto& [region, step] : reached) {
+      if (region == dead) continue;
+      EXPECT_EQ(step, last) << "region " << region;
+      EXPECT_LT(longest_wait_ms[region], kLongestWaitMs) << "region " << region;
+    }
+    EXPECT_EQ(reached.size(), 4U);
+    EXPECT_LT(reached[dead], last);
+  }
+
+  /// The summary names the dead region and its bodies, and whoever is not among them lives on exactly one survivor.
+  void expect_bodies_named(const Report& report, int dead, std::int64_t bodies_at_start) const {
+    const nlohmann::json regions = report.summary().at("dead_regions");
+    ASSERT_EQ(regions.size(), 1U);
+    EXPECT_EQ(regions[0].at("region"), dead);
+    const auto gone = regions[0].at("bodies").get<std::set<std::int64_t>>();
+    EXPECT_FALSE(gone.empty());
+    std::set<std::int64_t> alive;
+    for (int region = 0; region < 4; ++region) {
+      if (region == dead) continue;
+      const Table bodies(report.region_folder(region) / "bodies.csv");
+      for (std::size_t row = 0; row < bodies.rows(); ++row) {
+        const std::int64_t body = bodies.whole(row, "body");
+        EXPECT_TRUE(alive.insert(body).second) << "twice: body " << body;
+        EXPECT_FALSE(gone.contains(body)) << "alive and gone: body " << body;
+      }
+    }
+    for (std::int64_t body = 0; body < bodies_at_start; ++body) {
+      EXPECT_TRUE(alive.contains(body) || gone.contains(body)) << "neither alive nor gone: body " << body;
+    }
+  }
+
+  void expect_region_can_die(int dead, int domain) {
+    const Report report = report_of("run");
+    Process& run = launch("run", launch_file("demo"), domain, {"--duration", "6"});
+    expect_reaches(report, 4, 120);
+    ASSERT_NO_FATAL_FAILURE(kill_node(run, dead));
+    expect_exit(run, 1);
+    EXPECT_THAT(run.err(), ::testing::HasSubstr("region " + std::to_string(dead) + " died"));
+    expect_all_bodies_accounted_for(report);
+    EXPECT_EQ(report.count("steps"), 360);
+    expect_survivors_finish(report, dead, 360);
+    expect_bodies_named(report, dead, 96);
+  }
+};
+
+TEST_F(NodeLoss, KillOneNodeOfFour) { expect_region_can_die(2, 133); }
+
+TEST_F(NodeLoss, RegionZeroWhichStartedTheRunMayDieToo) { expect_region_can_die(0, 134); }
+
+TEST_F(NodeLoss, AKilledLauncherTakesItsNodesAlong) {
+  Process& run = launch("run", launch_file("demo"), 135);
+  expect_reaches(report_of("run"), 4, 60);
+  run.signal(SIGKILL);
+  expect_exit(run, 128 + SIGKILL);
+  EXPECT_FALSE(children_of(::getpid()).empty()) << "orphans, for a moment";
+  expect_nobody_left(4s);
+}
+
+}  // namespace
+}  // namespace aurasim::system_test

@@ -1,0 +1,103 @@
+#include "system_fixture.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace aurasim::system_test {
+namespace {
+
+/// Segments of DDS. (Other programs of this host may come and go in /dev/shm as they like.)
+std::set<std::string> shared_memory_of_dds() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+    const std::string name = entry.path().filename();
+    if (name.find("fastrtps") != std::string::npos || name.find("fastdds") != std::string::npos) names.insert(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string launch_file(const std::string& name) { return AURASIM_SOURCE_DIR "/launch_configs/" + name + ".yaml"; }
+
+Words set(const Words& overrides) {
+  Words words;
+  for (const std::string& change : overrides) words = words + Words{"--set", change};
+  return words;
+}
+
+void SystemTest::SetUp() {
+  adopt_orphans();
+  std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::replace(name.begin(), name.end(), '/', '_');
+  folder_ = std::filesystem::path(::testing::TempDir()) / ("aurasim_" + std::to_string(::getpid()) + "_" + name);
+  std::filesystem::remove_all(folder_);
+  std::filesystem::create_directories(folder_);
+  shared_memory_ = shared_memory_of_dds();
+}
+
+void SystemTest::TearDown() {
+  const bool stopped_early = HasFatalFailure();
+  processes_.clear();
+  const Words left = end_all_children();
+  if (!stopped_early) {
+    EXPECT_THAT(left, ::testing::IsEmpty()) << "these were still running";
+  }
+  EXPECT_EQ(shared_memory_of_dds(), shared_memory_) << "/dev/shm";
+  if (!HasFailure()) std::filesystem::remove_all(folder_);
+}
+
+std::filesystem::path SystemTest::write(const std::string& name, const std::string& text) const {
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+  return folder_ / name;
+}
+
+Process& SystemTest::start(const Words& words) {
+  const std::filesystem::path prefix = folder_ / ("process_" + std::to_string(processes_.size()));
+  processes_.push_back(std::make_unique<Process>(Words{AURASIM_BINARY_DIR "/aurasim"} + words, prefix));
+  return *processes_.back();
+}
+
+Process& SystemTest::launch(const std::string& name, const std::string& file, int domain, const Words& more) {
+  return start(Words{"launch", file, "--headless", "--report", (folder_ / name).string()} +
+               set({"dds.domain=" + std::to_string(domain)}) + more);
+}
+
+void SystemTest::expect_exit(Process& process, int code, Clock::duration time_out) const {
+  const std::optional<int> found = process.wait(time_out);
+  ASSERT_TRUE(found) << "still running\n" << process.said();
+  EXPECT_EQ(*found, code) << process.said();
+}
+
+void SystemTest::expect_reaches(const Report& report, int regions, std::int64_t step) const {
+  const auto all_there = [&] {
+    for (int region = 0; region < regions; ++region) {
+      if (report.recorded_step(region) < step) return false;
+    }
+    return true;
+  };
+  ASSERT_TRUE(wait_until(all_there, 30s)) << "step " << step << " of " << report.folder();
+}
+
+void SystemTest::expect_all_bodies_accounted_for(const Report& report) const {
+  const nlohmann::json summary = report.summary();
+  EXPECT_EQ(summary.at("bodies_lost"), 0) << summary.at("lost");
+  EXPECT_EQ(summary.at("bodies_duplicated"), 0);
+  EXPECT_EQ(summary.at("bodies_alive").get<int>() + summary.at("bodies_with_dead_regions").get<int>(),
+            summary.at("bodies_spawned").get<int>());
+}
+
+void SystemTest::expect_nobody_left(Clock::duration time_out) const {
+  const auto nobody = [] {
+    for (const pid_t child : children_of(::getpid())) {
+      if (::waitpid(child, nullptr, WNOHANG) != child) return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(wait_until(nobody, time_out));
+}
+
+}  // namespace aurasim::system_test
