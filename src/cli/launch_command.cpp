@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
+#include "cli/leave.h"
 
 namespace aurasim::cli {
 namespace {
@@ -19,7 +20,8 @@ int run_launch(Arguments arguments) {
   if (arguments.steps >= 0) arguments.options.steps = arguments.steps;
   if (arguments.duration_s >= 0) arguments.options.steps = std::llround(arguments.duration_s * launch.time.step_hz);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
-  return static_cast<int>(Launcher(launch, arguments.options).run());
+  Launcher launcher(launch, arguments.options);
+  leave(static_cast<int>(launcher.run()));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
+#include "cli/leave.h"
 #include "cli/node_process.h"
 #include "cli/stop_signal.h"
 #include "physics/region_world.h"
@@ -57,7 +58,8 @@ int run_node(const Arguments& arguments) {
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
   if (arguments.steps >= 0) options.steps = arguments.steps;
   if (!arguments.report.empty()) options.report = arguments.report;
-  return static_cast<int>(NodeProcess(launch, options).run());
+  NodeProcess process(launch, options);
+  leave(static_cast<int>(process.run()));
 }
 
 }  // namespace

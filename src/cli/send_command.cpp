@@ -4,9 +4,12 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
+#include "cli/leave.h"
+#include "cli/node_process.h"
 #include "cli/run_steering.h"
 
 namespace aurasim::cli {
@@ -24,20 +27,25 @@ struct Arguments {
   std::int64_t count = 1;
 };
 
+[[noreturn]] void fail(const std::string& why) {
+  spdlog::error("{}", why);
+  leave(static_cast<int>(ExitCode::kFailed));
+}
+
 int send(const Arguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   dds::Participant participant(dds_settings(launch));
   dds::ControlBus control(participant, {launch.regions.version(), {}});
   RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
-    throw std::runtime_error(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
+    fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
   }
   const dds::RunCommand command = steering.send(kKinds.at(arguments.what), arguments.count);
   if (!steering.wait_for_effect(command, 10s)) {
-    throw std::runtime_error(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
+    fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
   }
   fmt::print("{}: done at step {}\n", arguments.what, command.at_step);
-  return 0;
+  leave(0);
 }
 
 }  // namespace

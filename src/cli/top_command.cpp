@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
+#include "cli/leave.h"
 #include "cli/live_table.h"
 #include "cli/stop_signal.h"
 #include "dds/control.h"
@@ -24,7 +25,7 @@ int watch(const FileArguments& files, double seconds) {
     while (!stop_requested() && Clock::now() < next) control.wait(50ms);
     view.show(live_table(control.statuses()));
   }
-  return 0;
+  leave(0);
 }
 
 }  // namespace

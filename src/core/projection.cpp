@@ -110,13 +110,22 @@ void Projection::depart(const BodyState& body, std::uint32_t i, double speed_m_s
   ghost.flags |= kAuraGhost;
   if (aura_.rules().kind == AuraKind::kNone) return;
   ++(track.projected ? counters_.updated : counters_.created);
-  std::erase_if(ghosts_, [&](const AuraRecord& g) { return g.id == body.id; });
   ghosts_.push_back(ghost);
   batch.updates.push_back(ghost);
 }
 
+/// A body that came back and left again within 2K steps has two.
+void Projection::keep_newest_ghosts() {
+  std::sort(ghosts_.begin(), ghosts_.end(), [](const AuraRecord& a, const AuraRecord& b) {
+    return a.id != b.id ? a.id < b.id : a.stamp > b.stamp;
+  });
+  const auto same = [](const AuraRecord& a, const AuraRecord& b) { return a.id == b.id; };
+  ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end(), same), ghosts_.end());
+}
+
 /// A ghost is kept for 2K steps: until the first aura of the new host can have come. One that came back is no ghost.
 void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
+  keep_newest_ghosts();
   std::erase_if(ghosts_, [&](const AuraRecord& ghost) {
     const Track* here = find(ghost.id);
     if (here && here->phase != Phase::kSent) {

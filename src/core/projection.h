@@ -64,6 +64,7 @@ class Projection {
  private:
   void move(Track& track, PhaseEvent event);
   void say(Track& track, const AuraRecord& aura, AuraBatch& batch);
+  void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
   AuraRecord describe(const BodyState& body, double speed_m_s, Step stamp) const;
   void check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations);

@@ -94,6 +94,9 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(d
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
+  if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
+    watch_.set_grace(std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()) / 2);
+  }
   reader_ = subscriber_->create_datareader(
       &domain.topic(spec.topic), qos, &watch_,
       StatusMask::data_available() << StatusMask::subscription_matched() << StatusMask::liveliness_changed());

@@ -35,7 +35,6 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
     } else if (RemoteWriter* writer = find_matched(guid)) {
       writer->matched = false;
       writer->alive = false;
-      writer->lost = true;
       forget_all_but_newest_lost();
     }
   }
@@ -52,24 +51,37 @@ void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
       return;
     }
     writer->alive = status.alive_count_change > 0;
-    writer->lost = !writer->alive;
+    writer->silent_since.reset();
+    if (!writer->alive) {
+      writer->silent_since = std::chrono::steady_clock::now();
+    }
   }
   bell_.ring();
 }
 
 std::vector<RemoteWriter> ReaderWatch::writers() const {
   const std::lock_guard lock(mutex_);
-  return writers_;
+  std::vector<RemoteWriter> result;
+  for (const RemoteWriter& writer : writers_) {
+    result.push_back(judged(writer));
+  }
+  return result;
 }
 
 RemoteWriter ReaderWatch::latest() const {
   const std::lock_guard lock(mutex_);
-  return writers_.empty() ? RemoteWriter{} : writers_.back();
+  return writers_.empty() ? RemoteWriter{} : judged(writers_.back());
 }
 
 bool ReaderWatch::any_matched() const {
   const std::lock_guard lock(mutex_);
   return std::ranges::any_of(writers_, &RemoteWriter::matched);
+}
+
+RemoteWriter ReaderWatch::judged(RemoteWriter writer) const {
+  const bool silent = writer.silent_since && std::chrono::steady_clock::now() - *writer.silent_since >= grace_;
+  writer.lost = !writer.matched || silent;
+  return writer;
 }
 
 RemoteWriter* ReaderWatch::find_matched(const Guid& guid) {

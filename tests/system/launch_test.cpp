@@ -96,7 +96,7 @@ TEST_F(Launch, DemoHandsBodiesOver) {
   for (int region = 0; region < 4; ++region) {
     const auto folder = report.region_folder(region);
     EXPECT_EQ(Table(folder / "births.csv").header(), "region,body,birth_step");
-    EXPECT_EQ(Table(folder / "bodies.csv").header(), "region,body,epoch,birth_step,where");
+    EXPECT_EQ(Table(folder / "bodies.csv").header(), "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz");
     EXPECT_EQ(nlohmann::json::parse(read_text(folder / "node.json")).at("outcome"), "finished");
   }
   for (const auto& region : report.summary().at("regions")) {
