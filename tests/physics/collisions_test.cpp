@@ -39,7 +39,7 @@ TEST_F(FirstContact, IsReportedOnceWithWhatWasBeforeTheSolver) {
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_EQ(seen[0].a, BodyId{1});
   EXPECT_EQ(seen[0].b, BodyId{2});
-  EXPECT_EQ(seen[0].step, 13);  // 0.6 m each at 3 m/s: 0.2 s, and a little for the damping
+  EXPECT_EQ(seen[0].step, 13);                       // 0.6 m each at 3 m/s: 0.2 s, and a little for the damping
   EXPECT_NEAR(seen[0].relative_speed_m_s, 6, 0.1);   // less what damping took
   EXPECT_NEAR(seen[0].penetration_m, 0, 6.0 / 240);  // a substep's way
   EXPECT_NEAR(seen[0].p_W.x(), 0, 1e-6);

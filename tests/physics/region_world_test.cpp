@@ -63,7 +63,7 @@ TEST_F(World, ContactsAreThoseOfTheStack) {
 
 /// Whatever the size: Bullet's own margin would be 0.7 m between these.
 TEST_F(World, ContactsReachNoFartherThanTheMargin) {
-  core::Scene big = scene_of(core::Box{{20, 20, 20}});
+  core::Scene big = scene_of(core::Capsule{20, 10});
   big.gravity.setZero();
   for (const double gap : {0.015, 0.025}) {
     RegionWorld huge(big, Settings{});
