@@ -29,10 +29,11 @@ int compare(const Arguments& arguments) {
   } else if (c.hashes_equal) {
     fmt::print("equal: {} steps, the same bits in every one\n", c.steps_compared);
   } else {
-    fmt::print("different: {} steps compared, first difference in step {}; in the last state {} bodies compared, {} in "
-               "one report only, largest position error {:.6g} m, rotation error {:.6g} rad\n",
-               c.steps_compared, c.first_difference_step ? fmt::to_string(*c.first_difference_step) : "none",
-               c.bodies_compared, c.bodies_in_one_only, c.max_position_error_m, c.max_rotation_error_rad);
+    fmt::print(
+        "different: {} steps compared, first difference in step {}; in the last state {} bodies compared, {} in "
+        "one report only, largest position error {:.6g} m, rotation error {:.6g} rad\n",
+        c.steps_compared, c.first_difference_step ? fmt::to_string(*c.first_difference_step) : "none",
+        c.bodies_compared, c.bodies_in_one_only, c.max_position_error_m, c.max_rotation_error_rad);
   }
   return c.hashes_equal ? 0 : 1;
 }

@@ -9,19 +9,26 @@ namespace {
 
 core::AuraKind kind_of(config::AuraRadius radius) {
   switch (radius) {
-    case config::AuraRadius::kNone: return core::AuraKind::kNone;
-    case config::AuraRadius::kThesis: return core::AuraKind::kThesis;
-    case config::AuraRadius::kTight: return core::AuraKind::kTight;
-    case config::AuraRadius::kSwept: return core::AuraKind::kSwept;
+    case config::AuraRadius::kNone:
+      return core::AuraKind::kNone;
+    case config::AuraRadius::kThesis:
+      return core::AuraKind::kThesis;
+    case config::AuraRadius::kTight:
+      return core::AuraKind::kTight;
+    case config::AuraRadius::kSwept:
+      return core::AuraKind::kSwept;
   }
   return core::AuraKind::kSwept;
 }
 
 core::SyncMode mode_of(config::Sync sync) {
   switch (sync) {
-    case config::Sync::kFreeRunning: return core::SyncMode::kFreeRunning;
-    case config::Sync::kBounded: return core::SyncMode::kBounded;
-    case config::Sync::kDeterministic: return core::SyncMode::kDeterministic;
+    case config::Sync::kFreeRunning:
+      return core::SyncMode::kFreeRunning;
+    case config::Sync::kBounded:
+      return core::SyncMode::kBounded;
+    case config::Sync::kDeterministic:
+      return core::SyncMode::kDeterministic;
   }
   return core::SyncMode::kBounded;
 }
@@ -35,9 +42,15 @@ dds::Settings dds_settings(const config::Launch& launch) {
   settings.interfaces = launch.dds.interfaces;
   settings.peers = launch.dds.peers;
   switch (launch.dds.discovery) {
-    case config::Discovery::kMulticast: settings.discovery = dds::Discovery::kAsProfile; break;
-    case config::Discovery::kPeers: settings.discovery = dds::Discovery::kPeers; break;
-    case config::Discovery::kServer: settings.discovery = dds::Discovery::kServer; break;
+    case config::Discovery::kMulticast:
+      settings.discovery = dds::Discovery::kAsProfile;
+      break;
+    case config::Discovery::kPeers:
+      settings.discovery = dds::Discovery::kPeers;
+      break;
+    case config::Discovery::kServer:
+      settings.discovery = dds::Discovery::kServer;
+      break;
   }
   return settings;
 }
@@ -84,7 +97,8 @@ dds::WorldMap world_map(const config::Launch& launch) {
   map.map_version = launch.regions.version();
   map.agreement = launch.agreement();
   map.scene = launch.scene.name;
-  for (std::uint32_t r = 0; r < launch.regions.size(); ++r) map.regions.push_back(launch.regions.region(core::RegionId{r}));
+  for (std::uint32_t r = 0; r < launch.regions.size(); ++r)
+    map.regions.push_back(launch.regions.region(core::RegionId{r}));
   return map;
 }
 

@@ -1,16 +1,15 @@
 #include "cli/launcher.h"
 
-#include <csignal>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
+#include <csignal>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
@@ -62,9 +61,13 @@ ExitCode Launcher::run() {
 }
 
 std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
-  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(), "node", options_.files.file,
-                                    "--region", std::to_string(region),
-                                    "--start-time-out", std::to_string(options_.start_time_out_s)};
+  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(),
+                                    "node",
+                                    options_.files.file,
+                                    "--region",
+                                    std::to_string(region),
+                                    "--start-time-out",
+                                    std::to_string(options_.start_time_out_s)};
   for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
   if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
   if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
@@ -104,7 +107,8 @@ void Launcher::collect_exits() {
     child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     child.died = child.exit_code != 0 && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
                  child.exit_code != static_cast<int>(ExitCode::kRefused);
-    if (child.died) spdlog::error("the node of region {} died (exit code {})", core::value_of(child.region), child.exit_code);
+    if (child.died)
+      spdlog::error("the node of region {} died (exit code {})", core::value_of(child.region), child.exit_code);
     // Without all of them the run cannot start: the others need not wait for their time-out.
     if (child.exit_code == static_cast<int>(ExitCode::kRefused)) signal_all(SIGTERM);
   }

@@ -1,12 +1,12 @@
 // One process per region on this host, watched until the last one ends.
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 #include "cli/commands.h"
 #include "cli/live_table.h"

@@ -1,18 +1,17 @@
 #include "cli/live_table.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace aurasim::cli {
 
 std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses) {
-  std::string text = fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>9} {:>6}\n", "region",
-                                 "state", "step", "bodies", "awake", "auras", "sent", "received", "frame ms", "p99 ms",
-                                 "broken", "rtf");
+  std::string text =
+      fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>9} {:>6}\n", "region", "state",
+                  "step", "bodies", "awake", "auras", "sent", "received", "frame ms", "p99 ms", "broken", "rtf");
   std::uint64_t bodies = 0, sent = 0, received = 0, broken = 0;
   for (const auto& [region, seen] : statuses) {
     const dds::Status& s = seen.status;

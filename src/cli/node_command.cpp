@@ -1,11 +1,10 @@
-#include <unistd.h>
-
 #include <fstream>
 #include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"

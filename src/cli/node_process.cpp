@@ -1,12 +1,11 @@
 #include "cli/node_process.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
@@ -173,7 +172,8 @@ ExitCode NodeProcess::run_steps() {
   }
   const double factor = real_time_factor();
   const bool fenced = node_->protocol().fenced();
-  if (fenced) spdlog::error("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(options_.region));
+  if (fenced)
+    spdlog::error("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(options_.region));
   publish(fenced ? dds::NodeState::kFailed : dds::NodeState::kFinished,
           fenced ? "a neighbour holds this region for dead" : "");
   // Whoever leaves from now on has finished, too: that is no death.
@@ -276,8 +276,11 @@ void NodeProcess::obey(const dds::RunCommand& command) {
   }
   if (command.generation != generation_ || !node_) return;  // for a run that is over
   switch (command.kind) {
-    case Kind::kStart: break;
-    case Kind::kPause: hold_at_ = command.at_step; break;
+    case Kind::kStart:
+      break;
+    case Kind::kPause:
+      hold_at_ = command.at_step;
+      break;
     case Kind::kStep:
       if (hold_at_) {
         pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns);
@@ -288,8 +291,12 @@ void NodeProcess::obey(const dds::RunCommand& command) {
       if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns);
       hold_at_.reset();
       break;
-    case Kind::kReset: reset_ = command; break;
-    case Kind::kStop: stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step); break;
+    case Kind::kReset:
+      reset_ = command;
+      break;
+    case Kind::kStop:
+      stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step);
+      break;
   }
 }
 
@@ -306,8 +313,8 @@ void NodeProcess::linger() {
   const auto all_done = [this] {
     const auto& statuses = control_.statuses();
     return node_->ready_to_settle() && std::all_of(statuses.begin(), statuses.end(), [](const auto& entry) {
-      return entry.second.lost || entry.second.status.state == dds::NodeState::kFinished;
-    });
+             return entry.second.lost || entry.second.status.state == dds::NodeState::kFinished;
+           });
   };
   while (Clock::now() < deadline && !all_done()) control_.wait(10ms);
 }

@@ -21,15 +21,15 @@ namespace aurasim::cli {
 /// How a process ended; also its exit code.
 enum class ExitCode : int {
   kOk = 0,
-  kFailed = 1,      ///< something broke, a node died or a body was lost
-  kBadConfig = 2,   ///< the files or the command line are wrong
-  kRefused = 3,     ///< another run is in the same domain, or a neighbour did not come in time
-  kFenced = 4,      ///< the others hold this node for dead
+  kFailed = 1,     ///< something broke, a node died or a body was lost
+  kBadConfig = 2,  ///< the files or the command line are wrong
+  kRefused = 3,    ///< another run is in the same domain, or a neighbour did not come in time
+  kFenced = 4,     ///< the others hold this node for dead
 };
 
 struct NodeOptions {
   core::RegionId region{};
-  std::optional<core::Step> steps;               ///< stop after this state; nothing: run until told to stop
+  std::optional<core::Step> steps;  ///< stop after this state; nothing: run until told to stop
   std::optional<std::filesystem::path> report;
   std::chrono::seconds start_time_out{30};
 };
@@ -75,7 +75,7 @@ class NodeProcess {
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;
   core::Generation generation_ = 0;
-  std::optional<core::Step> hold_at_;   ///< paused once this state has been computed
+  std::optional<core::Step> hold_at_;  ///< paused once this state has been computed
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   std::optional<dds::RunCommand> start_;

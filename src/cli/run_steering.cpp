@@ -57,11 +57,16 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
 bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& command) const {
   switch (command.kind) {
     case Kind::kPause:
-    case Kind::kStep: return status.state == dds::NodeState::kPaused && status.step >= command.at_step;
-    case Kind::kResume: return status.state == dds::NodeState::kRunning && status.step > command.at_step;
-    case Kind::kReset: return status.generation > command.generation;
-    case Kind::kStart: return status.state == dds::NodeState::kRunning;
-    case Kind::kStop: return status.state == dds::NodeState::kFinished;
+    case Kind::kStep:
+      return status.state == dds::NodeState::kPaused && status.step >= command.at_step;
+    case Kind::kResume:
+      return status.state == dds::NodeState::kRunning && status.step > command.at_step;
+    case Kind::kReset:
+      return status.generation > command.generation;
+    case Kind::kStart:
+      return status.state == dds::NodeState::kRunning;
+    case Kind::kStop:
+      return status.state == dds::NodeState::kFinished;
   }
   return false;
 }

@@ -18,8 +18,11 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
 
-const std::map<std::string, Kind> kKinds = {
-    {"pause", Kind::kPause}, {"resume", Kind::kResume}, {"step", Kind::kStep}, {"reset", Kind::kReset}, {"stop", Kind::kStop}};
+const std::map<std::string, Kind> kKinds = {{"pause", Kind::kPause},
+                                            {"resume", Kind::kResume},
+                                            {"step", Kind::kStep},
+                                            {"reset", Kind::kReset},
+                                            {"stop", Kind::kStop}};
 
 struct Arguments {
   std::string what;

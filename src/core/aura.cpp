@@ -17,8 +17,8 @@ double thesis_reach(const AuraRules& r) {
   return (3 * delay_steps - 1) * r.step_s * r.top_speed_m_s;
 }
 
-constexpr double kRestSpeed = 0.05;    // m/s: a sleeping body may creep
-constexpr double kSpeedFloor = 0.1;    // m/s: contacts of slow bodies
+constexpr double kRestSpeed = 0.05;  // m/s: a sleeping body may creep
+constexpr double kSpeedFloor = 0.1;  // m/s: contacts of slow bodies
 
 }  // namespace
 
@@ -83,20 +83,26 @@ bool Aura::spheres_within(const Path& a, const Path& b, double distance_m) const
 
 bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
   switch (rules_.kind) {
-    case AuraKind::kNone: return false;
+    case AuraKind::kNone:
+      return false;
     case AuraKind::kThesis:
-    case AuraKind::kTight: return spheres_within(foreign, own, reach(hops));
-    case AuraKind::kSwept: break;
+    case AuraKind::kTight:
+      return spheres_within(foreign, own, reach(hops));
+    case AuraKind::kSwept:
+      break;
   }
   return paths_meet(foreign, own, hops * rules_.lookahead);
 }
 
 bool Aura::linked(const Path& a, const Path& b, int hops) const {
   switch (rules_.kind) {
-    case AuraKind::kNone: return false;
+    case AuraKind::kNone:
+      return false;
     case AuraKind::kThesis:
-    case AuraKind::kTight: return spheres_within(a, b, cluster_reach(hops));
-    case AuraKind::kSwept: break;
+    case AuraKind::kTight:
+      return spheres_within(a, b, cluster_reach(hops));
+    case AuraKind::kSwept:
+      break;
   }
   return paths_meet(a, b, hops * rules_.lookahead);
 }
@@ -135,8 +141,9 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
   const double last = horizon_steps;
   // The clearance shrinks at most this fast, in metres per step.
   const double fall = rules_.gravity.norm() * (a.age_steps + b.age_steps + 2 * last) * rules_.step_s;
-  const double closing = rules_.step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m +
-                                          b.w_WB.norm() * b.radius_m + rules_.uncertainty * (a.speed_m_s + b.speed_m_s));
+  const double closing =
+      rules_.step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m + b.w_WB.norm() * b.radius_m +
+                       rules_.uncertainty * (a.speed_m_s + b.speed_m_s));
   for (int i = 0; i < horizon_steps * substeps;) {
     const double k = static_cast<double>(i) / substeps;
     if (k + 1e-9 < std::max(a.unborn_steps, b.unborn_steps)) {
@@ -146,8 +153,8 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
     const Pose at = ahead(a, k);
     const Pose bt = ahead(b, k);
     const double allowed =
-        rules_.reach_scale * (rules_.contact_margin_m +
-                              spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
+        rules_.reach_scale *
+        (rules_.contact_margin_m + spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
     double clearance = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
     if (clearance <= allowed) {
       const double limit = allowed + closing * (last - k);

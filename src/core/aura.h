@@ -17,16 +17,16 @@ enum class AuraKind : std::uint8_t {
 /// What all nodes of a run agree on about auras.
 struct AuraRules {
   AuraKind kind = AuraKind::kSwept;
-  double step_s = 1.0 / 60;      ///< T_P
-  int substeps = 4;              ///< S
-  int lookahead = 1;             ///< K
-  double top_speed_m_s = 32;     ///< V; promised by the user, used by kThesis and kTight
-  double frame_s = 0.015;        ///< T_F
-  double latency_s = 0.002;      ///< T_L
-  double uncertainty = 0.5;      ///< U: share of its speed by which a body may leave its predicted path
+  double step_s = 1.0 / 60;        ///< T_P
+  int substeps = 4;                ///< S
+  int lookahead = 1;               ///< K
+  double top_speed_m_s = 32;       ///< V; promised by the user, used by kThesis and kTight
+  double frame_s = 0.015;          ///< T_F
+  double latency_s = 0.002;        ///< T_L
+  double uncertainty = 0.5;        ///< U: share of its speed by which a body may leave its predicted path
   double contact_margin_m = 0.05;  ///< Bullet's contact breaking distance (0.02) and both collision margins
-  double reach_scale = 1;        ///< tests only: auras that are a little too small must fail
-  Vec3 gravity = {0, 0, -9.81};  ///< m/s^2
+  double reach_scale = 1;          ///< tests only: auras that are a little too small must fail
+  Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
 };
 
 /// One body's predicted motion from the state in which it was last known.
@@ -36,10 +36,10 @@ struct Path {
   Pose pose;
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
-  bool moves = true;         ///< false: asleep, stays where it is
-  double age_steps = 0;      ///< how long ago the state was known, seen from now
-  double unborn_steps = 0;   ///< the body appears this many steps from now
-  double speed_m_s = 0;      ///< top speed in its cluster, for the uncertainty
+  bool moves = true;        ///< false: asleep, stays where it is
+  double age_steps = 0;     ///< how long ago the state was known, seen from now
+  double unborn_steps = 0;  ///< the body appears this many steps from now
+  double speed_m_s = 0;     ///< top speed in its cluster, for the uncertainty
 };
 
 /// The path of one of our own bodies from its state now.

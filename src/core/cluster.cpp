@@ -74,9 +74,7 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   return a;
 }
 
-void Clusters::note_hops(std::uint64_t regions) {
-  most_hops_ = std::max(most_hops_, hops_of(regions));
-}
+void Clusters::note_hops(std::uint64_t regions) { most_hops_ = std::max(most_hops_, hops_of(regions)); }
 
 void Clusters::push_members(std::uint32_t i) {
   for_each_member(i, [this](std::uint32_t j) { to_ask_.push_back(j); });
@@ -116,7 +114,8 @@ void Clusters::look_around(std::uint32_t i) {
   near_.for_each_near(paths_[i].pose.p_WB, paths_[i].radius_m, slow, fast, [&](std::uint32_t j) {
     if (of(j) == mine) return;
     const int hops_pair = hops_with(j);
-    const double range = aura_.link_range(speed_[mine], speed_[of(j)], hops_pair) + paths_[i].radius_m + paths_[j].radius_m;
+    const double range =
+        aura_.link_range(speed_[mine], speed_[of(j)], hops_pair) + paths_[i].radius_m + paths_[j].radius_m;
     if ((paths_[i].pose.p_WB - paths_[j].pose.p_WB).squaredNorm() > range * range) return;
     if (aura_.linked(paths_[i], paths_[j], hops_pair)) linked_.push_back(j);
   });

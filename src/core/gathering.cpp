@@ -131,8 +131,8 @@ void Gathering::pair_up() {
       const double fast = aura_.notice(path.speed_m_s, path.age_steps, top_speed(), most_hops);
       clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, slow, fast, [&](std::uint32_t i) {
         const int hops = clusters_.hops(i) + kHomewardHops;
-        const double reach = path.radius_m + paths_[i].radius_m +
-                             aura_.notice(path.speed_m_s, path.age_steps, clusters_.speed(i), hops);
+        const double reach =
+            path.radius_m + paths_[i].radius_m + aura_.notice(path.speed_m_s, path.age_steps, clusters_.speed(i), hops);
         if ((path.pose.p_WB - paths_[i].pose.p_WB).squaredNorm() <= reach * reach) pairs_.push_back({f, i});
       });
     }

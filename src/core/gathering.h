@@ -82,9 +82,9 @@ class Gathering {
   std::vector<Pair> pairs_;
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
-  std::vector<std::uint8_t> touched_;  ///< by cluster
+  std::vector<std::uint8_t> touched_;   ///< by cluster
   std::vector<std::uint8_t> expected_;  ///< by cluster
-  std::vector<RegionId> pulled_to_;    ///< by cluster
+  std::vector<RegionId> pulled_to_;     ///< by cluster
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

@@ -21,9 +21,7 @@ using Epoch = std::uint32_t;
 using Generation = std::uint32_t;
 
 template <class Id>
-  requires std::is_enum_v<Id>
-constexpr auto value_of(Id id) {
-  return static_cast<std::underlying_type_t<Id>>(id);
-}
+requires std::is_enum_v<Id>
+constexpr auto value_of(Id id) { return static_cast<std::underlying_type_t<Id>>(id); }
 
 }  // namespace aurasim::core

@@ -151,8 +151,8 @@ void Intake::adopt_due(Step limit, Step n, ViolationLog& violations) {
   auto due_end = waiting_.begin();
   for (; due_end != waiting_.end() && due_end->stamp <= limit; ++due_end) {
     if (n - due_end->stamp > settings_.lookahead) {
-      violations.add({ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp),
-                      double(settings_.lookahead)});
+      violations.add(
+          {ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp), double(settings_.lookahead)});
     }
     acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence});
     adopt(*due_end, n, false);
@@ -186,13 +186,16 @@ void Intake::reclaim(Step n, ViolationLog& violations) {
     if (!all_know(hand_off.destination)) return false;
     const std::vector<BodyEpoch> came_back = arrivals_.adopted_from(hand_off.destination);
     remove_bodies(hand_off.cluster, [&](const BodyRecord& body) {
-      return claims(came_back, body) || std::any_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
-               return claims(q.claims(), body);
-             });
+      return claims(came_back, body) || std::any_of(neighbours_.begin(), neighbours_.end(),
+                                                    [&](const Neighbour& q) { return claims(q.claims(), body); });
     });
     for (BodyRecord& body : hand_off.cluster.bodies) ++body.epoch;
     // Nobody has guarded these bodies since they left.
-    violations.add({ViolationKind::kLatency, n, hand_off.destination, {}, double(n - hand_off.stamp),
+    violations.add({ViolationKind::kLatency,
+                    n,
+                    hand_off.destination,
+                    {},
+                    double(n - hand_off.stamp),
                     double(settings_.lookahead)});
     adopt(hand_off, n, true);
     return true;

@@ -35,10 +35,10 @@ struct Adoption {
 
 /// Counted since the start.
 struct IntakeCounters {
-  std::uint64_t adopted = 0;         ///< bodies
-  std::uint64_t reclaimed = 0;       ///< bodies
-  std::uint64_t copies = 0;          ///< messages that came again
-  std::uint64_t strangers = 0;       ///< messages of unknown, dead or differently configured senders
+  std::uint64_t adopted = 0;    ///< bodies
+  std::uint64_t reclaimed = 0;  ///< bodies
+  std::uint64_t copies = 0;     ///< messages that came again
+  std::uint64_t strangers = 0;  ///< messages of unknown, dead or differently configured senders
 };
 
 class Intake {

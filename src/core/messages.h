@@ -56,8 +56,8 @@ struct AuraBatch {
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;
-  std::vector<RegionId> dead;      ///< regions that the source holds for dead
-  std::vector<BodyEpoch> claims;   ///< bodies adopted from regions now dead, so that nobody takes them back
+  std::vector<RegionId> dead;     ///< regions that the source holds for dead
+  std::vector<BodyEpoch> claims;  ///< bodies adopted from regions now dead, so that nobody takes them back
 };
 
 enum class HandOffReason : std::uint8_t {

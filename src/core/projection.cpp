@@ -72,9 +72,9 @@ void Projection::say(Track& track, const AuraRecord& aura, AuraBatch& batch) {
 
 void Projection::classify(const Snapshot& snapshot, const Gathering& gathering) {
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    move(tracks_[i], gathering.outside(i)              ? PhaseEvent::kOutside
+    move(tracks_[i], gathering.outside(i)             ? PhaseEvent::kOutside
                      : gathering.must_be_announced(i) ? PhaseEvent::kNearBoundary
-                                                       : PhaseEvent::kFarFromBoundary);
+                                                      : PhaseEvent::kFarFromBoundary);
   }
 }
 
@@ -116,9 +116,8 @@ void Projection::depart(const BodyState& body, std::uint32_t i, double speed_m_s
 
 /// A body that came back and left again within 2K steps has two.
 void Projection::keep_newest_ghosts() {
-  std::sort(ghosts_.begin(), ghosts_.end(), [](const AuraRecord& a, const AuraRecord& b) {
-    return a.id != b.id ? a.id < b.id : a.stamp > b.stamp;
-  });
+  std::sort(ghosts_.begin(), ghosts_.end(),
+            [](const AuraRecord& a, const AuraRecord& b) { return a.id != b.id ? a.id < b.id : a.stamp > b.stamp; });
   const auto same = [](const AuraRecord& a, const AuraRecord& b) { return a.id == b.id; };
   ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end(), same), ghosts_.end());
 }
@@ -155,8 +154,8 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
   path.moves = (promise.flags & kAuraAsleep) == 0;
   path.unborn_steps = static_cast<double>(std::max<Step>(0, promise.birth - promise.stamp));
   const double off = (aura_.ahead(path, age).p_WB - body.pose.p_WB).norm();
-  const double allowed = aura_.rules().contact_margin_m +
-                         aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
+  const double allowed =
+      aura_.rules().contact_margin_m + aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
   if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
   track.promise = track.said;
 }

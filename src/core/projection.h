@@ -20,12 +20,12 @@ struct Track {
   BodyId id{};
   Epoch epoch = 0;
   Phase phase = Phase::kInjected;
-  bool projected = false;      ///< the other regions have its aura
-  bool too_fast = false;       ///< already counted
-  bool out_of_span = false;    ///< already counted
-  Step island_since = -1;      ///< first of the states in a row in which its cluster was an island; -1: is none
-  AuraRecord said;             ///< its newest aura
-  AuraRecord promise;          ///< an older one, kept until what it promised can be checked
+  bool projected = false;    ///< the other regions have its aura
+  bool too_fast = false;     ///< already counted
+  bool out_of_span = false;  ///< already counted
+  Step island_since = -1;    ///< first of the states in a row in which its cluster was an island; -1: is none
+  AuraRecord said;           ///< its newest aura
+  AuraRecord promise;        ///< an older one, kept until what it promised can be checked
 };
 
 /// Counted since the start; one per aura and message.

@@ -217,7 +217,8 @@ std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules,
   for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {
     RegionId lowest = hosts[i];
-    clusters.for_each_member(i, [&](std::uint32_t j) { lowest = std::min(lowest, map.owner(scene.bodies[j].pose.p_WB)); });
+    clusters.for_each_member(i,
+                             [&](std::uint32_t j) { lowest = std::min(lowest, map.owner(scene.bodies[j].pose.p_WB)); });
     hosts[i] = lowest;
   }
   return hosts;

@@ -53,7 +53,8 @@ void check_no_gap(const std::vector<Rectangle>& boxes, const Rectangle& hull) {
   }
   for (auto x = xs.begin(); std::next(x) != xs.end(); ++x) {
     for (auto y = ys.begin(); std::next(y) != ys.end(); ++y) {
-      const bool owned = std::any_of(boxes.begin(), boxes.end(), [&](const Rectangle& b) { return b.contains(*x, *y); });
+      const bool owned =
+          std::any_of(boxes.begin(), boxes.end(), [&](const Rectangle& b) { return b.contains(*x, *y); });
       if (!owned) {
         throw BadRegionMap("the boxes leave a gap inside " + text(hull) + " at [" + std::to_string(*x) + ", " +
                            std::to_string(*y) + "]");

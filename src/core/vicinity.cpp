@@ -26,9 +26,7 @@ bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
          r.y1 - p.y() > distance_m;
 }
 
-bool Vicinity::is_neighbour(RegionId id) const {
-  return std::binary_search(neighbours.begin(), neighbours.end(), id);
-}
+bool Vicinity::is_neighbour(RegionId id) const { return std::binary_search(neighbours.begin(), neighbours.end(), id); }
 
 std::uint64_t Vicinity::bit_of(RegionId id) const {
   const auto found = std::lower_bound(neighbours.begin(), neighbours.end(), id);

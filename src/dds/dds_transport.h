@@ -69,11 +69,14 @@ class DdsTransport final : public transport::Transport {
   /// True when wait_until_matched would return at once.
   bool all_matched() const;
 
-  /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back. A
-  /// neighbour process that was restarted before its loss was noticed gives kLost and then kJoined.
+  /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back and
+  /// matched. A process that dies is lost after the participant's lease; one that hangs after Settings::hang_limit and
+  /// one and a half leases of its aura writer; one that was restarted before that gives kLost and then kJoined. The
+  /// first meeting is no event.
   void take(core::Inbox& inbox) override;
   /// Never blocks for longer than the profiles' max_blocking_time (twice) per sample.
   void send(const core::Outbox& outbox) override;
+  /// Also returns when a neighbour was matched, unmatched or fell silent.
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
 
   /// Stops sending hand-offs and acks to `region` and waiting for it. Its return (kJoined) undoes it. Regions reported

@@ -10,13 +10,13 @@
 namespace aurasim::node {
 
 struct Comparison {
-  bool hashes_equal = false;       ///< of all steps that both have, and both have the same steps
+  bool hashes_equal = false;  ///< of all steps that both have, and both have the same steps
   std::uint64_t steps_compared = 0;
   std::optional<core::Step> first_difference_step;
   std::uint64_t bodies_compared = 0;
   std::uint64_t bodies_in_one_only = 0;
-  double max_position_error_m = 0;     ///< in the last state
-  double max_rotation_error_rad = 0;   ///< in the last state
+  double max_position_error_m = 0;    ///< in the last state
+  double max_rotation_error_rad = 0;  ///< in the last state
 };
 
 /// Reads state_hash.csv and the regions' bodies.csv of two reports. Throws std::runtime_error when one has no hashes.

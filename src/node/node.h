@@ -27,15 +27,15 @@ struct NodeSetup {
 
 /// One body's change of host, as the receiver or (on reclaim) the sender saw it.
 struct HandOffRow {
-  core::Step stamp = 0;    ///< state in which it left
-  core::Step joined = 0;   ///< state in whose computation it takes part first; 0 in the sender's rows
+  core::Step stamp = 0;   ///< state in which it left
+  core::Step joined = 0;  ///< state in whose computation it takes part first; 0 in the sender's rows
   core::BodyId body{};
-  core::Epoch epoch = 0;   ///< the new one
+  core::Epoch epoch = 0;  ///< the new one
   core::RegionId source{};
   core::RegionId destination{};
   core::HandOffReason reason{};
   bool reclaimed = false;
-  bool touched = false;    ///< it had a contact since its last change of host (sender's rows)
+  bool touched = false;  ///< it had a contact since its last change of host (sender's rows)
 };
 
 /// A body's first host, and the state in which it exists first.

@@ -27,9 +27,10 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region)
     : region_(region), folder_(region_folder(folder, region)) {
   std::filesystem::create_directories(folder_);
   std::filesystem::remove(folder_ / "node.json");
-  steps_ = open("steps.csv",
-                "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
-                "largest_cluster,hand_offs_out,hand_offs_in,violations\n");
+  steps_ =
+      open("steps.csv",
+           "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
+           "largest_cluster,hand_offs_out,hand_offs_in,violations\n");
   collisions_ = open("collisions.csv",
                      "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
                      "violation_flagged\n");

@@ -213,7 +213,8 @@ class Merge {
     std::uint64_t with_dead = 0;
     for (const core::RegionId region : facts_.died) {
       const auto found = with_dead_.find(core::value_of(region));
-      const std::vector<std::uint64_t> bodies = found == with_dead_.end() ? std::vector<std::uint64_t>{} : found->second;
+      const std::vector<std::uint64_t> bodies =
+          found == with_dead_.end() ? std::vector<std::uint64_t>{} : found->second;
       with_dead += bodies.size();
       dead.push_back({{"region", core::value_of(region)}, {"bodies", bodies}});
     }
@@ -246,9 +247,9 @@ class Merge {
 
   std::filesystem::path folder_;
   RunFacts facts_;
-  std::map<std::uint64_t, std::vector<Move>> moves_;        ///< by body, ascending epoch
-  std::map<std::uint64_t, std::uint64_t> first_host_;       ///< by body
-  std::map<std::uint64_t, int> hosts_;                      ///< by body: how many nodes host it at the end
+  std::map<std::uint64_t, std::vector<Move>> moves_;   ///< by body, ascending epoch
+  std::map<std::uint64_t, std::uint64_t> first_host_;  ///< by body
+  std::map<std::uint64_t, int> hosts_;                 ///< by body: how many nodes host it at the end
   std::set<std::uint64_t> alive_;
   std::map<std::uint64_t, std::vector<std::uint64_t>> with_dead_;  ///< by region
   std::vector<std::uint64_t> lost_;

@@ -30,6 +30,7 @@ std::unique_ptr<btConvexHullShape> hull_through(const btVector3* points, int cou
 }
 
 std::unique_ptr<btConvexHullShape> exact_hull(const core::ConvexHull& shape, double margin_m) {
+  if (shape.points.empty()) throw std::invalid_argument("a convex hull without points");
   std::vector<btVector3> points;
   for (const core::Vec3& p : shape.points) points.push_back(to_bullet(p));
   auto hull = hull_through(points.data(), static_cast<int>(points.size()));
@@ -133,6 +134,7 @@ struct ShapeSet::Built::Make {
 
   /// A mesh has nothing inside to round, so its margin would lie on top: bodies would hover.
   Built operator()(const core::TriangleMesh& s) const {
+    if (s.triangles.empty()) throw std::invalid_argument("a triangle mesh without triangles");
     Built built;
     built.mesh = triangles_of(s);
     auto mesh = std::make_unique<btBvhTriangleMeshShape>(built.mesh.get(), /*useQuantizedAabbCompression=*/true);
@@ -151,11 +153,11 @@ struct ShapeSet::Built::Make {
 };
 
 ShapeSet::ShapeSet(const core::Scene& scene) {
-  for (const core::NamedShape& named : scene.shapes) {
-    shapes_.push_back(std::visit(Built::Make{}, named.shape));
-  }
   for (const core::Prototype& prototype : scene.prototypes) {
     inertias_.push_back(inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg));
+  }
+  for (const core::NamedShape& named : scene.shapes) {
+    shapes_.push_back(std::visit(Built::Make{}, named.shape));
   }
 }
 

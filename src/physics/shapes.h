@@ -23,7 +23,7 @@ std::unique_ptr<btConvexShape> make_convex(const core::ConvexShape& shape, Margi
 
 class ShapeSet {
  public:
-  /// Throws std::invalid_argument if a body's prototype has a shape that cannot move.
+  /// Throws std::invalid_argument if a body's prototype has a shape that cannot move, or a mesh or hull is empty.
   explicit ShapeSet(const core::Scene& scene);
   ~ShapeSet();
 

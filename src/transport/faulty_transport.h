@@ -13,11 +13,11 @@ namespace aurasim::transport {
 /// Delivery is at least once, as from a reliable writer over a lossy link: what is lost is sent again later.
 struct Faults {
   double latency_s = 0;
-  double jitter_s = 0;          ///< uniform extra delay
-  double loss = 0;              ///< probability that one datagram is lost
-  double resend_after_s = 0.01; ///< until a lost one is sent again
-  double duplicate = 0;         ///< probability that a message comes twice
-  bool keep_order = true;       ///< per pair of regions; otherwise jitter may turn messages around
+  double jitter_s = 0;           ///< uniform extra delay
+  double loss = 0;               ///< probability that one datagram is lost
+  double resend_after_s = 0.01;  ///< until a lost one is sent again
+  double duplicate = 0;          ///< probability that a message comes twice
+  bool keep_order = true;        ///< per pair of regions; otherwise jitter may turn messages around
 };
 
 class FaultModel {

@@ -1,8 +1,7 @@
 // Encoding and decoding of aura and hand-off batches, with Fast CDR's bytes in between.
-#include <benchmark/benchmark.h>
-
 #include <aurasim.h>
 #include <aurasimPubSubTypes.h>
+#include <benchmark/benchmark.h>
 #include <fastdds/rtps/common/SerializedPayload.h>
 
 #include "dds/codec.h"
@@ -39,8 +38,8 @@ HandOff hand_off(std::size_t count) {
     body.p_WB = {double(i), 1, 2};
     h.cluster.bodies.push_back(body);
     if (i == 0) continue;
-    h.cluster.manifolds.push_back({static_cast<ObjectRef>(i - 1), static_cast<ObjectRef>(i),
-                                   static_cast<std::uint32_t>(4 * (i - 1)), 4});
+    h.cluster.manifolds.push_back(
+        {static_cast<ObjectRef>(i - 1), static_cast<ObjectRef>(i), static_cast<std::uint32_t>(4 * (i - 1)), 4});
     h.cluster.points.insert(h.cluster.points.end(), 4 * kContactPointDoubles, 0.5);
   }
   return h;

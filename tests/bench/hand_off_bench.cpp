@@ -1,4 +1,5 @@
-// What physics pays for a hand-off: a touching cluster taken out of one world and adopted by another that is K steps on.
+// What physics pays for a hand-off: a touching cluster taken out of one world and adopted by another that is K steps
+// on.
 #include <benchmark/benchmark.h>
 
 #include "physics/region_world.h"
@@ -48,7 +49,10 @@ void hand_off(benchmark::State& state) {
   state.counters["manifolds"] = static_cast<double>(cluster.manifolds.size());
 }
 
-BENCHMARK(hand_off)->ArgNames({"bodies", "steps_late"})->ArgsProduct({{1, 20}, {0, 1, 3}})->Unit(benchmark::kMicrosecond);
+BENCHMARK(hand_off)
+    ->ArgNames({"bodies", "steps_late"})
+    ->ArgsProduct({{1, 20}, {0, 1, 3}})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace aurasim

@@ -1,9 +1,9 @@
 // What looking at one state costs the protocol: sparse and heaped bodies, half of them near a border, with tight and
 // with swept auras. The heap is a pile with contacts; the neighbour mirrors it on the other side of the border.
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <random>
+
+#include <benchmark/benchmark.h>
 
 #include "core/protocol.h"
 #include "physics/region_world.h"
@@ -28,7 +28,8 @@ Snapshot bodies(std::size_t count, bool heaped) {
   const auto u = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
   const double spacing = heaped ? 0.7 : 4;
   const std::size_t layers = heaped ? 3 : 1;
-  const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(layers))));
+  const auto side =
+      static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(layers))));
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t cell = i / layers;
     BodyState body;
@@ -38,7 +39,8 @@ Snapshot bodies(std::size_t count, bool heaped) {
                       0.3 + spacing * static_cast<double>(i % layers)};
     body.v_WB = Vec3(u(), u(), u()) * (heaped ? 0.3 : 8.0);
     snapshot.bodies.push_back(body);
-    if (heaped && i % layers != 0) snapshot.contacts.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i)});
+    if (heaped && i % layers != 0)
+      snapshot.contacts.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i)});
   }
   return snapshot;
 }
@@ -83,9 +85,9 @@ void observe(benchmark::State& state) {
   protocol.receive(1);
   snapshot.step = 1;
   for (auto _ : state) benchmark::DoNotOptimize(protocol.observe(snapshot).size());
-  state.counters["us_per_body"] = benchmark::Counter(static_cast<double>(state.range(0)) * 1e-6,
-                                                     benchmark::Counter::kIsIterationInvariantRate |
-                                                         benchmark::Counter::kInvert);
+  state.counters["us_per_body"] =
+      benchmark::Counter(static_cast<double>(state.range(0)) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["projecting"] = static_cast<double>(protocol.projection().projecting());
   state.counters["foreign"] = static_cast<double>(protocol.gathering().foreign_auras());
   state.counters["largest_cluster"] = static_cast<double>(protocol.largest_cluster());

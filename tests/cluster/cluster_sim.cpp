@@ -46,7 +46,8 @@ Outcome ClusterSim::run(Step steps) {
                        [&](const Member& m) { return m.alive && m.node->current_step() < steps; });
   };
   for (double t = 0; behind(); t += slice) {
-    if (t > 60 * static_cast<double>(steps) * options_.aura.step_s + 60) throw std::runtime_error("the cluster stands still");
+    if (t > 60 * static_cast<double>(steps) * options_.aura.step_s + 60)
+      throw std::runtime_error("the cluster stands still");
     network_->advance_to(t);
     for (Member& member : members_) step_if_due(member, steps);
   }
@@ -75,7 +76,8 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
     if (seen.late || seen.missed) outcome_.wrong.push_back({member.node->region(), seen});
   }
   for (const node::HashPart& part : report.hash) {
-    if (part.step < static_cast<Step>(outcome_.hash.size())) outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
+    if (part.step < static_cast<Step>(outcome_.hash.size()))
+      outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
   }
   outcome_.largest_cluster = std::max(outcome_.largest_cluster, report.largest_cluster);
   moves.insert(moves.end(), report.departures.begin(), report.departures.end());

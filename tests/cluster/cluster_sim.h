@@ -17,7 +17,7 @@ namespace aurasim::test {
 
 struct Crash {
   core::RegionId region{};
-  core::Step step = 0;      ///< after computing this state
+  core::Step step = 0;  ///< after computing this state
   double lease_s = 0.2;
 };
 
@@ -27,8 +27,8 @@ struct ClusterOptions {
   core::SyncMode sync = core::SyncMode::kBounded;
   transport::Faults faults;
   std::uint64_t seed = 1;
-  double frame_s = 0.004;         ///< of every node and step
-  double frame_jitter_s = 0;      ///< uniform extra
+  double frame_s = 0.004;     ///< of every node and step
+  double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
   std::optional<Crash> crash;
 };
@@ -40,17 +40,17 @@ struct Outcome {
   std::uint64_t unflagged = 0;  ///< late or missed, without a violation before
   std::uint64_t violations = 0;
   std::uint64_t thrashed = 0;
-  std::uint64_t doubled = 0;    ///< bodies ever seen on two live nodes at once
+  std::uint64_t doubled = 0;  ///< bodies ever seen on two live nodes at once
   std::uint64_t lost = 0;
   std::uint64_t with_dead = 0;
   std::uint64_t reclaimed = 0;
-  std::uint64_t severed = 0;    ///< contacts cut by a hand-off
+  std::uint64_t severed = 0;  ///< contacts cut by a hand-off
   std::uint64_t bad_phases = 0;
   std::size_t largest_cluster = 0;
-  double slowest_s = 0;         ///< virtual time at the end
+  double slowest_s = 0;                                               ///< virtual time at the end
   std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
-  std::vector<physics::Collision> contacts;  ///< first contacts
-  std::vector<std::uint64_t> hash;  ///< by step; only complete without a crash
+  std::vector<physics::Collision> contacts;                           ///< first contacts
+  std::vector<std::uint64_t> hash;                                    ///< by step; only complete without a crash
 };
 
 class ClusterSim {

@@ -1,12 +1,11 @@
 // The promises of DESIGN sections 4 to 6, on whole simulated clusters.
-#include "cluster/cluster_sim.h"
-
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <iostream>
 #include <string>
 
+#include <gtest/gtest.h>
+
+#include "cluster/cluster_sim.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {

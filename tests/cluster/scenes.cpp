@@ -6,8 +6,7 @@ namespace aurasim::test {
 
 using core::Vec3;
 
-core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s,
-                          std::uint64_t seed) {
+core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed) {
   core::Scene scene;
   scene.name = "thrown_bodies";
   scene.shapes = {{"box", core::Box{{0.3, 0.3, 0.5}}},
