@@ -75,6 +75,7 @@ std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
 }
 
 void Launcher::start_nodes() {
+  if (options_.report) node::clear_report(*options_.report);
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
     Child child;
     child.region = core::RegionId{r};
@@ -164,9 +165,14 @@ ExitCode Launcher::report_and_count(ExitCode so_far) {
   }
   const node::Accounts accounts = node::merge_report(*options_.report, facts);
   fmt::print("report: {}\n", (*options_.report / "summary.json").string());
-  if (accounts.lost + accounts.duplicated == 0) return so_far;
-  spdlog::error("{} bodies lost, {} duplicated", accounts.lost, accounts.duplicated);
-  return ExitCode::kFailed;
+  fmt::print(
+      "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+      accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
+      accounts.real_time_factor);
+  for (const node::DeadRegion& dead : accounts.dead) {
+    fmt::print("region {} died and took {} bodies with it\n", core::value_of(dead.region), dead.bodies);
+  }
+  return accounts.lost + accounts.duplicated == 0 ? so_far : ExitCode::kFailed;
 }
 
 }  // namespace aurasim::cli

@@ -160,10 +160,11 @@ class Merge {
     for (auto& [body, moves] : moves_) {
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.epoch < b.epoch; });
       for (std::size_t i = 0; i < moves.size(); ++i) {
-        migrations_ += !moves[i].reclaimed;
-        reclaimed_ += moves[i].reclaimed;
+        accounts_.hand_offs += !moves[i].reclaimed;
+        accounts_.reclaimed += moves[i].reclaimed;
         if (i == 0 || !moves[i].pulled || !moves[i - 1].pulled || moves[i].touched) continue;
-        thrashed_ += moves[i].destination == moves[i - 1].source && moves[i].source == moves[i - 1].destination;
+        accounts_.thrashed +=
+            moves[i].destination == moves[i - 1].source && moves[i].source == moves[i - 1].destination;
       }
     }
   }
@@ -195,7 +196,7 @@ class Merge {
     return sum;
   }
 
-  void write_summary() const {
+  void write_summary() {
     std::uint64_t violations = 0;
     Json by_kind = Json::object();
     double factor = 1e9;
@@ -209,6 +210,8 @@ class Merge {
       factor = std::min(factor, node.value("real_time_factor", 0.0));
       steps = std::max(steps, node.value("steps", std::uint64_t{0}));
     }
+    accounts_.real_time_factor = factor > 1e8 ? 0 : factor;
+    accounts_.bodies = alive_.size();
     Json dead = Json::array();
     std::uint64_t with_dead = 0;
     for (const core::RegionId region : facts_.died) {
@@ -216,12 +219,13 @@ class Merge {
       const std::vector<std::uint64_t> bodies =
           found == with_dead_.end() ? std::vector<std::uint64_t>{} : found->second;
       with_dead += bodies.size();
+      accounts_.dead.push_back({region, bodies.size()});
       dead.push_back({{"region", core::value_of(region)}, {"bodies", bodies}});
     }
     const Json summary = {
         {"steps", steps},
         {"step_s", facts_.step_s},
-        {"real_time_factor", nodes_.empty() || factor > 1e8 ? 0 : factor},
+        {"real_time_factor", accounts_.real_time_factor},
         {"bodies_spawned", first_host_.size()},
         {"bodies_removed", 0},
         {"bodies_alive", alive_.size()},
@@ -230,9 +234,9 @@ class Merge {
         {"bodies_duplicated", accounts_.duplicated},
         {"bodies_with_dead_regions", with_dead},
         {"dead_regions", dead},
-        {"migrations", migrations_},
-        {"reclaimed", reclaimed_},
-        {"thrashed", thrashed_},
+        {"migrations", accounts_.hand_offs},
+        {"reclaimed", accounts_.reclaimed},
+        {"thrashed", accounts_.thrashed},
         {"late_collisions", sum_over_nodes("late_collisions")},
         {"missed_collisions", sum_over_nodes("missed_collisions")},
         {"late_without_violation", sum_over_nodes("late_without_violation")},
@@ -255,10 +259,20 @@ class Merge {
   std::vector<std::uint64_t> lost_;
   std::vector<Json> nodes_;
   Accounts accounts_;
-  std::uint64_t migrations_ = 0, reclaimed_ = 0, thrashed_ = 0;
 };
 
 }  // namespace
+
+void clear_report(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool region = entry.is_directory() && name.starts_with("region_");
+    const bool merged = name == "summary.json" || name == "steps.csv" || name == "collisions.csv" ||
+                        name == "migrations.csv" || name == "violations.csv" || name == "state_hash.csv";
+    if (region || merged) std::filesystem::remove_all(entry.path());
+  }
+}
 
 Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts) { return Merge(folder, facts).run(); }
 

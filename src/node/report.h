@@ -17,10 +17,24 @@ struct RunFacts {
   std::vector<core::RegionId> died;  ///< regions whose process ended before its time
 };
 
+struct DeadRegion {
+  core::RegionId region{};
+  std::size_t bodies = 0;  ///< that went down with it
+};
+
 struct Accounts {
+  std::uint64_t bodies = 0;
   std::uint64_t lost = 0;
   std::uint64_t duplicated = 0;
+  std::uint64_t hand_offs = 0;
+  std::uint64_t thrashed = 0;
+  std::uint64_t reclaimed = 0;
+  double real_time_factor = 0;
+  std::vector<DeadRegion> dead;
 };
+
+/// Removes what an earlier run has left in `folder` (region_* and the merged files). Leaves everything else alone.
+void clear_report(const std::filesystem::path& folder);
 
 /// Reads `folder`/region_*; writes summary.json, steps.csv, collisions.csv, migrations.csv, violations.csv and
 /// state_hash.csv into `folder`. Throws std::runtime_error when it cannot write.

@@ -70,6 +70,43 @@ class NodeLoss : public SystemTest {
     }
   }
 
+  /// Bodies that the records know: alive on a survivor, or named as gone with a dead region.
+  std::set<std::int64_t> bodies_known(const Report& report, int regions, int dead) const {
+    std::set<std::int64_t> known;
+    for (int region = 0; region < regions; ++region) {
+      if (region == dead) continue;
+      const Table bodies(report.region_folder(region) / "bodies.csv");
+      for (std::size_t row = 0; row < bodies.rows(); ++row) known.insert(bodies.whole(row, "body"));
+    }
+    for (const auto& region : report.summary().at("dead_regions")) {
+      for (const auto& body : region.at("bodies")) known.insert(body.get<std::int64_t>());
+    }
+    return known;
+  }
+
+  /// Bodies that exist in state `last` of the demo, as its central run tells.
+  std::set<std::int64_t> bodies_born(int domain, std::int64_t last) {
+    Process& run = launch("central", launch_file("demo"), domain,
+                          Words{"--steps", std::to_string(last)} + set({"regions.count=1", "time.pace=none"}));
+    expect_exit(run, 0);
+    const Table births(report_of("central").region_folder(0) / "births.csv");
+    std::set<std::int64_t> born;
+    for (std::size_t row = 0; row < births.rows(); ++row) {
+      if (births.whole(row, "birth_step") <= last) born.insert(births.whole(row, "body"));
+    }
+    return born;
+  }
+
+  /// `aurasim send`; returns the step that it names.
+  std::int64_t send(const Words& words, int domain) {
+    Process& program =
+        start(Words{"send"} + words + Words{launch_file("demo")} + set({"dds.domain=" + std::to_string(domain)}));
+    expect_exit(program, 0, 15s);
+    const std::string said = program.out();
+    const std::size_t at = said.find("step ");
+    return at == std::string::npos ? -1 : std::stoll(said.substr(at + 5));
+  }
+
   void expect_region_can_die(int dead, int domain) {
     const Report report = report_of("run");
     Process& run = launch("run", launch_file("demo"), domain, {"--duration", "6"});
@@ -87,6 +124,23 @@ class NodeLoss : public SystemTest {
 TEST_F(NodeLoss, KillOneNodeOfFour) { expect_region_can_die(2, 133); }
 
 TEST_F(NodeLoss, RegionZeroWhichStartedTheRunMayDieToo) { expect_region_can_die(0, 134); }
+
+// Nodes write their records to disk every 60 steps. Killed just before that, while paused, so that the step is known.
+TEST_F(NodeLoss, NoBodyOfADeadNodeIsForgotten) {
+  const Report report = report_of("run");
+  Process& run = launch("run", launch_file("demo"), 136);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
+  const std::int64_t paused_at = send({"pause"}, 136);
+  ASSERT_GT(paused_at, 0);
+  const std::int64_t dies_at = (paused_at / 60 + 1) * 60 + 55;
+  ASSERT_EQ(send({"step", "--count", std::to_string(dies_at - paused_at)}, 136), dies_at);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  ASSERT_TRUE(wait_until([&] { return run.err().find("region 2 died") != std::string::npos; }, 5s));
+  send({"stop"}, 136);
+  expect_exit(run, 1);
+  expect_all_bodies_accounted_for(report);
+  EXPECT_THAT(bodies_born(136, dies_at), ::testing::IsSubsetOf(bodies_known(report, 4, 2)));
+}
 
 TEST_F(NodeLoss, AKilledLauncherTakesItsNodesAlong) {
   Process& run = launch("run", launch_file("demo"), 135);
