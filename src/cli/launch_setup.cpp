@@ -74,9 +74,12 @@ double listening_distance_m(const config::Launch& launch) {
   for (const core::Prototype& prototype : launch.scene.prototypes) {
     radius = std::max(radius, core::bounding_radius(launch.scene.shapes[prototype.shape].shape));
   }
+  // The widest band in which a body projects away from corners: its cluster as fast as promised, looking home as well.
   const core::AuraRules rules = aura_rules(launch);
-  const double steps = 3.0 * rules.lookahead;
-  return std::max(launch.neighbour_distance_m, steps * rules.step_s * rules.top_speed_m_s + 2 * radius);
+  const double own_steps = 3.0 * rules.lookahead;
+  const double other_steps = 2.0 * rules.lookahead;
+  const double way = (1 + rules.uncertainty) * (own_steps + other_steps) * rules.step_s * rules.top_speed_m_s;
+  return std::max(launch.neighbour_distance_m, way + 2 * radius);
 }
 
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {

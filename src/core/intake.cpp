@@ -171,12 +171,14 @@ void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
 }
 
 /// Bodies on their way to a dead region come back under a higher epoch. Before its death it may have adopted them and
-/// sent them on, without us hearing of it: so first every live neighbour has to know of the death (from then on it
-/// adopts nothing from there) and to claim what it did adopt.
+/// sent them on, without us hearing of it: so first every live neighbour that it could have sent them to has to know of
+/// the death (from then on it adopts nothing from there) and to claim what it did adopt. A neighbour of the dead region
+/// that is none of ours is out of reach of the same bodies.
 void Intake::reclaim(Step n, ViolationLog& violations) {
   const auto all_know = [this](RegionId dead) {
-    return std::all_of(neighbours_.begin(), neighbours_.end(),
-                       [&](const Neighbour& q) { return !q.alive() || q.holds_for_dead(dead); });
+    return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
+      return !q.alive() || !vicinity_.are_neighbours(q.id(), dead) || q.holds_for_dead(dead);
+    });
   };
   const auto claims = [](std::span<const BodyEpoch> claims, const BodyRecord& body) {
     return std::any_of(claims.begin(), claims.end(),

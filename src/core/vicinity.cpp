@@ -4,8 +4,11 @@
 
 namespace aurasim::core {
 
-Vicinity::Vicinity(const RegionMap& region_map, RegionId region, double neighbour_distance_m)
-    : map(region_map), self(region), neighbours(region_map.neighbours(region, neighbour_distance_m)) {
+Vicinity::Vicinity(const RegionMap& region_map, RegionId region, double distance_m)
+    : map(region_map),
+      self(region),
+      neighbour_distance_m(distance_m),
+      neighbours(region_map.neighbours(region, distance_m)) {
   if (neighbours.size() > 64) {
     throw BadRegionMap("region " + std::to_string(value_of(region)) + " has " + std::to_string(neighbours.size()) +
                        " neighbours; at most 64 are allowed");
@@ -27,6 +30,10 @@ bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
 }
 
 bool Vicinity::is_neighbour(RegionId id) const { return std::binary_search(neighbours.begin(), neighbours.end(), id); }
+
+bool Vicinity::are_neighbours(RegionId a, RegionId b) const {
+  return map.region(a).distance(map.region(b)) <= neighbour_distance_m;
+}
 
 std::uint64_t Vicinity::bit_of(RegionId id) const {
   const auto found = std::lower_bound(neighbours.begin(), neighbours.end(), id);

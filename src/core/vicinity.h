@@ -14,6 +14,7 @@ struct Vicinity {
 
   const RegionMap& map;
   RegionId self;
+  double neighbour_distance_m;
   std::vector<RegionId> neighbours;  ///< ascending
 
   const Rectangle& home() const { return map.region(self); }
@@ -22,6 +23,8 @@ struct Vicinity {
   /// No other region's territory is within `distance_m` of `p`.
   bool deep_inside(const Vec3& p, double distance_m) const;
   bool is_neighbour(RegionId id) const;
+  /// Do two other regions listen to each other?
+  bool are_neighbours(RegionId a, RegionId b) const;
   /// The bit of one neighbour; 0 for ourselves and for regions that do not listen.
   std::uint64_t bit_of(RegionId id) const;
 };

@@ -42,6 +42,7 @@ struct Move {
   bool pulled = false;  ///< by AC
   bool reclaimed = false;
   bool touched = true;
+  bool adopted = false;  ///< the destination has said so
 };
 
 class Merge {
@@ -98,6 +99,7 @@ class Merge {
       move.pulled = c[8] == "aura_collision";
       move.reclaimed = c[9] == "1";
       if (departure) move.touched = c[10] == "1";
+      move.adopted = move.adopted || !departure;
     });
     for (const auto& [key, move] : moves) moves_[move.body].push_back(move);
   }
@@ -143,7 +145,9 @@ class Merge {
       std::uint64_t host = first;
       std::uint64_t epoch = 0;
       for (const Move& move : moves_[body]) {
-        if (move.epoch > epoch) host = move.destination;
+        // What a node had sent off but nobody adopted before it died has died with it.
+        const bool dropped = !move.adopted && died(move.source);
+        if (move.epoch > epoch) host = dropped ? move.source : move.destination;
         epoch = std::max(epoch, move.epoch);
       }
       if (died(host)) {
@@ -267,7 +271,7 @@ void clear_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) return;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const bool region = entry.is_directory() && name.starts_with("region_");
+    const bool region = name.starts_with("region_") && std::filesystem::exists(entry.path() / "steps.csv");
     const bool merged = name == "summary.json" || name == "steps.csv" || name == "collisions.csv" ||
                         name == "migrations.csv" || name == "violations.csv" || name == "state_hash.csv";
     if (region || merged) std::filesystem::remove_all(entry.path());

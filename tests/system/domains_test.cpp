@@ -17,7 +17,7 @@ TEST_F(Domains, TwoDomainsDoNotSeeEachOther) {
   for (const char* name : {"here", "there"}) {
     expect_all_bodies_accounted_for(report_of(name));
     EXPECT_EQ(report_of(name).count("steps"), 180);
-    for (const auto& node : report_of(name).summary().at("nodes")) EXPECT_EQ(node.at("messages_of_strangers"), 0);
+    for (const auto& node : report_of(name).entry("nodes")) EXPECT_EQ(node.at("messages_of_strangers"), 0);
   }
 }
 
@@ -41,6 +41,16 @@ TEST_F(Domains, TheSameSceneOnAnotherMapIsRefusedToo) {
       launch("second", launch_file("two_spheres"), 143, Words{"--duration", "2"} + set({"regions.count=3"}));
   expect_exit(second, 3);
   EXPECT_THAT(second.err(), AllOf(HasSubstr("DDS domain 143"), HasSubstr("2 regions"), HasSubstr("3 regions")));
+  expect_exit(first, 0);
+  expect_all_bodies_accounted_for(report_of("first"));
+}
+
+TEST_F(Domains, TheSameRunTwiceIsRefusedToo) {
+  Process& first = launch("first", launch_file("two_spheres"), 145, {"--duration", "6"});
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("first"), 2, 0));
+  Process& second = launch("second", launch_file("two_spheres"), 145, {"--duration", "2"});
+  expect_exit(second, 3);
+  EXPECT_THAT(second.err(), HasSubstr("DDS domain 145"));
   expect_exit(first, 0);
   expect_all_bodies_accounted_for(report_of("first"));
 }

@@ -36,7 +36,9 @@ class Report {
   std::filesystem::path region_folder(int region) const { return folder_ / ("region_" + std::to_string(region)); }
 
   nlohmann::json summary() const;
-  std::int64_t count(const char* key) const { return summary().at(key).get<std::int64_t>(); }
+  /// One entry of the summary, as a value: a loop over it outlives the summary.
+  nlohmann::json entry(const char* key) const { return summary().at(key); }
+  std::int64_t count(const char* key) const { return entry(key).get<std::int64_t>(); }
 
   Table steps() const { return Table(folder_ / "steps.csv"); }
   Table collisions() const { return Table(folder_ / "collisions.csv"); }

@@ -1,0 +1,92 @@
+// One node's hearing, region 0 of three columns that all listen to each other, and what tests say to it.
+#pragma once
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "core/intake.h"
+#include "core/letters.h"
+
+namespace aurasim::core::testing {
+
+class IntakeTest : public ::testing::Test {
+ protected:
+  void listen(SyncMode sync, int lookahead) {
+    settings.sync = sync;
+    settings.lookahead = lookahead;
+    intake.emplace(settings, vicinity, departures);
+  }
+
+  /// Any message, as one of this run.
+  template <class Message>
+  Message ours(Message message) const {
+    message.generation = settings.generation;
+    if constexpr (requires { message.map_version; }) message.map_version = map.version();
+    return message;
+  }
+  void hear(AuraBatch b) {
+    inbox.auras.push_back(ours(std::move(b)));
+    intake->accept(inbox);
+  }
+  void hear(HandOff h, std::uint64_t sequence) {
+    h.sequence = sequence;
+    inbox.hand_offs.push_back(ours(std::move(h)));
+    intake->accept(inbox);
+  }
+  void hear_ack(std::uint32_t from, std::uint64_t sequence) {
+    inbox.acks.push_back(ours(HandOffAck{region(from), region(0), 0, 0, sequence}));
+    intake->accept(inbox);
+  }
+  /// `from` has said all its batches up to `stamp`.
+  void hear_until(std::uint32_t from, Step stamp) {
+    for (Step s = intake->neighbours()[from - 1].received() + 1; s <= stamp; ++s) hear(batch(from, s));
+  }
+  void hear_all_until(Step stamp) {
+    hear_until(1, stamp);
+    hear_until(2, stamp);
+  }
+  /// In its next batch, `from` says whom it holds for dead, and whom it has adopted from them.
+  void hear_of_death(std::uint32_t from, std::uint32_t dead, std::vector<BodyEpoch> claims = {}) {
+    AuraBatch b = batch(from, intake->neighbours()[from - 1].received() + 1);
+    b.dead = {region(dead)};
+    b.claims = std::move(claims);
+    hear(b);
+  }
+  void lose(std::uint32_t neighbour) {
+    inbox.peers.push_back({region(neighbour), PeerChange::kLost});
+    intake->accept(inbox);
+  }
+  void send(std::uint32_t to, Step stamp, std::initializer_list<BodyRecord> bodies) {
+    departures.record(ours(hand_off(0, to, stamp, bodies)));
+  }
+
+  std::vector<Adoption> receive(Step n) { return intake->receive(n, violations); }
+  Outbox speak(Step stamp = 0) {
+    Outbox outbox;
+    intake->fill(outbox, stamp);
+    return outbox;
+  }
+  static std::vector<std::uint64_t> ids_of(const std::vector<Adoption>& adoptions) {
+    std::vector<std::uint64_t> ids;
+    for (const Adoption& a : adoptions) {
+      for (const BodyRecord& b : a.cluster.bodies) ids.push_back(value_of(b.id));
+    }
+    return ids;
+  }
+  std::vector<std::uint64_t> acknowledged() {
+    std::vector<std::uint64_t> sequences;
+    for (const HandOffAck& ack : speak().acks) sequences.push_back(ack.sequence);
+    return sequences;
+  }
+
+  const RegionMap map = RegionMap::columns(3, 10);
+  const Vicinity vicinity{map, region(0), 1e9};
+  IntakeSettings settings{.generation = 4, .sync = SyncMode::kBounded, .lookahead = 2};
+  DepartureLedger departures;
+  ViolationLog violations;
+  Inbox inbox;
+  std::optional<Intake> intake{std::in_place, settings, vicinity, departures};
+};
+
+}  // namespace aurasim::core::testing

@@ -1,0 +1,266 @@
+// What takes effect when: the gate, lateness, copies, strangers and generations.
+#include "core/intake.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/intake_fixture.h"
+#include "core/random.h"
+
+namespace aurasim::core::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+using Gate = IntakeTest;
+using Effect = IntakeTest;
+using Copies = IntakeTest;
+using Strangers = IntakeTest;
+
+TEST_F(Gate, IsOpenForTheFirstStates) {
+  listen(SyncMode::kBounded, 2);
+  EXPECT_TRUE(intake->ready(1));
+  EXPECT_FALSE(intake->ready(2));
+}
+
+TEST_F(Gate, WaitsForEveryNeighboursStampOfKStepsAgo) {
+  listen(SyncMode::kBounded, 2);
+  hear_until(1, 8);
+  EXPECT_THAT(intake->missing(10), ElementsAre(region(2)));
+  hear_until(2, 7);
+  EXPECT_FALSE(intake->ready(10));
+  hear_until(2, 8);
+  EXPECT_TRUE(intake->ready(10));
+  EXPECT_THAT(intake->missing(11), ElementsAre(region(1), region(2)));
+}
+
+TEST_F(Gate, WaitsForTheHandOffsOfKStepsAgo) {
+  listen(SyncMode::kDeterministic, 1);
+  hear_until(1, 4);
+  hear_until(2, 9);
+  AuraBatch b = batch(1, 5);
+  b.hand_offs = {{region(0), 2}, {region(2), 7}};
+  hear(b);
+  EXPECT_TRUE(intake->ready(5));
+  EXPECT_THAT(intake->missing(6), ElementsAre(region(1)));
+  hear(hand_off(1, 0, 5, {record_of(2, 1)}), 2);
+  EXPECT_FALSE(intake->ready(6)) << "the first one has not come";
+  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_TRUE(intake->ready(6));
+}
+
+TEST_F(Gate, ANewerHandOffThatIsUnderWayKeepsNobodyWaiting) {
+  listen(SyncMode::kBounded, 2);
+  hear_all_until(7);
+  AuraBatch b = batch(1, 8);
+  b.hand_offs = {{region(0), 1}};
+  hear(b);
+  EXPECT_TRUE(intake->ready(9));
+  hear_until(2, 8);
+  EXPECT_FALSE(intake->ready(10));
+}
+
+TEST_F(Gate, IsAlwaysOpenWhenFreeRunning) {
+  listen(SyncMode::kFreeRunning, 1);
+  EXPECT_TRUE(intake->ready(100));
+}
+
+TEST_F(Gate, DoesNotWaitForTheDead) {
+  listen(SyncMode::kBounded, 1);
+  hear_until(1, 9);
+  EXPECT_FALSE(intake->ready(10));
+  lose(2);
+  EXPECT_TRUE(intake->ready(10));
+}
+
+TEST_F(Effect, IsExactlyKStepsAfterTheStampInDeterministicMode) {
+  for (const int lookahead : {1, 2, 3}) {
+    listen(SyncMode::kDeterministic, lookahead);
+    hear_all_until(20);
+    hear(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
+    const Step due = 10 + lookahead;
+    EXPECT_THAT(receive(due - 1), IsEmpty());
+    EXPECT_EQ(intake->neighbours()[0].applied(), 9);
+    const std::vector<Adoption> joined = receive(due);
+    EXPECT_EQ(intake->neighbours()[0].applied(), 10);
+    ASSERT_EQ(ids_of(joined), std::vector<std::uint64_t>{1});
+    EXPECT_EQ(joined[0].stamp, 10);
+    EXPECT_EQ(joined[0].source, region(1));
+    EXPECT_FALSE(joined[0].reclaimed);
+    EXPECT_THAT(receive(due + 1), IsEmpty());
+  }
+  EXPECT_EQ(violations.total(), 0u);
+}
+
+TEST_F(Effect, IsAsSoonAsPossibleInBoundedModeButNotBeforeTheStateAfterTheStamp) {
+  listen(SyncMode::kBounded, 3);
+  hear_all_until(20);
+  hear(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
+  EXPECT_THAT(receive(10), IsEmpty());
+  EXPECT_EQ(intake->neighbours()[0].applied(), 9);
+  EXPECT_EQ(ids_of(receive(11)), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(intake->neighbours()[0].applied(), 10);
+}
+
+TEST_F(Effect, IsInOrderOfStampSourceAndNumberWhateverTheArrival) {
+  Random random("orders");
+  struct Sent {
+    std::uint32_t source;
+    Step stamp;
+    std::uint64_t sequence;
+  };
+  std::vector<Sent> sent = {{1, 8, 1}, {1, 9, 2}, {1, 9, 3}, {2, 8, 1}, {2, 8, 2}, {2, 9, 3}};
+  for (int run = 0; run < 50; ++run) {
+    std::shuffle(sent.begin(), sent.end(), random.bits());
+    listen(SyncMode::kDeterministic, 1);
+    hear_all_until(9);
+    for (const Sent& s : sent) hear(hand_off(s.source, 0, s.stamp, {record_of(100 * s.source + s.sequence, 1)}), s.sequence);
+    EXPECT_THAT(ids_of(receive(10)), ElementsAre(101, 201, 202, 102, 103, 203));
+  }
+}
+
+TEST_F(Effect, AMessageLaterThanKStepsIsAViolation) {
+  listen(SyncMode::kFreeRunning, 2);
+  hear_all_until(8);
+  receive(10);
+  EXPECT_EQ(violations.total(), 0u);
+  receive(11);
+  EXPECT_EQ(violations.count(ViolationKind::kLatency), 2u);
+  EXPECT_EQ(violations.recent().back().value, 3);
+  EXPECT_EQ(violations.recent().back().allowed, 2);
+}
+
+TEST_F(Effect, AHandOffLaterThanKStepsIsAViolationAndStillAdopted) {
+  listen(SyncMode::kFreeRunning, 2);
+  hear_all_until(10);
+  hear(hand_off(1, 0, 7, {record_of(1, 1)}), 1);
+  EXPECT_EQ(ids_of(receive(11)), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(violations.count(ViolationKind::kLatency), 1u);
+}
+
+TEST_F(Copies, OfBatchesAndHandOffsTakeNoEffect) {
+  listen(SyncMode::kBounded, 1);
+  hear(batch(1, 0));
+  hear(batch(1, 0));
+  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  EXPECT_EQ(ids_of(receive(1)), std::vector<std::uint64_t>{1});
+  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  EXPECT_THAT(receive(2), IsEmpty());
+  EXPECT_EQ(intake->counters().copies, 3u);
+  EXPECT_EQ(intake->counters().adopted, 1u);
+}
+
+TEST_F(Copies, AHandOffIsAcknowledgedWhenItIsAdoptedAndNotBefore) {
+  listen(SyncMode::kDeterministic, 2);
+  hear_all_until(9);
+  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_THAT(acknowledged(), IsEmpty());
+  receive(6);
+  EXPECT_THAT(acknowledged(), IsEmpty());
+  receive(7);
+  const Outbox outbox = speak(7);
+  ASSERT_EQ(outbox.acks.size(), 1u);
+  EXPECT_EQ(outbox.acks[0].sequence, 1u);
+  EXPECT_EQ(outbox.acks[0].stamp, 7);
+  EXPECT_EQ(outbox.acks[0].source, region(0));
+  EXPECT_EQ(outbox.acks[0].destination, region(1));
+  EXPECT_EQ(outbox.acks[0].generation, settings.generation);
+  EXPECT_THAT(acknowledged(), IsEmpty());
+}
+
+TEST_F(Copies, AreAcknowledgedAgainOnlyAfterTheAdoption) {
+  listen(SyncMode::kDeterministic, 2);
+  hear_all_until(9);
+  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_THAT(acknowledged(), IsEmpty());
+  receive(7);
+  EXPECT_THAT(acknowledged(), ElementsAre(1));
+  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_THAT(acknowledged(), ElementsAre(1));
+}
+
+TEST_F(Copies, OfAcknowledgementsAreCounted) {
+  listen(SyncMode::kBounded, 1);
+  send(1, 3, {record_of(1, 1)});
+  hear_ack(1, 1);
+  EXPECT_EQ(departures.open_bodies(), 0u);
+  EXPECT_EQ(intake->counters().copies, 0u);
+  hear_ack(1, 1);
+  EXPECT_EQ(intake->counters().copies, 1u);
+}
+
+TEST_F(Strangers, OfAnEarlierGenerationAreRefused) {
+  inbox.auras.push_back(ours(batch(1, 0)));
+  inbox.auras.back().generation = settings.generation - 1;
+  inbox.hand_offs.push_back(ours(hand_off(1, 0, 0, {record_of(1, 1)})));
+  inbox.hand_offs.back().generation = settings.generation - 1;
+  intake->accept(inbox);
+  EXPECT_EQ(intake->counters().strangers, 2u);
+  EXPECT_EQ(intake->neighbours()[0].received(), -1);
+  EXPECT_TRUE(inbox.auras.empty());
+  EXPECT_TRUE(inbox.hand_offs.empty());
+}
+
+TEST_F(Strangers, OfAnotherMapAreRefused) {
+  inbox.auras.push_back(ours(batch(1, 0)));
+  ++inbox.auras.back().map_version;
+  inbox.hand_offs.push_back(ours(hand_off(1, 0, 0, {record_of(1, 1)})));
+  ++inbox.hand_offs.back().map_version;
+  intake->accept(inbox);
+  EXPECT_EQ(intake->counters().strangers, 2u);
+  EXPECT_EQ(intake->neighbours()[0].received(), -1);
+}
+
+TEST_F(Strangers, WhoAreNoNeighboursAreRefused) {
+  hear(batch(7, 0));
+  hear(batch(0, 0));
+  hear(hand_off(7, 0, 0, {record_of(1, 1)}), 1);
+  hear_ack(7, 1);
+  EXPECT_EQ(intake->counters().strangers, 4u);
+}
+
+TEST_F(Strangers, TheDeadAreNotHeardAnyMore) {
+  hear_until(1, 3);
+  hear(hand_off(1, 0, 3, {record_of(1, 1)}), 1);
+  lose(1);
+  hear(batch(1, 4));
+  hear(hand_off(1, 0, 4, {record_of(2, 1)}), 2);
+  EXPECT_EQ(intake->counters().strangers, 2u);
+  EXPECT_THAT(receive(4), IsEmpty()) << "what came from the dead and has no effect yet never will have";
+}
+
+TEST_F(Strangers, MessagesToOthersAreIgnored) {
+  hear(hand_off(1, 2, 0, {record_of(1, 1)}), 1);
+  hear_until(1, 3);
+  EXPECT_THAT(receive(4), IsEmpty());
+}
+
+TEST_F(Strangers, OfALaterGenerationStayInTheInboxInOrder) {
+  for (const Step stamp : {0, 1, 2}) {
+    inbox.auras.push_back(ours(batch(1, stamp)));
+    inbox.auras.back().generation += 1;
+    inbox.auras.push_back(ours(batch(2, stamp)));
+  }
+  inbox.hand_offs.push_back(ours(hand_off(1, 0, 0, {record_of(1, 1)})));
+  inbox.hand_offs.back().generation += 1;
+  inbox.acks.push_back(ours(HandOffAck{region(1), region(0), 0, 0, 1}));
+  inbox.acks.back().generation += 1;
+  intake->accept(inbox);
+  ASSERT_EQ(inbox.auras.size(), 3u);
+  for (Step stamp = 0; stamp < 3; ++stamp) {
+    EXPECT_EQ(inbox.auras[static_cast<std::size_t>(stamp)].source, region(1));
+    EXPECT_EQ(inbox.auras[static_cast<std::size_t>(stamp)].stamp, stamp);
+  }
+  EXPECT_EQ(inbox.hand_offs.size(), 1u);
+  EXPECT_EQ(inbox.acks.size(), 1u);
+  EXPECT_EQ(intake->neighbours()[1].received(), 2);
+  EXPECT_EQ(intake->counters().strangers, 0u);
+}
+
+}  // namespace
+}  // namespace aurasim::core::testing
