@@ -19,6 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kStatusPeriod = 100ms;
 constexpr auto kLinger = 1500ms;
+constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
 
 dds::TransportSettings transport_settings(const config::Launch& launch, core::RegionId region) {
   dds::TransportSettings settings;
@@ -42,7 +43,6 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       options_(options),
       participant_(dds_settings(launch)),
       control_(participant_, {launch.regions.version(), options.region}),
-      transport_(participant_, transport_settings(launch, options.region)),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
   status_.region = options.region;
   status_.pid = static_cast<std::uint32_t>(::getpid());
@@ -54,9 +54,11 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
 }
 
 ExitCode NodeProcess::run() {
-  control_.publish_map(world_map(launch_));
-  publish(dds::NodeState::kStarting);
   try {
+    if (!domain_is_free()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
+    control_.publish_map(world_map(launch_));
+    publish(dds::NodeState::kStarting);
+    transport_.emplace(participant_, transport_settings(launch_, options_.region));
     if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
     begin_generation(start_->generation, start_->epoch_ns);
     return run_steps();
@@ -68,7 +70,7 @@ ExitCode NodeProcess::run() {
 
 ExitCode NodeProcess::refuse(const std::string& why) {
   spdlog::error("{}", why);
-  publish(dds::NodeState::kFailed, why);
+  if (transport_) publish(dds::NodeState::kFailed, why);  // before that, the region may be another process's
   return ExitCode::kRefused;
 }
 
@@ -86,15 +88,38 @@ bool NodeProcess::another_run_is_here() {
   return false;
 }
 
+/// Another process that is this region: the same launch twice, by mistake.
+bool NodeProcess::this_region_is_taken() {
+  for (const auto& [region, seen] : control_.statuses()) {
+    const dds::Status& other = seen.status;
+    const bool over = other.state == dds::NodeState::kFinished || other.state == dds::NodeState::kFailed;
+    if (region != options_.region || other.pid == status_.pid || seen.lost || over) continue;
+    refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
+                       core::value_of(region), launch_.dds.domain, other.pid, other.step));
+    return true;
+  }
+  return false;
+}
+
+/// Listens before it speaks: a node's endpoints would disturb a run that is already here.
+bool NodeProcess::domain_is_free() {
+  const auto until = Clock::now() + kListenFirst;
+  while (Clock::now() < until) {
+    if (stop_requested() || another_run_is_here() || this_region_is_taken()) return false;
+    control_.wait(20ms);
+  }
+  return true;
+}
+
 bool NodeProcess::meet_neighbours() {
   const auto deadline = Clock::now() + options_.start_time_out;
-  while (!transport_.all_matched()) {
+  while (!transport_->all_matched()) {
     if (stop_requested() || another_run_is_here()) return false;
     if (Clock::now() > deadline) {
       try {
-        transport_.wait_until_matched(0ns);
+        transport_->wait_until_matched(0ns);
       } catch (const dds::NeighboursMissing& missing) {
-        refuse(missing.what());
+        refuse(fmt::format("after {} s: {}", options_.start_time_out.count(), missing.what()));
         return false;
       }
     }
@@ -146,7 +171,7 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
   generation_ = generation;
   node::NodeSetup setup = node_setup(launch_, options_.region, generation);
   setup.hash_states = options_.report.has_value();
-  node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, transport_);
+  node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
   node_->accept_early_mail(std::move(mail));
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
@@ -197,12 +222,12 @@ bool NodeProcess::wait_until_due() {
   }
   const std::chrono::nanoseconds until = pacer_.until(next);
   if (until > 0ns) {
-    transport_.wait_for_arrival(std::min<std::chrono::nanoseconds>(until, 20ms));
+    transport_->wait_for_arrival(std::min<std::chrono::nanoseconds>(until, 20ms));
     node_->ready();
     return false;
   }
   if (node_->ready()) return true;
-  transport_.wait_for_arrival(20ms);
+  transport_->wait_for_arrival(20ms);
   wait_ms_ += milliseconds(Clock::now() - begin);
   publish_running();
   return false;

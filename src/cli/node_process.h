@@ -47,8 +47,10 @@ class NodeProcess {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   };
 
+  bool domain_is_free();
   bool meet_neighbours();
   bool another_run_is_here();
+  bool this_region_is_taken();
   void start_when_all_wait();
   bool wait_for_start();
   void begin_generation(core::Generation generation, std::int64_t epoch_ns);
@@ -70,7 +72,7 @@ class NodeProcess {
   NodeOptions options_;
   dds::Participant participant_;
   dds::ControlBus control_;
-  dds::DdsTransport transport_;
+  std::optional<dds::DdsTransport> transport_;  ///< once the domain is known to be free
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;

@@ -228,9 +228,9 @@ void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {
     if (left <= std::chrono::nanoseconds::zero()) {
       std::vector<RegionId> regions;
       const auto texts = impl_->missing_neighbours(regions);
-      throw NeighboursMissing(fmt::format("region {} waited {:.1f} s in vain for {}", value_of(impl_->settings.region),
-                                          std::chrono::duration<double>(time_out).count(), fmt::join(texts, ", ")),
-                              regions);
+      throw NeighboursMissing(
+          fmt::format("region {} has waited in vain for {}", value_of(impl_->settings.region), fmt::join(texts, ", ")),
+          regions);
     }
     impl_->bell.wait(std::min<std::chrono::nanoseconds>(left, std::chrono::seconds(1)));
   }

@@ -70,9 +70,9 @@ class DdsTransport final : public transport::Transport {
   bool all_matched() const;
 
   /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back and
-  /// matched. A process that dies is lost after the participant's lease; one that hangs after Settings::hang_limit and
-  /// one and a half leases of its aura writer; one that was restarted before that gives kLost and then kJoined. The
-  /// first meeting is no event.
+  /// matched. A process that dies is lost after one and a half leases of its aura writer, one that hangs after
+  /// Settings::hang_limit more, one that leaves at once; one that was restarted before that gives kLost and then
+  /// kJoined. The first meeting is no event.
   void take(core::Inbox& inbox) override;
   /// Never blocks for longer than the profiles' max_blocking_time (twice) per sample.
   void send(const core::Outbox& outbox) override;

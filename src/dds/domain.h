@@ -44,6 +44,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   eprosima::fastdds::dds::Topic& topic(TopicId id);
   Profiles& profiles() { return profiles_; }
   Directory& directory() { return directory_; }
+  /// After which peers forget a silent participant.
+  std::chrono::nanoseconds lease() const;
   Pulse& pulse() { return *pulse_; }
 
  private:

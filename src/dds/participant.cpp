@@ -11,4 +11,6 @@ Participant::~Participant() = default;
 
 void Participant::progress() { domain_->pulse().progress(); }
 
+bool Participant::outlived_its_lease() const { return domain_->pulse().longest_stall() > domain_->lease(); }
+
 }  // namespace aurasim::dds

@@ -43,7 +43,17 @@ void Pulse::run() {
         writer->assert_liveliness();
       }
     }
-    condition_.wait_for(lock, interval_);
+    const std::int64_t started_ns = now_ns();
+    const auto planned = interval_;
+    condition_.wait_for(lock, planned);
+    note_stall(started_ns, planned);
+  }
+}
+
+void Pulse::note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned) {
+  const std::int64_t stall_ns = now_ns() - started_ns - planned.count();
+  if (stall_ns > longest_stall_ns_.load()) {
+    longest_stall_ns_.store(stall_ns);
   }
 }
 

