@@ -27,11 +27,17 @@ dds::TransportSettings transport_settings(const config::Launch& launch, core::Re
   settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
   settings.map_version = launch.regions.version();
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
+  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size());
+  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size());
   return settings;
 }
 
 dds::Durations summary_of(std::vector<double>& values) {
   return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
+}
+
+bool is_live(const dds::SeenStatus& seen) {
+  return !seen.lost && seen.status.state != dds::NodeState::kFinished && seen.status.state != dds::NodeState::kFailed;
 }
 
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
@@ -92,8 +98,8 @@ bool NodeProcess::another_run_is_here() {
 bool NodeProcess::this_region_is_taken() {
   for (const auto& [region, seen] : control_.statuses()) {
     const dds::Status& other = seen.status;
-    const bool over = other.state == dds::NodeState::kFinished || other.state == dds::NodeState::kFailed;
-    if (region != options_.region || other.pid == status_.pid || seen.lost || over) continue;
+    if (region != options_.region || other.pid == status_.pid || !is_live(seen)) continue;
+    if (other.agreement != status_.agreement) continue;  // its map says more
     refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
                        core::value_of(region), launch_.dds.domain, other.pid, other.step));
     return true;
@@ -103,8 +109,15 @@ bool NodeProcess::this_region_is_taken() {
 
 /// Listens before it speaks: a node's endpoints would disturb a run that is already here.
 bool NodeProcess::domain_is_free() {
-  const auto until = Clock::now() + kListenFirst;
-  while (Clock::now() < until) {
+  const auto begin = Clock::now();
+  const auto strangers = [this] {
+    const auto& statuses = control_.statuses();
+    return std::any_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
+      return is_live(entry.second) && entry.second.status.agreement != status_.agreement;
+    });
+  };
+  // Whoever has a status has a map, which is on its way.
+  while (Clock::now() < begin + (strangers() ? 6 * kListenFirst : kListenFirst)) {
     if (stop_requested() || another_run_is_here() || this_region_is_taken()) return false;
     control_.wait(20ms);
   }

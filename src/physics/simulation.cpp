@@ -92,7 +92,8 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
   body.rigid->setLinearVelocity(to_bullet(record.v_WB));
   body.rigid->setAngularVelocity(to_bullet(record.w_WB));
-  body.rigid->forceActivationState(prototype.can_sleep ? record.activation_state : DISABLE_DEACTIVATION);
+  const bool keeps_state = prototype.can_sleep || record.activation_state == DISABLE_SIMULATION;
+  body.rigid->forceActivationState(keeps_state ? record.activation_state : DISABLE_DEACTIVATION);
   body.rigid->setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
   return body;
 }

@@ -176,10 +176,9 @@ class SweptMeeting : public AuraTest {
     for (int i = 0; i < horizon * rules.substeps; ++i) {
       const double k = static_cast<double>(i) / rules.substeps;
       if (k + 1e-9 < std::max(a.unborn_steps, b.unborn_steps)) continue;
-      const double spread = rules.uncertainty * rules.step_s *
-                            (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k));
-      const double gap =
-          shapes.clearance(a.prototype, aura().ahead(a, k), b.prototype, aura().ahead(b, k), 1e300);
+      const double spread =
+          rules.uncertainty * rules.step_s * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k));
+      const double gap = shapes.clearance(a.prototype, aura().ahead(a, k), b.prototype, aura().ahead(b, k), 1e300);
       least = std::min(least, gap - rules.contact_margin_m - spread);
     }
     return least;

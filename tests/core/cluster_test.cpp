@@ -112,7 +112,8 @@ class ClusterTest : public ::testing::Test {
 };
 
 TEST_F(ClusterTest, BodiesInContactMoveTogetherFromTheStart) {
-  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0)), c = place(Vec3(100, 0, 0)), d = place(Vec3(150, 0, 0));
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0)), c = place(Vec3(100, 0, 0)),
+             d = place(Vec3(150, 0, 0));
   contact(a, b);
   contact(c, b);
   begin();
@@ -230,8 +231,8 @@ TEST_F(ClusterTest, AreThoseOfTheDefinition) {
   EXPECT_GT(united, 5000u);
 }
 
-/// A cradle: c is about to strike b, which then strikes a, all within one step. Fails when only a's cluster is completed,
-/// because b's speed is then its own (see DISABLED_OneThatIsAskedForIsTheSameWhicheverOthersWere).
+/// A cradle: c is about to strike b, which then strikes a, all within one step. Fails when only a's cluster is
+/// completed, because b's speed is then its own (see DISABLED_OneThatIsAskedForIsTheSameWhicheverOthersWere).
 TEST_F(ClusterTest, DISABLED_ABodyThatIsAboutToBeStruckCountsAsFast) {
   const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(0.95, 0, 0)), c = place(Vec3(1.85, 0, 0), Vec3(-30, 0, 0));
   complete_all();

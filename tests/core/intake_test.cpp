@@ -117,7 +117,8 @@ TEST_F(Effect, IsInOrderOfStampSourceAndNumberWhateverTheArrival) {
     std::shuffle(sent.begin(), sent.end(), random.bits());
     listen(SyncMode::kDeterministic, 1);
     hear_all_until(9);
-    for (const Sent& s : sent) hear(hand_off(s.source, 0, s.stamp, {record_of(100 * s.source + s.sequence, 1)}), s.sequence);
+    for (const Sent& s : sent)
+      hear(hand_off(s.source, 0, s.stamp, {record_of(100 * s.source + s.sequence, 1)}), s.sequence);
     EXPECT_THAT(ids_of(receive(10)), ElementsAre(101, 201, 202, 102, 103, 203));
   }
 }

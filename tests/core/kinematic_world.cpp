@@ -183,8 +183,8 @@ bool KinematicWorld::overlap(const Pair& pair, std::size_t instant) const {
   const Body& b = bodies_.at(pair.second);
   const auto born = static_cast<std::size_t>(std::max(a.traveller.birth, b.traveller.birth) * rules_.substeps);
   if (instant < born) return false;
-  return shapes_.clearance(a.traveller.prototype, pose_of(a, instant), b.traveller.prototype, pose_of(b, instant),
-                           0) <= 0;
+  return shapes_.clearance(a.traveller.prototype, pose_of(a, instant), b.traveller.prototype, pose_of(b, instant), 0) <=
+         0;
 }
 
 BodyState KinematicWorld::state_of_body(const Body& body) const {

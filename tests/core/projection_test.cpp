@@ -230,7 +230,7 @@ TEST_P(ProjectionTest, ABodySentAwayStaysAsAGhostFor2KSteps) {
 
 TEST_P(ProjectionTest, AHitSendsTheWholeClusterToTheLowerRegion) {
   make_world(RegionMap::columns(2, 100));
-  place_flying(BodyId{1}, Vec3(-20, 0, 0), Vec3(24, 0, 0));
+  place_flying(BodyId{1}, Vec3(-32, 0, 0), Vec3(24, 0, 0));
   place_at(BodyId{2}, Vec3(3, 0, 0));
   place_at(BodyId{3}, Vec3(4, 0, 0));
   place_at(BodyId{4}, Vec3(45, 0, 0));

@@ -58,15 +58,15 @@ class RandomWalk : public ::testing::TestWithParam<Walk> {
     Traveller t;
     t.id = id;
     t.prototype = random.chance(0.2) ? big : ball;
-    Vec3 p = random.in_box(15) + Vec3(0, 0, 60.0 * random.below(4));
+    Vec3 p = Vec3(1, 1, 0.1).cwiseProduct(random.in_box(12)) + Vec3(0, 0, 60.0 * random.below(3));
     Vec3 v = Vec3::Zero();
     const double home_z = p.z();
     const double h = rules.step_s / rules.substeps;
     t.p_WB.push_back(p);
     t.v_WB.push_back(v);
     for (Step n = 1; n <= kSteps; ++n) {
-      if (random.chance(0.03)) v = random.between(0, 30) * random.direction();
-      if ((p - Vec3(0, 0, home_z)).norm() > 20) v = 20 * (Vec3(0, 0, home_z) - p).normalized();
+      if (random.chance(0.03)) v = random.between(0, 30) * Vec3(1, 1, 0.1).cwiseProduct(random.direction());
+      if ((p - Vec3(0, 0, home_z)).norm() > 15) v = 20 * (Vec3(0, 0, home_z) - p).normalized();
       for (int s = 0; s < rules.substeps; ++s) t.p_WB.push_back(p += v * h);
       t.v_WB.push_back(v);
     }
@@ -155,8 +155,7 @@ INSTANTIATE_TEST_SUITE_P(All, RandomWalk,
                          [](const auto& info) {
                            char name[16];
                            std::snprintf(name, sizeof name, "%sK%d",
-                                         info.param.kind == AuraKind::kTight ? "Tight" : "Swept",
-                                         info.param.lookahead);
+                                         info.param.kind == AuraKind::kTight ? "Tight" : "Swept", info.param.lookahead);
                            return std::string(name);
                          });
 

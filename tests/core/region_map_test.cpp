@@ -27,12 +27,17 @@ struct NamedMap {
 };
 
 /// A pinwheel: five boxes around each other that no line cuts through.
-RegionMap pinwheel() { return RegionMap::boxes({{0, 0, 2, 1}, {2, 0, 3, 2}, {1, 2, 3, 3}, {0, 1, 1, 3}, {1, 1, 2, 2}}); }
+RegionMap pinwheel() {
+  return RegionMap::boxes({{0, 0, 2, 1}, {2, 0, 3, 2}, {1, 2, 3, 3}, {0, 1, 1, 3}, {1, 1, 2, 2}});
+}
 
 std::vector<NamedMap> all_maps() {
-  return {{"One", RegionMap::columns(1, 10)},        {"Columns", RegionMap::columns(5, 3)},
-          {"Grid", RegionMap::grid(3, 4, 2, 5)},     {"Row", RegionMap::grid(1, 3, 2, 5)},
-          {"Brick", RegionMap::brick(4, 3, 2, 1.5)}, {"NarrowBrick", RegionMap::brick(3, 1, 2, 1.5)},
+  return {{"One", RegionMap::columns(1, 10)},
+          {"Columns", RegionMap::columns(5, 3)},
+          {"Grid", RegionMap::grid(3, 4, 2, 5)},
+          {"Row", RegionMap::grid(1, 3, 2, 5)},
+          {"Brick", RegionMap::brick(4, 3, 2, 1.5)},
+          {"NarrowBrick", RegionMap::brick(3, 1, 2, 1.5)},
           {"Pinwheel", pinwheel()},
           {"Boxes", RegionMap::boxes({{-1, -1, 0, 1}, {0, -1, 2, 0}, {0, 0, 2, 1}})}};
 }

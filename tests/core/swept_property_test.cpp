@@ -79,8 +79,8 @@ class SweptAura : public ::testing::TestWithParam<std::pair<int, int>> {
 
   void place_pair(KinematicWorld& world, Random& random, const AuraRules& rules, std::uint32_t slot,
                   const PrototypeId (&kinds)[2], const RoundShapes& shapes) {
-    const auto touch = static_cast<std::size_t>(
-        random.between(7 * rules.lookahead + 2, 9 * rules.lookahead + 15) * rules.substeps);
+    const auto touch =
+        static_cast<std::size_t>(random.between(7 * rules.lookahead + 2, 9 * rules.lookahead + 15) * rules.substeps);
     const double way = 30 * rules.step_s * 6 * rules.lookahead;
     Vec3 m = random.in_box(way) + Vec3(0, 0, 300.0 * slot);
     for (std::uint32_t i = 0; i < 2; ++i) {

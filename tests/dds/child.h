@@ -2,12 +2,12 @@
 #pragma once
 
 #include <csignal>
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,28 +36,28 @@ class Child {
     const int error = posix_spawn(&pid_, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
-    output_ = fdopen(ends[0], "r");
+    output_ = ends[0];
     if (error != 0) {
       throw std::runtime_error("cannot start " + words[0]);
     }
   }
   ~Child() {
     kill(SIGKILL);
-    if (output_ != nullptr) {
-      fclose(output_);
-    }
+    close(output_);
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// The next line of its output, without the line end; empty when it has ended.
+  /// The next line of its output, without the line end; what there is of it at the end or after 20 s.
   std::string read_line() {
-    char line[256];
-    if (fgets(line, sizeof line, output_) == nullptr) {
-      return {};
+    constexpr int kTimeOutMs = 20'000;
+    std::string line;
+    pollfd ready{.fd = output_, .events = POLLIN, .revents = 0};
+    char letter = 0;
+    while (poll(&ready, 1, kTimeOutMs) == 1 && read(output_, &letter, 1) == 1 && letter != '\n') {
+      line += letter;
     }
-    std::string text(line);
-    return text.substr(0, text.find('\n'));
+    return line;
   }
 
   void kill(int signal) {
@@ -72,7 +72,7 @@ class Child {
 
  private:
   pid_t pid_ = -1;
-  FILE* output_ = nullptr;
+  int output_ = -1;
 };
 
 }  // namespace aurasim::dds::testing

@@ -1,8 +1,8 @@
-// Neighbours that die, hang, dawdle and come back. Domains 107 to 114. The lease of aura writers in qos/aurasim.xml is 1 s.
+// Neighbours that die, hang, dawdle and come back. Domains 107 to 114 and 129. The lease of aura writers in
+// qos/aurasim.xml is 1 s.
 #include <gtest/gtest.h>
 
 #include "child.h"
-#include "dds/pulse.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
@@ -116,11 +116,12 @@ TEST_F(Neighbour, ThatTakesItsLeaveIsLostAtOnce) {
   expect_event(0, PeerChange::kLost);
 }
 
-TEST(Stall, LongerThanTheLeaseIsKnownToItsVictim) {
-  Pulse pulse(10s);
-  EXPECT_EQ(pulse.longest_stall(), 0ns);
-  const Participant participant(testing::settings_for(114));
-  EXPECT_FALSE(participant.outlived_its_lease());
+TEST_F(Neighbour, ThatWasStoppedForLongerThanTheParticipantsLeaseKnowsIt) {
+  meet(114, "run");
+  there_->kill(SIGSTOP);
+  EXPECT_FALSE(wait_for_peer_events(2, kParticipantLease + 1s));
+  there_->kill(SIGCONT);
+  EXPECT_EQ(there_->read_line(), "outlived its lease");
 }
 
 TEST_F(Neighbour, WithFramesLongerThanTheLeaseIsNotLost) {
@@ -150,7 +151,7 @@ TEST_F(Neighbour, ThatIsDroppedIsNotSentHandOffsUntilItIsBack) {
 }
 
 TEST_F(Neighbour, ThatIsDeadNeverBlocksASend) {
-  meet(114, "run");
+  meet(129, "run");
   there_->kill(SIGKILL);
   core::Outbox outbox;
   outbox.aura = testing::batch_of(100, RegionId{0});

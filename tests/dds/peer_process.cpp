@@ -1,4 +1,5 @@
-// A region in a process of its own, for tests that kill it. Prints "ready" when it is matched with its neighbours.
+// A region in a process of its own, for tests that kill it. Prints "ready" when it is matched with its neighbour
+// and "outlived its lease" when that is so.
 //   dds_peer_process DOMAIN REGION NEIGHBOUR run|hang|long_frames [MILLISECONDS]
 // run: a batch every 10 ms. hang: for the given time like run, then its owner never calls again, with a hang limit of
 // 0.5 s. long_frames: a batch every 2.5 s. In all modes it publishes a status now and then.
@@ -32,6 +33,7 @@ void take_part(const Arguments& arguments) {
   std::cout << "ready" << std::endl;
 
   const auto frame = arguments.mode == "long_frames" ? 2500ms : 10ms;
+  bool outlived = false;
   const auto start = std::chrono::steady_clock::now();
   for (core::Step step = 0;; ++step) {
     peer.send_batch(step);
@@ -39,6 +41,10 @@ void take_part(const Arguments& arguments) {
     Status status = status_of(arguments.region);
     status.step = step;
     control.publish_status(status);
+    if (!outlived && peer.participant.outlived_its_lease()) {
+      outlived = true;
+      std::cout << "outlived its lease" << std::endl;
+    }
     if (arguments.mode == "hang" && std::chrono::steady_clock::now() - start > arguments.time) {
       std::this_thread::sleep_for(1h);
     }

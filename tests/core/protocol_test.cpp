@@ -1,0 +1,346 @@
+// One node, told by hand what it hosts and hears.
+#include "core/protocol.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/letters.h"
+#include "core/round_shapes.h"
+
+namespace aurasim::core::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class ProtocolTest : public ::testing::Test {
+ protected:
+  ProtocolTest() {
+    settings.aura.gravity = Vec3::Zero();
+    settings.aura.contact_margin_m = 0;
+    settings.neighbour_distance_m = 1e9;
+    settings.generation = 3;
+  }
+
+  /// Starts as `self`, in state 0.
+  void start(std::uint32_t self, RegionMap layout = RegionMap::columns(2, 100)) {
+    map.emplace(std::move(layout));
+    settings.self = region(self);
+    protocol.emplace(settings, *map, shapes);
+    observe();
+  }
+  BodyState& host(std::uint64_t id, const Vec3& p, const Vec3& v = Vec3::Zero()) {
+    BodyState state;
+    state.id = body(id);
+    state.prototype = ball;
+    state.pose.p_WB = p;
+    state.v_WB = v;
+    snapshot.bodies.push_back(state);
+    return snapshot.bodies.back();
+  }
+  const std::vector<Departure>& observe() {
+    snapshot.step = now;
+    const std::vector<Departure>& departures = protocol->observe(snapshot);
+    for (const Departure& d : departures) {
+      ClusterState cluster;
+      for (const BodyId id : d.bodies) {
+        const auto found = std::find_if(snapshot.bodies.begin(), snapshot.bodies.end(),
+                                        [&](const BodyState& b) { return b.id == id; });
+        cluster.bodies.push_back(record_of(value_of(id), found->epoch));
+        snapshot.bodies.erase(found);
+      }
+      protocol->hand_over(d, std::move(cluster));
+    }
+    return departures;
+  }
+  void hear(AuraBatch b) {
+    b.generation = settings.generation;
+    b.map_version = map->version();
+    inbox.auras.push_back(std::move(b));
+    protocol->accept(inbox);
+  }
+  void hear(HandOff h, std::uint64_t sequence) {
+    h.generation = settings.generation;
+    h.map_version = map->version();
+    h.sequence = sequence;
+    inbox.hand_offs.push_back(std::move(h));
+    protocol->accept(inbox);
+  }
+  AuraRecord foreign(std::uint64_t id, const Vec3& p, Epoch epoch = 0, std::uint32_t at = 1) {
+    AuraRecord a = aura(id, epoch);
+    a.host = region(at);
+    a.prototype = ball;
+    a.pose.p_WB = p;
+    return a;
+  }
+  /// Region 1 says its next batch, with these auras.
+  void hear_next(std::vector<AuraRecord> auras = {}) {
+    AuraBatch b = batch(1, protocol->intake().neighbours()[0].received() + 1);
+    for (AuraRecord& a : auras) a.stamp = b.stamp;
+    b.updates = std::move(auras);
+    hear(std::move(b));
+  }
+  const Changes& receive_next() { return protocol->receive(++now); }
+  /// One state in which nothing is heard but region 1's steps.
+  void pass_step() {
+    hear_next();
+    receive_next();
+    observe();
+  }
+
+  ProtocolSettings settings;
+  RoundShapes shapes;
+  PrototypeId ball = shapes.sphere(0.5);
+  PrototypeId large = shapes.sphere(4);
+  std::optional<RegionMap> map;
+  std::optional<Protocol> protocol;
+  Snapshot snapshot;
+  Inbox inbox;
+  Step now = 0;
+};
+
+TEST_F(ProtocolTest, ABatchIsSaidForEveryStateEvenWhenThereIsNothingToSay) {
+  start(0);
+  const AuraBatch& said = protocol->outbox().aura;
+  EXPECT_EQ(said.stamp, 0);
+  EXPECT_TRUE(said.full);
+  EXPECT_EQ(said.generation, 3u);
+  EXPECT_EQ(said.source, region(0));
+  EXPECT_EQ(said.map_version, map->version());
+  pass_step();
+  EXPECT_EQ(protocol->outbox().aura.stamp, 1);
+  EXPECT_FALSE(protocol->outbox().aura.full);
+}
+
+TEST_F(ProtocolTest, TopSpeedAndRadiusGoWithEveryBatch) {
+  host(1, Vec3(-50, 0, 0), Vec3(12, 0, 0));
+  host(2, Vec3(-50, 50, 0)).prototype = large;
+  start(0);
+  EXPECT_GE(protocol->outbox().aura.top_speed_m_s, 12);
+  EXPECT_LT(protocol->outbox().aura.top_speed_m_s, 13);
+  EXPECT_EQ(protocol->outbox().aura.top_radius_m, 4);
+}
+
+TEST_F(ProtocolTest, ABodyNearALargeForeignOneProjectsFromFurtherAway) {
+  host(1, Vec3(-4, 0, 0));
+  start(0);
+  AuraBatch b = batch(1, 0);
+  hear(b);
+  receive_next();
+  observe();
+  EXPECT_THAT(protocol->outbox().aura.updates, IsEmpty());
+  b = batch(1, 1);
+  b.top_radius_m = 4;
+  hear(b);
+  receive_next();
+  observe();
+  EXPECT_EQ(protocol->outbox().aura.updates.size(), 1u);
+}
+
+TEST_F(ProtocolTest, ABodyNearAForeignOneProjectsWhereverItIs) {
+  settings.aura.kind = AuraKind::kTight;
+  host(1, Vec3(-40, 0, 0));
+  start(0);
+  hear_next({foreign(9, Vec3(-38.9, 0, 0))});
+  receive_next();
+  observe();
+  ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
+  EXPECT_EQ(protocol->outbox().aura.updates[0].id, body(1));
+}
+
+TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
+  host(1, Vec3(-50, 0, 0)).epoch = 2;
+  start(0);
+  hear_next();
+  hear(hand_off(1, 0, 0, {record_of(1, 2), record_of(5, 1)}), 1);
+  const Changes& changes = receive_next();
+  ASSERT_EQ(changes.adoptions.size(), 1u);
+  ASSERT_EQ(changes.adoptions[0].cluster.bodies.size(), 1u);
+  EXPECT_EQ(changes.adoptions[0].cluster.bodies[0].id, body(5));
+  EXPECT_THAT(changes.let_go, IsEmpty());
+  EXPECT_EQ(protocol->counters().stale_arrivals, 1u);
+  observe();
+  EXPECT_EQ(protocol->outbox().acks.size(), 1u);
+}
+
+TEST_F(ProtocolTest, AnArrivalWithAHigherEpochReplacesTheBodyHere) {
+  host(1, Vec3(-50, 0, 0)).epoch = 2;
+  start(0);
+  hear_next();
+  hear(hand_off(1, 0, 0, {record_of(1, 3)}), 1);
+  const Changes& changes = receive_next();
+  EXPECT_EQ(changes.adoptions.size(), 1u);
+  EXPECT_THAT(changes.let_go, ElementsAre(body(1)));
+}
+
+TEST_F(ProtocolTest, ABodyThatAnotherNodeOwnsUnderAHigherEpochIsLetGo) {
+  host(1, Vec3(-50, 0, 0)).epoch = 2;
+  host(2, Vec3(-50, 9, 0)).epoch = 2;
+  start(0);
+  hear_next({foreign(1, Vec3(1, 0, 0), 3), foreign(2, Vec3(1, 9, 0), 2)});
+  EXPECT_THAT(receive_next().let_go, ElementsAre(body(1)));
+  EXPECT_EQ(protocol->counters().let_go, 1u);
+}
+
+TEST_F(ProtocolTest, AnotherNodesGhostOfABodyOfOursDoesNotTakeItAway) {
+  host(1, Vec3(-50, 0, 0)).epoch = 2;
+  start(0);
+  AuraRecord ghost = foreign(1, Vec3(-50, 0, 0), 3, 0);
+  ghost.flags = kAuraGhost;
+  hear_next({ghost});
+  EXPECT_THAT(receive_next().let_go, IsEmpty());
+}
+
+TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
+  host(1, Vec3(0, 0, 0));
+  start(1, RegionMap::columns(3, 10));
+  for (const std::uint32_t from : {0u, 2u}) {
+    AuraBatch b = batch(from, 0);
+    b.updates = {foreign(9, Vec3(0, 0.9, 0), 0, from)};
+    if (from == 0) b.updates.clear();
+    hear(b);
+  }
+  receive_next();
+  EXPECT_THAT(observe(), IsEmpty());
+  AuraBatch b = batch(0, 1);
+  b.updates = {foreign(8, Vec3(0, -0.9, 0), 0, 0)};
+  hear(b);
+  receive_next();
+  const std::vector<Departure>& departures = observe();
+  ASSERT_EQ(departures.size(), 1u);
+  EXPECT_EQ(departures[0].destination, region(0));
+  EXPECT_EQ(departures[0].reason, HandOffReason::kAuraCollision);
+}
+
+TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
+  host(1, Vec3(10, 0, 0));
+  start(2, RegionMap::columns(3, 10));
+  for (const std::uint32_t from : {0u, 1u}) {
+    AuraBatch b = batch(from, 0);
+    b.updates = {foreign(9 + from, Vec3(10, from ? 0.9 : -0.9, 0), 0, from)};
+    hear(b);
+  }
+  receive_next();
+  ASSERT_EQ(observe().size(), 1u);
+  EXPECT_EQ(protocol->outbox().hand_offs[0].destination, region(0));
+}
+
+TEST_F(ProtocolTest, TheDeadPullNobody) {
+  host(1, Vec3(0, 0, 0));
+  start(1, RegionMap::columns(2, 10));
+  AuraBatch b = batch(0, 0);
+  b.updates = {foreign(9, Vec3(0, 0.9, 0), 0, 0)};
+  hear(b);
+  inbox.peers.push_back({region(0), PeerChange::kLost});
+  protocol->accept(inbox);
+  receive_next();
+  EXPECT_THAT(observe(), IsEmpty());
+}
+
+TEST_F(ProtocolTest, AnUnacknowledgedHandOffIsSentAgain) {
+  settings.resend_after_steps = 7;
+  host(1, Vec3(5, 0, 0));
+  start(0);
+  while (now < 4) pass_step();
+  ASSERT_EQ(protocol->counters().handed_over, 1u);
+  const Step sent = protocol->departures().open().front().stamp;
+  while (now < sent + 20) {
+    pass_step();
+    EXPECT_EQ(protocol->outbox().hand_offs.size(), (now - sent) % 7 == 0 ? 1u : 0u) << "state " << now;
+  }
+}
+
+TEST_F(ProtocolTest, ABodyBeyondAllWhoListenIsAViolation) {
+  settings.neighbour_distance_m = 0;
+  BodyState& far = host(1, Vec3(-10, 0, 0), Vec3(1, 0, 0));
+  far.pose.p_WB.x() = 12;
+  start(0, RegionMap::columns(3, 10));
+  EXPECT_EQ(protocol->violations().count(ViolationKind::kSpan), 1u);
+}
+
+TEST_F(ProtocolTest, ABodyFasterThanPromisedIsAViolationCountedOnce) {
+  host(1, Vec3(-50, 0, 0), Vec3(33, 0, 0));
+  start(0);
+  pass_step();
+  EXPECT_EQ(protocol->violations().count(ViolationKind::kSpeed), 1u);
+  EXPECT_EQ(protocol->last_violation_step(), 0);
+  snapshot.bodies[0].v_WB = Vec3(1, 0, 0);
+  pass_step();
+  snapshot.bodies[0].v_WB = Vec3(40, 0, 0);
+  pass_step();
+  EXPECT_EQ(protocol->violations().count(ViolationKind::kSpeed), 2u);
+  EXPECT_EQ(protocol->outbox().aura.violations, 2u) << "the others are told";
+}
+
+TEST_F(ProtocolTest, ABodyThatIsNotWhereItsAuraSaidIsAViolation) {
+  host(1, Vec3(-0.5, 0, 0));
+  start(0);
+  for (int i = 0; i < 10; ++i) pass_step();
+  EXPECT_EQ(protocol->violations().count(ViolationKind::kPromise), 0u);
+  snapshot.bodies[0].pose.p_WB.y() += 1;
+  for (int i = 0; i < 4; ++i) pass_step();
+  EXPECT_GE(protocol->violations().count(ViolationKind::kPromise), 1u);
+}
+
+TEST_F(ProtocolTest, ASlowFrameIsAViolation) {
+  start(0);
+  protocol->report_frame(5, settings.aura.frame_s);
+  EXPECT_EQ(protocol->violations().total(), 0u);
+  protocol->report_frame(6, 1.1 * settings.aura.frame_s);
+  EXPECT_EQ(protocol->violations().count(ViolationKind::kFrame), 1u);
+}
+
+TEST_F(ProtocolTest, ANeighboursViolationIsHeard) {
+  start(0);
+  for (int i = 0; i < 5; ++i) pass_step();
+  EXPECT_LT(protocol->last_violation_step(), 0);
+  AuraBatch b = batch(1, 5);
+  b.violations = 1;
+  hear(b);
+  receive_next();
+  EXPECT_EQ(protocol->last_violation_step(), 5);
+}
+
+class AssignHosts : public ProtocolTest {
+ protected:
+  std::vector<RegionId> assign(const RegionMap& layout) {
+    return assign_hosts(layout, settings.aura, shapes, snapshot);
+  }
+};
+
+TEST_F(AssignHosts, ABodyIsHostedWhereItsCentreIs) {
+  host(1, Vec3(-5, 0, 0));
+  host(2, Vec3(5, 0, 0));
+  EXPECT_THAT(assign(RegionMap::columns(2, 100)), ElementsAre(region(0), region(1)));
+}
+
+TEST_F(AssignHosts, ATowerOnABorderStartsOnOneNode) {
+  for (int i = 0; i < 6; ++i) host(static_cast<std::uint64_t>(i), Vec3(i % 2 ? 0.01 : -0.01, 0, 1.0 * i));
+  for (const RegionId assigned : assign(RegionMap::columns(2, 100))) EXPECT_EQ(assigned, region(0));
+}
+
+TEST_F(AssignHosts, BodiesInContactStartOnTheLowestRegionOfTheirs) {
+  host(1, Vec3(5, 0, 0));
+  host(2, Vec3(-15, 0, 0));
+  snapshot.contacts = {{0, 1}};
+  EXPECT_THAT(assign(RegionMap::columns(4, 10)), ElementsAre(region(0), region(0)));
+}
+
+TEST_F(AssignHosts, BodiesThatMeetBeforeAnybodyHearsOfAnybodyStartTogether) {
+  host(1, Vec3(-1, 0, 0), Vec3(30, 0, 0));
+  host(2, Vec3(1, 0, 0), Vec3(-30, 0, 0));
+  EXPECT_THAT(assign(RegionMap::columns(2, 100)), ElementsAre(region(0), region(0)));
+}
+
+TEST_F(AssignHosts, TheNaiveControlAsksOnlyForThePlace) {
+  settings.aura.kind = AuraKind::kNone;
+  host(1, Vec3(-0.1, 0, 0));
+  host(2, Vec3(0.1, 0, 0));
+  EXPECT_THAT(assign(RegionMap::columns(2, 100)), ElementsAre(region(0), region(1)));
+}
+
+}  // namespace
+}  // namespace aurasim::core::testing
