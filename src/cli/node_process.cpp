@@ -27,6 +27,7 @@ dds::TransportSettings transport_settings(const config::Launch& launch, core::Re
   settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
   settings.map_version = launch.regions.version();
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
+  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size());
   return settings;
 }
 

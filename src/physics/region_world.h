@@ -59,8 +59,8 @@ class RegionWorld {
   /// step_number() in a scratch world, then joins with its contact cache. Calls `caught_up` for every state made up.
   void adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up = {});
 
-  /// Takes bodies out with everything that a hand-off has to carry. Every id must be here. Contacts with bodies
-  /// that stay behind are forgotten and counted (see severed_contacts).
+  /// Takes bodies out with everything that a hand-off has to carry. Every id must be here. Contacts and joints with
+  /// bodies that stay behind are cut and counted (see severed_contacts).
   core::ClusterState release(std::span<const core::BodyId> bodies);
 
   /// The same record of bodies that stay (tests, key frames, state hash).
@@ -72,7 +72,8 @@ class RegionWorld {
   /// Computes the next state, in Settings::substeps substeps.
   void step();
 
-  /// Bodies ascending by id (those not yet born included), contacts between bodies. Valid until the next change.
+  /// Bodies ascending by id (those not yet born included), contacts and joints between bodies. Valid until the next
+  /// change.
   const core::Snapshot& snapshot();
 
   /// Records of all born bodies in ascending order of id. Valid until the next change.
@@ -81,7 +82,7 @@ class RegionWorld {
   /// First contacts seen while the last step was computed, ordered by (a, b).
   const std::vector<Collision>& collisions() const;
 
-  /// Contacts that a release has cut so far: never more than 0 while clusters are whole.
+  /// Contacts and joints that a release has cut so far: never more than 0 while clusters are whole.
   std::uint64_t severed_contacts() const;
 
  private:
