@@ -22,7 +22,7 @@ struct ShippedScene {
 constexpr ShippedScene kScenes[] = {
     {"newtons_cradle", 4, 600}, {"ragdoll_stairs", 5, 360}, {"vehicle_tour", 9, 850}, {"tug_of_war", 10, 480}};
 
-constexpr int kSeeds = 24;  ///< lookahead and network follow from the seed
+constexpr int kSeeds = 3;  ///< lookahead and network follow from the seed
 
 struct Cut {
   const char* name;
