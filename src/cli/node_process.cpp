@@ -29,6 +29,7 @@ dds::TransportSettings transport_settings(const config::Launch& launch, core::Re
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
   settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size());
   settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size());
+  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size());
   return settings;
 }
 

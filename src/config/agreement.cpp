@@ -131,6 +131,54 @@ void add_bodies(const core::Scene& scene, Digest& d) {
   }
 }
 
+class JointDigest {
+ public:
+  explicit JointDigest(Digest& digest) : d_(digest) {}
+
+  void operator()(const core::BallJoint&) const {}
+  void operator()(const core::FixedJoint&) const {}
+  void operator()(const core::HingeJoint& joint) const {
+    add(joint.limits);
+    d_.bytes(joint.motor.has_value());
+    if (!joint.motor) return;
+    d_.add(joint.motor->speed);
+    d_.add(joint.motor->max_impulse);
+  }
+  void operator()(const core::SliderJoint& joint) const { add(joint.limits); }
+  void operator()(const core::SpringJoint& joint) const {
+    for (const core::SpringAxis& axis : joint.axes) {
+      add(axis.limits);
+      d_.add(axis.stiffness);
+      d_.add(axis.damping);
+    }
+  }
+
+ private:
+  void add(const std::optional<core::JointLimits>& limits) const {
+    d_.bytes(limits.has_value());
+    if (!limits) return;
+    d_.add(limits->low);
+    d_.add(limits->high);
+  }
+
+  Digest& d_;
+};
+
+void add_joints(const core::Scene& scene, Digest& d) {
+  d.bytes(scene.joints.size());
+  for (const core::JointSpec& joint : scene.joints) {
+    d.add(joint.name);
+    d.bytes(joint.kind.index());
+    std::visit(JointDigest(d), joint.kind);
+    d.bytes(value_of(joint.a));
+    d.bytes(joint.b.has_value());
+    if (joint.b) d.bytes(value_of(*joint.b));
+    d.add(joint.X_WJ);
+    d.bytes(joint.collide);
+    d.add(joint.break_impulse);
+  }
+}
+
 void add_settings(const Launch& launch, Digest& d) {
   d.bytes(launch.regions.version());
   d.add(launch.neighbour_distance_m);
@@ -157,6 +205,7 @@ std::uint64_t Launch::agreement() const {
   d.add(scene.gravity);
   add_things(scene, d);
   add_bodies(scene, d);
+  add_joints(scene, d);
   add_settings(*this, d);
   return d.result();
 }

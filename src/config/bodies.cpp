@@ -72,6 +72,9 @@ DraftBody read_body(const Field& field, SceneDraft& draft) {
   DraftBody draft_body;
   core::InitialBody& body = draft_body.body;
   Fields fields(field);
+  if (const Field name = fields.optional("name"); name.given()) {
+    if (const auto text = name.text("a name")) draft.name_next_body(*text, name);
+  }
   if (const Field id = fields.optional("id"); id.given()) {
     if (const auto number = id.integer(0, kLargestBodyId))
       draft_body.id = core::BodyId{static_cast<std::uint64_t>(*number)};

@@ -17,7 +17,7 @@ void read_prototypes(const Field& field, SceneDraft& draft);
 /// [{name, shape, material, position, orientation}, ...]
 void read_statics(const Field& field, SceneDraft& draft);
 
-/// [{id, prototype, position, orientation, velocity, spin}, ...]
+/// [{name, id, prototype, position, orientation, velocity, spin}, ...]
 void read_bodies(const Field& field, SceneDraft& draft);
 
 /// Gives the bodies without an id the lowest free ones, in their order, and puts all in order of id.

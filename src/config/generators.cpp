@@ -14,6 +14,14 @@ using core::Vec3;
 
 constexpr std::size_t kMostGenerators = 10'000;
 constexpr std::int64_t kMostInLine = 100'000;
+constexpr double kSmallestStep = 1e-6;
+
+/// Bodies that hang together by ball joints.
+struct Chain {
+  Vec3 step_F = Vec3::UnitX();
+  bool first_anchored = false;
+  bool last_anchored = false;
+};
 
 /// What all formations share. F is the formation's frame: origin at `position`, x along its rows, z up.
 struct Formation {
@@ -23,6 +31,8 @@ struct Formation {
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
   double gap_m = 0;
+  std::optional<std::string> name;
+  std::optional<Chain> chain;
   std::vector<Vec3> centres_F;  ///< of the bodies' bounds, bottom at z = 0
 
   double width_m() const { return bounds.size().x() + gap_m; }
@@ -37,6 +47,7 @@ void read_common(Fields& fields, Formation& formation, SceneDraft& draft) {
     const std::uint32_t shape = draft.scene.prototypes[*index].shape;
     if (shape < draft.scene.shapes.size()) formation.bounds = bounds_of(draft.scene.shapes[shape].shape);
   }
+  if (const Field name = fields.optional("name"); name.given()) formation.name = name.text("a name");
   Vec3& position = formation.X_WF.p_WB;
   if (const Field p = fields.optional("position"); p.given()) position = p.vec3().value_or(position);
   if (const Field yaw = fields.optional("yaw_deg"); yaw.given()) {
@@ -125,13 +136,58 @@ void place_row(Fields& fields, Formation& formation, const SceneDraft& draft) {
   for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back(first + as_double(i) * *step);
 }
 
-void add_bodies(const Formation& formation, SceneDraft& draft) {
+void place_chain(Fields& fields, Formation& formation, const SceneDraft& draft) {
+  enum class Anchor { kNone, kFirst, kLast, kBoth };
+  Anchor anchor = Anchor::kNone;
+  if (const Field f = fields.optional("anchor"); f.given()) {
+    anchor =
+        f.choice<Anchor>(
+             {{"none", Anchor::kNone}, {"first", Anchor::kFirst}, {"last", Anchor::kLast}, {"both", Anchor::kBoth}})
+            .value_or(anchor);
+  }
+  place_row(fields, formation, draft);
+  const Field step_field = fields.required("step");
+  const auto step = step_field.is_list() ? step_field.vec3() : std::nullopt;
+  if (!step) return;
+  if (step->norm() < kSmallestStep) {
+    step_field.complain("found a step of length 0, allowed: from the centre of one body to that of the next");
+    return;
+  }
+  formation.chain = Chain{*step, anchor == Anchor::kFirst || anchor == Anchor::kBoth,
+                          anchor == Anchor::kLast || anchor == Anchor::kBoth};
+}
+
+/// After the bodies, which are the last ones in the draft.
+void add_joints(const Formation& formation, SceneDraft& draft) {
+  const std::size_t count = formation.centres_F.size();
+  if (!formation.chain || count == 0) return;
+  const std::size_t first = draft.bodies.size() - count;
+  const auto join = [&](std::size_t a, std::optional<std::size_t> b, double steps) {
+    DraftJoint joint;
+    joint.a = first + a;
+    if (b) joint.b = first + *b;
+    joint.joint.X_WJ.p_WB =
+        draft.bodies[joint.a].body.pose.p_WB + formation.X_WF.q_WB * (steps * formation.chain->step_F);
+    joint.joint.X_WJ.q_WB = formation.X_WF.q_WB;
+    joint.joint.name = fmt::format("{}.{}", formation.name.value_or("chain"), draft.joints.size());
+    draft.joints.push_back(std::move(joint));
+  };
+  if (formation.chain->first_anchored) join(0, {}, -0.5);
+  for (std::size_t i = 0; i + 1 < count; ++i) join(i, i + 1, 0.5);
+  if (formation.chain->last_anchored) join(count - 1, {}, 0.5);
+}
+
+void add_bodies(const Formation& formation, const Field& blame, SceneDraft& draft) {
   const Vec3 p_BoC = 0.5 * (formation.bounds.low + formation.bounds.high);  // centre of the bounds in the body's frame
+  core::Quat q_FB = core::Quat::Identity();
+  if (formation.chain) q_FB = core::Quat::FromTwoVectors(Vec3::UnitZ(), formation.chain->step_F);
+  std::size_t index = 0;
   for (const Vec3& p_FC : formation.centres_F) {
+    if (formation.name) draft.name_next_body(fmt::format("{}.{}", *formation.name, index++), blame);
     DraftBody body;
     body.body.prototype = formation.prototype;
-    body.body.pose.p_WB = formation.X_WF.p_WB + formation.X_WF.q_WB * (p_FC - p_BoC);
-    body.body.pose.q_WB = formation.X_WF.q_WB;
+    body.body.pose.p_WB = formation.X_WF.p_WB + formation.X_WF.q_WB * (p_FC - q_FB * p_BoC);
+    body.body.pose.q_WB = formation.X_WF.q_WB * q_FB;
     body.body.v_WB = formation.v_WB;
     body.body.w_WB = formation.w_WB;
     draft.bodies.push_back(body);
@@ -146,15 +202,15 @@ void read_formation(const Field& field, Placement place, SceneDraft& draft) {
   read_common(fields, formation, draft);
   place(fields, formation, draft);
   fields.close();
-  if (!draft.scene.prototypes.empty()) add_bodies(formation, draft);
+  if (draft.scene.prototypes.empty()) return;
+  add_bodies(formation, field, draft);
+  add_joints(formation, draft);
 }
 
 void read_generator(const Field& field, SceneDraft& draft) {
-  constexpr std::pair<const char*, Placement> kKinds[] = {{"stack", place_stack},
-                                                          {"wall", place_wall},
-                                                          {"pyramid", place_pyramid},
-                                                          {"block", place_block},
-                                                          {"row", place_row}};
+  constexpr std::pair<const char*, Placement> kKinds[] = {{"stack", place_stack},     {"wall", place_wall},
+                                                          {"pyramid", place_pyramid}, {"block", place_block},
+                                                          {"row", place_row},         {"chain", place_chain}};
   Fields fields(field);
   int kinds = 0;
   for (const auto& [kind, place] : kKinds) {
@@ -164,7 +220,7 @@ void read_generator(const Field& field, SceneDraft& draft) {
     read_formation(formation, place, draft);
   }
   fields.close();
-  if (fields.given() && kinds != 1) field.refuse("one of stack, wall, pyramid, block, row");
+  if (fields.given() && kinds != 1) field.refuse("one of stack, wall, pyramid, block, row, chain");
 }
 
 }  // namespace

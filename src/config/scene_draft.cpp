@@ -18,6 +18,8 @@ core::Quat from_rpy_deg(const core::Vec3& rpy_deg) {
                     Eigen::AngleAxisd(rpy.x(), core::Vec3::UnitX()));
 }
 
+}  // namespace
+
 core::Quat read_orientation(const Field& field) {
   core::Quat q = core::Quat::Identity();
   if (!field.given()) return q;
@@ -44,8 +46,6 @@ core::Quat read_orientation(const Field& field) {
   return given.normalized();
 }
 
-}  // namespace
-
 std::uint32_t Names::add(const std::string& name) {
   const auto index = static_cast<std::uint32_t>(names_.size());
   names_.push_back(name);
@@ -63,6 +63,15 @@ std::optional<std::uint32_t> Names::find(const Field& field) const {
   if (index) return index;
   field.refuse(fmt::format("a {} of this scene: {}", kind_, listed({names_.begin(), names_.end()})));
   return std::nullopt;
+}
+
+void SceneDraft::name_next_body(const std::string& name, const Field& blame) {
+  if (body_names.index_of(name)) {
+    blame.complain(fmt::format("found the name {} a second time, allowed: each name once", in_quotes(name)));
+    return;
+  }
+  body_names.add(name);
+  named_bodies.push_back(bodies.size());
 }
 
 bool SceneDraft::has_room_for(std::uint64_t count, const Field& blame) const {

@@ -42,6 +42,13 @@ struct DraftBody {
   core::InitialBody body;
 };
 
+/// A joint whose bodies may not have their ids yet: places in SceneDraft::bodies.
+struct DraftJoint {
+  core::JointSpec joint;
+  std::size_t a = 0;
+  std::optional<std::size_t> b;
+};
+
 struct SceneDraft {
   core::Scene scene;
   std::filesystem::path folder;  ///< mesh files are relative to it
@@ -49,10 +56,16 @@ struct SceneDraft {
   Names materials{"material"};
   Names prototypes{"prototype"};
   std::vector<DraftBody> bodies;
+  Names body_names{"named body"};
+  std::vector<std::size_t> named_bodies;  ///< as body_names: places in `bodies`
+  std::vector<DraftJoint> joints;
   std::uint64_t injected_bodies = 0;
   /// What `per` injectors are laid out by; nothing: the scene does not say, or what it says is wrong.
   std::optional<RegionLayout> layout;
   bool layout_is_wrong = false;
+
+  /// Names the body that comes next; complains about a name that is taken.
+  void name_next_body(const std::string& name, const Field& blame);
 
   /// Whether `count` more bodies may be added; complains if not.
   bool has_room_for(std::uint64_t count, const Field& blame) const;
@@ -61,6 +74,9 @@ struct SceneDraft {
 /// `position` and `orientation` of a map: {rpy_deg: [roll, pitch, yaw]}, about the fixed axes x, y, z in this order,
 /// or {quaternion: [w, x, y, z]}, which is normalised. Both are optional.
 core::Pose read_pose(Fields& fields);
+
+/// `orientation` alone.
+core::Quat read_orientation(const Field& field);
 
 /// `shape:` of a prototype, a static or a part: a name, or a shape in place, which gets the name `own_name`.
 std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft);

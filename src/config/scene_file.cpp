@@ -3,6 +3,7 @@
 #include "config/bodies.h"
 #include "config/generators.h"
 #include "config/injectors.h"
+#include "config/joints.h"
 #include "config/launch.h"
 
 namespace aurasim::config {
@@ -47,7 +48,9 @@ core::Scene read_scene_map(const YamlNode& root, const std::filesystem::path& fi
   read_statics(fields.optional("statics"), draft);
   read_bodies(fields.optional("bodies"), draft);
   read_generators(fields.optional("generators"), draft);
+  read_joints(fields.optional("joints"), draft);
   number_bodies(draft);
+  number_joints(draft);
   read_injectors(fields.optional("injectors"), draft);
   fields.close();
   return std::move(draft.scene);

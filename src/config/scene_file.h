@@ -10,8 +10,9 @@
 //   shapes:     {NAME: {sphere: {radius: 0.3}}}     # config/shapes.h
 //   prototypes: {NAME: {shape, mass, material, can_sleep}}      # what bodies of one kind share
 //   statics:    [{shape, name, material, position, orientation}]
-//   bodies:     [{prototype, id, position, orientation, velocity, spin}]
+//   bodies:     [{prototype, name, id, position, orientation, velocity, spin}]
 //   generators: [{stack: {...}}, ...]               # config/generators.h
+//   joints:     [{hinge: {axis: [0, 1, 0]}, bodies: [wheel, car]}, ...]        # config/joints.h
 //   injectors:  [...]                               # config/injectors.h
 //
 // `shape` is a name, or a shape in place; `orientation` is {rpy_deg: [r, p, y]} or {quaternion: [w, x, y, z]}.

@@ -99,7 +99,8 @@ struct ClusterState {
   std::vector<double> joint_values;
 };
 
-/// Takes the bodies out that `unwanted` names, and the manifolds that have lost one of theirs.
+/// Takes the bodies out that `unwanted` names, and the manifolds that have lost one of theirs. Joints stay: whether one
+/// is broken is known to each of its bodies.
 template <class Unwanted>
 void remove_bodies(ClusterState& cluster, Unwanted&& unwanted) {
   std::vector<BodyId> gone;

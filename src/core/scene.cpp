@@ -101,6 +101,12 @@ Step birth_step(const Injector& injector, std::uint64_t index, double step_s) {
 
 double bounding_radius(const Shape& shape) { return std::visit(FarthestPoint{}, shape); }
 
+const InitialBody* find_body(const Scene& scene, BodyId id) {
+  const auto place = std::lower_bound(scene.bodies.begin(), scene.bodies.end(), id,
+                                      [](const InitialBody& body, BodyId wanted) { return body.id < wanted; });
+  return place != scene.bodies.end() && place->id == id ? &*place : nullptr;
+}
+
 BodyRecord initial_record(const InitialBody& body, Step birth) {
   BodyRecord record;
   record.id = body.id;

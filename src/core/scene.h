@@ -11,6 +11,7 @@
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/joint.h"
 
 namespace aurasim::core {
 
@@ -121,11 +122,15 @@ struct Scene {
   std::vector<Prototype> prototypes;
   std::vector<StaticBody> statics;
   std::vector<InitialBody> bodies;  ///< ascending id
+  std::vector<JointSpec> joints;
   std::vector<Injector> injectors;
 };
 
 /// Radius of the smallest sphere around the origin of the shape's frame that holds the shape. Infinite for a plane.
 double bounding_radius(const Shape& shape);
+
+/// Null if the scene has no such body in state 0.
+const InitialBody* find_body(const Scene& scene, BodyId id);
 
 /// The record of a body of state 0, epoch 0.
 BodyRecord initial_record(const InitialBody& body, Step birth = 0);

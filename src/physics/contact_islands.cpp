@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 namespace aurasim::physics {
 namespace {
@@ -85,6 +86,21 @@ void ContactIslands::collect_awake_manifolds(btDispatcher& dispatcher) {
   for (const Entry& entry : entries_) manifolds_.push_back(entry.manifold);
 }
 
+void ContactIslands::collect_awake_joints(std::span<btTypedConstraint* const> joints) {
+  joint_entries_.clear();
+  for (btTypedConstraint* joint : joints) {
+    const btRigidBody& a = joint->getRigidBodyA();
+    const btRigidBody& b = joint->getRigidBodyB();
+    if (!joint->isEnabled() || !(a.isActive() || b.isActive())) continue;
+    joint_entries_.push_back({std::max(a.getIslandTag(), b.getIslandTag()), joint->getUserConstraintId(), joint});
+  }
+  std::sort(joint_entries_.begin(), joint_entries_.end(), [](const JointEntry& a, const JointEntry& b) {
+    return std::tie(a.island, a.order) < std::tie(b.island, b.order);
+  });
+  joints_.clear();
+  for (const JointEntry& entry : joint_entries_) joints_.push_back(entry.joint);
+}
+
 int ContactIslands::end_of_island(int first) {
   int last = first + 1;
   while (last < getUnionFind().getNumElements() &&
@@ -94,28 +110,34 @@ int ContactIslands::end_of_island(int first) {
   return last;
 }
 
-void ContactIslands::solve(btCollisionWorld& world, btConstraintSolver& solver, const btContactSolverInfo& info) {
-  btDispatcher& dispatcher = *world.getDispatcher();
-  const auto solve_group = [&](std::vector<btCollisionObject*>& bodies, btPersistentManifold** first, int count) {
-    if (bodies.empty()) return;
-    solver.solveGroup(bodies.data(), static_cast<int>(bodies.size()), first, count, nullptr, 0, info, nullptr,
-                      &dispatcher);
-  };
+void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints,
+                           btConstraintSolver& solver, const btContactSolverInfo& info) {
   getUnionFind().sortIslands();
   const int elements = getUnionFind().getNumElements();
   for (int first = 0, last = 0; first < elements; first = last) {
     last = end_of_island(first);
     settle(world, first, last);
   }
-  collect_awake_manifolds(dispatcher);
+  collect_awake_manifolds(*world.getDispatcher());
+  collect_awake_joints(joints);
 
+  const auto solve_group = [&](std::vector<btCollisionObject*>& bodies, std::span<btPersistentManifold*> manifolds,
+                               std::span<btTypedConstraint*> constraints) {
+    if (bodies.empty()) return;
+    solver.solveGroup(bodies.data(), static_cast<int>(bodies.size()), manifolds.data(),
+                      static_cast<int>(manifolds.size()), constraints.data(), static_cast<int>(constraints.size()),
+                      info, nullptr, world.getDispatcher());
+  };
   lonely_.clear();
   std::size_t manifold = 0;
+  std::size_t joint = 0;
   for (int first = 0, last = 0; first < elements; first = last) {
     last = end_of_island(first);
     const std::size_t first_manifold = manifold;
+    const std::size_t first_joint = joint;
     const int island = getUnionFind().getElement(first).m_id;
     while (manifold < entries_.size() && entries_[manifold].island == island) ++manifold;
+    while (joint < joint_entries_.size() && joint_entries_[joint].island == island) ++joint;
     island_.clear();
     bool awake = false;
     for (int i = first; i < last; ++i) {
@@ -123,13 +145,14 @@ void ContactIslands::solve(btCollisionWorld& world, btConstraintSolver& solver, 
       awake = awake || island_.back()->isActive();
     }
     if (!awake) continue;
-    if (manifold == first_manifold) {
+    if (manifold == first_manifold && joint == first_joint) {
       lonely_.insert(lonely_.end(), island_.begin(), island_.end());
     } else {
-      solve_group(island_, &manifolds_[first_manifold], static_cast<int>(manifold - first_manifold));
+      solve_group(island_, std::span(manifolds_).subspan(first_manifold, manifold - first_manifold),
+                  std::span(joints_).subspan(first_joint, joint - first_joint));
     }
   }
-  solve_group(lonely_, nullptr, 0);
+  solve_group(lonely_, {}, {});
 }
 
 }  // namespace aurasim::physics

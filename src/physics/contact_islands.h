@@ -1,5 +1,5 @@
-// Which bodies are solved and fall asleep together, and in which order the solver sees their contacts. Neither may
-// depend on what else is in the world.
+// Which bodies are solved and fall asleep together, and in which order the solver sees their contacts and joints.
+// Neither may depend on what else is in the world.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,14 @@
 
 class btCollisionWorld;
 class btConstraintSolver;
+class btTypedConstraint;
 struct btContactSolverInfo;
 
 namespace aurasim::physics {
 
 /// Differs from Bullet's in four ways. Islands are joined by contacts, not by overlapping bounds, which remember the
-/// past. The manifolds of an island are in the order of the bodies' user indices, then of their parts. Islands are
+/// past. The manifolds of an island are in the order of the bodies' user indices, then of their parts, its joints in
+/// that of their user ids. Islands are
 /// never solved in one batch with others, because the solver stops early on the error of the whole batch. Nothing is
 /// allocated once warm.
 ///
@@ -28,7 +30,8 @@ class ContactIslands : public btSimulationIslandManager {
   void updateActivationState(btCollisionWorld* world, btDispatcher* dispatcher) override;
 
   /// Puts islands to sleep or wakes them, then solves those that are awake.
-  void solve(btCollisionWorld& world, btConstraintSolver& solver, const btContactSolverInfo& info);
+  void solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints, btConstraintSolver& solver,
+             const btContactSolverInfo& info);
 
  private:
   /// Sorted before the solver sees it.
@@ -38,15 +41,23 @@ class ContactIslands : public btSimulationIslandManager {
     Parts parts;
     btPersistentManifold* manifold;
   };
+  struct JointEntry {
+    int island;
+    int order;
+    btTypedConstraint* joint;
+  };
 
   void settle(btCollisionWorld& world, int first, int last);
   void collect_awake_manifolds(btDispatcher& dispatcher);
+  void collect_awake_joints(std::span<btTypedConstraint* const> joints);
   int end_of_island(int first);
 
   std::vector<Entry> entries_;
   std::vector<btPersistentManifold*> manifolds_;  ///< as entries_
+  std::vector<JointEntry> joint_entries_;
+  std::vector<btTypedConstraint*> joints_;  ///< as joint_entries_
   std::vector<btCollisionObject*> island_;
-  std::vector<btCollisionObject*> lonely_;  ///< awake bodies without any contact
+  std::vector<btCollisionObject*> lonely_;  ///< awake bodies without any contact or joint
 };
 
 }  // namespace aurasim::physics

@@ -3,6 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -29,7 +30,9 @@ class Stepper final : public btDiscreteDynamicsWorld {
   void solveConstraints(btContactSolverInfo& info) override {
     first_contacts_.look(*getDispatcher(), *getPairCache());
     m_constraintSolver->prepareSolve(getNumCollisionObjects(), getDispatcher()->getNumManifolds());
-    islands_->solve(*this, *m_constraintSolver, info);
+    const auto joints = static_cast<std::size_t>(m_constraints.size());
+    islands_->solve(*this, joints > 0 ? std::span(&m_constraints[0], joints) : std::span<btTypedConstraint*>(),
+                    *m_constraintSolver, info);
     m_constraintSolver->allSolved(info, nullptr);
   }
 
@@ -73,6 +76,9 @@ DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, int solver_iterations) :
 }
 
 DynamicsWorld::~DynamicsWorld() {
+  while (bullet_->world.getNumConstraints() > 0) {
+    bullet_->world.removeConstraint(bullet_->world.getConstraint(bullet_->world.getNumConstraints() - 1));
+  }
   btCollisionObjectArray& objects = bullet_->world.getCollisionObjectArray();
   while (objects.size() > 0) bullet_->world.removeCollisionObject(objects[objects.size() - 1]);
 }
@@ -88,6 +94,13 @@ void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
   bullet_->pairs.remove_pairs_of(proxies, bullet_->dispatcher);
   for (btRigidBody* body : bodies) bullet_->world.removeRigidBody(body);
 }
+
+void DynamicsWorld::connect(btTypedConstraint& joint, int order, bool bodies_collide) {
+  joint.setUserConstraintId(order);
+  bullet_->world.addConstraint(&joint, !bodies_collide);
+}
+
+void DynamicsWorld::disconnect(btTypedConstraint& joint) { bullet_->world.removeConstraint(&joint); }
 
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);

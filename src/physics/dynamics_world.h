@@ -10,6 +10,7 @@
 #include "physics/first_contacts.h"
 
 class btRigidBody;
+class btTypedConstraint;
 
 namespace aurasim::physics {
 
@@ -23,6 +24,11 @@ class DynamicsWorld {
   void insert(btRigidBody& body, int rank);
   /// With all contacts.
   void remove(std::span<btRigidBody* const> bodies);
+
+  /// `order` fixes the order in which the solver sees the joints; the same in every world. Unless they collide, the
+  /// two bodies may not have contacts yet.
+  void connect(btTypedConstraint& joint, int order, bool bodies_collide);
+  void disconnect(btTypedConstraint& joint);
 
   void step(double substep_s);
 

@@ -62,7 +62,7 @@ class RegionWorld {
   void adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up = {});
 
   /// Takes bodies out with everything that a hand-off has to carry. Every id must be here, or std::invalid_argument
-  /// is thrown with nothing done. Contacts with bodies that stay behind are forgotten and counted (see
+  /// is thrown with nothing done. Contacts and joints with bodies that stay behind are cut and counted (see
   /// severed_contacts).
   core::ClusterState release(std::span<const core::BodyId> bodies);
 
@@ -75,7 +75,8 @@ class RegionWorld {
   /// Computes the next state, in Settings::substeps substeps.
   void step();
 
-  /// Bodies ascending by id (those not yet born included), contacts between bodies. Valid until the next change.
+  /// Bodies ascending by id (those not yet born included), contacts and joints between bodies. Valid until the next
+  /// change.
   const core::Snapshot& snapshot();
 
   /// Records of all born bodies in ascending order of id. Valid until the next change.
@@ -85,7 +86,7 @@ class RegionWorld {
   /// before (their `step` is earlier). Ordered by (a, b, step).
   const std::vector<Collision>& collisions() const;
 
-  /// Contacts that a release has cut so far: never more than 0 while clusters are whole.
+  /// Contacts and joints that a release has cut so far: never more than 0 while clusters are whole.
   std::uint64_t severed_contacts() const;
 
  private:

@@ -48,6 +48,7 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
     : scene_(&scene),
       settings_(settings),
       shapes_(std::move(shapes)),
+      joints_(scene),
       world_(scene.gravity, settings.solver_iterations) {
   insert_statics();
 }
@@ -99,12 +100,16 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
 }
 
 void Simulation::add(std::span<const core::BodyRecord> bodies) {
+  put_in(bodies);
+  insert_born();
+}
+
+void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
   std::vector<HostedBody> arrivals;
   arrivals.reserve(bodies.size());
   for (const core::BodyRecord& record : bodies) arrivals.push_back(make_body(record));
   refuse_twins(arrivals);
   table_.insert(std::move(arrivals));
-  insert_born();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
@@ -113,11 +118,14 @@ void Simulation::insert_born() {
     if (body.born || body.birth > step_) continue;
     world_.insert(*body.rigid, rank_of(body.id));
     body.born = true;
+    joints_.connect(body.id, table_, world_);
   }
 }
 
 void Simulation::join(const core::ClusterState& cluster) {
-  add(cluster.bodies);
+  put_in(cluster.bodies);
+  joints_.restore(cluster, table_);
+  insert_born();
   restore_contacts(cluster);
 }
 
@@ -188,7 +196,7 @@ std::vector<bool> Simulation::places_of(std::span<const core::BodyId> bodies) co
 
 struct Simulation::Copy {
   core::ClusterState cluster;
-  std::uint64_t contacts_across = 0;  ///< with bodies that are no members
+  std::uint64_t across = 0;  ///< contacts and joints with bodies that are no members
 };
 
 Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
@@ -207,10 +215,11 @@ Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
     if ((member0 || is_static(index0)) && (member1 || is_static(index1))) {
       manifolds.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
     } else {
-      ++copy.contacts_across;
+      ++copy.across;
     }
   }
   append_manifolds(std::move(manifolds), copy.cluster);
+  copy.across += joints_.append_to(copy.cluster);
   return copy;
 }
 
@@ -221,11 +230,12 @@ core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const 
 core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
   const std::vector<bool> members = places_of(bodies);
   Copy leaving = copy(members);
-  severed_contacts_ += leaving.contacts_across;
+  severed_contacts_ += leaving.across;
   std::vector<btRigidBody*> born;
   for (std::size_t i = 0; i < table_.size(); ++i) {
     if (members[i] && table_[i].born) born.push_back(table_[i].rigid.get());
   }
+  joints_.disconnect(leaving.cluster, table_, world_);
   world_.remove(born);
   table_.erase(members);
   snapshot_is_fresh_ = records_are_fresh_ = false;
@@ -240,7 +250,10 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 
 void Simulation::step() {
   world_.first_contacts().clear();
-  for (int i = 0; i < settings_.substeps; ++i) world_.step(settings_.step_s / settings_.substeps);
+  for (int i = 0; i < settings_.substeps; ++i) {
+    world_.step(settings_.step_s / settings_.substeps);
+    joints_.remove_broken(world_);
+  }
   ++step_;
   collect_collisions();
   insert_born();
@@ -268,6 +281,7 @@ const core::Snapshot& Simulation::snapshot() {
     snapshot_.bodies.clear();
     for (const HostedBody& body : table_.bodies()) snapshot_.bodies.push_back(body.state());
     list_contacts();
+    joints_.list_pairs(table_, snapshot_.joints);
     snapshot_is_fresh_ = true;
   }
   return snapshot_;

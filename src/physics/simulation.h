@@ -10,6 +10,7 @@
 #include "core/scene.h"
 #include "physics/body_table.h"
 #include "physics/dynamics_world.h"
+#include "physics/joint_table.h"
 #include "physics/region_world.h"
 #include "physics/shapes.h"
 
@@ -46,6 +47,7 @@ class Simulation {
  private:
   void insert_statics();
   void insert_born();
+  void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
@@ -63,6 +65,7 @@ class Simulation {
   std::shared_ptr<const ShapeSet> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
   BodyTable table_;
+  JointTable joints_;
   DynamicsWorld world_;
 
   core::Step step_ = 0;

@@ -24,6 +24,7 @@ struct Crash {
 struct ClusterOptions {
   core::RegionMap map = core::RegionMap::columns(1, 1);
   core::AuraRules aura;
+  int solver_iterations = 10;
   core::SyncMode sync = core::SyncMode::kBounded;
   transport::Faults faults;
   std::uint64_t seed = 1;

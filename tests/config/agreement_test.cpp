@@ -14,7 +14,10 @@ prototypes:
   ball: {shape: ball, mass: 1, material: stone}
   pair: {shape: pair, mass: 2}
 statics: [{name: ground, shape: {plane: {normal: [0, 0, 1]}}}]
-bodies: [{prototype: ball, position: [0, 0, 5]}]
+bodies: [{prototype: ball, position: [0, 0, 5], name: a}, {prototype: ball, position: [0, 0, 9], name: b}]
+joints:
+  - {hinge: {limits_deg: [0, 1], motor: {speed: 1, max_impulse: 1}}, bodies: [a, b], break_impulse: 3}
+  - {spring: {x: {stiffness: 1}}, bodies: [a]}
 injectors:
   - {name: rain, seed: 1, rate: 1, count: 10, volume: {center: [0, 0, 9], size: [1, 1, 1]}, prototypes: [ball]}
 )";
@@ -72,6 +75,19 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "scene.prototypes.ball.can_sleep=false",
                                             "scene.prototypes.ball.shape=pair",
                                             "scene.statics.0.name=floor",
+                                            "scene.joints.0.bodies=[b, a]",
+                                            "scene.joints.0.bodies=[a]",
+                                            "scene.joints.0.name=elbow",
+                                            "scene.joints.0.position=[0, 0, 6]",
+                                            "scene.joints.0.collide=true",
+                                            "scene.joints.0.break_impulse=4",
+                                            "scene.joints.0.hinge.axis=[1, 0, 0]",
+                                            "scene.joints.0.hinge.limits_deg=[0, 2]",
+                                            "scene.joints.0.hinge.motor.speed=2",
+                                            "scene.joints.0.hinge.motor.max_impulse=2",
+                                            "scene.joints.1.spring.x.stiffness=2",
+                                            "scene.joints.1.spring.x.damping=2",
+                                            "scene.joints.1.spring.y={}",
                                             "scene.statics.0.position=[0, 0, 1]",
                                             "scene.bodies.0.id=5",
                                             "scene.bodies.0.position.0=1",

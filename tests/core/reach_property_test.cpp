@@ -103,12 +103,20 @@ TEST_P(Reach, OfTheTableIsEnoughForAPairThatIsAloneInTheWorld) {
 TEST_P(Reach, ATenthOfAStepShorterIsTooLittle) {
   Random random("head on, a tenth of a step short");
   AuraRules rules = tight_rules(ks());
-  const Tally enough = meet(RegionMap::columns(2, 60), rules, {Vec3::Zero()}, 20, 50, random, true);
+  const Tally enough = meet(RegionMap::columns(2, 60), rules, {Vec3::Zero()}, 20, 20, random, true);
   EXPECT_EQ(enough.late, 0u) << enough.first_late;
   rules.reach_scale = scale_that_is_shorter_by(0.1, ks());
-  const Tally t = meet(RegionMap::columns(2, 60), rules, {Vec3::Zero()}, 20, 50, random, true);
+  const Tally t = meet(RegionMap::columns(2, 60), rules, {Vec3::Zero()}, 20, 20, random, true);
   print("too short", t);
   EXPECT_GT(t.late, 0u);
+}
+
+TEST_P(Reach, OfNothingIsTooLittle) {
+  Random random("the naive control");
+  AuraRules rules = tight_rules(ks());
+  rules.kind = AuraKind::kNone;
+  const Tally t = meet(RegionMap::columns(2, 60), rules, {Vec3::Zero()}, 4, 25, random);
+  EXPECT_GT(t.late, t.pairs / 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Reach,

@@ -1,9 +1,9 @@
-#include "transport/faulty_transport.h"
-
 #include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "transport/faulty_transport.h"
 
 namespace aurasim::transport::testing {
 namespace {
@@ -129,7 +129,8 @@ TEST(FaultModel, AMessageWaitsForAllCutsInARow) {
   EXPECT_THAT(model.arrivals(kA, kB, 3), ElementsAre(8));
 }
 
-// The same two cuts, the later one first: arrives at 5, in the middle of the other.
+/// The same two cuts, the later one first. Disabled: after_cuts() looks once through them, and lets the message arrive
+/// at 5, within the other.
 TEST(FaultModel, DISABLED_AMessageWaitsForAllCutsInWhicheverOrderTheyWereMade) {
   FaultModel model({}, kSeed);
   model.cut(kA, kB, 5, 8);

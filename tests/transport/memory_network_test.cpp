@@ -1,10 +1,10 @@
-#include "transport/memory_transport.h"
-
 #include <algorithm>
 #include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "transport/memory_transport.h"
 
 namespace aurasim::transport::testing {
 namespace {

@@ -1,0 +1,70 @@
+// Joints between bodies of a scene, as plain data. J is the joint's frame, given in the world at the bodies' initial
+// poses; from then on it moves with each of the two bodies. "Of a": of body a relative to b, or to the world.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+/// Radians or metres, low <= high.
+struct JointLimits {
+  double low = 0;
+  double high = 0;
+};
+
+struct JointMotor {
+  double speed = 0;        ///< of a: rad/s or m/s
+  double max_impulse = 0;  ///< in each substep: N m s or N s
+};
+
+/// Holds the two origins together; turns freely.
+struct BallJoint {};
+
+/// Turns about the z axis of J.
+struct HingeJoint {
+  std::optional<JointLimits> limits;  ///< within [-pi, pi]
+  std::optional<JointMotor> motor;
+};
+
+/// Slides along the z axis of J and does not turn.
+struct SliderJoint {
+  std::optional<JointLimits> limits;
+};
+
+/// Neither moves nor turns.
+struct FixedJoint {};
+
+/// One degree of freedom of a spring.
+struct SpringAxis {
+  std::optional<JointLimits> limits;  ///< free without; low = high locks it
+  double stiffness = 0;               ///< N/m or N m/rad, towards 0
+  double damping = 0;                 ///< N s/m or N m s/rad
+};
+
+/// Three translations along, then three rotations about, the axes of J.
+struct SpringJoint {
+  std::array<SpringAxis, 6> axes;
+};
+
+using JointKind = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, SpringJoint>;
+
+/// Binds bodies that are there in state 0. Its JointId is the index in Scene::joints.
+struct JointSpec {
+  std::string name;
+  JointKind kind;
+  BodyId a{};
+  std::optional<BodyId> b;  ///< nothing: the world
+  Pose X_WJ;
+  bool collide = false;  ///< whether a and b collide with each other
+  /// The joint breaks for good when it takes more in one substep, in any of its directions. N s or N m s.
+  double break_impulse = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,117 @@
+#include "physics/constraints.h"
+
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "physics/bullet_convert.h"
+
+namespace aurasim::physics {
+namespace {
+
+using core::Pose;
+using core::Quat;
+using core::Vec3;
+
+btScalar scalar(double x) { return static_cast<btScalar>(x); }
+
+Pose frame_in(const Pose& X_WB, const Pose& X_WJ) {
+  const Quat q_BW = X_WB.q_WB.normalized().conjugate();
+  return {q_BW * (X_WJ.p_WB - X_WB.p_WB), q_BW * X_WJ.q_WB.normalized()};
+}
+
+const core::InitialBody& body_of(const core::JointSpec& joint, core::BodyId id, const core::Scene& scene) {
+  if (const core::InitialBody* body = core::find_body(scene, id)) return *body;
+  throw std::invalid_argument("joint \"" + joint.name + "\" binds body " + std::to_string(core::value_of(id)) +
+                              ", which is not there in state 0");
+}
+
+/// Bullet's sliders slide along x.
+btTransform with_x_along_z(const Pose& X_BJ) {
+  const Quat z_to_x(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitY()));
+  return to_bullet(Pose{X_BJ.p_WB, X_BJ.q_WB * z_to_x});
+}
+
+class Maker {
+ public:
+  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b) : frames_(frames), a_(a), b_(b) {}
+
+  std::unique_ptr<btTypedConstraint> operator()(const core::BallJoint&) const {
+    return std::make_unique<btPoint2PointConstraint>(a_, b_, to_bullet(frames_.X_AJ.p_WB),
+                                                     to_bullet(frames_.X_BJ.p_WB));
+  }
+
+  std::unique_ptr<btTypedConstraint> operator()(const core::HingeJoint& joint) const {
+    auto hinge = std::make_unique<btHingeConstraint>(a_, b_, to_bullet(frames_.X_AJ), to_bullet(frames_.X_BJ));
+    constexpr btScalar kSoftness = btScalar(0.9);
+    constexpr btScalar kBias = btScalar(0.3);
+    constexpr btScalar kBounce = 0;  // Bullet's default, 1, makes every joint a rattle
+    if (joint.limits) {
+      hinge->setLimit(scalar(joint.limits->low), scalar(joint.limits->high), kSoftness, kBias, kBounce);
+    }
+    if (joint.motor) hinge->enableAngularMotor(true, scalar(joint.motor->speed), scalar(joint.motor->max_impulse));
+    return hinge;
+  }
+
+  std::unique_ptr<btTypedConstraint> operator()(const core::SliderJoint& joint) const {
+    constexpr bool kAsSeenFromA = false;
+    auto slider = std::make_unique<btSliderConstraint>(a_, b_, with_x_along_z(frames_.X_AJ),
+                                                       with_x_along_z(frames_.X_BJ), kAsSeenFromA);
+    slider->setLowerLinLimit(scalar(joint.limits ? joint.limits->low : 1));  // low > high: free
+    slider->setUpperLinLimit(scalar(joint.limits ? joint.limits->high : -1));
+    slider->setLowerAngLimit(0);
+    slider->setUpperAngLimit(0);
+    return slider;
+  }
+
+  std::unique_ptr<btTypedConstraint> operator()(const core::FixedJoint&) const {
+    return std::make_unique<btFixedConstraint>(a_, b_, to_bullet(frames_.X_AJ), to_bullet(frames_.X_BJ));
+  }
+
+  /// Bullet measures its second body from its first.
+  std::unique_ptr<btTypedConstraint> operator()(const core::SpringJoint& joint) const {
+    auto spring =
+        std::make_unique<btGeneric6DofSpring2Constraint>(b_, a_, to_bullet(frames_.X_BJ), to_bullet(frames_.X_AJ));
+    for (int i = 0; i < 6; ++i) {
+      const core::SpringAxis& axis = joint.axes[static_cast<std::size_t>(i)];
+      spring->setLimit(i, scalar(axis.limits ? axis.limits->low : 1), scalar(axis.limits ? axis.limits->high : -1));
+      if (axis.stiffness == 0 && axis.damping == 0) continue;
+      spring->enableSpring(i, true);
+      spring->setStiffness(i, scalar(axis.stiffness));
+      spring->setDamping(i, scalar(axis.damping));
+      spring->setEquilibriumPoint(i, 0);
+    }
+    return spring;
+  }
+
+ private:
+  const JointFrames& frames_;
+  btRigidBody& a_;
+  btRigidBody& b_;
+};
+
+}  // namespace
+
+JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene) {
+  if (joint.b == joint.a) throw std::invalid_argument("joint \"" + joint.name + "\" binds a body to itself");
+  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{};
+  return {frame_in(body_of(joint, joint.a, scene).pose, joint.X_WJ), frame_in(X_WB, joint.X_WJ)};
+}
+
+std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
+                                                   btRigidBody& a, btRigidBody& b) {
+  auto constraint = std::visit(Maker(frames, a, b), joint.kind);
+  if (joint.break_impulse < static_cast<double>(SIMD_INFINITY)) {
+    constraint->setBreakingImpulseThreshold(scalar(joint.break_impulse));
+  }
+  return constraint;
+}
+
+}  // namespace aurasim::physics

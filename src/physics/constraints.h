@@ -1,0 +1,28 @@
+// The scene's joints as Bullet's constraints.
+#pragma once
+
+#include <memory>
+
+#include "core/scene.h"
+
+class btRigidBody;
+class btTypedConstraint;
+
+namespace aurasim::physics {
+
+/// Where the joint's frame J is in its bodies, for good. Without b, in the world.
+struct JointFrames {
+  core::Pose X_AJ;
+  core::Pose X_BJ;
+};
+
+/// Throws std::invalid_argument if the scene has no such bodies, or one body twice.
+JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene);
+
+/// `b` is a body without mass at the origin if the joint holds on to the world. Nothing of Bullet's constraints
+/// outlives a substep but whether they are enabled: rows start from impulse 0 in every solve, angles and positions are
+/// measured anew from the poses.
+std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
+                                                   btRigidBody& a, btRigidBody& b);
+
+}  // namespace aurasim::physics
