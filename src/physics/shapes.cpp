@@ -133,6 +133,7 @@ struct ShapeSet::Built::Make {
 
   /// A mesh has nothing inside to round, so its margin would lie on top: bodies would hover.
   Built operator()(const core::TriangleMesh& s) const {
+    if (s.triangles.empty()) throw std::invalid_argument("a mesh without triangles");  // Bullet's tree reads beyond it
     Built built;
     built.mesh = triangles_of(s);
     auto mesh = std::make_unique<btBvhTriangleMeshShape>(built.mesh.get(), /*useQuantizedAabbCompression=*/true);
