@@ -104,7 +104,7 @@ bool Aura::linked(const Path& a, const Path& b, int hops) const {
     case AuraKind::kSwept:
       break;
   }
-  return paths_meet(a, b, hops * rules_.lookahead);
+  return paths_meet(a, b, (hops + 1) * rules_.lookahead - 1);
 }
 
 bool Aura::meets_ghost(const Path& ghost, const Path& own, int hops) const {
@@ -130,7 +130,7 @@ double Aura::notice(double foreign_speed_m_s, double foreign_age_steps, double o
 
 double Aura::link_range(double speed_a_m_s, double speed_b_m_s, int hops) const {
   if (rules_.kind != AuraKind::kSwept) return cluster_reach(hops) + rules_.contact_margin_m;
-  const double steps = hops * rules_.lookahead;
+  const double steps = (hops + 1) * rules_.lookahead - 1;
   return (1 + rules_.uncertainty) * rules_.step_s * steps * (speed_a_m_s + speed_b_m_s) + 2 * drop_m(steps) +
          rules_.contact_margin_m;
 }

@@ -79,7 +79,8 @@ void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
   f.path.w_WB = aura.w_WB;
   f.path.moves = !asleep;
   // Asleep and unchanged in its source's last batch: as fresh as that batch. A ghost has been out of sight since.
-  f.path.age_steps = static_cast<double>(now - (asleep && !ghost ? known : aura.stamp));
+  f.path.age_steps =
+      static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
 }

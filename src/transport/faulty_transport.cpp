@@ -11,9 +11,14 @@ void FaultModel::cut(core::RegionId a, core::RegionId b, double from_s, double u
 double FaultModel::chance() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
 double FaultModel::after_cuts(core::RegionId from, core::RegionId to, double t) const {
-  for (const Cut& c : cuts_) {
-    const bool concerns = (c.a == from && c.b == to) || (c.a == to && c.b == from);
-    if (concerns && t >= c.from_s && t < c.until_s) t = c.until_s;
+  for (bool held = true; held;) {
+    held = false;
+    for (const Cut& c : cuts_) {
+      const bool concerns = (c.a == from && c.b == to) || (c.a == to && c.b == from);
+      if (!concerns || t < c.from_s || t >= c.until_s) continue;
+      t = c.until_s;
+      held = true;
+    }
   }
   return t;
 }

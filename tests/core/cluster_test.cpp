@@ -231,32 +231,6 @@ TEST_F(ClusterTest, AreThoseOfTheDefinition) {
   EXPECT_GT(united, 5000u);
 }
 
-/// A cradle: c is about to strike b, which then strikes a, all within one step. Disabled with the next test until
-/// complete(a) counts b as fast as the cluster that b belongs to, even if nobody has asked for that one.
-TEST_F(ClusterTest, DISABLED_ABodyThatIsAboutToBeStruckCountsAsFast) {
-  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(0.95, 0, 0)), c = place(Vec3(1.85, 0, 0), Vec3(-30, 0, 0));
-  complete_all();
-  EXPECT_TRUE(together(a, b));
-  EXPECT_TRUE(together(b, c));
-  begin();
-  clusters->complete(a);
-  EXPECT_TRUE(together(a, b));
-  EXPECT_TRUE(together(b, c));
-}
-
-TEST_F(ClusterTest, DISABLED_OneThatIsAskedForIsTheSameWhicheverOthersWere) {
-  Random random("scenes");
-  for (int run = 0; run < 200; ++run) {
-    place_random_scene(random);
-    const Plain plain = by_definition();
-    begin();
-    const std::uint32_t asked = random.below(static_cast<std::uint32_t>(paths.size()));
-    clusters->complete(asked);
-    for (std::uint32_t b = 0; b < paths.size(); ++b) ASSERT_EQ(together(asked, b), plain.of[asked] == plain.of[b]);
-    ASSERT_EQ(clusters->speed(asked), plain.speed[plain.of[asked]]);
-  }
-}
-
 TEST_F(ClusterTest, CompletingTwiceChangesNothing) {
   Random random("scenes");
   place_random_scene(random);

@@ -75,10 +75,8 @@ TEST_P(ExactPath, ABodyThatIsAboutToBeHitByOneOfItsOwnNodeDoesNotGoHome) {
   }
 }
 
-/// Disabled until Gathering::add_foreign counts the age of an aura from its body's birth: for the first K states it
-/// predicts the body K states too far along its path.
 /// Announced in good time, born in flight next to a border, and met by a body from elsewhere in its first steps.
-TEST_P(ExactPath, DISABLED_OfABodyStartsAtItsBirth) {
+TEST_P(ExactPath, OfABodyStartsAtItsBirth) {
   Random random("births");
   Tally tally;
   const Step steps = 12 * k() + 20;
@@ -106,8 +104,8 @@ TEST_P(ExactPath, DISABLED_OfABodyStartsAtItsBirth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ShortestLookahead, ExactPath, ::testing::Values(1));
-/// Disabled until links look 2K - 1 states ahead instead of K: a body that goes home is out of reach for that long.
-INSTANTIATE_TEST_SUITE_P(DISABLED_LongerLookahead, ExactPath, ::testing::Values(2, 3));
+/// Links look 2K - 1 states ahead: a body that goes home is out of reach for that long.
+INSTANTIATE_TEST_SUITE_P(LongerLookahead, ExactPath, ::testing::Values(2, 3));
 
 }  // namespace
 }  // namespace aurasim::core::testing

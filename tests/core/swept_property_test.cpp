@@ -129,8 +129,7 @@ std::string name_of(const ::testing::TestParamInfo<std::pair<int, int>>& info) {
 INSTANTIATE_TEST_SUITE_P(All, SweptAura,
                          ::testing::Values(std::pair(1, 1), std::pair(1, 4), std::pair(2, 1), std::pair(2, 4)),
                          name_of);
-/// Disabled until links look 2K - 1 states ahead instead of K (exact_path_test.cpp).
-INSTANTIATE_TEST_SUITE_P(DISABLED_ThreeSteps, SweptAura, ::testing::Values(std::pair(3, 2)), name_of);
+INSTANTIATE_TEST_SUITE_P(ThreeSteps, SweptAura, ::testing::Values(std::pair(3, 2)), name_of);
 
 }  // namespace
 }  // namespace aurasim::core::testing
