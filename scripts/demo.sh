@@ -17,7 +17,7 @@ fi
 
 "$root/scripts/setup.sh"
 echo "demo.sh: building; the first time this takes some minutes"
-"$root/scripts/build.sh" release
+"$root/scripts/build.sh" release aurasim aurasim-single
 
 cat <<'TEXT'
 
