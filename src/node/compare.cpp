@@ -1,7 +1,6 @@
 #include "node/compare.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -16,12 +15,10 @@ using Cells = std::vector<std::string_view>;
 using Hashes = std::map<core::Step, std::string>;
 using Poses = std::map<std::uint64_t, core::Pose>;
 
-double number(std::string_view text) { return std::strtod(std::string(text).c_str(), nullptr); }
-
 Hashes read_hashes(const std::filesystem::path& folder) {
   Hashes hashes;
   read_csv(folder / "state_hash.csv", [&](const Cells& c) {
-    if (c.size() == 2) hashes[std::strtoll(std::string(c[0]).c_str(), nullptr, 10)] = std::string(c[1]);
+    if (c.size() == 2) hashes[static_cast<core::Step>(whole(c[0]))] = std::string(c[1]);
   });
   if (hashes.empty()) throw std::runtime_error((folder / "state_hash.csv").string() + ": no hashes");
   return hashes;
@@ -33,7 +30,7 @@ Poses read_poses(const std::filesystem::path& folder) {
     if (!entry.is_directory() || !entry.path().filename().string().starts_with("region_")) continue;
     read_csv(entry.path() / "bodies.csv", [&](const Cells& c) {
       if (c.size() != 12 || c[4] != "here") return;
-      core::Pose& pose = poses[std::strtoull(std::string(c[1]).c_str(), nullptr, 10)];
+      core::Pose& pose = poses[whole(c[1])];
       pose.p_WB = {number(c[5]), number(c[6]), number(c[7])};
       pose.q_WB = {number(c[8]), number(c[9]), number(c[10]), number(c[11])};
     });

@@ -1,6 +1,9 @@
 // Comma-separated numbers and names, as the recorder writes them: no quotes, one header line.
 #pragma once
 
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -8,6 +11,19 @@
 #include <vector>
 
 namespace aurasim::node {
+
+/// What a cell says as a number; 0 when it says none.
+inline double number(std::string_view text) {
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+inline std::uint64_t whole(std::string_view text, int base = 10) {
+  std::uint64_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value, base);
+  return value;
+}
 
 /// Calls `row(cells)` for each complete line after the header. A file that is not there has no rows; a last line cut
 /// off by a crash is left out.

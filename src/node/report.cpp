@@ -1,7 +1,6 @@
 #include "node/report.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -19,18 +18,6 @@ namespace {
 
 using Json = nlohmann::json;
 using Cells = std::vector<std::string_view>;
-
-double number(std::string_view text) {
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-std::uint64_t whole(std::string_view text, int base = 10) {
-  std::uint64_t value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value, base);
-  return value;
-}
 
 /// A change of host as the records tell it.
 struct Move {
