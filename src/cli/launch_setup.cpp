@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/aura.h"
+#include "node/local_origin.h"
 
 namespace aurasim::cli {
 namespace {
@@ -92,6 +93,9 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.step_s = launch.step_s();
   setup.physics.substeps = launch.time.substeps;
   setup.physics.solver_iterations = launch.physics.iterations;
+  if (launch.physics.origin == config::Origin::kRegion) {
+    setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
+  }
   return setup;
 }
 

@@ -83,6 +83,10 @@ void read_physics(const Field& field, Physics& physics) {
   if (const Field f = fields.optional("iterations"); f.given()) {
     physics.iterations = static_cast<int>(f.integer(1, 1000).value_or(physics.iterations));
   }
+  if (const Field f = fields.optional("origin"); f.given()) {
+    physics.origin =
+        f.choice<Origin>({{"world", Origin::kWorld}, {"region", Origin::kRegion}}).value_or(physics.origin);
+  }
   fields.close();
 }
 

@@ -17,6 +17,7 @@ namespace aurasim::config {
 enum class Sync { kFreeRunning, kBounded, kDeterministic };
 enum class Pace { kWall, kNone };
 enum class AuraRadius { kNone, kThesis, kTight, kSwept };
+enum class Origin { kWorld, kRegion };
 enum class Discovery { kMulticast, kPeers, kServer };
 
 struct Time {
@@ -42,6 +43,8 @@ struct Physics {
   std::string precision = "double";  ///< or "single"
   std::string solver = "sequential_impulse";
   int iterations = 10;
+  /// Where Bullet's coordinates begin: kWorld keeps equal bits on any number of nodes, kRegion accuracy far out.
+  Origin origin = Origin::kWorld;
 };
 
 struct Dds {

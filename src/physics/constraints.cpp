@@ -99,9 +99,9 @@ class Maker {
 
 }  // namespace
 
-JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene) {
+JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene, const Vec3& p_WO) {
   if (joint.b == joint.a) throw std::invalid_argument("joint \"" + joint.name + "\" binds a body to itself");
-  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{};
+  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{p_WO, Quat::Identity()};
   return {frame_in(body_of(joint, joint.a, scene).pose, joint.X_WJ), frame_in(X_WB, joint.X_WJ)};
 }
 

@@ -10,14 +10,15 @@ class btTypedConstraint;
 
 namespace aurasim::physics {
 
-/// Where the joint's frame J is in its bodies, for good. Without b, in the world.
+/// Where the joint's frame J is in its bodies, for good. Without b, in Bullet's frame.
 struct JointFrames {
   core::Pose X_AJ;
   core::Pose X_BJ;
 };
 
-/// Throws std::invalid_argument if the scene has no such bodies, or one body twice.
-JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene);
+/// `p_WO`: where Bullet's coordinates begin. Throws std::invalid_argument if the scene has no such bodies, or one body
+/// twice.
+JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene, const core::Vec3& p_WO);
 
 /// `b` is a body without mass at the origin if the joint holds on to the world. Nothing of Bullet's constraints
 /// outlives a substep but whether they are enabled: rows start from impulse 0 in every solve, angles and positions are

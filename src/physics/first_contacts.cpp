@@ -8,8 +8,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include "physics/bullet_convert.h"
-
 namespace aurasim::physics {
 namespace {
 
@@ -40,7 +38,7 @@ FirstContact describe(const btPersistentManifold& manifold) {
   };
   const btVector3 relative = velocity(manifold.getBody0()) - velocity(manifold.getBody1());
   return {manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex(), -point.getDistance(),
-          relative.length(), from_bullet(p)};
+          relative.length(), p};
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/body_state.h"
+#include <LinearMath/btVector3.h>
+
 #include "physics/contact_cache.h"
 
 class btDispatcher;
@@ -17,9 +18,9 @@ namespace aurasim::physics {
 struct FirstContact {
   int body0 = 0;
   int body1 = 0;
-  double penetration_m = 0;       ///< of the deepest point
-  double relative_speed_m_s = 0;  ///< at that point
-  core::Vec3 p_W = core::Vec3::Zero();
+  double penetration_m = 0;            ///< of the deepest point
+  double relative_speed_m_s = 0;       ///< at that point
+  btVector3 p_O = btVector3(0, 0, 0);  ///< in Bullet's frame
 };
 
 /// Keeps its notes in two fields of the manifolds that Bullet does not use: m_companionIdA is the substep in which the

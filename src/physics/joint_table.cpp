@@ -26,12 +26,12 @@ bool has(const core::ClusterState& cluster, core::BodyId id) {
 
 }  // namespace
 
-JointTable::JointTable(const core::Scene& scene)
+JointTable::JointTable(const core::Scene& scene, const core::Vec3& p_WO)
     : scene_(&scene), ground_(std::make_unique<btRigidBody>(0, nullptr, nullptr)) {
   entries_.resize(scene.joints.size());
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const core::JointSpec& joint = scene.joints[i];
-    entries_[i].frames = frames_of(joint, scene);
+    entries_[i].frames = frames_of(joint, scene, p_WO);
     joints_of_[joint.a].push_back(core::JointId{i});
     if (joint.b) joints_of_[*joint.b].push_back(core::JointId{i});
   }

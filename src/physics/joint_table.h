@@ -21,7 +21,8 @@ namespace aurasim::physics {
 class JointTable {
  public:
   /// The scene outlives the table; so do the body table and the world that its functions are given, always the same.
-  explicit JointTable(const core::Scene& scene);
+  /// `p_WO`: where Bullet's coordinates begin.
+  JointTable(const core::Scene& scene, const core::Vec3& p_WO);
 
   /// What a cluster that has just come says about its joints. Before connect().
   void restore(const core::ClusterState& cluster, const BodyTable& bodies);

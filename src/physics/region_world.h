@@ -21,6 +21,11 @@ struct Settings {
   double step_s = 1.0 / 60;
   int substeps = 4;
   int solver_iterations = 10;
+  /// Where Bullet's coordinates begin, in the world frame. Positions outside this library are world coordinates all the
+  /// same. With coordinates that are multiples of a power of two the conversion is exact both ways as long as world
+  /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
+  /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
+  core::Vec3 p_WO = core::Vec3::Zero();
 };
 
 /// The first contact of a pair, seen before the solver acts on it.

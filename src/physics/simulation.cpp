@@ -28,6 +28,14 @@ btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btCollisio
   return info;
 }
 
+/// Where a static is put. A plane may slide along itself: far out, its origin would cost digits for nothing.
+core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const core::Vec3& p_WO) {
+  const auto* const plane = std::get_if<core::Plane>(&shape);
+  if (plane == nullptr || p_WO.isZero()) return body.pose;
+  const core::Vec3 normal_W = body.pose.q_WB.normalized() * plane->normal.normalized();
+  return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
+}
+
 bool is_static(int user_index) { return user_index < 0; }
 
 [[noreturn]] void refuse_twin(core::BodyId id) {
@@ -47,8 +55,9 @@ void refuse_twins(const std::vector<HostedBody>& bodies) {
 Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
     : scene_(&scene),
       settings_(settings),
+      frame_(settings.p_WO),
       shapes_(std::move(shapes)),
-      joints_(scene),
+      joints_(scene, settings.p_WO),
       world_(scene.gravity, settings.solver_iterations) {
   insert_statics();
 }
@@ -58,8 +67,10 @@ Simulation::~Simulation() = default;
 void Simulation::insert_statics() {
   for (std::size_t i = 0; i < scene_->statics.size(); ++i) {
     const core::StaticBody& body = scene_->statics[i];
+    const core::Pose X_WS = placed(body, scene_->shapes.at(body.shape).shape, settings_.p_WO);
+    slid_.push_back(body.pose.q_WB.normalized().conjugate() * (X_WS.p_WB - body.pose.p_WB));
     auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
-    info.m_startWorldTransform = to_bullet(body.pose);
+    info.m_startWorldTransform = frame_.to_local(X_WS);
     statics_.push_back(std::make_unique<btRigidBody>(info));
     statics_.back()->setUserIndex(-1 - static_cast<int>(i));
     world_.insert(*statics_.back(), 1 + static_cast<int>(i));
@@ -88,7 +99,7 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
                               scene_->materials.at(prototype.material));
-  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB));
+  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), frame_.to_local(record.p_WB));
 
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
   body.rigid->setLinearVelocity(to_bullet(record.v_WB));
@@ -145,6 +156,25 @@ core::ObjectRef Simulation::ref_of(const btCollisionObject& object) const {
   return core::ref_of(table_[static_cast<std::size_t>(index)].id);
 }
 
+/// How far a static's frame is from where the scene says, in its own axes: never a body's.
+btVector3 Simulation::slid(core::ObjectRef ref) const {
+  return ref < 0 ? to_bullet(slid_[static_cast<std::size_t>(-1 - ref)]) : btVector3(0, 0, 0);
+}
+
+/// Points on statics are in the statics' frames, and those differ between worlds with different origins.
+void Simulation::put_back_slid(core::ClusterState& cluster) const {
+  const auto put_back = [&](core::ObjectRef ref, double* local) {
+    if (ref < 0) Eigen::Map<core::Vec3>(local) += slid_[static_cast<std::size_t>(-1 - ref)];
+  };
+  for (const core::ManifoldRecord& manifold : cluster.manifolds) {
+    for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
+      double* const row = &cluster.points[(manifold.first_point + i) * core::kContactPointDoubles];
+      put_back(manifold.object0, row + kLocalPointA);
+      put_back(manifold.object1, row + kLocalPointB);
+    }
+  }
+}
+
 /// Two compounds may have manifolds in both orders, so records are grouped by pair first.
 void Simulation::restore_contacts(const core::ClusterState& cluster) {
   std::vector<std::uint32_t> order(cluster.manifolds.size());
@@ -178,7 +208,10 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
     });
     if (made == of_pair_.end()) continue;
     for (std::uint32_t i = 0; i < record.point_count; ++i, row += core::kContactPointDoubles) {
-      made->manifold->addManifoldPoint(read_point(row));
+      btManifoldPoint point = read_point(row, frame_);
+      point.m_localPointA -= slid(record.object0);
+      point.m_localPointB -= slid(record.object1);
+      made->manifold->addManifoldPoint(point);
     }
     world_.first_contacts().know(*made->manifold);
   }
@@ -202,7 +235,7 @@ struct Simulation::Copy {
 Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
   Copy copy;
   for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (members[i]) copy.cluster.bodies.push_back(table_[i].record());
+    if (members[i]) copy.cluster.bodies.push_back(table_[i].record(frame_));
   }
   std::vector<KeyedManifold> manifolds;
   for (const btPersistentManifold* manifold : world_.manifolds()) {
@@ -218,7 +251,8 @@ Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
       ++copy.across;
     }
   }
-  append_manifolds(std::move(manifolds), copy.cluster);
+  append_manifolds(std::move(manifolds), frame_, copy.cluster);
+  if (!settings_.p_WO.isZero()) put_back_slid(copy.cluster);
   copy.across += joints_.append_to(copy.cluster);
   return copy;
 }
@@ -265,7 +299,7 @@ void Simulation::collect_collisions() {
   for (const FirstContact& found : world_.first_contacts().found()) {
     const auto [a, b] = std::minmax(found.body0, found.body1);
     collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
-                           found.penetration_m, found.relative_speed_m_s, found.p_W});
+                           found.penetration_m, found.relative_speed_m_s, frame_.to_world(found.p_O)});
   }
   const auto pair_of = [](const Collision& c) { return std::tie(c.a, c.b); };
   std::stable_sort(collisions_.begin(), collisions_.end(),
@@ -279,7 +313,7 @@ const core::Snapshot& Simulation::snapshot() {
   if (!snapshot_is_fresh_) {
     snapshot_.step = step_;
     snapshot_.bodies.clear();
-    for (const HostedBody& body : table_.bodies()) snapshot_.bodies.push_back(body.state());
+    for (const HostedBody& body : table_.bodies()) snapshot_.bodies.push_back(body.state(frame_));
     list_contacts();
     joints_.list_pairs(table_, snapshot_.joints);
     snapshot_is_fresh_ = true;
@@ -316,7 +350,7 @@ std::span<const core::BodyRecord> Simulation::records() {
   if (!records_are_fresh_) {
     records_.clear();
     for (const HostedBody& body : table_.bodies()) {
-      if (body.born) records_.push_back(body.record());
+      if (body.born) records_.push_back(body.record(frame_));
     }
     records_are_fresh_ = true;
   }

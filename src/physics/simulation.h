@@ -9,6 +9,7 @@
 #include "core/body_state.h"
 #include "core/scene.h"
 #include "physics/body_table.h"
+#include "physics/bullet_convert.h"
 #include "physics/dynamics_world.h"
 #include "physics/joint_table.h"
 #include "physics/region_world.h"
@@ -52,6 +53,8 @@ class Simulation {
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
   core::ObjectRef ref_of(const btCollisionObject& object) const;
+  btVector3 slid(core::ObjectRef ref) const;
+  void put_back_slid(core::ClusterState& cluster) const;
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   std::vector<bool> places_of(std::span<const core::BodyId> bodies) const;
@@ -62,8 +65,10 @@ class Simulation {
 
   const core::Scene* scene_;
   Settings settings_;
+  LocalFrame frame_;
   std::shared_ptr<const ShapeSet> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
+  std::vector<core::Vec3> slid_;                       ///< as Scene::statics; not zero for planes far out only
   BodyTable table_;
   JointTable joints_;
   DynamicsWorld world_;

@@ -64,6 +64,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "aura.uncertainty=0.4",
                                             "physics.precision=single",
                                             "physics.iterations=11",
+                                            "physics.origin=region",
                                             "scene.name=other",
                                             "scene.gravity=[0, 0, -9]",
                                             "scene.materials.stone.friction=0.5",

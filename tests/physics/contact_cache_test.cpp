@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "physics/bullet_convert.h"
+
 namespace aurasim::physics {
 namespace {
+
+const LocalFrame kWorld(core::Vec3::Zero());
 
 using Row = std::array<double, core::kContactPointDoubles>;
 
@@ -18,13 +22,13 @@ Row numbered_row() {
 TEST(ContactCache, EveryColumnComesBack) {
   const Row row = numbered_row();
   Row again{};
-  write_point(read_point(row.data()), again.data());
+  write_point(read_point(row.data(), kWorld), kWorld, again.data());
   EXPECT_EQ(again, row);
 }
 
 TEST(ContactCache, ColumnsAreWhereTheHeaderSays) {
   const Row row = numbered_row();
-  const btManifoldPoint point = read_point(row.data());
+  const btManifoldPoint point = read_point(row.data(), kWorld);
   EXPECT_EQ(point.m_localPointA, btVector3(1, 2, 3));
   EXPECT_EQ(point.m_localPointB, btVector3(4, 5, 6));
   EXPECT_EQ(point.m_positionWorldOnB, btVector3(7, 8, 9));
