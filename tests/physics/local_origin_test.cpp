@@ -76,8 +76,8 @@ TEST(LocalOrigin, CoordinatesComeBackAsTheyWentIn) {
   EXPECT_EQ(world.snapshot().bodies[0].pose.p_WB, there.p_WB);
 }
 
-/// Bodies that settle are handed to a world with another origin, at forty moments: their next step is that of the bodies
-/// that stayed. Metres per second.
+/// Bodies that settle are handed to a world with another origin, at forty moments: their next step is that of the
+/// bodies that stayed. Metres per second.
 double kick(const std::vector<BodyRecord>& bodies) {
   const core::Scene scene = scene_of_all_shapes();
   RegionWorld here(scene, with_origin({kFar_m - 16, 0, 0}));
