@@ -22,7 +22,8 @@ constexpr double kStep_s = 1.0 / 60;
 /// Boxes, spheres and capsules that rain onto a floor and never sleep.
 Scene heap(std::size_t count) {
   Scene scene;
-  scene.shapes = {{"box", Box{{0.4, 0.3, 0.5}}}, {"ball", Sphere{0.4}}, {"pill", Capsule{0.3, 0.5}}, {"floor", Plane{}}};
+  scene.shapes = {
+      {"box", Box{{0.4, 0.3, 0.5}}}, {"ball", Sphere{0.4}}, {"pill", Capsule{0.3, 0.5}}, {"floor", Plane{}}};
   scene.materials = {Material{}};
   for (std::uint32_t kind = 0; kind < 3; ++kind) scene.prototypes.push_back({"", kind, 0, 1, false});
   scene.statics = {{"floor", 3, 0, {}}};
