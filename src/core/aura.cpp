@@ -56,7 +56,10 @@ double Aura::speed_of(const BodyState& body) const {
   if (rules_.kind != AuraKind::kSwept) return rules_.top_speed_m_s;
   if (!body.awake) return kRestSpeed;
   const double fall_s = std::max(1, 4 * rules_.lookahead - 3) * rules_.step_s;
-  return body.v_WB.norm() + rules_.gravity.norm() * fall_s + kSpeedFloor;
+  const double free = body.v_WB.norm() + rules_.gravity.norm() * fall_s + kSpeedFloor;
+  // A kick that nobody else can foresee takes the body off its path by the kick's speed, of which U covers a share.
+  const double share = std::clamp(rules_.uncertainty, 0.1, 1.0);
+  return free + body.coming_kick_m_s / share;
 }
 
 double Aura::drop_m(double steps) const {

@@ -33,6 +33,8 @@ struct BodyState {
   Pose pose;
   Vec3 v_WB = Vec3::Zero();  ///< m/s
   Vec3 w_WB = Vec3::Zero();  ///< rad/s
+  /// An order that is due soon changes the velocity of its surface by this much, m/s; such a body counts as awake.
+  double coming_kick_m_s = 0;
 };
 
 /// Two bodies of one node in contact or within Bullet's contact margin. Indices into Snapshot::bodies, a < b.

@@ -212,6 +212,15 @@ std::vector<RegionId> Intake::dead_regions() const {
   return dead;
 }
 
+std::vector<Order> Intake::take_orders() {
+  std::vector<Order> orders;
+  for (Neighbour& neighbour : neighbours_) {
+    const std::vector<Order> heard = neighbour.take_orders();
+    orders.insert(orders.end(), heard.begin(), heard.end());
+  }
+  return orders;
+}
+
 void Intake::fill(Outbox& outbox, Step stamp) {
   for (HandOffAck& ack : acks_) {
     ack.stamp = stamp;

@@ -61,6 +61,9 @@ class Intake {
   const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
   const IntakeCounters& counters() const { return counters_; }
 
+  /// Orders that took effect with the last receive(), by neighbour, each neighbour's in sequence.
+  std::vector<Order> take_orders();
+
   /// For the step's outbox: acknowledgements, deaths and claims. Acks are given out once, claims as long as useful.
   void fill(Outbox& outbox, Step stamp);
 

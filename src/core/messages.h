@@ -7,6 +7,7 @@
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/order.h"
 
 namespace aurasim::core {
 
@@ -58,6 +59,7 @@ struct AuraBatch {
   std::vector<HandOffMark> hand_offs;
   std::vector<RegionId> dead;     ///< regions that the source holds for dead
   std::vector<BodyEpoch> claims;  ///< bodies adopted from regions now dead, so that nobody takes them back
+  std::vector<Order> orders;      ///< heard since the last batch, in sequence
 };
 
 enum class HandOffReason : std::uint8_t {

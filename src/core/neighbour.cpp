@@ -1,6 +1,7 @@
 #include "core/neighbour.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace aurasim::core {
 namespace {
@@ -43,6 +44,7 @@ void Neighbour::apply(AuraBatch& batch) {
   top_radius_m_ = batch.top_radius_m;
   violations_ = batch.violations;
   if (batch.full) auras_.clear();
+  orders_.insert(orders_.end(), batch.orders.begin(), batch.orders.end());
   merge(batch);
 }
 
@@ -73,6 +75,8 @@ std::uint64_t Neighbour::hand_offs_until(Step stamp) const {
   }
   return last;
 }
+
+std::vector<Order> Neighbour::take_orders() { return std::exchange(orders_, {}); }
 
 void Neighbour::bury() {
   alive_ = false;

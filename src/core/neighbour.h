@@ -40,6 +40,8 @@ class Neighbour {
   bool holds_for_dead(RegionId region) const;
   const std::vector<RegionId>& dead() const { return dead_; }
   const std::vector<BodyEpoch>& claims() const { return claims_; }
+  /// Orders in the batches that took effect since the last call.
+  std::vector<Order> take_orders();
 
  private:
   void apply(AuraBatch& batch);
@@ -63,6 +65,7 @@ class Neighbour {
   std::uint64_t violations_ = 0;
   std::vector<RegionId> dead_;
   std::vector<BodyEpoch> claims_;
+  std::vector<Order> orders_;
 };
 
 }  // namespace aurasim::core

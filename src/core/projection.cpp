@@ -19,7 +19,7 @@ void Projection::follow(const Snapshot& snapshot) {
   tracks_.clear();
   auto old = before_.begin();
   for (const BodyState& body : snapshot.bodies) {
-    while (old != before_.end() && old->id < body.id) ++old;
+    for (; old != before_.end() && old->id < body.id; ++old) note_gone(*old);
     if (old != before_.end() && old->id == body.id && old->epoch == body.epoch) {
       tracks_.push_back(*old);
     } else {
@@ -27,7 +27,24 @@ void Projection::follow(const Snapshot& snapshot) {
       fresh.id = body.id;
       fresh.epoch = body.epoch;
     }
+    if (old != before_.end() && old->id == body.id) ++old;
   }
+  for (; old != before_.end(); ++old) note_gone(*old);
+}
+
+/// Taken out by an order, or because another node has a higher epoch of it.
+void Projection::note_gone(const Track& track) {
+  if (track.projected && track.phase != Phase::kSent) gone_.push_back(track.id);
+}
+
+void Projection::take_back_gone(AuraBatch& batch) {
+  for (const BodyId id : gone_) {
+    const auto is_same = [id](const AuraRecord& ghost) { return ghost.id == id; };
+    if (std::any_of(ghosts_.begin(), ghosts_.end(), is_same)) continue;
+    ++counters_.deleted;
+    batch.deletes.push_back(id);
+  }
+  gone_.clear();
 }
 
 const Track* Projection::find(BodyId id) const {
@@ -97,6 +114,7 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
       batch.deletes.push_back(track.id);
     }
   }
+  take_back_gone(batch);
   expire_ghosts(snapshot, batch);
 }
 

@@ -64,6 +64,8 @@ class Projection {
  private:
   void move(Track& track, PhaseEvent event);
   void say(Track& track, const AuraRecord& aura, AuraBatch& batch);
+  void note_gone(const Track& track);
+  void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
   AuraRecord describe(const BodyState& body, double speed_m_s, Step stamp) const;
@@ -75,6 +77,7 @@ class Projection {
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
   std::vector<AuraRecord> ghosts_;
+  std::vector<BodyId> gone_;  ///< projected in the last state, not hosted any longer, not sent either
   std::size_t projecting_ = 0;
   ProjectionCounters counters_;
 };

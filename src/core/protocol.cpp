@@ -11,7 +11,8 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       aura_(settings.aura, clearance),
       intake_({settings.generation, settings.sync, settings.aura.lookahead}, vicinity_, departures_),
       gathering_(aura_, vicinity_),
-      projection_(aura_, vicinity_) {}
+      projection_(aura_, vicinity_),
+      hops_across_(hops_across(map, settings.neighbour_distance_m)) {}
 
 const Changes& Protocol::receive(Step n) {
   violations_.start_step();
@@ -21,6 +22,8 @@ const Changes& Protocol::receive(Step n) {
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   hear_violations();
+  orders_.hear(intake_.take_orders());
+  changes_.orders = orders_.take_news();
   return changes_;
 }
 
@@ -189,6 +192,12 @@ void Protocol::fill_header() {
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
   intake_.fill(outbox_, batch.stamp);
+  batch.orders = orders_.take_to_say();
+}
+
+Step Protocol::earliest_effect() const {
+  const Step said = outbox_.aura.stamp + 1;
+  return said + hops_across_ * aura_.rules().lookahead + birth_notice(aura_.rules().lookahead) + 1;
 }
 
 void Protocol::report_frame(Step step, double frame_s) {

@@ -15,6 +15,7 @@
 #include "core/handoff.h"
 #include "core/intake.h"
 #include "core/messages.h"
+#include "core/order_log.h"
 #include "core/projection.h"
 #include "core/region_map.h"
 #include "core/vicinity.h"
@@ -34,6 +35,7 @@ struct ProtocolSettings {
 struct Changes {
   std::vector<Adoption> adoptions;  ///< in the order in which they join
   std::vector<BodyId> let_go;       ///< another node has a higher epoch of these: take them out first
+  std::vector<Order> orders;        ///< heard since the last step, in sequence; before anything else
 };
 
 /// A cluster that has to leave: release it from physics and give it to hand_over().
@@ -74,6 +76,13 @@ class Protocol {
 
   /// Looks at a state and says who has to leave. Valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);
+
+  /// Numbers an order of our own and says it with the next step; receive() gives it out like those of others. Only on
+  /// the one node that takes orders.
+  const Order& announce(Order order) { return orders_.announce(std::move(order)); }
+  /// The earliest state in which an order announced now can take effect: all nodes have heard of it, and of the body
+  /// that it brings or the kick that it gives, before.
+  Step earliest_effect() const;
 
   /// The physics of a departure; once for each, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
@@ -119,6 +128,8 @@ class Protocol {
   Intake intake_;
   Gathering gathering_;
   Projection projection_;
+  OrderLog orders_;
+  int hops_across_;
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;
@@ -129,6 +140,9 @@ class Protocol {
   Step last_violation_step_ = -1'000'000;
   std::size_t largest_cluster_ = 0;
 };
+
+/// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.
+constexpr Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
 
 /// Who hosts which body in state 0, the same on every node: clusters of the whole scene, each on the lowest region
 /// that owns the centre of one of its members. `bodies` ascending by id; returns one region per body.

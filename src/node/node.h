@@ -128,7 +128,4 @@ class Node {
   StepReport report_;
 };
 
-/// Steps before its birth at which a body is announced: long enough for every neighbour to have answered.
-constexpr core::Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
-
 }  // namespace aurasim::node

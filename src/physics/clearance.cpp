@@ -1,6 +1,7 @@
 // Distances between the scene's shapes as they are, without Bullet's margins: boxes, cylinders and hulls are built
 // without one, and the radius of spheres and capsules, which is a margin to Bullet, belongs to the shape.
 #include <algorithm>
+#include <deque>
 #include <limits>
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
@@ -69,17 +70,12 @@ double distance(const Part& a, const btTransform& X_A, const Part& b, const btTr
 
 class Query : public core::ClearanceQuery {
  public:
-  explicit Query(const core::Scene& scene) {
-    for (const core::Prototype& prototype : scene.prototypes) {
-      const core::Shape& shape = scene.shapes.at(prototype.shape).shape;
-      prototypes_.push_back({std::visit(MakeParts{}, shape), core::bounding_radius(shape)});
-    }
-  }
+  explicit Query(const core::Scene& scene) : scene_(scene) {}
 
   double clearance(core::PrototypeId a, const Pose& pose_a, core::PrototypeId b, const Pose& pose_b,
                    double limit_m) const override {
-    const Parts& parts_a = prototypes_.at(core::value_of(a));
-    const Parts& parts_b = prototypes_.at(core::value_of(b));
+    const Parts& parts_a = of(a);
+    const Parts& parts_b = of(b);
     const Vec3 p_AB = pose_b.p_WB - pose_a.p_WB;
     const double apart = p_AB.norm() - parts_a.radius - parts_b.radius;
     if (apart > limit_m) return apart;
@@ -100,12 +96,20 @@ class Query : public core::ClearanceQuery {
     return nearest;
   }
 
-  double bounding_radius(core::PrototypeId prototype) const override {
-    return prototypes_.at(core::value_of(prototype)).radius;
-  }
+  double bounding_radius(core::PrototypeId prototype) const override { return of(prototype).radius; }
 
  private:
-  std::vector<Parts> prototypes_;
+  /// Made when first asked for: a scene may get more prototypes.
+  const Parts& of(core::PrototypeId prototype) const {
+    while (prototypes_.size() <= core::value_of(prototype)) {
+      const core::Shape& shape = scene_.shapes.at(scene_.prototypes.at(prototypes_.size()).shape).shape;
+      prototypes_.push_back({std::visit(MakeParts{}, shape), core::bounding_radius(shape)});
+    }
+    return prototypes_[core::value_of(prototype)];
+  }
+
+  const core::Scene& scene_;
+  mutable std::deque<Parts> prototypes_;  // references to entries stay good
 };
 
 }  // namespace

@@ -122,6 +122,10 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
   for (const PartManifold& made : result) made.manifold->clearManifold();
 }
 
+void DynamicsWorld::cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const {
+  bullet_->world.rayTest(from, to, hit);
+}
+
 FirstContacts& DynamicsWorld::first_contacts() { return bullet_->world.first_contacts(); }
 
 }  // namespace aurasim::physics

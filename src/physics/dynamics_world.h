@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+
 #include "core/body_state.h"
 #include "physics/contact_cache.h"
 #include "physics/first_contacts.h"
@@ -37,6 +39,9 @@ class DynamicsWorld {
   /// Makes the manifolds of a pair, even if both bodies sleep, and empties them. `result` names them; any that Bullet
   /// does not make here would not outlive the next collision detection.
   void make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result);
+
+  /// Every object on the way that the callback does not turn down is shown to it.
+  void cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const;
 
   FirstContacts& first_contacts();
 

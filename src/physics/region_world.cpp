@@ -8,12 +8,24 @@
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
+namespace {
+
+/// A body that arrives later than this many states after an order does not obey it.
+constexpr core::Step kOrderMemory = 3600;
+
+}  // namespace
 
 class RegionWorld::Impl {
  public:
-  Impl(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
-      : simulation(scene, settings, shapes), scratch(scene, settings, shapes) {}
+  Impl(const core::Scene& scene_in, const Settings& settings)
+      : scene(scene_in),
+        shapes(std::make_shared<ShapeSet>(scene)),
+        simulation(scene, settings, shapes, timeline),
+        scratch(scene, settings, shapes, timeline) {}
 
+  const core::Scene& scene;
+  Timeline timeline;
+  std::shared_ptr<ShapeSet> shapes;
   Simulation simulation;
   ScratchWorld scratch;
   std::vector<Collision> made_up;  ///< first contacts of clusters that caught up since the last step
@@ -21,7 +33,7 @@ class RegionWorld::Impl {
 };
 
 RegionWorld::RegionWorld(const core::Scene& scene, const Settings& settings)
-    : impl_(std::make_unique<Impl>(scene, settings, std::make_shared<const ShapeSet>(scene))) {}
+    : impl_(std::make_unique<Impl>(scene, settings)) {}
 
 RegionWorld::~RegionWorld() = default;
 RegionWorld::RegionWorld(RegionWorld&&) noexcept = default;
@@ -48,6 +60,30 @@ core::ClusterState RegionWorld::release(std::span<const core::BodyId> bodies) {
 
 core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const {
   return impl_->simulation.peek(bodies);
+}
+
+void RegionWorld::schedule(const core::Order& order) {
+  impl_->shapes->extend(impl_->scene);
+  impl_->timeline.add(order);
+  impl_->timeline.forget_before(step_number() - kOrderMemory);
+}
+
+std::vector<Removal> RegionWorld::take_removed() {
+  std::vector<Removal> removed = impl_->simulation.take_removed();
+  const std::vector<Removal> on_the_way = impl_->scratch.take_removed();
+  removed.insert(removed.end(), on_the_way.begin(), on_the_way.end());
+  return removed;
+}
+
+std::vector<std::uint64_t> RegionWorld::take_obeyed() {
+  std::vector<std::uint64_t> obeyed = impl_->simulation.take_obeyed();
+  const std::vector<std::uint64_t> on_the_way = impl_->scratch.take_obeyed();
+  obeyed.insert(obeyed.end(), on_the_way.begin(), on_the_way.end());
+  return obeyed;
+}
+
+RayHit RegionWorld::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {
+  return impl_->simulation.cast(from_W, to_W);
 }
 
 bool RegionWorld::contains(core::BodyId id) const { return impl_->simulation.contains(id); }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "core/body_state.h"
 #include "core/clearance.h"
 #include "core/ids.h"
+#include "core/order.h"
 #include "core/scene.h"
 
 namespace aurasim::physics {
@@ -38,13 +40,27 @@ struct Collision {
   core::Vec3 p_W = core::Vec3::Zero();
 };
 
+/// A body that an order took out: state `step` is the first without it.
+struct Removal {
+  core::Step step = 0;
+  core::BodyId body{};
+};
+
+struct RayHit {
+  std::optional<core::ObjectRef> object;  ///< nothing: nothing was hit
+  core::Vec3 p_W = core::Vec3::Zero();
+  core::Vec3 normal_W = core::Vec3::Zero();
+  double distance_m = 0;
+};
+
 /// Tells a listener about states that were made up in a scratch world (DESIGN section 6, catch-up):
 /// the records of the cluster's bodies in state `step`, in ascending order of id.
 using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
 
 class RegionWorld {
  public:
-  /// The scene outlives the world. Statics are put in, the scene's bodies are not: the caller says who is hosted.
+  /// The scene outlives the world; its shapes, prototypes and statics may grow. Statics are put in, the scene's bodies
+  /// are not: the caller says who is hosted.
   RegionWorld(const core::Scene& scene, const Settings& settings);
   ~RegionWorld();
   RegionWorld(RegionWorld&&) noexcept;
@@ -73,6 +89,16 @@ class RegionWorld {
 
   /// The same record of bodies that stay (tests, key frames, state hash).
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+
+  /// An order to obey in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
+  /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
+  void schedule(const core::Order& order);
+  /// What orders took out, and the requests that bodies here have obeyed, since the last call.
+  std::vector<Removal> take_removed();
+  std::vector<std::uint64_t> take_obeyed();
+
+  /// The nearest body or static between two points, in the present state.
+  RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
 
   bool contains(core::BodyId id) const;
   std::size_t body_count() const;

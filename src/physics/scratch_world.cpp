@@ -2,12 +2,21 @@
 
 namespace aurasim::physics {
 
-ScratchWorld::ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
-    : scene_(&scene), settings_(settings), shapes_(std::move(shapes)) {}
+ScratchWorld::ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
+                           const Timeline& timeline)
+    : scene_(&scene), settings_(settings), shapes_(std::move(shapes)), timeline_(timeline) {}
+
+std::vector<Removal> ScratchWorld::take_removed() {
+  return simulation_ ? simulation_->take_removed() : std::vector<Removal>{};
+}
+
+std::vector<std::uint64_t> ScratchWorld::take_obeyed() {
+  return simulation_ ? simulation_->take_obeyed() : std::vector<std::uint64_t>{};
+}
 
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                                           const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
-  if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_);
+  if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, timeline_);
   simulation_->start_at(from);
   simulation_->join(cluster);
   while (simulation_->step_number() < to) {

@@ -12,17 +12,22 @@ namespace aurasim::physics {
 /// Empty between two uses; made when it is first needed.
 class ScratchWorld {
  public:
-  ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes);
+  ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
+               const Timeline& timeline);
 
   /// The cluster, whose state is that of step `from`, in the state of step `to`. Contacts that begin on the way are
   /// appended to `collisions`.
   core::ClusterState catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                               const CatchUpListener& caught_up, std::vector<Collision>& collisions);
 
+  std::vector<Removal> take_removed();
+  std::vector<std::uint64_t> take_obeyed();
+
  private:
   const core::Scene* scene_;
   Settings settings_;
   std::shared_ptr<const ShapeSet> shapes_;
+  const Timeline& timeline_;
   std::optional<Simulation> simulation_;
 };
 

@@ -152,13 +152,20 @@ struct ShapeSet::Built::Make {
   }
 };
 
-ShapeSet::ShapeSet(const core::Scene& scene) {
-  for (const core::Prototype& prototype : scene.prototypes) {
-    inertias_.push_back(inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg));
+ShapeSet::ShapeSet(const core::Scene& scene) { extend(scene); }
+
+void ShapeSet::extend(const core::Scene& scene) {
+  std::vector<core::Vec3> inertias;
+  std::vector<Built> built;
+  for (std::size_t i = inertias_.size(); i < scene.prototypes.size(); ++i) {
+    const core::Prototype& prototype = scene.prototypes[i];
+    inertias.push_back(inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg));
   }
-  for (const core::NamedShape& named : scene.shapes) {
-    shapes_.push_back(std::visit(Built::Make{}, named.shape));
+  for (std::size_t i = shapes_.size(); i < scene.shapes.size(); ++i) {
+    built.push_back(std::visit(Built::Make{}, scene.shapes[i].shape));
   }
+  inertias_.insert(inertias_.end(), inertias.begin(), inertias.end());
+  std::move(built.begin(), built.end(), std::back_inserter(shapes_));
 }
 
 ShapeSet::~ShapeSet() = default;

@@ -26,6 +26,8 @@ class ShapeSet {
   /// Throws std::invalid_argument if a body's prototype has a shape that cannot move, or a mesh or hull is empty.
   explicit ShapeSet(const core::Scene& scene);
   ~ShapeSet();
+  /// What the scene has got since. As the constructor; with nothing done if it throws.
+  void extend(const core::Scene& scene);
 
   btCollisionShape* shape(std::uint32_t index) const;
   /// kg m^2, about the axes of the body's frame.

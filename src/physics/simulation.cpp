@@ -36,6 +36,8 @@ core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const 
   return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
 }
 
+constexpr std::uint64_t kRoomForStatics = 1U << 20U;
+
 bool is_static(int user_index) { return user_index < 0; }
 
 [[noreturn]] void refuse_twin(core::BodyId id) {
@@ -52,20 +54,23 @@ void refuse_twins(const std::vector<HostedBody>& bodies) {
 
 }  // namespace
 
-Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes)
+Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
+                       const Timeline& timeline)
     : scene_(&scene),
       settings_(settings),
       frame_(settings.p_WO),
       shapes_(std::move(shapes)),
+      timeline_(timeline),
       joints_(scene, settings.p_WO),
       world_(scene.gravity, settings.solver_iterations) {
-  insert_statics();
+  show_statics(step_);
 }
 
 Simulation::~Simulation() = default;
 
-void Simulation::insert_statics() {
-  for (std::size_t i = 0; i < scene_->statics.size(); ++i) {
+/// Those that the scene has got since the last time; not yet in the world.
+void Simulation::make_statics() {
+  for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
     const core::StaticBody& body = scene_->statics[i];
     const core::Pose X_WS = placed(body, scene_->shapes.at(body.shape).shape, settings_.p_WO);
     slid_.push_back(body.pose.q_WB.normalized().conjugate() * (X_WS.p_WB - body.pose.p_WB));
@@ -73,23 +78,24 @@ void Simulation::insert_statics() {
     info.m_startWorldTransform = frame_.to_local(X_WS);
     statics_.push_back(std::make_unique<btRigidBody>(info));
     statics_.back()->setUserIndex(-1 - static_cast<int>(i));
-    world_.insert(*statics_.back(), 1 + static_cast<int>(i));
+    static_is_in_.push_back(false);
   }
 }
 
-/// Statics come first, then bodies by id.
+/// Statics come first, then bodies by id. There is room for statics that come later: ranks never change.
 int Simulation::rank_of(core::BodyId id) const {
-  const auto room = static_cast<std::uint64_t>(std::numeric_limits<int>::max()) - statics_.size() - 1;
+  const auto room = static_cast<std::uint64_t>(std::numeric_limits<int>::max()) - kRoomForStatics - 1;
   if (core::value_of(id) > room) {
     throw std::invalid_argument("body id " + std::to_string(core::value_of(id)) + " is above " + std::to_string(room) +
-                                ", the largest that Bullet's broadphase can tell apart in this scene");
+                                ", the largest that Bullet's broadphase can tell apart");
   }
-  return static_cast<int>(core::value_of(id) + statics_.size() + 1);
+  return static_cast<int>(core::value_of(id) + kRoomForStatics + 1);
 }
 
 void Simulation::start_at(core::Step step) {
   assert(table_.size() == 0);
   step_ = step;
+  if (timeline_.statics_change()) show_statics(step);
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
@@ -284,6 +290,7 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 
 void Simulation::step() {
   world_.first_contacts().clear();
+  obey(step_ + 1);
   for (int i = 0; i < settings_.substeps; ++i) {
     world_.step(settings_.step_s / settings_.substeps);
     joints_.remove_broken(world_);
@@ -313,7 +320,11 @@ const core::Snapshot& Simulation::snapshot() {
   if (!snapshot_is_fresh_) {
     snapshot_.step = step_;
     snapshot_.bodies.clear();
-    for (const HostedBody& body : table_.bodies()) snapshot_.bodies.push_back(body.state(frame_));
+    for (const HostedBody& body : table_.bodies()) {
+      core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
+      state.coming_kick_m_s = timeline_.coming(step_).empty() ? 0 : coming_kick(body);
+      state.awake = state.awake || state.coming_kick_m_s > 0;
+    }
     list_contacts();
     joints_.list_pairs(table_, snapshot_.joints);
     snapshot_is_fresh_ = true;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/body_state.h"
@@ -14,14 +15,16 @@
 #include "physics/joint_table.h"
 #include "physics/region_world.h"
 #include "physics/shapes.h"
+#include "physics/timeline.h"
 
 namespace aurasim::physics {
 
 /// The functions mean what those of the same name mean in RegionWorld.
 class Simulation {
  public:
-  /// The scene outlives the simulation.
-  Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes);
+  /// Scene and timeline outlive the simulation; both may grow.
+  Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
+             const Timeline& timeline);
   ~Simulation();
 
   core::Step step_number() const { return step_; }
@@ -45,9 +48,22 @@ class Simulation {
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
 
+  /// Bodies that orders took out, and the requests that bodies obeyed, since the last call.
+  std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
+  std::vector<std::uint64_t> take_obeyed() { return std::exchange(obeyed_, {}); }
+
+  /// The nearest body or static on the way from `from_W` to `to_W`.
+  RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
+
  private:
-  void insert_statics();
+  void make_statics();
   void insert_born();
+  void obey(core::Step n);
+  void kick(btRigidBody& body, const core::Order& order);
+  void take_out(core::BodyId id);
+  void show_statics(core::Step n);
+  void wake_around(const btRigidBody& changing);
+  double coming_kick(const HostedBody& body) const;
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
   int rank_of(core::BodyId id) const;
@@ -67,7 +83,9 @@ class Simulation {
   Settings settings_;
   LocalFrame frame_;
   std::shared_ptr<const ShapeSet> shapes_;
+  const Timeline& timeline_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
+  std::vector<bool> static_is_in_;                     ///< the world, as Scene::statics
   std::vector<core::Vec3> slid_;                       ///< as Scene::statics; not zero for planes far out only
   BodyTable table_;
   JointTable joints_;
@@ -76,6 +94,8 @@ class Simulation {
   core::Step step_ = 0;
   std::uint64_t severed_contacts_ = 0;
   std::vector<Collision> collisions_;
+  std::vector<Removal> removed_;
+  std::vector<std::uint64_t> obeyed_;
 
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

@@ -1,0 +1,79 @@
+// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence and
+// obeys each one in the state that it names, so a run with orders is as repeatable as one without.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+#include "core/scene.h"
+
+namespace aurasim::core {
+
+/// Client bodies get ids from here on; scenes stay below.
+inline constexpr std::uint64_t kFirstClientBody = 1'000'000'000;
+
+enum class MeshUse : std::uint8_t { kHull, kDecomposition, kTriangles };
+
+/// A mesh that every node has by its content.
+struct MeshRef {
+  std::uint64_t hash = 0;
+  MeshUse use = MeshUse::kHull;
+};
+
+/// The scene's shapes get one more. Holds from when it is heard.
+struct DefineShape {
+  std::variant<Sphere, Box, Capsule, Cylinder, MeshRef> shape;
+};
+/// The scene's prototypes get one more. Holds from when it is heard.
+struct DefinePrototype {
+  std::uint32_t shape = 0;
+  double mass_kg = 1;
+};
+/// The body exists from the order's state on.
+struct Spawn {
+  BodyId id{};
+  PrototypeId prototype{};
+  Pose pose;
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+};
+struct AddStatic {
+  StaticId id{};
+  std::uint32_t shape = 0;
+  Pose pose;
+};
+struct RemoveBody {
+  BodyId id{};
+};
+struct RemoveStatic {
+  StaticId id{};
+};
+/// Before the order's state is computed. Wakes the body.
+struct Impulse {
+  BodyId id{};
+  Vec3 J_W = Vec3::Zero();    ///< N s
+  std::optional<Vec3> p_W{};  ///< point of attack; nothing: the centre of mass
+};
+struct SetVelocity {
+  BodyId id{};
+  Vec3 v_WB = Vec3::Zero();
+  std::optional<Vec3> w_WB{};  ///< nothing: the spin stays
+};
+
+using Action =
+    std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity>;
+
+struct Order {
+  std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders
+  std::uint64_t request = 0;   ///< the client's
+  Step at_step = 0;            ///< the first state that shows the effect
+  Action action;
+};
+
+/// The body that an order is about, if it is about one that should exist.
+std::optional<BodyId> body_of(const Order& order);
+
+}  // namespace aurasim::core

@@ -1,0 +1,59 @@
+#include "core/order_log.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace aurasim::core {
+
+std::optional<BodyId> body_of(const Order& order) {
+  if (const auto* a = std::get_if<RemoveBody>(&order.action)) return a->id;
+  if (const auto* a = std::get_if<Impulse>(&order.action)) return a->id;
+  if (const auto* a = std::get_if<SetVelocity>(&order.action)) return a->id;
+  return {};
+}
+
+void OrderLog::add(const Order& order) {
+  last_ = order.sequence;
+  news_.push_back(order);
+  to_say_.push_back(order);
+}
+
+const Order& OrderLog::announce(Order order) {
+  order.sequence = last_ + 1;
+  add(order);
+  return news_.back();
+}
+
+void OrderLog::hear(std::span<const Order> orders) {
+  for (const Order& order : orders) {
+    if (order.sequence == last_ + 1) add(order);
+  }
+}
+
+std::vector<Order> OrderLog::take_news() { return std::exchange(news_, {}); }
+
+std::vector<Order> OrderLog::take_to_say() { return std::exchange(to_say_, {}); }
+
+int hops_across(const RegionMap& map, double neighbour_distance_m) {
+  int most = 0;
+  for (std::uint32_t start = 0; start < map.size(); ++start) {
+    std::vector<int> hops(map.size(), -1);
+    std::vector<RegionId> wave = {RegionId{start}};
+    hops[start] = 0;
+    for (int hop = 1; !wave.empty(); ++hop) {
+      std::vector<RegionId> next;
+      for (const RegionId region : wave) {
+        for (const RegionId neighbour : map.neighbours(region, neighbour_distance_m)) {
+          if (hops[value_of(neighbour)] >= 0) continue;
+          hops[value_of(neighbour)] = hop;
+          next.push_back(neighbour);
+        }
+      }
+      wave = std::move(next);
+    }
+    most = std::max(most, *std::max_element(hops.begin(), hops.end()));
+  }
+  return most;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,38 @@
+// How orders spread: each node says once, in its next aura batch, what it has heard. Batches are in step and in order,
+// so after as many hops as two regions can be apart everybody knows, and nobody knows an order but not the one before.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/order.h"
+#include "core/region_map.h"
+
+namespace aurasim::core {
+
+class OrderLog {
+ public:
+  /// Our own: gives it the next number.
+  const Order& announce(Order order);
+  /// From a neighbour's batch. Copies and anything out of sequence are left out.
+  void hear(std::span<const Order> orders);
+
+  std::uint64_t last() const { return last_; }
+  /// Heard or announced since the last take_news(), in sequence.
+  std::vector<Order> take_news();
+  /// What the next batch has to say, given out once.
+  std::vector<Order> take_to_say();
+
+ private:
+  void add(const Order& order);
+
+  std::uint64_t last_ = 0;
+  std::vector<Order> news_;
+  std::vector<Order> to_say_;
+};
+
+/// How many times a message is passed on from region to region, at most, until all have it.
+int hops_across(const RegionMap& map, double neighbour_distance_m);
+
+}  // namespace aurasim::core

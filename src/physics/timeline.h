@@ -1,0 +1,43 @@
+// What orders do to a world, and when: shared by a region's world and the scratch world in which late bodies make up
+// steps, so that both obey alike.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/order.h"
+
+namespace aurasim::physics {
+
+class Timeline {
+ public:
+  /// Statics and orders about bodies; others are nothing to physics.
+  void add(const core::Order& order);
+
+  /// Is a static in the world while state `step` is computed, and in it?
+  bool stands(std::uint32_t static_index, core::Step step) const;
+  /// Any static that does not stand for ever?
+  bool statics_change() const { return !lives_.empty(); }
+
+  /// Orders about bodies that are obeyed before state `step` is computed, in sequence.
+  std::span<const core::Order> due(core::Step step) const;
+  /// Those due later than `step`.
+  std::span<const core::Order> coming(core::Step step) const;
+
+  void forget_before(core::Step step);
+
+ private:
+  struct Life {
+    std::uint32_t index = 0;
+    core::Step from = std::numeric_limits<core::Step>::min();
+    core::Step until = std::numeric_limits<core::Step>::max();
+  };
+  Life& life_of(std::uint32_t index);
+
+  std::vector<Life> lives_;          ///< of statics that come or go, ascending index
+  std::vector<core::Order> orders_;  ///< ascending (at_step, sequence)
+};
+
+}  // namespace aurasim::physics
