@@ -14,12 +14,12 @@ namespace aurasim::dds {
 
 /// What happens to the datagrams that a participant sends. The default: nothing.
 struct Impairment {
-  double delay_s = 0;       ///< one way
-  double jitter_s = 0;      ///< uniform: a datagram is late by delay_s +- jitter_s, never by less than 0
-  double loss = 0;          ///< probability, 0 to 1, of each datagram for itself
-  double bandwidth_B_s = 0; ///< of all that a participant sends, UDP payload; 0: unlimited
-  bool reorder = false;     ///< jitter may let one datagram overtake another; if not, both leave at the later time
-  bool discovery = false;   ///< discovery (RTPS metatraffic) suffers, too
+  double delay_s = 0;        ///< one way
+  double jitter_s = 0;       ///< uniform: a datagram is late by delay_s +- jitter_s, never by less than 0
+  double loss = 0;           ///< probability, 0 to 1, of each datagram for itself
+  double bandwidth_B_s = 0;  ///< of all that a participant sends, UDP payload; 0: unlimited
+  bool reorder = false;      ///< jitter may let one datagram overtake another; if not, both leave at the later time
+  bool discovery = false;    ///< discovery (RTPS metatraffic) suffers, too
   std::uint64_t seed = 1;
 
   bool any() const { return delays() || loss > 0; }

@@ -132,8 +132,8 @@ TEST(ImpairedProfiles, AreAllGoodAndStayOnLoopback) {
     ASSERT_EQ(transports.user_transports.size(), 1U);
     const auto impaired = std::dynamic_pointer_cast<ImpairedTransportDescriptor>(transports.user_transports[0]);
     ASSERT_NE(impaired, nullptr);
-    const auto udp = std::dynamic_pointer_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor>(
-        impaired->low_level_descriptor);
+    const auto udp =
+        std::dynamic_pointer_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor>(impaired->low_level_descriptor);
     EXPECT_THAT(udp->interfaceWhiteList, ::testing::ElementsAre("127.0.0.1"));
     ++count;
   }

@@ -111,7 +111,8 @@ TEST(ImpairedLink, LosesTheShareThatItShould) {
 
 TEST(ImpairedLink, LetsWhatIsOnlyAtRiskLeaveAtOnce) {
   ImpairedLink link({.loss = 0.5}, 1);
-  for (int i = 0; i < 100; ++i) EXPECT_THAT(link.offer(0ns, kHere, 1).fate, ::testing::AnyOf(Fate::kLeavesNow, Fate::kLost));
+  for (int i = 0; i < 100; ++i)
+    EXPECT_THAT(link.offer(0ns, kHere, 1).fate, ::testing::AnyOf(Fate::kLeavesNow, Fate::kLost));
   EXPECT_EQ(link.counters().passed + link.counters().lost, 100U);
   EXPECT_EQ(link.counters().queued, 0U);
 }
