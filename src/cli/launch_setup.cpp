@@ -36,12 +36,16 @@ core::SyncMode mode_of(config::Sync sync) {
 
 }  // namespace
 
-dds::Settings dds_settings(const config::Launch& launch) {
+dds::Settings dds_settings(const config::Launch& launch, std::optional<core::RegionId> region) {
   dds::Settings settings;
   settings.domain = static_cast<std::uint32_t>(launch.dds.domain);
   settings.profiles = launch.dds.profiles;
   settings.interfaces = launch.dds.interfaces;
   settings.peers = launch.dds.peers;
+  const config::Impair& impair = launch.dds.impair;
+  settings.impairment = {impair.delay_s, impair.jitter_s,  impair.loss, impair.bandwidth_B_s,
+                         impair.reorder, impair.discovery, impair.seed};
+  settings.impairment_stream = region ? core::value_of(*region) + std::uint64_t{1} : 0;
   switch (launch.dds.discovery) {
     case config::Discovery::kMulticast:
       settings.discovery = dds::Discovery::kAsProfile;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@
 
 namespace aurasim::cli {
 
-dds::Settings dds_settings(const config::Launch& launch);
+/// Nothing for `region`: a process that only watches or steers.
+dds::Settings dds_settings(const config::Launch& launch, std::optional<core::RegionId> region = {});
 core::AuraRules aura_rules(const config::Launch& launch);
 /// How far apart regions may be that listen to each other: as configured, and never less than the reach of an aura.
 double listening_distance_m(const config::Launch& launch);

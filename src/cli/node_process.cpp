@@ -41,6 +41,18 @@ bool is_live(const dds::SeenStatus& seen) {
   return !seen.lost && seen.status.state != dds::NodeState::kFinished && seen.status.state != dds::NodeState::kFailed;
 }
 
+void log_impairment(const dds::Participant& participant) {
+  const auto report = participant.impairment();
+  if (!report) return;
+  const auto& [by, datagrams] = *report;
+  spdlog::info(
+      "impaired network: delay {:.3g} ms, jitter {:.3g} ms, loss {:.3g}, bandwidth {}, reorder {}, "
+      "discovery {}, seed {}; datagrams passed {}, delayed {}, lost {}, overflowed {}, still queued {}",
+      1e3 * by.delay_s, 1e3 * by.jitter_s, by.loss,
+      by.bandwidth_B_s > 0 ? fmt::format("{:.4g} B/s", by.bandwidth_B_s) : "unlimited", by.reorder, by.discovery,
+      by.seed, datagrams.passed, datagrams.delayed, datagrams.lost, datagrams.overflowed, datagrams.queued);
+}
+
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
@@ -48,7 +60,7 @@ double milliseconds(Clock::duration d) { return std::chrono::duration<double, st
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(dds_settings(launch)),
+      participant_(dds_settings(launch, options.region)),
       control_(participant_, {launch.regions.version(), options.region}),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
   status_.region = options.region;
@@ -62,17 +74,24 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
 
 ExitCode NodeProcess::run() {
   try {
-    if (!domain_is_free()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
-    control_.publish_map(world_map(launch_));
-    publish(dds::NodeState::kStarting);
-    transport_.emplace(participant_, transport_settings(launch_, options_.region));
-    if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
-    begin_generation(start_->generation, start_->epoch_ns);
-    return run_steps();
+    const ExitCode code = meet_and_run();
+    participant_.flush_delayed();  // whoever leaves silently destroys nothing, and its last words would wait for ever
+    log_impairment(participant_);
+    return code;
   } catch (const std::exception& error) {
     publish(dds::NodeState::kFailed, error.what());
     throw;
   }
+}
+
+ExitCode NodeProcess::meet_and_run() {
+  if (!domain_is_free()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
+  control_.publish_map(world_map(launch_));
+  publish(dds::NodeState::kStarting);
+  transport_.emplace(participant_, transport_settings(launch_, options_.region));
+  if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
+  begin_generation(start_->generation, start_->epoch_ns);
+  return run_steps();
 }
 
 ExitCode NodeProcess::refuse(const std::string& why) {

@@ -47,6 +47,7 @@ class NodeProcess {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   };
 
+  ExitCode meet_and_run();
   bool domain_is_free();
   bool meet_neighbours();
   bool another_run_is_here();

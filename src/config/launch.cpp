@@ -106,6 +106,24 @@ std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml";
 }
 
+void read_impair(const Field& field, Impair& impair) {
+  if (!field.given()) return;
+  Fields fields(field);
+  const Range any_time = Range::from_to(0, 10);
+  if (const Field f = fields.optional("delay"); f.given()) impair.delay_s = f.number(any_time);
+  if (const Field f = fields.optional("jitter"); f.given()) impair.jitter_s = f.number(any_time);
+  if (const Field f = fields.optional("loss"); f.given()) impair.loss = f.number(Range::from_to(0, 1));
+  if (const Field f = fields.optional("bandwidth"); f.given()) {
+    impair.bandwidth_B_s = f.number(Range::from_to(0, 1e12));
+  }
+  if (const Field f = fields.optional("reorder"); f.given()) impair.reorder = f.flag();
+  if (const Field f = fields.optional("discovery"); f.given()) impair.discovery = f.flag();
+  if (const Field f = fields.optional("seed"); f.given()) {
+    if (const auto seed = f.integer(0, INT64_MAX)) impair.seed = static_cast<std::uint64_t>(*seed);
+  }
+  fields.close();
+}
+
 void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds) {
   dds.profiles = usual_profiles(folder);
   if (!field.given()) return;
@@ -127,6 +145,7 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   }
   if (const Field f = fields.optional("interfaces"); f.given()) dds.interfaces = read_addresses(f);
   if (const Field f = fields.optional("peers"); f.given()) dds.peers = read_addresses(f);
+  read_impair(fields.optional("impair"), dds.impair);
   if (dds.discovery != Discovery::kMulticast && dds.peers.empty() && !fields.has("peers")) {
     fields.whole().complain("needs peers, allowed: peers: [ADDRESS, ...] with discovery: peers or server");
   }

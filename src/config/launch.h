@@ -47,12 +47,24 @@ struct Physics {
   Origin origin = Origin::kWorld;
 };
 
+/// What is made worse of the network; what is not given is as the DDS profiles say.
+struct Impair {
+  std::optional<double> delay_s;        ///< one way
+  std::optional<double> jitter_s;       ///< delay +- jitter, uniform
+  std::optional<double> loss;           ///< 0 to 1, of datagrams
+  std::optional<double> bandwidth_B_s;  ///< of all that a node sends; 0: unlimited
+  std::optional<bool> reorder;
+  std::optional<bool> discovery;
+  std::optional<std::uint64_t> seed;
+};
+
 struct Dds {
   int domain = 0;
   std::filesystem::path profiles;  ///< absolute, once read
   Discovery discovery = Discovery::kMulticast;
   std::vector<std::string> interfaces = {"127.0.0.1"};
   std::vector<std::string> peers;  ///< for Discovery::kPeers and kServer: "address" or "address:port"
+  Impair impair;
 };
 
 struct Observe {

@@ -10,6 +10,8 @@
 #include "aurasimPubSubTypes.h"
 #include "aurasimTypeObject.h"
 #include "dds/guarded_type.h"
+#include "dds/impaired_transport.h"
+#include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
 
 namespace aurasim::dds {
@@ -63,7 +65,9 @@ std::string partition_of(core::RegionId source, core::RegionId destination) {
 }
 
 Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
-  const DomainParticipantQos qos = participant_qos(profiles_, settings);
+  DomainParticipantQos qos = participant_qos(profiles_, settings);
+  const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
+  if (impairment.any()) delay_line_ = impair(qos, impairment, settings.domain, settings.impairment_stream);
   switch_intraprocess_delivery_off();
   set_type_tables_up();
   participant_.reset(

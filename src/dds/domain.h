@@ -12,6 +12,7 @@
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 
+#include "dds/delay_line.h"
 #include "dds/profiles.h"
 #include "dds/pulse.h"
 #include "dds/settings.h"
@@ -47,6 +48,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   /// After which peers forget a silent participant.
   std::chrono::nanoseconds lease() const;
   Pulse& pulse() { return *pulse_; }
+  /// What holds datagrams back; null where nothing is impaired.
+  DelayLine* delay_line() const { return delay_line_.get(); }
 
  private:
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -57,6 +60,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
 
   Profiles profiles_;
   Directory directory_;
+  std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
   struct Leave {

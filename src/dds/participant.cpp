@@ -13,4 +13,14 @@ void Participant::progress() { domain_->pulse().progress(); }
 
 bool Participant::outlived_its_lease() const { return domain_->pulse().longest_stall() > domain_->lease(); }
 
+std::optional<Participant::ImpairmentReport> Participant::impairment() const {
+  const DelayLine* line = domain_->delay_line();
+  if (line == nullptr) return std::nullopt;
+  return ImpairmentReport{line->impairment(), line->counters()};
+}
+
+void Participant::flush_delayed() {
+  if (DelayLine* line = domain_->delay_line()) line->flush();
+}
+
 }  // namespace aurasim::dds

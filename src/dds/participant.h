@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "dds/settings.h"
 
@@ -26,6 +27,15 @@ class Participant {
   /// peers have given it up, and Fast DDS 2.9.1 does not always match it again (3 of 25 did not within 30 s): it had
   /// better end. Any thread.
   bool outlived_its_lease() const;
+
+  struct ImpairmentReport {
+    Impairment impairment;  ///< as the profile and the settings make it
+    ImpairmentCounters datagrams;
+  };
+  /// Nothing where nothing is impaired. Any thread.
+  std::optional<ImpairmentReport> impairment() const;
+  /// Sends what impairment still holds back. For a process that ends without destroying this. Any thread.
+  void flush_delayed();
 
   const Settings& settings() const { return settings_; }
   Domain& domain() { return *domain_; }

@@ -11,6 +11,7 @@
 namespace aurasim::dds {
 
 using eprosima::fastdds::dds::DomainParticipantFactory;
+using eprosima::fastdds::dds::DomainParticipantQos;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
@@ -37,10 +38,16 @@ void load_once(const std::filesystem::path& file) {
   loaded.insert(path);
 }
 
+/// Variants of a file lie in a folder below it, as in qos/impaired/.
+std::filesystem::path shared_file_for(const std::filesystem::path& file) {
+  const std::filesystem::path beside = file.parent_path() / "aurasim.xml";
+  const std::filesystem::path above = file.parent_path() / ".." / "aurasim.xml";
+  return !std::filesystem::exists(beside) && std::filesystem::exists(above) ? above : beside;
+}
+
 }  // namespace
 
-Profiles::Profiles(std::filesystem::path file)
-    : file_(std::move(file)), shared_file_(file_.parent_path() / "aurasim.xml") {
+Profiles::Profiles(std::filesystem::path file) : file_(std::move(file)), shared_file_(shared_file_for(file_)) {
   if (file_.empty()) {
     throw DdsError("no file with DDS profiles given (dds.profiles)");
   }
@@ -64,12 +71,19 @@ Qos Profiles::find(std::string_view kind, std::string_view own_name, std::string
                              own_name, shared_name, shared_name, shared_file_.string()));
 }
 
-eprosima::fastdds::dds::DomainParticipantQos Profiles::participant() {
-  return find<eprosima::fastdds::dds::DomainParticipantQos>(
-      "participant", file_.stem().string() + "_participant", "aurasim_participant",
-      [](const std::string& name, auto& qos) {
-        return DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, qos);
-      });
+DomainParticipantQos Profiles::participant() {
+  const auto get = [](const std::string& name, auto& qos) {
+    return DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, qos);
+  };
+  auto qos =
+      find<DomainParticipantQos>("participant", file_.stem().string() + "_participant", "aurasim_participant", get);
+  DomainParticipantQos impairment;
+  if (get(file_.stem().string() + "_impairment", impairment) == ReturnCode_t::RETCODE_OK) {
+    for (const auto& property : impairment.properties().properties()) {
+      qos.properties().properties().push_back(property);
+    }
+  }
+  return qos;
 }
 
 eprosima::fastdds::dds::DataWriterQos Profiles::writer(eprosima::fastdds::dds::Publisher& publisher,

@@ -18,8 +18,10 @@ class Profiles {
   /// Loads `file`. Throws DdsError when it cannot be read or Fast DDS refuses it.
   explicit Profiles(std::filesystem::path file);
 
+  const std::filesystem::path& file() const { return file_; }
+
   // Each throws DdsError with the file and the names that were looked for.
-  eprosima::fastdds::dds::DomainParticipantQos participant();
+  eprosima::fastdds::dds::DomainParticipantQos participant();  ///< with the properties of `<stem>_impairment`
   eprosima::fastdds::dds::DataWriterQos writer(eprosima::fastdds::dds::Publisher& publisher, std::string_view name);
   eprosima::fastdds::dds::DataReaderQos reader(eprosima::fastdds::dds::Subscriber& subscriber, std::string_view name);
 
@@ -28,7 +30,7 @@ class Profiles {
   Qos find(std::string_view kind, std::string_view own_name, std::string_view shared_name, Get get);
 
   std::filesystem::path file_;
-  std::filesystem::path shared_file_;  ///< aurasim.xml beside it, for what it lacks
+  std::filesystem::path shared_file_;  ///< aurasim.xml beside it or one folder up, for what it lacks
 };
 
 }  // namespace aurasim::dds

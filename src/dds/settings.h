@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "dds/impairment.h"
+
 namespace aurasim::dds {
 
 /// How participants find each other.
@@ -20,13 +22,18 @@ enum class Discovery : std::uint8_t {
 struct Settings {
   std::uint32_t domain = 0;
   /// XML profiles. Profile `x` is taken from this file as `<stem>_x` (hosts.xml: `hosts_aura_writer`) or else as `x`;
-  /// what the file lacks comes from `aurasim.xml` beside it.
+  /// what the file lacks comes from `aurasim.xml` beside it, or in the folder above. Of a participant profile
+  /// `<stem>_impairment` only the properties count; they are laid over those of the participant.
   std::filesystem::path profiles;
   /// Addresses that may carry traffic. Not empty: replaces the white list of every transport of the profile, whatever
   /// the file says; {"*"} removes the white list. Empty: the file decides.
   std::vector<std::string> interfaces;
   Discovery discovery = Discovery::kAsProfile;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
+  /// Lays over what the profile's properties aurasim.impair.* say.
+  ImpairmentOverrides impairment;
+  /// Participants of one run give different numbers, and so lose different datagrams with the same seed.
+  std::uint64_t impairment_stream = 0;
   /// A process whose owner has not called any transport or bus for this long no longer counts as alive.
   std::chrono::nanoseconds hang_limit = std::chrono::seconds(10);
 };

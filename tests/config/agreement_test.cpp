@@ -44,7 +44,9 @@ TEST_F(Agreement, IsTheSameForTheSameContentElsewhere) {
 
 TEST_F(Agreement, DoesNotDependOnHowTheRunIsConnectedAndWatched) {
   workspace_.write("qos.xml", "<dds/>");
-  EXPECT_EQ(of({"dds.domain=42", "dds.profiles=qos.xml", "dds.interfaces=[10.0.0.1]", "observe.tick_hz=1"}), of());
+  EXPECT_EQ(of({"dds.domain=42", "dds.profiles=qos.xml", "dds.interfaces=[10.0.0.1]", "dds.impair.delay=0.01",
+                "observe.tick_hz=1"}),
+            of());
 }
 
 TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {

@@ -59,6 +59,18 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.observe.tick_hz, 30);
 }
 
+TEST(LaunchFile, SaysOfTheNetworkOnlyWhatItWasTold) {
+  const Workspace workspace;
+  EXPECT_FALSE(workspace.launch(kSmallLaunch).dds.impair.delay_s) << "or it would win over the profile";
+  const std::string file = kSmallLaunch + std::string("dds: {impair: {delay: 0.016, jitter: 5e-3, reorder: true}}\n");
+  const Impair impair = workspace.launch(file, {"dds.impair.delay=0.008", "dds.impair.seed=9"}).dds.impair;
+  EXPECT_EQ(impair.delay_s, 0.008);
+  EXPECT_EQ(impair.jitter_s, 0.005);
+  EXPECT_EQ(impair.reorder, true);
+  EXPECT_EQ(impair.seed, 9U);
+  EXPECT_FALSE(impair.loss || impair.bandwidth_B_s || impair.discovery);
+}
+
 TEST(LaunchFile, PathsAreRelativeToTheFileTheyStandIn) {
   const Workspace workspace;
   workspace.write("a/b/scene.yaml", kSmallScene);
