@@ -1,13 +1,16 @@
-// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence and
-// obeys each one in the state that it names, so a run with orders is as repeatable as one without.
+// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence
+// and obeys each one in the state that it names, so a run with orders is as repeatable as one without.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/region_map.h"
 #include "core/scene.h"
 
 namespace aurasim::core {
@@ -63,8 +66,22 @@ struct SetVelocity {
   std::optional<Vec3> w_WB{};  ///< nothing: the spin stays
 };
 
-using Action =
-    std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity>;
+/// From the order's state on, this many simulated seconds per second.
+struct SetRate {
+  double rate = 1;
+};
+/// Once the order's state has been computed, all nodes take a new map and hand every body to its new host before they
+/// go on. One rectangle for each region.
+struct Repartition {
+  std::vector<Rectangle> boxes;
+};
+/// Once the order's state has been computed, the run starts anew with another scene.
+struct ChangeScene {
+  std::string name;
+};
+
+using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse,
+                            SetVelocity, SetRate, Repartition, ChangeScene>;
 
 struct Order {
   std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders

@@ -24,6 +24,7 @@ const Changes& Protocol::receive(Step n) {
   hear_violations();
   orders_.hear(intake_.take_orders());
   changes_.orders = orders_.take_news();
+  for (Order& order : changes_.orders) obey_late(order, n);
   return changes_;
 }
 
@@ -193,6 +194,13 @@ void Protocol::fill_header() {
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
   intake_.fill(outbox_, batch.stamp);
   batch.orders = orders_.take_to_say();
+}
+
+/// Only where nodes do not wait for each other can an order come after its time.
+void Protocol::obey_late(Order& order, Step n) {
+  if (order.at_step >= n) return;
+  violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});
+  order.at_step = n;
 }
 
 Step Protocol::earliest_effect() const {

@@ -111,6 +111,7 @@ class Protocol {
   void take_if_newer(Adoption& adoption);
   void let_go_of_what_others_own();
   void let_go(BodyId id);
+  void obey_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "node/scene_growth.h"
+
 namespace aurasim::node {
 namespace {
 
@@ -52,9 +54,9 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
       scene_(scene),
       map_(map),
       transport_(transport),
-      clearance_(physics::make_clearance_query(scene)),
+      clearance_(physics::make_clearance_query(scene_)),
       protocol_(setup.protocol, map, *clearance_),
-      world_(scene, setup.physics),
+      world_(scene_, setup.physics),
       watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_) {}
 
 const StepReport& Node::start() {
@@ -94,6 +96,7 @@ void Node::host_initial_bodies() {
 /// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
 void Node::announce_births(core::Step state) {
   const core::Step birth = state + core::birth_notice(setup_.protocol.aura.lookahead);
+  announce_spawns(birth);
   for (std::size_t k = 0; k < scene_.injectors.size(); ++k) {
     const core::Injector& injector = scene_.injectors[k];
     const std::uint64_t count = core::injected_count(injector, birth, setup_.physics.step_s);
@@ -105,6 +108,49 @@ void Node::announce_births(core::Step state) {
       report_.births.push_back({record->id, record->birth});
     }
   }
+}
+
+const core::Order& Node::order(const core::Action& action, std::uint64_t request, core::Step at_step) {
+  core::Order order;
+  order.request = request;
+  order.at_step = std::max(at_step, protocol_.earliest_effect());
+  order.action = action;
+  return protocol_.announce(std::move(order));
+}
+
+/// What an order changes at once; the rest waits for its state.
+void Node::heed(const core::Order& order) {
+  report_.orders.push_back(order);
+  extend(scene_, order.action, meshes_);
+  if (std::holds_alternative<core::Spawn>(order.action)) {
+    to_spawn_.push_back(order);
+  } else {
+    world_.schedule(order);
+  }
+}
+
+/// As births from injectors, but in the state that the order names.
+void Node::announce_spawns(core::Step birth) {
+  std::erase_if(to_spawn_, [&](const core::Order& order) {
+    if (order.at_step > birth) return false;
+    const auto& spawn = std::get<core::Spawn>(order.action);
+    if (map_.owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
+    const core::InitialBody body{spawn.id, spawn.prototype, spawn.pose, spawn.v_WB, spawn.w_WB};
+    const core::BodyRecord record = core::initial_record(body, order.at_step);
+    world_.schedule(order);  // its shape may be new
+    world_.add({&record, 1});
+    watch_.newborn(record.id, record.birth);
+    report_.births.push_back({record.id, record.birth});
+    report_.obeyed.push_back(order.request);
+    return true;
+  });
+}
+
+void Node::note_removals() {
+  report_.removals = world_.take_removed();
+  for (const physics::Removal& removal : report_.removals) touched_.erase(removal.body);
+  const std::vector<std::uint64_t> obeyed = world_.take_obeyed();
+  report_.obeyed.insert(report_.obeyed.end(), obeyed.begin(), obeyed.end());
 }
 
 void Node::take_mail() {
@@ -136,6 +182,9 @@ void Node::clear_report() {
   report_.collisions.clear();
   report_.hash.clear();
   report_.births.clear();
+  report_.removals.clear();
+  report_.orders.clear();
+  report_.obeyed.clear();
 }
 
 const StepReport& Node::step() {
@@ -149,9 +198,11 @@ const StepReport& Node::step() {
   }
   {
     const Timed timed(report_.durations.physics_s);
+    for (const core::Order& order : changes->orders) heed(order);
     apply(*changes);
     announce_births(n);
     world_.step();
+    note_removals();
   }
   finish_state();
   return report_;

@@ -5,7 +5,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -56,6 +58,9 @@ struct Durations {
   double transport_s = 0;  ///< take, decode, encode, send
 };
 
+/// The mesh of this content, for this use, if the process has it.
+using MeshSource = std::function<std::optional<core::Shape>(const core::MeshRef&)>;
+
 /// What one step did. Valid until the next.
 struct StepReport {
   core::Step step = 0;
@@ -65,7 +70,10 @@ struct StepReport {
   std::size_t foreign_auras = 0;
   std::size_t projecting = 0;
   std::size_t largest_cluster = 0;
-  std::vector<Birth> births;  ///< bodies that this node has announced or taken over at the start
+  std::vector<Birth> births;               ///< bodies that this node has announced or taken over at the start
+  std::vector<physics::Removal> removals;  ///< bodies that orders took out
+  std::vector<core::Order> orders;         ///< heard
+  std::vector<std::uint64_t> obeyed;       ///< requests that bodies here have obeyed
   std::vector<HandOffRow> departures;
   std::vector<HandOffRow> arrivals;
   std::vector<SeenCollision> collisions;
@@ -74,7 +82,7 @@ struct StepReport {
 
 class Node {
  public:
-  /// Scene, map and transport outlive the node.
+  /// Map and transport outlive the node. The scene is copied: orders add to it.
   Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map, transport::Transport& transport);
 
   /// Takes the bodies of state 0 that are this region's and tells the neighbours. Once, before anything else.
@@ -86,6 +94,13 @@ class Node {
   /// Computes the next state. Only when ready().
   const StepReport& step();
 
+  /// Orders the world to do something, as soon as all nodes can have heard of it, or in state `at_step` if that is
+  /// later. Only on the one node that takes orders.
+  const core::Order& order(const core::Action& action, std::uint64_t request, core::Step at_step = 0);
+  void use_meshes(MeshSource source) { meshes_ = std::move(source); }
+  /// As it has grown.
+  const core::Scene& scene() const { return scene_; }
+
   /// After the last step: may what is still under way be taken in?
   bool ready_to_settle();
   /// Takes in the bodies that are still under way to this region, so that every state's hash is whole.
@@ -94,6 +109,7 @@ class Node {
   core::RegionId region() const { return setup_.protocol.self; }
   core::Step current_step() const { return world_.step_number(); }
   const core::Protocol& protocol() const { return protocol_; }
+  const physics::RegionWorld& world() const { return world_; }
   core::Protocol& protocol() { return protocol_; }
   physics::RegionWorld& world() { return world_; }
   const CollisionWatch& collision_watch() const { return watch_; }
@@ -103,9 +119,12 @@ class Node {
 
  private:
   void take_mail();
+  void note_removals();
   void clear_report();
   void host_initial_bodies();
   void announce_births(core::Step state);
+  void heed(const core::Order& order);
+  void announce_spawns(core::Step birth);
   void apply(const core::Changes& changes);
   void finish_state();
   void note_contacts(const core::Snapshot& snapshot);
@@ -114,7 +133,8 @@ class Node {
   void count(const core::Snapshot& snapshot);
 
   NodeSetup setup_;
-  const core::Scene& scene_;
+  core::Scene scene_;
+  MeshSource meshes_;
   const core::RegionMap& map_;
   transport::Transport& transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
@@ -122,6 +142,7 @@ class Node {
   physics::RegionWorld world_;
   CollisionWatch watch_;
   core::Inbox inbox_;
+  std::vector<core::Order> to_spawn_;
   std::vector<std::uint64_t> next_injection_;  ///< by injector: first index not yet announced
   std::unordered_set<core::BodyId> touched_;   ///< had a contact since they came here; asked by id only
   double mail_s_ = 0;                          ///< time spent with the mail since the last step

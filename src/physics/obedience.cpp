@@ -10,11 +10,27 @@
 namespace aurasim::physics {
 namespace {
 
+/// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
+/// lets those fall that rested on it.
+constexpr double kShove_m_s = 2;
+
 /// Also a body that had fallen asleep starts anew. One that is never to sleep stays so.
 void wake(btRigidBody& body) {
   if (body.getActivationState() == DISABLE_DEACTIVATION || body.getActivationState() == DISABLE_SIMULATION) return;
   body.forceActivationState(ACTIVE_TAG);
   body.setDeactivationTime(0);
+}
+
+/// Do the boxes around two objects come within 10 cm of each other?
+bool near(const btRigidBody& a, const btRigidBody& b) {
+  btVector3 low_a, high_a, low_b, high_b;
+  a.getAabb(low_a, high_a);
+  b.getAabb(low_b, high_b);
+  constexpr btScalar kNear = btScalar(0.1);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low_a[axis] - kNear > high_b[axis] || high_a[axis] + kNear < low_b[axis]) return false;
+  }
+  return true;
 }
 
 btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const LocalFrame& frame) {
@@ -56,7 +72,8 @@ void Simulation::take_out(core::BodyId id) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] : {std::pair(manifold->getBody0(), manifold->getBody1()),
                                      std::pair(manifold->getBody1(), manifold->getBody0())}) {
-      if (one == gone && other->getUserIndex() >= 0) wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
+      if (one == gone && other->getUserIndex() >= 0)
+        wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
     }
   }
   const std::uint64_t severed = severed_contacts_;
@@ -83,28 +100,23 @@ void Simulation::show_statics(core::Step n) {
 }
 
 void Simulation::wake_around(const btRigidBody& changing) {
-  btVector3 low, high;
-  changing.getAabb(low, high);
-  const btVector3 margin(btScalar(0.1), btScalar(0.1), btScalar(0.1));
   for (HostedBody& body : table_.bodies()) {
-    if (!body.born) continue;
-    btVector3 body_low, body_high;
-    body.rigid->getAabb(body_low, body_high);
-    const bool apart = (body_low - margin)[0] > high[0] || (body_low - margin)[1] > high[1] ||
-                       (body_low - margin)[2] > high[2] || (body_high + margin)[0] < low[0] ||
-                       (body_high + margin)[1] < low[1] || (body_high + margin)[2] < low[2];
-    if (!apart) wake(*body.rigid);
+    if (body.born && near(*body.rigid, changing)) wake(*body.rigid);
   }
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
 /// How much an order that is still to come will change the velocity of the body's surface, m/s.
 double Simulation::coming_kick(const HostedBody& body) const {
+  if (!body.born) return 0;
   double kick = 0;
+  for (const std::uint32_t index : timeline_.statics_coming(step_)) {
+    if (index < statics_.size() && near(*body.rigid, *statics_[index])) kick += kShove_m_s;
+  }
   for (const core::Order& order : timeline_.coming(step_)) {
-    if (core::body_of(order) != body.id || !body.born) continue;
-    const double radius = core::bounding_radius(
-        scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+    if (core::body_of(order) != body.id) continue;
+    const double radius =
+        core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
     const btRigidBody& rigid = *body.rigid;
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);

@@ -320,9 +320,11 @@ const core::Snapshot& Simulation::snapshot() {
   if (!snapshot_is_fresh_) {
     snapshot_.step = step_;
     snapshot_.bodies.clear();
+    const bool something_comes = timeline_.anything_coming(step_);
+    if (something_comes) make_statics();
     for (const HostedBody& body : table_.bodies()) {
       core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
-      state.coming_kick_m_s = timeline_.coming(step_).empty() ? 0 : coming_kick(body);
+      if (something_comes) state.coming_kick_m_s = coming_kick(body);
       state.awake = state.awake || state.coming_kick_m_s > 0;
     }
     list_contacts();

@@ -53,6 +53,17 @@ std::span<const core::Order> Timeline::coming(core::Step step) const {
   return {std::lower_bound(orders_.begin(), orders_.end(), key, earlier), orders_.end()};
 }
 
+std::vector<std::uint32_t> Timeline::statics_coming(core::Step step) const {
+  constexpr core::Step kEver = std::numeric_limits<core::Step>::max();
+  std::vector<std::uint32_t> changing;
+  for (const Life& life : lives_) {
+    if (life.from > step || (life.until > step && life.until != kEver)) changing.push_back(life.index);
+  }
+  return changing;
+}
+
+bool Timeline::anything_coming(core::Step step) const { return !coming(step).empty() || !statics_coming(step).empty(); }
+
 void Timeline::forget_before(core::Step step) {
   std::erase_if(orders_, [step](const core::Order& order) { return order.at_step < step; });
 }

@@ -40,6 +40,8 @@ double ClusterSim::chance() {
 Outcome ClusterSim::run(Step steps) {
   outcome_ = {};
   outcome_.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
+  std::uint64_t request = 0;
+  for (const auto& [step, action] : options_.orders) members_[0].node->order(action, ++request, step);
   for (Member& member : members_) take_report(member, member.node->start());
   const double slice = options_.aura.step_s / 8;
   const auto behind = [&] {
@@ -80,6 +82,8 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
     if (part.step < static_cast<Step>(outcome_.hash.size()))
       outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
   }
+  for (const physics::Removal& removal : report.removals) removed_.insert(removal.body);
+  outcome_.obeyed += report.obeyed.size();
   outcome_.largest_cluster = std::max(outcome_.largest_cluster, report.largest_cluster);
   moves.insert(moves.end(), report.departures.begin(), report.departures.end());
   outcome_.hand_offs += report.departures.size();
@@ -149,8 +153,9 @@ void ClusterSim::account(Outcome& outcome) {
     outcome.bad_phases += protocol.projection().counters().bad_phase_changes;
   }
   outcome.doubled = doubled_.size();
+  outcome.removed = removed_.size();
   for (const BodyId id : seen_) {
-    if (found.contains(id)) continue;
+    if (found.contains(id) || removed_.contains(id)) continue;
     ++(with_dead_.contains(id) ? outcome.with_dead : outcome.lost);
   }
 }

@@ -32,6 +32,8 @@ struct ClusterOptions {
   double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
   std::optional<Crash> crash;
+  std::vector<std::pair<core::Step, core::Action>>
+      orders;  ///< given to region 0 before state 0, by the state they name
 };
 
 struct Outcome {
@@ -45,6 +47,8 @@ struct Outcome {
   std::uint64_t lost = 0;
   std::uint64_t with_dead = 0;
   std::uint64_t reclaimed = 0;
+  std::uint64_t removed = 0;  ///< by orders
+  std::uint64_t obeyed = 0;   ///< orders, by bodies
   std::uint64_t severed = 0;  ///< contacts cut by a hand-off
   std::uint64_t bad_phases = 0;
   std::size_t largest_cluster = 0;
@@ -85,7 +89,7 @@ class ClusterSim {
   std::unique_ptr<transport::MemoryNetwork> network_;
   std::vector<Member> members_;
   std::uint64_t random_;
-  std::set<core::BodyId> seen_, doubled_, with_dead_;
+  std::set<core::BodyId> seen_, doubled_, with_dead_, removed_;
   std::map<core::BodyId, node::HandOffRow> last_departure_;
   Outcome outcome_;
 };

@@ -1,0 +1,18 @@
+// A scene that orders add to: the same additions in the same sequence on every node, so that an index means the same
+// thing everywhere.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/order.h"
+#include "core/scene.h"
+
+namespace aurasim::node {
+
+/// Adds what the action defines; other actions change nothing. A mesh that `meshes` does not have becomes a ball of
+/// 10 cm, so that indices stay the same: orders are only taken once every node has the mesh.
+void extend(core::Scene& scene, const core::Action& action,
+            const std::function<std::optional<core::Shape>(const core::MeshRef&)>& meshes);
+
+}  // namespace aurasim::node

@@ -1,0 +1,142 @@
+// Orders of clients on whole simulated clusters: every node obeys each one in the state that it names, so a run with
+// orders has the bits of the same run in one world.
+#include <algorithm>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "cluster/cluster_sim.h"
+#include "cluster/scenes.h"
+
+namespace aurasim::test {
+namespace {
+
+using core::BodyId;
+using core::Vec3;
+
+constexpr double kCell = 9;
+constexpr core::Step kSteps = 240;
+constexpr core::Step kFirst = 60;  ///< long enough for orders to have gone round
+
+struct Cut {
+  const char* name;
+  int rows;
+  int columns;
+};
+
+constexpr Cut kCuts[] = {{"TwoColumns", 1, 2}, {"TwoByTwo", 2, 2}, {"ThreeByThree", 3, 3}, {"SixColumns", 1, 6}};
+
+ClusterOptions options_for(const Cut& cut, int seed) {
+  ClusterOptions options;
+  options.map = core::RegionMap::grid(static_cast<std::size_t>(cut.rows), static_cast<std::size_t>(cut.columns), kCell,
+                                      kCell);
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.sync = core::SyncMode::kDeterministic;
+  options.aura.lookahead = 1 + seed % 3;
+  options.aura.top_speed_m_s = 40;
+  options.faults.loss = 0.05;
+  options.faults.duplicate = 0.05;
+  options.faults.latency_s = 0.004 * (seed % 4);
+  options.faults.jitter_s = 0.006;
+  options.neighbour_distance_m = 18;  // in six columns, orders have to be passed on twice
+  return options;
+}
+
+Vec3 somewhere(std::mt19937_64& random, double z) {
+  std::uniform_real_distribution<double> place(-2 * kCell, 2 * kCell);
+  const double x = place(random);
+  return {x, place(random), z};
+}
+
+/// Kicks, removals, new bodies of new kinds and a wall that comes and goes, all over the place.
+std::vector<std::pair<core::Step, core::Action>> orders_for(const core::Scene& scene, int seed) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+  std::uniform_int_distribution<std::size_t> any(0, scene.bodies.size() - 1);
+  std::uniform_int_distribution<core::Step> when(kFirst, kSteps - 60);
+  const auto shape = static_cast<std::uint32_t>(scene.shapes.size());
+  const core::PrototypeId brick{static_cast<std::uint32_t>(scene.prototypes.size())};
+  const core::StaticId wall{static_cast<std::uint32_t>(scene.statics.size())};
+  std::vector<std::pair<core::Step, core::Action>> orders = {
+      {0, core::DefineShape{core::Box{{0.3, 0.2, 0.4}}}},
+      {0, core::DefinePrototype{shape, 2.5}},
+      {0, core::DefineShape{core::Box{{3, 0.2, 2}}}},
+      {kFirst, core::AddStatic{wall, shape + 1, {{0, 0.5, 2}, core::Quat::Identity()}}},
+      {kSteps - 80, core::RemoveStatic{wall}}};
+  for (int i = 0; i < 12; ++i) {
+    const BodyId id = scene.bodies[any(random)].id;
+    orders.push_back({when(random), core::Impulse{id, somewhere(random, 4) / 4, {}}});
+    orders.push_back({when(random), core::SetVelocity{scene.bodies[any(random)].id, somewhere(random, 6) / 3, {}}});
+    orders.push_back({when(random), core::Spawn{BodyId{core::kFirstClientBody + static_cast<std::uint64_t>(i)}, brick,
+                                                {somewhere(random, 3 + i), core::Quat::Identity()},
+                                                somewhere(random, 1) / 4,
+                                                Vec3::Zero()}});
+  }
+  for (int i = 0; i < 5; ++i) orders.push_back({when(random), core::RemoveBody{scene.bodies[any(random)].id}});
+  return orders;
+}
+
+class OrdersCluster : public testing::TestWithParam<std::size_t> {
+ protected:
+  Cut cut_ = kCuts[GetParam()];
+};
+
+TEST_P(OrdersCluster, HaveTheSameEffectAsInOneWorld) {
+  std::uint64_t hand_offs = 0;
+  for (int seed = 1; seed <= 4; ++seed) {
+    const core::Scene scene = thrown_bodies(60, 4 * kCell, 2 * kCell, 8, static_cast<std::uint64_t>(seed));
+    ClusterOptions options = options_for(cut_, seed);
+    options.orders = orders_for(scene, seed);
+    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome central = run_central(scene, options, kSteps);
+    const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
+    EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
+                                         << first.first - o.hash.begin();
+    EXPECT_EQ(o.obeyed, central.obeyed);
+    EXPECT_GE(o.obeyed, 30u);
+    EXPECT_EQ(o.removed, central.removed);
+    EXPECT_GE(o.removed, 3u);
+    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled + o.thrashed + o.severed + o.bad_phases, 0u);
+    hand_offs += o.hand_offs;
+  }
+  EXPECT_GT(hand_offs, 0u);
+}
+
+/// The rule above can fail: an order changes what comes after it, and nothing before.
+TEST(Orders, AKickChangesTheStatesFromItsOwnOn) {
+  const core::Scene scene = thrown_bodies(10, kCell, kCell, 8, 1);
+  ClusterOptions options = options_for(kCuts[0], 1);
+  const Outcome quiet = run_central(scene, options, 120);
+  options.orders = {{80, core::Impulse{scene.bodies[0].id, {0, 0, 5}, {}}}};
+  const Outcome kicked = run_central(scene, options, 120);
+  const auto first = std::mismatch(quiet.hash.begin(), quiet.hash.end(), kicked.hash.begin());
+  EXPECT_EQ(first.first - quiet.hash.begin(), 80);
+}
+
+/// A body at rest that will be kicked towards a border is announced as fast: nothing is late, no promise is broken.
+TEST(Orders, AKickIsForeseenByTheNeighbours) {
+  core::Scene scene = thrown_bodies(0, kCell, kCell, 0, 1);
+  const auto add = [&scene](std::uint64_t id, double x) {
+    core::InitialBody body;
+    body.id = BodyId{id};
+    body.pose.p_WB = {x, 0, 0.5};
+    scene.bodies.push_back(body);
+  };
+  add(1, -1.2);
+  add(2, 1.2);
+  ClusterOptions options = options_for(kCuts[0], 1);
+  options.sync = core::SyncMode::kBounded;
+  options.orders = {{150, core::SetVelocity{BodyId{1}, {20, 0, 0}, {}}},
+                    {150, core::SetVelocity{BodyId{2}, {-20, 0, 0}, {}}}};
+  const Outcome o = ClusterSim(scene, options).run(kSteps);
+  EXPECT_EQ(o.obeyed, 2u);
+  EXPECT_EQ(o.late + o.missed, 0u);
+  EXPECT_EQ(o.contacts.size(), 1u);
+  EXPECT_GT(o.hand_offs, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cuts, OrdersCluster, testing::Range<std::size_t>(0, std::size(kCuts)),
+                         [](const auto& param) { return std::string(kCuts[param.param].name); });
+
+}  // namespace
+}  // namespace aurasim::test
