@@ -67,6 +67,8 @@ struct StepReport {
   std::size_t largest_cluster = 0;
   std::vector<Birth> births;  ///< bodies that this node has announced or taken over at the start
   std::vector<HandOffRow> departures;
+  std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
+  std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
   std::vector<HandOffRow> arrivals;
   std::vector<SeenCollision> collisions;
   std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
@@ -92,6 +94,8 @@ class Node {
   const StepReport& settle();
 
   core::RegionId region() const { return setup_.protocol.self; }
+  /// Of the last step.
+  const StepReport& report() const { return report_; }
   core::Step current_step() const { return world_.step_number(); }
   const core::Protocol& protocol() const { return protocol_; }
   core::Protocol& protocol() { return protocol_; }

@@ -40,7 +40,10 @@ double ClusterSim::chance() {
 Outcome ClusterSim::run(Step steps) {
   outcome_ = {};
   outcome_.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
-  for (Member& member : members_) take_report(member, member.node->start());
+  for (Member& member : members_) {
+    take_report(member, member.node->start());
+    if (on_state) on_state(*member.node, member.node->report(), 0);
+  }
   const double slice = options_.aura.step_s / 8;
   const auto behind = [&] {
     return std::any_of(members_.begin(), members_.end(),
@@ -66,6 +69,7 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   network_->set_send_delay(frame);
   member.busy_until_s = now + frame;
   take_report(member, member.node->step());
+  if (on_state) on_state(*member.node, member.node->report(), now);
   member.node->protocol().report_frame(next, frame);
   check_single_host();
   maybe_crash(member);
