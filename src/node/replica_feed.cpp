@@ -112,8 +112,7 @@ void ReplicaFeed::tell_removals(const core::Snapshot& snapshot) {
   for (const core::RemovedBody& body : changes_.removed) told_.erase(body.id);
 }
 
-const core::Replica& ReplicaFeed::tell_all(const core::Snapshot& snapshot,
-                                           const std::deque<core::HandOff>& under_way) {
+const core::Replica& ReplicaFeed::tell_all(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way) {
   begin(all_, snapshot.step, true);
   for (const core::BodyState& body : snapshot.bodies) {
     if (body.birth <= snapshot.step) all_.bodies.push_back(row_of(body, self_));

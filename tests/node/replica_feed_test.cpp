@@ -49,8 +49,8 @@ class Feed : public ::testing::Test {
     StepReport report;
     report.step = step_;
     report.departed = {record};
-    report.departures = {{.stamp = step_, .body = record.id, .epoch = record.epoch + 1,
-                          .destination = RegionId{destination}}};
+    report.departures = {
+        {.stamp = step_, .body = record.id, .epoch = record.epoch + 1, .destination = RegionId{destination}}};
     bodies_.erase(id);
     feed_.note(report);
   }
