@@ -13,6 +13,8 @@ packages=(
   libbullet-dev libeigen3-dev
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  # HTTP and WebSocket of the overseer
+  libboost1.74-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
 )

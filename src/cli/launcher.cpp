@@ -43,6 +43,7 @@ Launcher::~Launcher() {
 ExitCode Launcher::run() {
   catch_stop_signals();
   start_nodes();
+  if (!options_.headless) viewer_.start(options_.files);
   auto next_show = Clock::now();
   bool stopping = false;
   while (any_running()) {
@@ -57,6 +58,7 @@ ExitCode Launcher::run() {
     show();
   }
   show();
+  viewer_.stop();
   return conclude();
 }
 
@@ -144,7 +146,8 @@ void Launcher::stop_all() {
 
 void Launcher::show() {
   if (options_.headless) return;
-  view_.show(live_table(control_.statuses()));
+  viewer_.look();
+  view_.show(live_table(control_.statuses()) + viewer_.said());
 }
 
 ExitCode Launcher::conclude() {

@@ -12,6 +12,7 @@
 #include "cli/live_table.h"
 #include "cli/node_process.h"
 #include "cli/run_steering.h"
+#include "cli/viewer_process.h"
 
 namespace aurasim::cli {
 
@@ -57,6 +58,7 @@ class Launcher {
   dds::ControlBus control_;
   TerminalView view_;
   std::vector<Child> children_;
+  ViewerProcess viewer_;
 };
 
 }  // namespace aurasim::cli

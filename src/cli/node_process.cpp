@@ -89,6 +89,7 @@ ExitCode NodeProcess::meet_and_run() {
   control_.publish_map(world_map(launch_));
   publish(dds::NodeState::kStarting);
   transport_.emplace(participant_, transport_settings(launch_, options_.region));
+  observers_.emplace(launch_, participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
   begin_generation(start_->generation, start_->epoch_ns);
   return run_steps();
@@ -212,6 +213,8 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
   hold_at_.reset();
   paused_ = {};
   const node::StepReport& report = node_->start();
+  observers_->begin_generation(generation);
+  observers_->after_step(*node_, report);
   if (recorder_) recorder_->write(report, {}, *node_);
   const auto ahead = std::chrono::nanoseconds(std::max<std::int64_t>(0, epoch_ns - node::wall_clock_ns()));
   began_ = Clock::now() + ahead;
@@ -234,6 +237,7 @@ ExitCode NodeProcess::run_steps() {
     spdlog::error("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(options_.region));
   publish(fenced ? dds::NodeState::kFailed : dds::NodeState::kFinished,
           fenced ? "a neighbour holds this region for dead" : "");
+  observers_->while_paused(*node_);
   // Whoever leaves from now on has finished, too: that is no death.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (!fenced) linger();
@@ -248,6 +252,7 @@ bool NodeProcess::wait_until_due() {
   const auto begin = Clock::now();
   if (hold_at_ && node_->current_step() >= *hold_at_) {
     publish(dds::NodeState::kPaused);
+    observers_->while_paused(*node_);
     control_.wait(20ms);
     node_->ready();
     paused_ += Clock::now() - begin;
@@ -269,6 +274,7 @@ bool NodeProcess::wait_until_due() {
 void NodeProcess::compute_step() {
   const auto begin = Clock::now();
   const node::StepReport& report = node_->step();
+  observers_->after_step(*node_, report);
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
   if (recorder_) recorder_->write(report, {frame_ms, wait_ms_}, *node_);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/replica_publisher.h"
 #include "config/launch.h"
 #include "dds/control.h"
 #include "dds/dds_transport.h"
@@ -74,6 +75,7 @@ class NodeProcess {
   dds::Participant participant_;
   dds::ControlBus control_;
   std::optional<dds::DdsTransport> transport_;  ///< once the domain is known to be free
+  std::optional<ReplicaPublisher> observers_;   ///< likewise
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;

@@ -17,7 +17,7 @@ constexpr double kNoticeS = 0.3;
 }  // namespace
 
 bool RunSteering::belongs(const dds::SeenStatus& seen) const {
-  return !seen.lost && seen.status.agreement == launch_.agreement() && seen.status.state != dds::NodeState::kFinished &&
+  return !seen.lost && seen.status.agreement == agreement_ && seen.status.state != dds::NodeState::kFinished &&
          seen.status.state != dds::NodeState::kFailed;
 }
 
@@ -26,12 +26,24 @@ bool RunSteering::find_run(std::chrono::milliseconds time_out) {
   for (;;) {
     const auto& statuses = control_.statuses();
     std::size_t seen = 0;
-    for (const auto& [region, status] : statuses) seen += status.status.agreement == launch_.agreement();
+    for (const auto& [region, status] : statuses) seen += status.status.agreement == agreement_;
     const bool any = std::any_of(statuses.begin(), statuses.end(), [this](const auto& s) { return belongs(s.second); });
     if (any && seen >= launch_.regions.size() && control_.listeners() > 0) return true;
     if (Clock::now() > deadline) return any;
     control_.wait(50ms);
   }
+}
+
+bool RunSteering::is_there() {
+  const auto& statuses = control_.statuses();
+  return std::any_of(statuses.begin(), statuses.end(), [this](const auto& s) { return belongs(s.second); });
+}
+
+bool RunSteering::is_paused() {
+  const auto& statuses = control_.statuses();
+  return std::all_of(statuses.begin(), statuses.end(), [this](const auto& s) {
+    return !belongs(s.second) || s.second.status.state == dds::NodeState::kPaused;
+  });
 }
 
 dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
@@ -71,15 +83,18 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
   return false;
 }
 
+bool RunSteering::has_taken_effect(const dds::RunCommand& command) {
+  const auto& statuses = control_.statuses();
+  return std::all_of(statuses.begin(), statuses.end(), [&](const auto& entry) {
+    const dds::SeenStatus& seen = entry.second;
+    return seen.lost || seen.status.agreement != agreement_ || shows(seen.status, command);
+  });
+}
+
 bool RunSteering::wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out) {
   const auto deadline = Clock::now() + time_out;
   while (Clock::now() < deadline) {
-    const auto& statuses = control_.statuses();
-    const bool all = std::all_of(statuses.begin(), statuses.end(), [&](const auto& entry) {
-      const dds::SeenStatus& seen = entry.second;
-      return seen.lost || seen.status.agreement != launch_.agreement() || shows(seen.status, command);
-    });
-    if (all) return true;
+    if (has_taken_effect(command)) return true;
     control_.wait(20ms);
   }
   return false;

@@ -12,13 +12,21 @@ namespace aurasim::cli {
 class RunSteering {
  public:
   /// Both outlive it.
-  RunSteering(const config::Launch& launch, dds::ControlBus& control) : launch_(launch), control_(control) {}
+  RunSteering(const config::Launch& launch, dds::ControlBus& control)
+      : launch_(launch), agreement_(launch.agreement()), control_(control) {}
 
   /// Waits until the statuses of all live regions of this launch have been seen; false at the time-out.
   bool find_run(std::chrono::milliseconds time_out);
 
+  /// By what has been seen so far: is any node of this launch alive; do all that are stand still?
+  bool is_there();
+  bool is_paused();
+
   /// Sends a command that takes effect as soon as all nodes can have heard of it; returns what was sent.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
+
+  /// Does every live node show the effect of `command`?
+  bool has_taken_effect(const dds::RunCommand& command);
 
   /// Waits until every live node shows the effect of `command`; false at the time-out.
   bool wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out);
@@ -28,6 +36,7 @@ class RunSteering {
   bool shows(const dds::Status& status, const dds::RunCommand& command) const;
 
   const config::Launch& launch_;
+  std::uint64_t agreement_;
   dds::ControlBus& control_;
 };
 

@@ -161,6 +161,15 @@ void read_observe(const Field& field, Observe& observe) {
   fields.close();
 }
 
+void read_overseer(const Field& field, Overseer& overseer) {
+  if (!field.given()) return;
+  Fields fields(field);
+  if (const Field f = fields.optional("bind"); f.given()) overseer.bind = f.text("an address").value_or(overseer.bind);
+  if (const Field f = fields.optional("port"); f.given())
+    overseer.port = static_cast<int>(f.integer(0, 65535).value_or(overseer.port));
+  fields.close();
+}
+
 struct Regions {
   std::optional<RegionLayout> layout;
   std::optional<double> neighbour_distance_m;
@@ -216,6 +225,7 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
   read_physics(fields.optional("physics"), launch.physics);
   read_dds(fields.optional("dds"), launch.file.parent_path(), launch.dds);
   read_observe(fields.optional("observe"), launch.observe);
+  read_overseer(fields.optional("overseer"), launch.overseer);
   if (fields.given()) read_scene_of(scene, of_scene, {.is_known = true, .layout = regions.layout}, launch, errors);
   fields.close();
   if (!errors.empty()) return;

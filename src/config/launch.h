@@ -71,6 +71,12 @@ struct Observe {
   double tick_hz = 20;
 };
 
+/// Of the viewer's server.
+struct Overseer {
+  std::string bind = "127.0.0.1";  ///< address that it listens on
+  int port = 8080;                 ///< 0: any that is free
+};
+
 struct Launch {
   std::filesystem::path file;  ///< absolute
   std::filesystem::path scene_file;
@@ -83,6 +89,7 @@ struct Launch {
   Physics physics;
   Dds dds;
   Observe observe;
+  Overseer overseer;
 
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of DESIGN section 2.

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -25,6 +26,8 @@ constexpr std::uintmax_t kLargestMeshBytes = 256u << 20;
 constexpr std::size_t kMostTriangles = 1'000'000;
 constexpr std::size_t kMostHullPoints = 200;
 constexpr double kFarthest = 1e7;
+const std::set<std::string> kFormats = {".obj", ".stl", ".gltf", ".glb"};
+const std::string kUnknownFormat = "its name ends neither in .obj, .stl, .gltf nor .glb";
 
 std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -34,8 +37,7 @@ std::string lower_extension(const std::filesystem::path& file) {
 }
 
 std::string reason_not_to_read(const std::filesystem::path& file) {
-  const std::set<std::string> known = {".obj", ".stl", ".gltf", ".glb"};
-  if (!known.contains(lower_extension(file))) return "its name ends neither in .obj, .stl, .gltf nor .glb";
+  if (!kFormats.contains(lower_extension(file))) return kUnknownFormat;
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return "no such file";
   if (!std::filesystem::is_regular_file(file, error)) return "it is not a regular file";
@@ -84,6 +86,23 @@ class MeshBuilder {
   bool is_finite_ = true;
 };
 
+std::variant<TriangleMesh, std::string> triangles_of(Assimp::Importer& importer, const std::string& file,
+                                                     const MeshRequest& request) {
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene =
+      importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  if (scene == nullptr) return fmt::format("it cannot be read: {}", importer.GetErrorString());
+  std::size_t triangles = 0;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) triangles += scene->mMeshes[m]->mNumFaces;
+  if (triangles > kMostTriangles) return fmt::format("it has {} triangles, at most {}", triangles, kMostTriangles);
+  MeshBuilder builder(request);
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) builder.add(*scene->mMeshes[m]);
+  if (!builder.is_finite()) return fmt::format("it has points that are no numbers or beyond {} m", kFarthest);
+  TriangleMesh mesh = builder.take();
+  if (mesh.triangles.empty()) return "it has no triangles";
+  return mesh;
+}
+
 /// Directions spread evenly over the sphere (Fibonacci lattice).
 Vec3 direction(std::size_t i, std::size_t count) {
   const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
@@ -102,19 +121,19 @@ UpAxis usual_up_axis(const std::filesystem::path& file) {
 std::variant<TriangleMesh, std::string> load_mesh(const MeshRequest& request) {
   if (std::string why = reason_not_to_read(request.file); !why.empty()) return why;
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(
-      request.file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
-  if (scene == nullptr) return fmt::format("it cannot be read: {}", importer.GetErrorString());
-  std::size_t triangles = 0;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) triangles += scene->mMeshes[m]->mNumFaces;
-  if (triangles > kMostTriangles) return fmt::format("it has {} triangles, at most {}", triangles, kMostTriangles);
-  MeshBuilder builder(request);
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) builder.add(*scene->mMeshes[m]);
-  if (!builder.is_finite()) return fmt::format("it has points that are no numbers or beyond {} m", kFarthest);
-  TriangleMesh mesh = builder.take();
-  if (mesh.triangles.empty()) return "it has no triangles";
-  return mesh;
+  return triangles_of(importer, request.file.string(), request);
+}
+
+std::variant<TriangleMesh, std::string> read_mesh(const std::string& name, std::string_view bytes) {
+  const std::string extension = lower_extension(name);
+  if (!kFormats.contains(extension)) return kUnknownFormat;
+  Assimp::Importer importer;
+  // Without a file system below it: the importer takes it over.
+  importer.SetIOHandler(
+      new Assimp::MemoryIOSystem(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
+  MeshRequest request;
+  request.up = usual_up_axis(name);
+  return triangles_of(importer, AI_MEMORYIO_MAGIC_FILENAME + extension, request);
 }
 
 std::vector<Vec3> hull_points(const TriangleMesh& mesh) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -23,6 +24,10 @@ UpAxis usual_up_axis(const std::filesystem::path& file);
 
 /// All triangles of the file with equal points joined, or why there are none.
 std::variant<core::TriangleMesh, std::string> load_mesh(const MeshRequest& request);
+
+/// The same from the bytes of a file. `name` says the format by its ending; nothing but these bytes is read, whatever
+/// other files they name.
+std::variant<core::TriangleMesh, std::string> read_mesh(const std::string& name, std::string_view bytes);
 
 /// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
 std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);

@@ -59,16 +59,6 @@ MaybeError check_shape(const wire::AuraBatch& in) {
   return fits ? MaybeError{} : WireError::kLength;
 }
 
-bool unit_quaternions(const std::vector<double>& q) {
-  for (std::size_t i = 0; i < q.size(); i += 4) {
-    const double squared = q[i] * q[i] + q[i + 1] * q[i + 1] + q[i + 2] * q[i + 2] + q[i + 3] * q[i + 3];
-    if (!(std::abs(std::sqrt(squared) - 1) <= kRotationTolerance)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
   if (!std::isfinite(in.top_speed_m_s()) || !std::isfinite(in.top_radius_m()) || !all_finite(in.p_WB()) ||
       !all_finite(in.q_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB()) || !all_finite(in.speed_m_s())) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "dds/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -22,10 +23,10 @@ void fill(std::vector<Number>& column, const std::vector<Row>& rows, Of of) {
 }
 
 /// Like fill, for vectors and matrices of `width` numbers; `put(row, out)` writes them.
-template <std::size_t width, class Row, class Put>
-void fill_wide(std::vector<double>& column, const std::vector<Row>& rows, Put put) {
+template <std::size_t width, class Number, class Row, class Put>
+void fill_wide(std::vector<Number>& column, const std::vector<Row>& rows, Put put) {
   column.resize(rows.size() * width);
-  double* out = column.data();
+  Number* out = column.data();
   for (const Row& row : rows) {
     put(row, out);
     out += width;
@@ -52,6 +53,15 @@ inline bool all_finite(const std::vector<double>& column) {
   return bad == 0;
 }
 
+inline bool all_finite(const std::vector<float>& column) {
+  constexpr std::uint32_t kExponent = 0x7f80'0000U;
+  std::uint32_t bad = 0;
+  for (const float x : column) {
+    bad |= static_cast<std::uint32_t>((std::bit_cast<std::uint32_t>(x) & kExponent) == kExponent);
+  }
+  return bad == 0;
+}
+
 inline bool none_negative(const std::vector<double>& column) {
   return std::ranges::all_of(column, [](double x) { return x >= 0; });
 }
@@ -68,6 +78,19 @@ inline bool all_body_ids(const std::vector<std::uint64_t>& column) {
   return std::ranges::all_of(column, [](std::uint64_t x) {
     return x <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   });
+}
+
+/// Quaternions (4 numbers each) of length 1, within kRotationTolerance.
+template <class Number>
+bool unit_quaternions(const std::vector<Number>& q) {
+  for (std::size_t i = 0; i < q.size(); i += 4) {
+    const double w = q[i], x = q[i + 1], y = q[i + 2], z = q[i + 3];
+    const double squared = w * w + x * x + y * y + z * z;
+    if (!(std::abs(std::sqrt(squared) - 1) <= kRotationTolerance)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// All columns of `rows` rows; each argument is a pair {column size, entries per row}.

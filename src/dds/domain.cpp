@@ -36,6 +36,8 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"node_status", "aurasim::wire::NodeStatus"},
     {"region_map", "aurasim::wire::RegionMap"},
     {"run_control", "aurasim::wire::RunControl"},
+    {"replica", "aurasim::wire::Replica"},
+    {"replica_key", "aurasim::wire::Replica"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -96,13 +98,14 @@ std::chrono::nanoseconds Domain::lease() const {
 }
 
 void Domain::register_types() {
-  const std::array<TypeSupport, kTopicCount> types = {
+  const std::array types = {
       TypeSupport(new GuardedType<wire::AuraBatchPubSubType>()),
       TypeSupport(new GuardedType<wire::MigrationPubSubType>()),
       TypeSupport(new GuardedType<wire::MigrationAckPubSubType>()),
       TypeSupport(new GuardedType<wire::NodeStatusPubSubType>()),
       TypeSupport(new GuardedType<wire::RegionMapPubSubType>()),
       TypeSupport(new GuardedType<wire::RunControlPubSubType>()),
+      TypeSupport(new GuardedType<wire::ReplicaPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -21,8 +21,17 @@
 namespace aurasim::dds {
 
 /// The topics of DESIGN section 7 that there are so far.
-enum class TopicId : std::uint8_t { kAura, kMigration, kMigrationAck, kNodeStatus, kRegionMap, kRunControl };
-inline constexpr std::size_t kTopicCount = 6;
+enum class TopicId : std::uint8_t {
+  kAura,
+  kMigration,
+  kMigrationAck,
+  kNodeStatus,
+  kRegionMap,
+  kRunControl,
+  kReplica,
+  kReplicaKey
+};
+inline constexpr std::size_t kTopicCount = 8;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 

@@ -26,6 +26,10 @@ void set_partitions(eprosima::fastdds::dds::PartitionQosPolicy& policy, const st
   }
 }
 
+std::string profile_of(const EndpointSpec& spec, const char* kind) {
+  return spec.profile.empty() ? std::string(name_of(spec.topic)) + kind : spec.profile;
+}
+
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -40,7 +44,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(d
   if (publisher_ == nullptr) {
     throw_not_created("publisher", spec);
   }
-  DataWriterQos qos = domain.profiles().writer(*publisher_, std::string(name_of(spec.topic)) + "_writer");
+  DataWriterQos qos = domain.profiles().writer(*publisher_, profile_of(spec, "_writer"));
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
@@ -90,7 +94,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(d
   if (subscriber_ == nullptr) {
     throw_not_created("subscriber", spec);
   }
-  DataReaderQos qos = domain.profiles().reader(*subscriber_, std::string(name_of(spec.topic)) + "_reader");
+  DataReaderQos qos = domain.profiles().reader(*subscriber_, profile_of(spec, "_reader"));
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }

@@ -20,11 +20,13 @@ struct EndpointSpec {
   TopicId topic = TopicId::kAura;
   std::vector<std::string> partitions;
   std::optional<core::RegionId> region;  ///< whose endpoint this is; peers are told (user data)
+  std::string profile = {};              ///< of the QoS; empty: the topic's
 };
 
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
-/// QoS by profile `<topic>_writer`. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the domain's pulse.
+/// QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the
+/// domain's pulse.
 class Writer {
  public:
   Writer(Domain& domain, const EndpointSpec& spec, Bell& bell);
@@ -37,6 +39,8 @@ class Writer {
   /// True when a reader of `region` is matched.
   bool reaches(core::RegionId region) const;
   std::size_t reader_count() const { return watch_.readers().size(); }
+  /// Readers that have come so far, those that left again included.
+  std::uint64_t matches() const { return watch_.matches(); }
   /// Matched readers in other processes.
   std::size_t foreign_reader_count() const;
 
@@ -47,7 +51,7 @@ class Writer {
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };
 
-/// QoS by profile `<topic>_reader`.
+/// QoS by profile `<topic>_reader`, or as the spec says.
 class Reader {
  public:
   Reader(Domain& domain, const EndpointSpec& spec, Bell& bell);

@@ -108,9 +108,15 @@ void WriterWatch::on_publication_matched(eprosima::fastdds::dds::DataWriter*,
     std::erase(readers_, guid);
     if (status.current_count_change > 0) {
       readers_.push_back(guid);
+      ++matches_;
     }
   }
   bell_.ring();
+}
+
+std::uint64_t WriterWatch::matches() const {
+  const std::lock_guard lock(mutex_);
+  return matches_;
 }
 
 std::vector<Guid> WriterWatch::readers() const {

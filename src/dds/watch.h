@@ -78,11 +78,14 @@ class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
 
   std::vector<Guid> readers() const;
+  /// Readers that have come so far, those that left again included.
+  std::uint64_t matches() const;
 
  private:
   Bell& bell_;
   mutable std::mutex mutex_;
   std::vector<Guid> readers_;
+  std::uint64_t matches_ = 0;
 };
 
 /// Which region an endpoint belongs to, as its user data says. Thread-safe.

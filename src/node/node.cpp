@@ -178,6 +178,8 @@ const StepReport& Node::settle() {
 void Node::clear_report() {
   report_.durations = {};
   report_.departures.clear();
+  report_.departed.clear();
+  report_.let_go.clear();
   report_.arrivals.clear();
   report_.collisions.clear();
   report_.hash.clear();
@@ -210,6 +212,7 @@ const StepReport& Node::step() {
 
 void Node::apply(const core::Changes& changes) {
   if (!changes.let_go.empty()) world_.release(changes.let_go);
+  report_.let_go.insert(report_.let_go.end(), changes.let_go.begin(), changes.let_go.end());
   for (const core::Adoption& adoption : changes.adoptions) {
     physics::CatchUpListener add_hash;
     if (setup_.hash_states) {
@@ -283,6 +286,7 @@ void Node::release(const core::Departure& departure) {
     row.destination = departure.destination;
     row.reason = departure.reason;
     row.touched = touched_.erase(body.id) > 0;
+    report_.departed.push_back(body);
   }
   const Timed timed(report_.durations.protocol_s);
   protocol_.hand_over(departure, std::move(cluster));

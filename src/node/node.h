@@ -75,6 +75,8 @@ struct StepReport {
   std::vector<core::Order> orders;         ///< heard
   std::vector<std::uint64_t> obeyed;       ///< requests that bodies here have obeyed
   std::vector<HandOffRow> departures;
+  std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
+  std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
   std::vector<HandOffRow> arrivals;
   std::vector<SeenCollision> collisions;
   std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
@@ -107,6 +109,8 @@ class Node {
   const StepReport& settle();
 
   core::RegionId region() const { return setup_.protocol.self; }
+  /// Of the last step.
+  const StepReport& report() const { return report_; }
   core::Step current_step() const { return world_.step_number(); }
   const core::Protocol& protocol() const { return protocol_; }
   const physics::RegionWorld& world() const { return world_; }

@@ -42,7 +42,10 @@ Outcome ClusterSim::run(Step steps) {
   outcome_.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
   std::uint64_t request = 0;
   for (const auto& [step, action] : options_.orders) members_[0].node->order(action, ++request, step);
-  for (Member& member : members_) take_report(member, member.node->start());
+  for (Member& member : members_) {
+    take_report(member, member.node->start());
+    if (on_state) on_state(*member.node, member.node->report(), 0);
+  }
   const double slice = options_.aura.step_s / 8;
   const auto behind = [&] {
     return std::any_of(members_.begin(), members_.end(),
@@ -68,6 +71,7 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   network_->set_send_delay(frame);
   member.busy_until_s = now + frame;
   take_report(member, member.node->step());
+  if (on_state) on_state(*member.node, member.node->report(), now);
   member.node->protocol().report_frame(next, frame);
   check_single_host();
   maybe_crash(member);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -68,6 +69,8 @@ class ClusterSim {
 
   node::Node& node(std::uint32_t region) { return *members_[region].node; }
   std::vector<node::HandOffRow> moves;
+  /// Called after every state of every node, with the virtual time.
+  std::function<void(node::Node& node, const node::StepReport& report, double now_s)> on_state;
 
  private:
   struct Member {

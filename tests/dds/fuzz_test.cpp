@@ -14,7 +14,9 @@
 #include "dds/codec.h"
 #include "dds/control_codec.h"
 #include "dds/guarded_type.h"
+#include "dds/replica_codec.h"
 #include "messages.h"
+#include "replica_messages.h"
 
 namespace aurasim::dds {
 namespace {
@@ -156,6 +158,12 @@ TEST(Fuzz, Commands) {
   command.request = 9;
   encode(command, 3, message);
   report("run_control", read_mutations<wire::RunControlPubSubType>(message));
+}
+
+TEST(Fuzz, Replicas) {
+  wire::Replica message;
+  encode(testing::replica_of(5), message);
+  report("replica", read_mutations<wire::ReplicaPubSubType>(message));
 }
 
 TEST(Guard, AnAbsurdLengthAsksForNoMemory) {

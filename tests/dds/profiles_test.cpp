@@ -123,7 +123,8 @@ TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
   Profiles hosts(settings_for(122, "hosts.xml").profiles);
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   auto* subscriber = domain.participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
-  for (const std::string topic : {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control"}) {
+  for (const std::string topic :
+       {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key"}) {
     DataWriterQos writer = hosts.writer(*publisher, topic + "_writer");
     const DataWriterQos default_writer = domain.profiles().writer(*publisher, topic + "_writer");
     DataReaderQos reader = hosts.reader(*subscriber, topic + "_reader");
@@ -178,11 +179,11 @@ TEST_F(OwnFile, WithoutTheProfileIsNamedWithTheNamesLookedFor) {
   Domain domain(settings_for(122));
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   try {
-    profiles.writer(*publisher, "replica_writer");
+    profiles.writer(*publisher, "missing_writer");
     FAIL() << "there is no such profile";
   } catch (const DdsError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("bare.xml: no data_writer profile named 'bare_replica_writer'"),
-                                    HasSubstr("'replica_writer'")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("bare.xml: no data_writer profile named 'bare_missing_writer'"),
+                                    HasSubstr("'missing_writer'")));
   }
 }
 

@@ -1,0 +1,46 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "cli/leave.h"
+#include "cli/run_command_sink.h"
+#include "cli/stop_signal.h"
+#include "cli/web_setup.h"
+#include "overseer/overseer.h"
+
+namespace aurasim::cli {
+namespace {
+
+struct Arguments {
+  FileArguments files;
+  WebArguments web;
+};
+
+int oversee(const Arguments& arguments) {
+  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  const overseer::WebSettings settings = web_settings(launch, arguments.web);
+  overseer::ShapeStore shapes;
+  const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, shapes);
+  dds::Participant participant(dds_settings(launch));
+  dds::ControlBus control(participant, {launch.regions.version(), {}});
+  RunCommandSink sink(launch, control);
+  overseer::Overseer overseer(launch, participant, control, *web, sink, !settings.token.empty());
+  catch_stop_signals();
+  while (!stop_requested()) overseer.turn();
+  leave(0);
+}
+
+}  // namespace
+
+void add_overseer(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("overseer", "serve the viewer of a run; start and stop it as you like");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->files.add_to(*command);
+  arguments->web.add_to(*command);
+  command->callback([arguments, &action] { action = [arguments] { return oversee(*arguments); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,53 @@
+#include "cli/replica_publisher.h"
+
+namespace aurasim::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kKeyFramePeriod = std::chrono::seconds(1);
+
+}  // namespace
+
+ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
+    : region_(region),
+      map_version_(launch.regions.version()),
+      tick_steps_(node::tick_steps(launch.time.step_hz, launch.observe.tick_hz)),
+      writer_(participant, region) {}
+
+void ReplicaPublisher::begin_generation(core::Generation generation) {
+  feed_.emplace(region_, generation, map_version_);
+  told_ = -1;
+}
+
+void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
+  if (!writer_.anybody_listens()) {
+    feed_->forget();
+    return;
+  }
+  feed_->note(report);
+  if (report.step % tick_steps_ == 0) tell(node);
+}
+
+void ReplicaPublisher::while_paused(node::Node& node) {
+  if (!writer_.anybody_listens()) return;
+  if (told_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) tell(node);
+}
+
+/// Whoever has just come gets a key frame at once: the last one may be of a time when nobody listened.
+bool ReplicaPublisher::key_frame_is_due() const {
+  if (arrivals_ != writer_.arrivals()) return true;
+  return feed_->changed_since_key_frame() && Clock::now() - last_key_frame_ >= kKeyFramePeriod;
+}
+
+void ReplicaPublisher::tell(node::Node& node) {
+  const core::Snapshot& snapshot = node.world().snapshot();
+  told_ = snapshot.step;
+  writer_.send(feed_->tell_changes(snapshot));
+  if (!key_frame_is_due()) return;
+  arrivals_ = writer_.arrivals();
+  last_key_frame_ = Clock::now();
+  writer_.send(feed_->tell_all(snapshot, node.protocol().departures().open()));
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,38 @@
+// When a node process tells observers what (node/replica_feed.h), and over which topic (dds/replica_bus.h).
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "config/launch.h"
+#include "dds/replica_bus.h"
+#include "node/node.h"
+#include "node/replica_feed.h"
+
+namespace aurasim::cli {
+
+class ReplicaPublisher {
+ public:
+  ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
+
+  void begin_generation(core::Generation generation);
+  /// After the first state and after every step.
+  void after_step(node::Node& node, const node::StepReport& report);
+  /// As often as you like while the run stands still: what was not told yet of the state that it stands in.
+  void while_paused(node::Node& node);
+
+ private:
+  void tell(node::Node& node);
+  bool key_frame_is_due() const;
+
+  core::RegionId region_;
+  std::uint64_t map_version_;
+  core::Step tick_steps_;
+  dds::ReplicaWriter writer_;
+  std::optional<node::ReplicaFeed> feed_;
+  core::Step told_ = -1;
+  std::uint64_t arrivals_ = 0;  ///< observers that have got a key frame of their own
+  std::chrono::steady_clock::time_point last_key_frame_;
+};
+
+}  // namespace aurasim::cli

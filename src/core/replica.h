@@ -1,0 +1,46 @@
+// What a node tells observers: which bodies it hosts, where they are, and where those that left went. Observers only
+// watch: nothing that they are told, or not told, changes what is computed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+/// One body as its host, or the host that has just sent it away, saw it last.
+struct ReplicaBody {
+  BodyId id{};
+  Epoch epoch = 0;
+  RegionId host{};  ///< other than the source: handed to that region under this epoch, and perhaps still on its way
+  PrototypeId prototype{};
+  bool asleep = false;
+  Vec3 p_WB = Vec3::Zero();
+  Eigen::Quaternionf q_WB = Eigen::Quaternionf::Identity();
+  Eigen::Vector3f v_WB = Eigen::Vector3f::Zero();  ///< m/s
+  Eigen::Vector3f w_WB = Eigen::Vector3f::Zero();  ///< rad/s
+};
+
+/// A body that is no more. Whoever claims it with a higher epoch knows better.
+struct RemovedBody {
+  BodyId id{};
+  Epoch epoch = 0;
+};
+
+/// What changed at one source since its last tick, or (a key frame) all that there is.
+struct Replica {
+  RegionId source{};
+  Generation generation = 0;
+  Step stamp = 0;
+  std::uint64_t map_version = 0;
+  /// Counts the ticks that the source has told in this generation, from 1; a number that is left out was lost. A key
+  /// frame has the number of the tick with which it was told.
+  std::uint64_t sequence = 0;
+  bool key_frame = false;
+  std::vector<ReplicaBody> bodies;  ///< ascending id
+  std::vector<RemovedBody> removed;
+};
+
+}  // namespace aurasim::core

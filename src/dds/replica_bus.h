@@ -1,0 +1,73 @@
+// Topics replica and replica_key: a node tells, observers listen. An observer never holds up a node: what it is too
+// slow for is overwritten.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/replica.h"
+#include "dds/participant.h"
+#include "dds/wire_error.h"
+
+namespace aurasim::dds {
+
+/// Used by one thread. The participant must outlive it.
+class ReplicaWriter {
+ public:
+  ReplicaWriter(Participant& participant, core::RegionId region);
+  ~ReplicaWriter();
+
+  /// Key frames go to replica_key, all others to replica. False when the write failed.
+  bool send(const core::Replica& replica);
+  bool anybody_listens() const;
+  /// Grows whenever an observer comes.
+  std::uint64_t arrivals() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What an observer knows of the run that it watches; replicas of others are refused and counted.
+struct ObserverSettings {
+  std::uint64_t map_version = 0;
+  std::uint32_t region_count = 0;
+  std::uint32_t prototype_count = 0;
+};
+
+/// Used by one thread. The participant must outlive it.
+class ReplicaReader {
+ public:
+  ReplicaReader(Participant& participant, const ObserverSettings& settings);
+  ~ReplicaReader();
+
+  /// What has come since the last call, deltas before key frames.
+  std::vector<core::Replica> take();
+  /// Returns when something arrived, or at the time-out.
+  void wait(std::chrono::nanoseconds time_out);
+
+  const WireErrors& refused() const;
+  std::uint64_t received() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The auras of all regions, for drawing them: some may be missed. The participant must outlive it.
+class AuraWatch {
+ public:
+  AuraWatch(Participant& participant, const ObserverSettings& settings);
+  ~AuraWatch();
+
+  std::vector<core::AuraBatch> take();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,16 @@
+// core/replica.h as a wire type, and back. As in codec.h.
+#pragma once
+
+#include "core/replica.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class Replica;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const core::Replica& replica, wire::Replica& out);
+Decoded<core::Replica> decode(const wire::Replica& in, const Expected& expected);
+
+}  // namespace aurasim::dds

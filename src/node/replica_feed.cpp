@@ -1,0 +1,145 @@
+#include "node/replica_feed.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aurasim::node {
+namespace {
+
+// A body that has moved less than this since it was told last has not moved: far below what can be seen, far above the
+// jitter of a body at rest that has not fallen asleep yet.
+constexpr double kStillM = 1e-4;
+constexpr float kStillQuaternion = 2e-4F;
+
+core::ReplicaBody row_of(const core::BodyState& body, core::RegionId host) {
+  return {.id = body.id,
+          .epoch = body.epoch,
+          .host = host,
+          .prototype = body.prototype,
+          .asleep = !body.awake,
+          .p_WB = body.pose.p_WB,
+          .q_WB = body.pose.q_WB.cast<float>(),
+          .v_WB = body.v_WB.cast<float>(),
+          .w_WB = body.w_WB.cast<float>()};
+}
+
+bool ascending(const core::ReplicaBody& a, const core::ReplicaBody& b) { return a.id < b.id; }
+
+bool is_here(const core::Snapshot& snapshot, core::BodyId id) {
+  const auto place =
+      std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
+                       [](const core::BodyState& body, core::BodyId wanted) { return body.id < wanted; });
+  return place != snapshot.bodies.end() && place->id == id && place->birth <= snapshot.step;
+}
+
+}  // namespace
+
+core::Step tick_steps(double step_hz, double tick_hz) {
+  return std::max<core::Step>(1, std::llround(step_hz / tick_hz));
+}
+
+ReplicaFeed::ReplicaFeed(core::RegionId self, core::Generation generation, std::uint64_t map_version)
+    : self_(self), generation_(generation), map_version_(map_version) {}
+
+void ReplicaFeed::note(const StepReport& report) {
+  for (std::size_t i = 0; i < report.departed.size(); ++i) {
+    const core::BodyRecord& body = report.departed[i];
+    core::ReplicaBody row = row_of(core::state_of(body), report.departures[i].destination);
+    row.epoch = report.departures[i].epoch;
+    left_.insert_or_assign(body.id, Left{row, body.birth});
+  }
+  // Whoever has the higher epoch speaks for it; here it is forgotten without a word.
+  for (const core::BodyId id : report.let_go) told_.erase(id);
+}
+
+bool ReplicaFeed::is_news(const core::BodyState& body) const {
+  const auto found = told_.find(body.id);
+  if (found == told_.end()) return true;
+  const Told& told = found->second;
+  return told.epoch != body.epoch || told.asleep == body.awake ||
+         (told.p_WB - body.pose.p_WB).cwiseAbs().maxCoeff() > kStillM ||
+         (told.q_WB.coeffs() - body.pose.q_WB.cast<float>().coeffs()).cwiseAbs().maxCoeff() > kStillQuaternion;
+}
+
+void ReplicaFeed::begin(core::Replica& replica, core::Step stamp, bool key_frame) const {
+  replica.source = self_;
+  replica.generation = generation_;
+  replica.stamp = stamp;
+  replica.map_version = map_version_;
+  replica.sequence = sequence_;
+  replica.key_frame = key_frame;
+  replica.bodies.clear();
+  replica.removed.clear();
+}
+
+const core::Replica& ReplicaFeed::tell_changes(const core::Snapshot& snapshot) {
+  ++sequence_;
+  begin(changes_, snapshot.step, false);
+  for (const core::BodyState& body : snapshot.bodies) {
+    if (body.birth > snapshot.step || !is_news(body)) continue;
+    changes_.bodies.push_back(row_of(body, self_));
+    const core::ReplicaBody& row = changes_.bodies.back();
+    told_.insert_or_assign(body.id, Told{row.epoch, row.asleep, row.p_WB, row.q_WB});
+    left_.erase(body.id);  // it has come back
+  }
+  tell_departures();
+  tell_removals(snapshot);
+  changed_since_key_frame_ = changed_since_key_frame_ || !changes_.bodies.empty() || !changes_.removed.empty();
+  return changes_;
+}
+
+void ReplicaFeed::tell_departures() {
+  if (left_.empty()) return;
+  std::erase_if(left_, [this](const auto& entry) {
+    const auto& [id, left] = entry;
+    if (left.birth > changes_.stamp) return false;
+    told_.erase(id);
+    changes_.bodies.push_back(left.row);
+    return true;
+  });
+  std::sort(changes_.bodies.begin(), changes_.bodies.end(), ascending);
+}
+
+void ReplicaFeed::tell_removals(const core::Snapshot& snapshot) {
+  const auto born = std::count_if(snapshot.bodies.begin(), snapshot.bodies.end(),
+                                  [&](const core::BodyState& body) { return body.birth <= snapshot.step; });
+  if (told_.size() == static_cast<std::size_t>(born)) return;
+  for (const auto& [id, told] : told_) {
+    if (!is_here(snapshot, id)) changes_.removed.push_back({id, told.epoch});
+  }
+  std::sort(changes_.removed.begin(), changes_.removed.end(),
+            [](const core::RemovedBody& a, const core::RemovedBody& b) { return a.id < b.id; });
+  for (const core::RemovedBody& body : changes_.removed) told_.erase(body.id);
+}
+
+const core::Replica& ReplicaFeed::tell_all(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way) {
+  begin(all_, snapshot.step, true);
+  for (const core::BodyState& body : snapshot.bodies) {
+    if (body.birth <= snapshot.step) all_.bodies.push_back(row_of(body, self_));
+  }
+  const std::size_t hosted = all_.bodies.size();
+  for (const core::HandOff& hand_off : under_way) {
+    for (const core::BodyRecord& body : hand_off.cluster.bodies) {
+      if (body.birth <= snapshot.step && !is_here(snapshot, body.id))
+        all_.bodies.push_back(row_of(core::state_of(body), hand_off.destination));
+    }
+  }
+  // A body that went out twice is on its way under the higher epoch.
+  std::sort(all_.bodies.begin(), all_.bodies.end(), [](const core::ReplicaBody& a, const core::ReplicaBody& b) {
+    return a.id != b.id ? a.id < b.id : a.epoch > b.epoch;
+  });
+  if (all_.bodies.size() > hosted) {
+    const auto same = [](const core::ReplicaBody& a, const core::ReplicaBody& b) { return a.id == b.id; };
+    all_.bodies.erase(std::unique(all_.bodies.begin(), all_.bodies.end(), same), all_.bodies.end());
+  }
+  changed_since_key_frame_ = false;
+  return all_;
+}
+
+void ReplicaFeed::forget() {
+  told_.clear();
+  left_.clear();
+  changed_since_key_frame_ = true;
+}
+
+}  // namespace aurasim::node

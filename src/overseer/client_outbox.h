@@ -1,0 +1,48 @@
+// What waits to be sent to one page. However slow the page, this does not grow: of everything that can be said anew
+// only the latest is kept, frames are merged (frame_codec.h), and replies are limited.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "overseer/frame_codec.h"
+
+namespace aurasim::overseer {
+
+/// JSON of which only the latest counts, in the order in which they are sent.
+enum class Notice : std::uint8_t { kHello, kScene, kMap, kStatus, kReplay, kBody };
+inline constexpr std::size_t kNotices = 6;
+
+using SharedText = std::shared_ptr<const std::string>;
+using SharedBytes = std::shared_ptr<const Bytes>;
+
+struct Message {
+  SharedText text;    ///< or
+  SharedBytes bytes;  ///< a binary message
+  bool is_frame = false;
+};
+
+class ClientOutbox {
+ public:
+  void tell(Notice notice, SharedText text);
+  /// False: there are too many already; the page does not read.
+  bool reply(std::string text);
+  void note(const WorldFrame& frame) { frames_.note(frame); }
+  void show(SharedBytes overlays) { overlays_ = std::move(overlays); }
+
+  /// What to send next, or nothing. `frames_too`: false when the last frame was sent only a moment ago.
+  std::optional<Message> next(const SlotTable& table, bool frames_too);
+
+  std::uint64_t frames_merged() const { return frames_.merged(); }
+
+ private:
+  std::array<SharedText, kNotices> notices_;
+  std::deque<std::string> replies_;
+  ClientFrames frames_;
+  SharedBytes overlays_;
+};
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,247 @@
+#include "overseer/frame_codec.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace aurasim::overseer {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
+
+constexpr std::uint16_t kVersion = 1;
+constexpr std::uint8_t kFrame = 1;
+constexpr std::uint8_t kOverlays = 2;
+constexpr std::uint8_t kKeyFrame = 1;
+constexpr std::uint16_t kAsleep = 1, kUnderWay = 2, kHandedOver = 4;
+
+// What a client knows of a slot, and what it has to be told.
+constexpr std::uint8_t kKnown = 1;     ///< it has the body that is there
+constexpr std::uint8_t kOutlived = 2;  ///< it has a body that is there no more
+constexpr std::uint8_t kHostNews = 4;
+constexpr std::uint8_t kMoveNews = 8;
+constexpr std::uint8_t kHandOffNews = 16;
+constexpr std::uint8_t kListed = 32;
+
+/// Positions are sent as float: beyond this from the origin they would lose millimetres.
+constexpr double kNearM = 2000;
+constexpr double kOriginGridM = 1000;
+
+class Writer {
+ public:
+  explicit Writer(std::size_t size) { bytes_.reserve(size); }
+
+  template <class Number>
+  void put(Number value) {
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + sizeof value);
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+  }
+  void put_count(std::size_t count) { put(static_cast<std::uint32_t>(count)); }
+  Bytes take() { return std::move(bytes_); }
+
+ private:
+  Bytes bytes_;
+};
+
+core::Vec3 origin_of(const SlotTable& table, const std::vector<Slot>& moved) {
+  core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Slot slot : moved) {
+    low = low.cwiseMin(table.body(slot)->p_WB);
+    high = high.cwiseMax(table.body(slot)->p_WB);
+  }
+  if (moved.empty() || std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) <= kNearM)
+    return core::Vec3::Zero();
+  return ((low + high) / (2 * kOriginGridM)).array().round().matrix() * kOriginGridM;
+}
+
+void put_host(const ViewBody& body, bool handed_over, Writer& out) {
+  std::uint16_t flags = 0;
+  if (body.asleep) flags |= kAsleep;
+  if (body.under_way) flags |= kUnderWay;
+  if (handed_over) flags |= kHandedOver;
+  out.put(body.slot);
+  out.put(static_cast<std::uint16_t>(core::value_of(body.host)));
+  out.put(flags);
+  out.put(body.epoch);
+}
+
+void put_pose(const ViewBody& body, const core::Vec3& origin, Writer& out) {
+  const Eigen::Vector3f p = (body.p_WB - origin).cast<float>();
+  out.put(body.slot);
+  for (int i = 0; i < 3; ++i) out.put(p[i]);
+  out.put(pack_rotation(body.q_WB));
+}
+
+}  // namespace
+
+void SlotTable::apply(const WorldFrame& frame) {
+  if (frame.restart) {
+    bodies_.clear();
+    alive_.clear();
+    count_ = 0;
+  }
+  for (const Slot slot : frame.deleted) {
+    count_ -= alive_[slot];
+    alive_[slot] = 0;
+  }
+  for (const BodyChange& change : frame.changed) {
+    const Slot slot = change.body.slot;
+    if (slot >= bodies_.size()) {
+      bodies_.resize(slot + 1);
+      alive_.resize(slot + 1, 0);
+    }
+    count_ += 1U - alive_[slot];
+    alive_[slot] = 1;
+    bodies_[slot] = change.body;
+  }
+  generation_ = frame.generation;
+  stamp_ = frame.stamp;
+}
+
+void ClientFrames::forget() {
+  states_.clear();
+  listed_.clear();
+  key_ = true;
+}
+
+std::uint8_t& ClientFrames::state(Slot slot) {
+  if (slot >= states_.size()) states_.resize(slot + 1, 0);
+  if ((states_[slot] & kListed) == 0) {
+    states_[slot] |= kListed;
+    listed_.push_back(slot);
+  }
+  return states_[slot];
+}
+
+void ClientFrames::note(const WorldFrame& frame) {
+  if (has_news_) ++merged_;
+  has_news_ = true;
+  if (frame.restart) forget();
+  if (key_) return;  // everything will be listed
+  for (const Slot slot : frame.deleted) {
+    std::uint8_t& bits = state(slot);
+    if ((bits & kKnown) != 0) bits |= kOutlived;
+    bits &= kOutlived | kListed;
+  }
+  for (const BodyChange& change : frame.changed) {
+    std::uint8_t& bits = state(change.body.slot);
+    if (change.host_changed) bits |= kHostNews;
+    if (change.moved) bits |= kMoveNews;
+    if (change.handed_over) bits |= kHandOffNews;
+  }
+}
+
+void ClientFrames::list_everything(const SlotTable& table) {
+  states_.assign(table.slot_count(), 0);
+  listed_.clear();
+  for (Slot slot = 0; slot < table.slot_count(); ++slot) state(slot);
+}
+
+ClientFrames::Lists ClientFrames::sort_out(const SlotTable& table) {
+  Lists lists;
+  for (const Slot slot : listed_) {
+    std::uint8_t& bits = states_[slot];
+    const bool is_new = (bits & kKnown) == 0 || (bits & kOutlived) != 0;
+    if ((bits & kOutlived) != 0) lists.deleted.push_back(slot);
+    if (table.body(slot) == nullptr) {
+      bits = 0;
+      continue;
+    }
+    if (is_new) lists.created.push_back(slot);
+    if (is_new || (bits & (kHostNews | kHandOffNews)) != 0) lists.hosts.push_back(slot);
+    if (is_new || (bits & kMoveNews) != 0) lists.moved.push_back(slot);
+    bits = static_cast<std::uint8_t>(kKnown | (bits & kHandOffNews));
+  }
+  return lists;
+}
+
+Bytes ClientFrames::encode(const SlotTable& table) {
+  const bool key = std::exchange(key_, false);
+  has_news_ = false;
+  if (key) list_everything(table);
+  const Lists lists = sort_out(table);
+  listed_.clear();
+  const core::Vec3 origin = origin_of(table, lists.moved);
+  Writer out(56 + 4 * lists.deleted.size() + 16 * lists.created.size() + 12 * lists.hosts.size() +
+             20 * lists.moved.size());
+  out.put(kFrame);
+  out.put(key ? kKeyFrame : std::uint8_t{0});
+  out.put(kVersion);
+  out.put(table.generation());
+  out.put(static_cast<double>(table.stamp()));
+  for (int i = 0; i < 3; ++i) out.put(origin[i]);
+  for (const auto* list : {&lists.deleted, &lists.created, &lists.hosts, &lists.moved}) out.put_count(list->size());
+  for (const Slot slot : lists.deleted) out.put(slot);
+  for (const Slot slot : lists.created) {
+    const std::uint64_t id = core::value_of(table.body(slot)->id);
+    out.put(slot);
+    out.put(core::value_of(table.body(slot)->prototype));
+    out.put(static_cast<std::uint32_t>(id));
+    out.put(static_cast<std::uint32_t>(id >> 32U));
+  }
+  for (const Slot slot : lists.hosts) {
+    put_host(*table.body(slot), (states_[slot] & kHandOffNews) != 0, out);
+    states_[slot] = kKnown;
+  }
+  for (const Slot slot : lists.moved) put_pose(*table.body(slot), origin, out);
+  return out.take();
+}
+
+std::uint32_t pack_rotation(const Eigen::Quaternionf& q) {
+  const std::array<float, 4> c = {q.w(), q.x(), q.y(), q.z()};
+  std::uint32_t largest = 0;
+  for (std::uint32_t i = 1; i < 4; ++i) {
+    if (std::abs(c[i]) > std::abs(c[largest])) largest = i;
+  }
+  const float sign = c[largest] < 0 ? -1.0F : 1.0F;
+  std::uint32_t packed = largest << 30U;
+  std::uint32_t shift = 20;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    const float scaled = (sign * c[i] * std::sqrt(2.0F) + 1) / 2 * 1023;
+    packed |= static_cast<std::uint32_t>(std::lround(std::clamp(scaled, 0.0F, 1023.0F))) << shift;
+    shift -= 10;
+  }
+  return packed;
+}
+
+Eigen::Quaternionf unpack_rotation(std::uint32_t packed) {
+  const std::uint32_t largest = packed >> 30U;
+  std::array<float, 4> c{};
+  float squares = 0;
+  std::uint32_t shift = 20;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    c[i] = (static_cast<float>((packed >> shift) & 1023U) / 1023 * 2 - 1) / std::sqrt(2.0F);
+    squares += c[i] * c[i];
+    shift -= 10;
+  }
+  c[largest] = std::sqrt(std::max(0.0F, 1 - squares));
+  return {c[0], c[1], c[2], c[3]};
+}
+
+Bytes encode_overlays(std::span<const AuraDisc> auras, std::span<const SlotPair> links,
+                      std::span<const SlotPair> contacts) {
+  Writer out(16 + 8 * (auras.size() + links.size() + contacts.size()));
+  out.put(kOverlays);
+  out.put(std::uint8_t{0});
+  out.put(kVersion);
+  for (const std::size_t count : {auras.size(), links.size(), contacts.size()}) out.put_count(count);
+  for (const AuraDisc& aura : auras) {
+    out.put(aura.slot);
+    out.put(aura.radius_m);
+  }
+  for (const auto pairs : {links, contacts}) {
+    for (const SlotPair& pair : pairs) {
+      out.put(pair.a);
+      out.put(pair.b);
+    }
+  }
+  return out.take();
+}
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,208 @@
+#include "overseer/overseer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace aurasim::overseer {
+
+using namespace std::chrono_literals;
+using core::RegionId;
+
+namespace {
+
+constexpr auto kRound = 5ms;
+constexpr auto kStatusPeriod = 250ms;
+constexpr auto kLookPeriod = 20ms;
+
+/// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
+WorldView::RegionState region_state(const dds::SeenStatus& seen) {
+  using State = WorldView::RegionState;
+  switch (seen.status.state) {
+    case dds::NodeState::kRunning:
+    case dds::NodeState::kPaused:
+      return seen.lost ? State::kDead : State::kLive;
+    case dds::NodeState::kFailed:
+      return State::kDead;
+    case dds::NodeState::kStarting:
+    case dds::NodeState::kWaiting:
+    case dds::NodeState::kFinished:
+      return State::kAbsent;
+  }
+  return State::kAbsent;
+}
+
+}  // namespace
+
+Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
+                   WebServer& web, CommandSink& sink, bool token_needed)
+    : launch_(launch),
+      agreement_(launch.agreement()),
+      participant_(participant),
+      control_(control),
+      web_(web),
+      sink_(sink),
+      observer_settings_{launch.regions.version(), static_cast<std::uint32_t>(launch.regions.size()),
+                         static_cast<std::uint32_t>(launch.scene.prototypes.size())},
+      replicas_(participant, observer_settings_),
+      view_settings_{.region_count = launch.regions.size(),
+                     .unclaimed_patience = static_cast<core::Step>(3 * launch.time.step_hz)} {
+  view_.emplace(view_settings_);
+  Hello hello;
+  hello.scene = launch.scene.name;
+  hello.step_s = launch.step_s();
+  hello.tick_hz = launch.observe.tick_hz;
+  hello.token_needed = token_needed;
+  web_.tell(Notice::kHello, hello_message(hello));
+  web_.tell(Notice::kScene, scene_message(launch.scene, 0));
+  web_.tell(Notice::kMap, map_message(launch.regions));
+}
+
+double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+
+void Overseer::turn() {
+  replicas_.wait(kRound);
+  look_at_nodes();
+  for (core::Replica& replica : replicas_.take()) view_->accept(std::move(replica), now_s());
+  compose_frames();
+  serve_commands();
+  tell_status();
+}
+
+/// The same regions under other processes: the world of the old ones is gone.
+bool Overseer::run_was_restarted() {
+  bool restarted = false;
+  for (const auto& [region, seen] : nodes_) {
+    const auto [known, is_new] = pids_.try_emplace(region, seen.status.pid);
+    restarted = restarted || (!is_new && known->second != seen.status.pid);
+    known->second = seen.status.pid;
+  }
+  return restarted;
+}
+
+void Overseer::look_at_nodes() {
+  if (Clock::now() < next_look_) return;
+  next_look_ = Clock::now() + kLookPeriod;
+  nodes_.clear();
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (is_of_this_run(seen) && core::value_of(region) < launch_.regions.size()) nodes_.emplace(region, seen);
+  }
+  if (run_was_restarted()) view_.emplace(view_settings_);
+  for (const auto& [region, seen] : nodes_) view_->set_region(region, region_state(seen));
+}
+
+void Overseer::compose_frames() {
+  bool any = false;
+  while (const WorldFrame* frame = view_->compose(now_s())) {
+    any = true;
+    if (frame->generation != told_generation_) {
+      told_generation_ = frame->generation;
+      web_.tell(Notice::kScene, scene_message(launch_.scene, told_generation_));
+    }
+    web_.show(*frame);
+  }
+  if (any) show_auras();
+}
+
+/// How far from its centre a body may be met before its neighbours hear of it next.
+void Overseer::show_auras() {
+  if (web_.counters().aura_watchers == 0) {
+    auras_.reset();
+    aura_radius_m_.clear();
+    return;
+  }
+  if (!auras_) auras_ = std::make_unique<dds::AuraWatch>(participant_, observer_settings_);
+  const double ahead_s = (1 + launch_.aura.uncertainty) * launch_.lookahead() * launch_.step_s();
+  for (const core::AuraBatch& batch : auras_->take()) {
+    if (batch.full) {
+      std::erase_if(aura_radius_m_, [&](const auto& entry) {
+        const ViewBody* body = view_->find(entry.first);
+        return body == nullptr || body->host == batch.source;
+      });
+    }
+    for (const core::AuraRecord& aura : batch.updates) {
+      const core::Prototype& prototype = launch_.scene.prototypes[core::value_of(aura.prototype)];
+      const double radius_m = core::bounding_radius(launch_.scene.shapes[prototype.shape].shape);
+      aura_radius_m_[aura.id] = static_cast<float>(radius_m + aura.speed_m_s * ahead_s);
+    }
+    for (const core::BodyId id : batch.deletes) aura_radius_m_.erase(id);
+  }
+  std::vector<AuraDisc> discs;
+  std::erase_if(aura_radius_m_, [&](const auto& entry) {
+    const ViewBody* body = view_->find(entry.first);
+    if (body != nullptr) discs.push_back({body->slot, entry.second});
+    return body == nullptr;
+  });
+  web_.show_overlays(encode_overlays(discs, {}, {}));
+}
+
+void Overseer::serve_commands() {
+  for (PageRequest& page_request : web_.take_requests()) {
+    if (auto* request = std::get_if<Request>(&page_request)) sink_.submit(std::move(*request));
+  }
+  for (const Reply& reply : sink_.take_replies()) web_.answer(reply);
+}
+
+std::string Overseer::state_of_run() const {
+  using State = dds::NodeState;
+  const auto any = [&](State state) {
+    return std::any_of(nodes_.begin(), nodes_.end(), [&](const auto& entry) {
+      return entry.second.status.state == state && (state == State::kFinished || !entry.second.lost);
+    });
+  };
+  if (any(State::kRunning)) return "running";
+  if (any(State::kPaused)) return "paused";
+  if (any(State::kStarting) || any(State::kWaiting) || nodes_.empty()) return "starting";
+  return any(State::kFinished) ? "finished" : "lost";
+}
+
+void Overseer::measure_hand_offs() {
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - hand_offs_measured_).count();
+  if (elapsed_s < 1) return;
+  hand_offs_measured_ = Clock::now();
+  for (const auto& [region, seen] : nodes_) {
+    HandOffs& known = hand_offs_[region];
+    const std::uint64_t count = seen.status.hand_offs_out;
+    known.per_s = count >= known.count ? static_cast<double>(count - known.count) / elapsed_s : 0;
+    known.count = count;
+  }
+}
+
+RunStatus Overseer::status() {
+  measure_hand_offs();
+  RunStatus status;
+  status.state = state_of_run();
+  status.clients = web_.counters().clients;
+  status.nodes = nodes_;
+  status.step = std::max<core::Step>(0, view_->stamp());
+  for (const auto& [region, seen] : nodes_) {
+    if (!seen.lost && seen.status.generation == view_->generation())
+      status.step = std::max(status.step, seen.status.step);
+    status.hand_offs_per_s[region] = hand_offs_[region].per_s;
+  }
+  return status;
+}
+
+void Overseer::tell_status() {
+  if (Clock::now() < next_status_) return;
+  next_status_ = Clock::now() + kStatusPeriod;
+  const RunStatus now = status();
+  web_.tell(Notice::kStatus, status_message(now));
+  const ViewCounters& view = view_->counters();
+  std::string text = node_metrics(now);
+  const auto add = [&](const char* name, const char* help, std::uint64_t value) {
+    text += fmt::format("# HELP aurasim_view_{0} {1}\n# TYPE aurasim_view_{0} counter\naurasim_view_{0} {2}\n", name,
+                        help, value);
+  };
+  add("frames_total", "Frames composed.", view.frames);
+  add("incomplete_frames_total", "Frames composed without a region that is alive.", view.incomplete);
+  add("lost_ticks_total", "Ticks of a region that never came.", view.gaps);
+  add("replicas_total", "Replicas received.", replicas_.received());
+  add("refused_replicas_total", "Replicas refused.", replicas_.refused().total());
+  text += fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
+                      view_->body_count());
+  web_.set_metrics(std::move(text));
+}
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,72 @@
+// The gateway between a run and the pages that watch it: puts the world together from what the nodes tell over DDS, and
+// hands frames, texts and commands to and fro. Listens only: the nodes do not notice whether it is there.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/launch.h"
+#include "dds/control.h"
+#include "dds/replica_bus.h"
+#include "overseer/commands.h"
+#include "overseer/page_messages.h"
+#include "overseer/web_server.h"
+#include "overseer/world_view.h"
+
+namespace aurasim::overseer {
+
+/// Used by one thread.
+class Overseer {
+ public:
+  /// All of these outlive it.
+  Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, WebServer& web,
+           CommandSink& sink, bool token_needed);
+
+  /// One round: waits a few milliseconds for news and passes on what there is.
+  void turn();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double now_s() const;
+  bool is_of_this_run(const dds::SeenStatus& seen) const { return seen.status.agreement == agreement_; }
+  void look_at_nodes();
+  bool run_was_restarted();
+  void compose_frames();
+  void show_auras();
+  void serve_commands();
+  void tell_status();
+  RunStatus status();
+  std::string state_of_run() const;
+  void measure_hand_offs();
+
+  const config::Launch& launch_;
+  std::uint64_t agreement_;
+  dds::Participant& participant_;
+  dds::ControlBus& control_;
+  WebServer& web_;
+  CommandSink& sink_;
+  dds::ObserverSettings observer_settings_;
+  dds::ReplicaReader replicas_;
+  std::unique_ptr<dds::AuraWatch> auras_;  ///< while a page wants them
+  std::map<core::BodyId, float> aura_radius_m_;
+  ViewSettings view_settings_;
+  std::optional<WorldView> view_;
+  core::Generation told_generation_ = 0;
+  std::map<core::RegionId, dds::SeenStatus> nodes_;
+  std::map<core::RegionId, std::uint32_t> pids_;
+  struct HandOffs {
+    std::uint64_t count = 0;
+    double per_s = 0;
+  };
+  std::map<core::RegionId, HandOffs> hand_offs_;
+  Clock::time_point hand_offs_measured_;
+  Clock::time_point next_status_;
+  Clock::time_point next_look_;
+};
+
+}  // namespace aurasim::overseer

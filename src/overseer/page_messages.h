@@ -1,0 +1,45 @@
+// JSON to the page (docs/viewer.md).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/region_map.h"
+#include "core/scene.h"
+#include "dds/control.h"
+#include "overseer/world_frame.h"
+
+namespace aurasim::overseer {
+
+struct Hello {
+  bool replay = false;
+  std::string scene;
+  double step_s = 0;
+  double tick_hz = 0;
+  bool token_needed = false;
+  core::Step first_step = 0;  ///< of a replay
+  core::Step last_step = 0;
+};
+std::string hello_message(const Hello& hello);
+
+std::string scene_message(const core::Scene& scene, core::Generation generation);
+std::string map_message(const core::RegionMap& map);
+
+struct RunStatus {
+  core::Step step = 0;
+  std::string state;
+  double rate = 1;
+  std::uint64_t clients = 0;
+  std::map<core::RegionId, dds::SeenStatus> nodes;
+  std::map<core::RegionId, double> hand_offs_per_s;
+};
+std::string status_message(const RunStatus& status);
+/// Numbers about the nodes, as Prometheus reads them.
+std::string node_metrics(const RunStatus& status);
+
+std::string body_message(const ViewBody& body);
+std::string body_gone_message(core::BodyId id);
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,230 @@
+#include "overseer/web_hub.h"
+
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "overseer/http_rules.h"
+#include "overseer/page_messages.h"
+
+namespace aurasim::overseer {
+namespace {
+
+constexpr std::size_t kMostRequests = 1000;
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
+std::string whole_file(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return std::move(text).str();
+}
+
+}  // namespace
+
+std::string reply_text(const Reply& reply) {
+  nlohmann::json json = {{"type", "reply"}, {"request", reply.request}, {"ok", reply.ok}, {"text", reply.text}};
+  if (!reply.result.is_null()) json["result"] = reply.result;
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void WebHub::join(const std::shared_ptr<PageConnection>& page) {
+  page->id = ClientId{next_id_++};
+  pages_.emplace(page->id, page);
+  clients_ = pages_.size();
+  for (std::size_t i = 0; i < kNotices; ++i) {
+    if (notices_[i]) page->outbox.tell(static_cast<Notice>(i), notices_[i]);
+  }
+  page->outbox.note({.generation = table_.generation(), .stamp = table_.stamp(), .restart = true, .deleted = {}, .changed = {}});
+  page->pump();
+}
+
+void WebHub::leave(ClientId id) {
+  const auto found = pages_.find(id);
+  if (found == pages_.end()) return;
+  frames_skipped_ += found->second->outbox.frames_merged();
+  pages_.erase(found);
+  clients_ = pages_.size();
+  count_aura_watchers();
+}
+
+void WebHub::count_aura_watchers() {
+  std::uint64_t watchers = 0;
+  for (const auto& [id, page] : pages_) watchers += page->show.auras;
+  aura_watchers_ = watchers;
+}
+
+void WebHub::read(PageConnection& page, std::string_view text) {
+  auto read = read_page_message(text);
+  if (const auto* bad = std::get_if<BadMessage>(&read)) {
+    ++refused_;
+    reply(page, {page.id, bad->request, false, bad->why, nullptr});
+  } else {
+    obey(page, std::get<PageMessage>(read));
+  }
+}
+
+void WebHub::obey(PageConnection& page, PageMessage& message) {
+  std::visit(Overloaded{[&](const Show& show) {
+                          page.show = show;
+                          count_aura_watchers();
+                        },
+                        [&](const Watch& wanted) { watch(page, wanted); },
+                        [&](CommandMessage& command) { take_command(page, command); },
+                        [&](const ReplayControl& control) {
+                          if (!enqueue(control)) ++refused_;
+                        }},
+             message);
+}
+
+void WebHub::take_command(PageConnection& page, CommandMessage& message) {
+  const auto refuse = [&](const char* why) {
+    ++refused_;
+    reply(page, {page.id, message.request, false, why, nullptr});
+  };
+  if (changes_the_world(message.command) && !knows_token(message.token)) {
+    refuse("the token is missing or wrong");
+  } else if (!enqueue(Request{page.id, message.request, std::move(message.command)})) {
+    refuse("too many commands at once");
+  }
+}
+
+bool WebHub::knows_token(std::string_view token) const {
+  return settings_.token.empty() || equal_in_constant_time(token, settings_.token);
+}
+
+bool WebHub::enqueue(PageRequest request) {
+  const std::lock_guard lock(requests_mutex_);
+  if (requests_.size() >= kMostRequests) return false;
+  requests_.push_back(std::move(request));
+  return true;
+}
+
+std::vector<PageRequest> WebHub::take_requests() {
+  const std::lock_guard lock(requests_mutex_);
+  return std::exchange(requests_, {});
+}
+
+void WebHub::reply(PageConnection& page, const Reply& reply) {
+  if (page.outbox.reply(reply_text(reply))) {
+    page.pump();
+  } else {
+    page.drop_if_stalled(std::chrono::steady_clock::duration(-1));
+  }
+}
+
+void WebHub::answer(const Reply& answered) {
+  const auto found = pages_.find(answered.client);
+  if (found != pages_.end()) reply(*found->second, answered);
+}
+
+void WebHub::watch(PageConnection& page, const Watch& watch) {
+  page.watched.reset();
+  const ViewBody* body = watch.slot ? table_.body(*watch.slot) : nullptr;
+  if (body != nullptr) page.watched = body->id;
+  tell_watched(page);
+  page.pump();
+}
+
+void WebHub::tell_watched(PageConnection& page) {
+  if (!page.watched) return;
+  for (Slot slot = 0; slot < table_.slot_count(); ++slot) {
+    const ViewBody* body = table_.body(slot);
+    if (body == nullptr || body->id != *page.watched) continue;
+    page.outbox.tell(Notice::kBody, std::make_shared<const std::string>(body_message(*body)));
+    return;
+  }
+  page.outbox.tell(Notice::kBody, std::make_shared<const std::string>(body_gone_message(*page.watched)));
+  page.watched.reset();
+}
+
+void WebHub::tell(Notice notice, SharedText text) {
+  notices_[static_cast<std::size_t>(notice)] = text;
+  for (const auto& [id, page] : std::map(pages_)) {
+    page->outbox.tell(notice, text);
+    if (notice == Notice::kStatus) tell_watched(*page);
+    page->pump();
+  }
+}
+
+void WebHub::show(const WorldFrame& frame) {
+  table_.apply(frame);
+  for (const auto& [id, page] : std::map(pages_)) {
+    page->outbox.note(frame);
+    page->pump();
+  }
+}
+
+void WebHub::show_overlays(const SharedBytes& overlays) {
+  for (const auto& [id, page] : std::map(pages_)) {
+    if (!page->show.auras && !page->show.links && !page->show.contacts) continue;
+    page->outbox.show(overlays);
+    page->pump();
+  }
+}
+
+void WebHub::drop_stalled() {
+  for (const auto& [id, page] : std::map(pages_)) {
+    if (page->drop_if_stalled(settings_.stall_limit)) ++dropped_;
+  }
+}
+
+void WebHub::count_sent(const Message& message, std::size_t bytes) {
+  bytes_sent_ += bytes;
+  frames_sent_ += message.is_frame;
+}
+
+WebCounters WebHub::counters() const {
+  return {clients_,     aura_watchers_,  connections_, frames_sent_,
+          frames_skipped_, bytes_sent_, refused_,     dropped_};
+}
+
+std::string WebHub::why_not(std::string_view host, std::string_view origin) const {
+  if (is_loopback_address(settings_.bind) && !is_loopback_name(host))
+    return "this server is for this host only: use 127.0.0.1 or localhost";
+  if (!origin.empty() && !is_same_origin(origin, host)) return "pages of other sites may not ask this server";
+  return {};
+}
+
+HttpAnswer WebHub::get(std::string_view target) {
+  const std::string_view path = path_of(target);
+  if (path == "/healthz") return {200, "text/plain; charset=utf-8", "ok\n"};
+  if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", metrics()};
+  if (path == "/api/scenes")
+    return {200, "application/json", nlohmann::json{{"scenes", settings_.scenes}}.dump() + "\n"};
+  return get_file(target);
+}
+
+HttpAnswer WebHub::get_file(std::string_view target) const {
+  if (const auto file = file_for(settings_.pages, target))
+    return {200, std::string(mime_type(*file)), whole_file(*file)};
+  if (path_of(target) == "/") return {200, "text/html; charset=utf-8", page_is_not_built(settings_.pages)};
+  return {404, "text/plain; charset=utf-8", "no such page\n"};
+}
+
+std::string WebHub::metrics() const {
+  std::uint64_t skipped = frames_skipped_;
+  for (const auto& [id, page] : pages_) skipped += page->outbox.frames_merged();
+  std::string text = metrics_;
+  const auto add = [&](const char* name, const char* type, const char* help, std::uint64_t value) {
+    text += fmt::format("# HELP aurasim_web_{0} {1}\n# TYPE aurasim_web_{0} {2}\naurasim_web_{0} {3}\n", name, help,
+                        type, value);
+  };
+  add("clients", "gauge", "Pages connected now.", clients_);
+  add("connections_total", "counter", "TCP connections accepted.", connections_);
+  add("frames_sent_total", "counter", "Frames sent to pages.", frames_sent_);
+  add("frames_skipped_total", "counter", "Frames merged into later ones for slow pages.", skipped);
+  add("bytes_sent_total", "counter", "Bytes of WebSocket messages sent.", bytes_sent_);
+  add("refused_total", "counter", "Requests and messages refused.", refused_);
+  add("dropped_total", "counter", "Pages dropped because they took nothing.", dropped_);
+  return text;
+}
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,130 @@
+#include "overseer/web_server.h"
+
+#include <thread>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <fmt/format.h>
+
+#include "overseer/web_connection.h"
+
+namespace aurasim::overseer {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using Error = boost::system::error_code;
+
+namespace {
+
+constexpr std::chrono::milliseconds kLookAfter{500};  // stalled pages
+
+void open(tcp::acceptor& acceptor, const WebSettings& settings) {
+  Error error;
+  const auto check = [&](const char* what) {
+    if (!error) return;
+    throw CannotListen(fmt::format("cannot {} {}:{}: {}", what, settings.bind, settings.port, error.message()),
+                       error == asio::error::address_in_use);
+  };
+  const std::string host = settings.bind == "localhost" ? "127.0.0.1" : settings.bind;
+  const asio::ip::address address = asio::ip::make_address(host, error);
+  check("use the address");
+  const tcp::endpoint endpoint(address, settings.port);
+  acceptor.open(endpoint.protocol(), error);
+  check("listen on");
+  acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  acceptor.bind(endpoint, error);
+  check("listen on");
+  acceptor.listen(asio::socket_base::max_listen_connections, error);
+  check("listen on");
+}
+
+}  // namespace
+
+struct WebServer::Impl {
+  Impl(const WebSettings& settings, ShapeStore& shapes) : hub(settings, shapes), acceptor(io), timer(io) {
+    open(acceptor, settings);
+    port = acceptor.local_endpoint().port();
+    accept();
+    look_after();
+    thread = std::thread([this] { io.run(); });
+  }
+
+  ~Impl() {
+    worker.join();
+    io.stop();
+    thread.join();
+    hub.clear();
+  }
+
+  void accept() {
+    acceptor.async_accept([this](const Error& error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (!error) {
+        hub.count_connection();
+        serve_connection(std::move(socket), hub, worker.get_executor());
+      }
+      accept();
+    });
+  }
+
+  void look_after() {
+    timer.expires_after(kLookAfter);
+    timer.async_wait([this](const Error& error) {
+      if (error) return;
+      hub.drop_stalled();
+      look_after();
+    });
+  }
+
+  template <class Job>
+  void post(Job job) {
+    asio::post(io, std::move(job));
+  }
+
+  WebHub hub;
+  asio::thread_pool worker{1};
+  asio::io_context io{1};
+  tcp::acceptor acceptor;
+  asio::steady_timer timer;
+  std::uint16_t port = 0;
+  std::thread thread;
+};
+
+WebServer::WebServer(const WebSettings& settings, ShapeStore& shapes)
+    : impl_(std::make_unique<Impl>(settings, shapes)) {}
+
+WebServer::~WebServer() = default;
+
+std::uint16_t WebServer::port() const { return impl_->port; }
+
+void WebServer::tell(Notice notice, std::string json) {
+  impl_->post([this, notice, text = std::make_shared<const std::string>(std::move(json))] {
+    impl_->hub.tell(notice, text);
+  });
+}
+
+void WebServer::show(const WorldFrame& frame) {
+  impl_->post([this, copy = std::make_shared<const WorldFrame>(frame)] { impl_->hub.show(*copy); });
+}
+
+void WebServer::show_overlays(Bytes overlays) {
+  impl_->post([this, bytes = std::make_shared<const Bytes>(std::move(overlays))] { impl_->hub.show_overlays(bytes); });
+}
+
+void WebServer::set_metrics(std::string text) {
+  impl_->post([this, text = std::move(text)]() mutable { impl_->hub.set_metrics(std::move(text)); });
+}
+
+void WebServer::answer(const Reply& reply) {
+  impl_->post([this, reply] { impl_->hub.answer(reply); });
+}
+
+std::vector<PageRequest> WebServer::take_requests() { return impl_->hub.take_requests(); }
+
+WebCounters WebServer::counters() const { return impl_->hub.counters(); }
+
+}  // namespace aurasim::overseer

@@ -1,0 +1,77 @@
+// Nodes tell, observers listen. Domains 124 and 128.
+#include "dds/replica_bus.h"
+
+#include <gtest/gtest.h>
+
+#include "replica_messages.h"
+#include "transport_fixture.h"
+
+namespace aurasim::dds {
+namespace {
+
+using core::RegionId;
+using testing::replica_of;
+using testing::settings_for;
+
+struct Observer {
+  explicit Observer(std::uint32_t domain)
+      : participant(settings_for(domain)), reader(participant, {testing::kMapVersion, 4, 7}) {}
+
+  /// Takes until there are `count`; false at the deadline.
+  bool take(std::size_t count) {
+    const auto deadline = std::chrono::steady_clock::now() + testing::kDeadline;
+    while (replicas.size() < count && std::chrono::steady_clock::now() < deadline) {
+      reader.wait(std::chrono::milliseconds(20));
+      for (core::Replica& replica : reader.take()) replicas.push_back(std::move(replica));
+    }
+    return replicas.size() >= count;
+  }
+
+  Participant participant;
+  ReplicaReader reader;
+  std::vector<core::Replica> replicas;
+};
+
+template <class Condition>
+bool holds_in_time(Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + testing::kDeadline;
+  while (!condition() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return condition();
+}
+
+TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
+  Participant participant(settings_for(124));
+  ReplicaWriter writer(participant, RegionId{1});
+  EXPECT_FALSE(writer.anybody_listens());
+  core::Replica key = replica_of(3);
+  key.key_frame = true;
+  writer.send(key);
+  key.sequence = 34;
+  writer.send(key);
+  Observer observer(124);
+  ASSERT_TRUE(holds_in_time([&] { return writer.arrivals() == 2; }));
+  EXPECT_TRUE(writer.anybody_listens());
+  ASSERT_TRUE(observer.take(1));
+  EXPECT_TRUE(observer.replicas[0].key_frame);
+  EXPECT_EQ(observer.replicas[0].sequence, 34U);
+  writer.send(replica_of(2));
+  ASSERT_TRUE(observer.take(2));
+  EXPECT_FALSE(observer.replicas[1].key_frame);
+  EXPECT_EQ(observer.replicas[1].bodies.size(), 2U);
+}
+
+TEST(ReplicaBus, AnObserverThatDoesNotTakeHoldsNobodyUp) {
+  Participant participant(settings_for(128));
+  ReplicaWriter writer(participant, RegionId{1});
+  Observer observer(128);
+  ASSERT_TRUE(holds_in_time([&] { return writer.arrivals() == 2; }));
+  const core::Replica replica = replica_of(100);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 2000; ++i) EXPECT_TRUE(writer.send(replica));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+}  // namespace
+}  // namespace aurasim::dds
