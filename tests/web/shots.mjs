@@ -7,9 +7,9 @@ const folder = process.argv[2] ?? "screenshots";
 await mkdir(folder, { recursive: true });
 const browser = await launchBrowser();
 
-async function withMock(options, take) {
+async function withMock(options, take, query = "") {
   const mock = new MockOverseer(options);
-  const page = await openPage(browser, await mock.start());
+  const page = await openPage(browser, (await mock.start()) + query);
   try {
     await page.waitForFunction((n) => window.aurasim.bodies().length >= n, options.bodies ?? 300);
     await page.waitForTimeout(3500);
@@ -21,6 +21,8 @@ async function withMock(options, take) {
 }
 const shoot = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
 
+await withMock({}, (page) => shoot(page, "best"), "?quality=best");
+if (process.argv[3] === "best") process.exit(0);
 await withMock({}, async (page) => {
   await shoot(page, "normal");
   for (const key of ["u", "l", "k", "v"]) await page.keyboard.press(key);

@@ -32,8 +32,8 @@ export class StampClock {
   arrive(stamp, now_ms) {
     const steps = stamp - this.newest;
     const gap_ms = now_ms - this.newestAt_ms;
-    if (!(steps >= 0)) {
-      // The first one, or time went back: a seek, a reset.
+    if (!(steps >= 0) || steps > JUMP_INTERVALS * Math.max(1, this.interval)) {
+      // The first one, or time was moved: a seek, a reset. It says nothing about the speed.
       this.newest = stamp;
       this.newestAt_ms = now_ms;
       this.playhead = stamp;

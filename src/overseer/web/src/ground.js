@@ -26,14 +26,15 @@ float gridLine(vec2 p, float spacing) {
 }
 void main() {`;
 
-function gridMaterial(ghostly) {
-  const material = new THREE.MeshStandardMaterial({
-    color: ghostly ? "#10151f" : "#1c2330", roughness: 0.92, metalness: 0, side: THREE.DoubleSide,
-    transparent: ghostly, opacity: ghostly ? 0.55 : 1, depthWrite: !ghostly,
-  });
+/** Unlit where light is dear: the ground fills most of the picture. */
+function gridMaterial(ghostly, lit) {
+  const common = { side: THREE.DoubleSide, transparent: ghostly, opacity: ghostly ? 0.55 : 1, depthWrite: !ghostly };
+  const material = lit
+    ? new THREE.MeshStandardMaterial({ ...common, color: ghostly ? "#10151f" : "#1f2736", roughness: 0.92, metalness: 0 })
+    : new THREE.MeshBasicMaterial({ ...common, color: ghostly ? "#0d121b" : "#121a28" });
   material.userData.gridOffset = { value: new THREE.Vector2() };
   material.onBeforeCompile = (shader) => {
-    shader.uniforms.gridColour = { value: new THREE.Color("#5a6b85") };
+    shader.uniforms.gridColour = { value: new THREE.Color(lit ? "#62748f" : "#3a4a66") };
     shader.uniforms.gridOffset = material.userData.gridOffset;
     shader.vertexShader = shader.vertexShader
       .replace("void main() {", "varying vec2 vGrid;\nuniform vec2 gridOffset;\nvoid main() {")
@@ -49,9 +50,10 @@ function gridMaterial(ghostly) {
  * A plane of the scene, as a mesh that lies in it near the origin of the picture.
  * @param {{normal: number[], offset?: number} | null} plane  in the world; null: there is none, a hint of z = 0
  * @param {number[]} origin  of the picture, in the world
+ * @param {boolean} lit  light and shadows on it, or its own colour only
  */
-export function groundFor(plane, origin) {
-  const material = gridMaterial(plane === null);
+export function groundFor(plane, origin, lit) {
+  const material = gridMaterial(plane === null, lit);
   const mesh = new THREE.Mesh(new THREE.PlaneGeometry(2 * REACH, 2 * REACH), material);
   const normal = new THREE.Vector3(...(plane?.normal ?? [0, 0, 1])).normalize();
   mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);

@@ -1,6 +1,7 @@
 // All bodies, drawn as instances: one InstancedMesh for each part of each prototype's shape.
 import * as THREE from "three";
 import { asleep, channels, colourOfHost } from "./colours.js";
+import { MergedMesh } from "./merged.js";
 import { partsOf } from "./shapes.js";
 
 const FLASH_MS = 450;
@@ -25,9 +26,7 @@ class Batch {
   rebuild(look) {
     this.dispose();
     this.parts = partsOf(this.shape, look.detail).map(({ geometry, place }) => {
-      const mesh = new THREE.InstancedMesh(geometry, look.material, this.capacity);
-      mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
-      mesh.instanceColor = new THREE.InstancedBufferAttribute(new Float32Array(this.capacity * 3), 3);
+      const mesh = look.merged ? new MergedMesh(geometry, look.material, this.capacity) : instanced(geometry, look.material, this.capacity);
       mesh.count = this.slots.length;
       mesh.castShadow = mesh.receiveShadow = look.shadows;
       mesh.frustumCulled = false; // its bounds change every frame; finding them costs more than drawing
@@ -44,18 +43,21 @@ class Batch {
 
   setMatrix(index, matrix) {
     for (const { mesh, place } of this.parts) {
-      if (place) mesh.setMatrixAt(index, partMatrix.multiplyMatrices(matrix, place));
-      else matrix.toArray(mesh.instanceMatrix.array, index * 16);
+      mesh.setMatrixAt(index, place ? partMatrix.multiplyMatrices(matrix, place) : matrix);
     }
   }
 
   setColour(index, value) {
-    for (const { mesh } of this.parts) value.toArray(mesh.instanceColor.array, index * 3);
+    for (const { mesh } of this.parts) mesh.setColorAt(index, value);
   }
 
   upload(matrices, colours) {
     for (const { mesh } of this.parts) {
       mesh.count = this.slots.length;
+      if (mesh instanceof MergedMesh) {
+        mesh.upload(matrices, colours);
+        continue;
+      }
       if (matrices) mesh.instanceMatrix.needsUpdate = true;
       if (colours) mesh.instanceColor.needsUpdate = true;
       mesh.boundingSphere = null; // picking would use the one of long ago
@@ -71,16 +73,24 @@ class Batch {
   }
 }
 
+function instanced(geometry, material, capacity) {
+  const mesh = new THREE.InstancedMesh(geometry, material, capacity);
+  mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+  mesh.instanceColor = new THREE.InstancedBufferAttribute(new Float32Array(capacity * 3), 3);
+  return mesh;
+}
+
 export class Instances {
-  /** @param {import("./world.js").World} world */
-  constructor(world) {
+  /** @param {import("./world.js").World} world  @param {boolean} merged  for renderers in software */
+  constructor(world, merged = false) {
     this.world = world;
+    this.merged = merged;
     this.group = new THREE.Group();
     this.batches = [];
     this.place = new Map(); // slot -> { batch, index, settled }
     this.flashes = new Map(); // slot -> when it began, ms
     this.dirtyColours = new Set();
-    this.look = { detail: 2, shadows: true, material: materialFor(2) };
+    this.look = { detail: 2, shadows: false, merged, material: materialFor(2, merged) };
   }
 
   /** @param {{prototypes: {shape: number}[], shapes: any[]}} scene */
@@ -95,7 +105,7 @@ export class Instances {
   /** @param {number} detail @param {boolean} shadows */
   setLook(detail, shadows) {
     if (detail === this.look.detail && shadows === this.look.shadows) return;
-    this.look = { detail, shadows, material: materialFor(detail) };
+    this.look = { detail, shadows, merged: this.merged, material: materialFor(detail, this.merged) };
     for (const batch of this.batches) batch.rebuild(this.look);
     this.#touchAll();
   }
@@ -207,7 +217,7 @@ export class Instances {
   drawnColour(slot) {
     const at = this.place.get(slot);
     if (!at || at.batch.parts.length === 0) return null;
-    colour.fromArray(at.batch.parts[0].mesh.instanceColor.array, at.index * 3);
+    at.batch.parts[0].mesh.getColorAt(at.index, colour);
     return `#${colour.getHexString(THREE.SRGBColorSpace)}`;
   }
 
@@ -226,16 +236,19 @@ export class Instances {
     return at.batch.parts.map(({ mesh }) => {
       const matrix = new THREE.Matrix4();
       mesh.getMatrixAt(at.index, matrix);
-      return { geometry: mesh.geometry, matrix };
+      return { geometry: mesh.source ?? mesh.geometry, matrix };
     });
   }
 }
 
-const materials = [];
+const materials = new Map();
 /** Coarse: the cheapest light, for machines without a graphics card. */
-function materialFor(detail) {
-  materials[detail] ??= detail === 0
-    ? new THREE.MeshLambertMaterial()
-    : new THREE.MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
-  return materials[detail];
+function materialFor(detail, vertexColors) {
+  const key = `${detail < 2} ${vertexColors}`;
+  if (!materials.has(key)) {
+    materials.set(key, detail < 2
+      ? new THREE.MeshLambertMaterial({ vertexColors })
+      : new THREE.MeshStandardMaterial({ vertexColors, roughness: 0.5, metalness: 0.05 }));
+  }
+  return materials.get(key);
 }

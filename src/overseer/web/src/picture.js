@@ -20,7 +20,7 @@ export class Picture {
     this.view = new SceneView(canvas);
     this.rig = new CameraRig();
     this.clock = new StampClock();
-    this.instances = new Instances(world);
+    this.instances = new Instances(world, this.view.software);
     this.overlays = new Overlays(world, this.instances);
     this.walls = new RegionWalls();
     this.view.scene.add(this.instances.group, this.overlays.group, this.walls.group);
@@ -44,6 +44,8 @@ export class Picture {
     const { detail, shadows } = this.view.quality.current;
     this.instances.setLook(detail, shadows > 0);
     this.view.applyQuality();
+    // Blurred glass over a picture that changes all the time is dear without a graphics card, too.
+    document.body.classList.toggle("spare", !this.view.lit);
   }
 
   /** Nothing of an earlier connection stays. */
@@ -107,7 +109,7 @@ export class Picture {
       return (sorted[Math.floor(sorted.length * 0.03)] + sorted[Math.floor(sorted.length * 0.97)]) / 2;
     }));
     const distances = centres.map((p) => p.distanceTo(centre)).sort((a, b) => a - b);
-    this.rig.frame(centre, Math.max(4, distances[Math.floor(distances.length * 0.97)] * 0.92 + 1.5));
+    this.rig.frame(centre, Math.max(4, distances[Math.floor(distances.length * 0.97)] * 0.8 + 1.5));
   }
 
   #frameMap() {

@@ -11,20 +11,23 @@ const STATIC_COLOUR = "#69748a";
 export class SceneView {
   /** @param {HTMLCanvasElement} canvas  @throws if there is no WebGL */
   constructor(canvas) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.device = deviceName();
+    this.software = SOFTWARE.test(this.device);
+    // Smooth edges cost a processor that draws by itself four times the work.
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.software, powerPreference: "high-performance" });
+    this.renderer.setClearColor(HORIZON);
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.05;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
-    this.device = deviceName(this.renderer);
-    this.software = SOFTWARE.test(this.device);
-    this.quality = new Quality(this.software ? 2 : 4);
+    this.quality = new Quality(this.software ? 3 : 5, pinnedLevel());
     this.origin = [0, 0, 0];
     this.scene = new THREE.Scene();
     this.scene.fog = new THREE.Fog(HORIZON, 80, 400);
     this.sky = sky();
     this.statics = new THREE.Group();
     this.grounds = new THREE.Group();
-    this.staticMaterial = new THREE.MeshStandardMaterial({ color: STATIC_COLOUR, roughness: 0.85, side: THREE.DoubleSide });
+    this.litStatic = new THREE.MeshStandardMaterial({ color: STATIC_COLOUR, roughness: 0.85, side: THREE.DoubleSide });
+    this.plainStatic = new THREE.MeshLambertMaterial({ color: STATIC_COLOUR, side: THREE.DoubleSide });
     this.edgeMaterial = new THREE.LineBasicMaterial({ color: "#9aa7bf", transparent: true, opacity: 0.35 });
     this.raycaster = new THREE.Raycaster();
     this.#addLights();
@@ -48,17 +51,17 @@ export class SceneView {
     this.sceneMessage = message;
     for (const group of [this.statics, this.grounds]) dispose(group);
     for (const body of message.statics) this.#addStatic(body, message.shapes[body.shape]);
-    if (this.grounds.children.length === 0) this.grounds.add(groundFor(null, this.origin));
+    if (this.grounds.children.length === 0) this.grounds.add(groundFor(null, this.origin, this.lit));
     this.#alignGrids();
   }
 
   #addStatic(body, shape) {
     if (!shape) return;
     const place = placeOf(body.p, body.q);
-    if (shape.kind === "plane") return void this.grounds.add(groundFor(planeAt(shape, place), this.origin));
+    if (shape.kind === "plane") return void this.grounds.add(groundFor(planeAt(shape, place), this.origin, this.lit));
     place.premultiply(new THREE.Matrix4().makeTranslation(...this.origin.map((x) => -x)));
-    for (const part of partsOf(shape, 2, place)) {
-      const mesh = new THREE.Mesh(part.geometry, this.staticMaterial);
+    for (const part of partsOf(shape, 3, place)) {
+      const mesh = new THREE.Mesh(part.geometry, this.lit ? this.litStatic : this.plainStatic);
       mesh.applyMatrix4(part.place ?? new THREE.Matrix4());
       mesh.castShadow = mesh.receiveShadow = true;
       mesh.userData.staticId = body.id;
@@ -97,8 +100,8 @@ export class SceneView {
       this.key.shadow.map?.dispose();
       this.key.shadow.map = null;
     }
-    for (const ground of this.grounds.children) ground.material.needsUpdate = true;
-    this.staticMaterial.needsUpdate = true;
+    this.litStatic.needsUpdate = true;
+    this.showScene(this.sceneMessage);
     if (this.size) this.resize(...this.size);
   }
 
@@ -122,7 +125,7 @@ export class SceneView {
     const flat = camera.isOrthographicCamera;
     this.scene.fog.near = flat ? 1e5 : 60 + distance * 1.6;
     this.scene.fog.far = flat ? 1e6 : 320 + distance * 6;
-    this.sky.visible = !flat;
+    this.sky.visible = !flat && this.lit;
     this.sky.position.copy(camera.position);
     this.renderer.render(this.scene, camera);
   }
@@ -159,8 +162,9 @@ export class SceneView {
     return new THREE.Vector3(p[0] - this.origin[0], p[1] - this.origin[1], p[2] - this.origin[2]);
   }
 
-  get levels() {
-    return LEVELS;
+  /** Is there time for light on every point of the ground, a sky, shadows? */
+  get lit() {
+    return this.quality.current.detail > 1;
   }
 }
 
@@ -176,8 +180,17 @@ function dispose(group) {
   group.clear();
 }
 
-function deviceName(renderer) {
-  const gl = renderer.getContext();
+function deviceName() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("there is no WebGL 2");
   const info = gl.getExtension("WEBGL_debug_renderer_info");
-  return String(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
+  const name = String(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
+}
+
+/** `?quality=best` holds a level, whatever the frame times are. */
+function pinnedLevel() {
+  const level = LEVELS.findIndex(({ name }) => name === new URLSearchParams(location.search).get("quality"));
+  return level < 0 ? null : level;
 }

@@ -4,7 +4,7 @@ import * as THREE from "three";
 /**
  * What has to be drawn for a shape: one geometry per part, with the part's place in the body.
  * @param {any} shape  SHAPE of docs/viewer.md
- * @param {number} detail  0 coarse, 1 middle, 2 fine
+ * @param {number} detail  0 crude, 1 coarse, 2 middle, 3 fine
  * @returns {{geometry: THREE.BufferGeometry, place: THREE.Matrix4 | null}[]}
  */
 export function partsOf(shape, detail, place = null) {
@@ -24,14 +24,14 @@ export function placeOf(p = [0, 0, 0], q = [1, 0, 0, 0]) {
 }
 
 function geometryOf(shape, detail) {
-  const round = [8, 14, 24][detail];
+  const round = [5, 8, 14, 24][detail];
   switch (shape.kind) {
     case "sphere":
       return sphere(shape.radius, detail);
     case "box":
       return new THREE.BoxGeometry(...shape.half_extents.map((h) => 2 * h));
     case "capsule":
-      return new THREE.CapsuleGeometry(shape.radius, shape.height, [2, 4, 8][detail], round).rotateX(Math.PI / 2);
+      return new THREE.CapsuleGeometry(shape.radius, shape.height, [1, 2, 4, 8][detail], round).rotateX(Math.PI / 2);
     case "cylinder":
       return new THREE.CylinderGeometry(shape.radius, shape.radius, shape.height, round).rotateX(Math.PI / 2);
     case "mesh":
@@ -43,9 +43,19 @@ function geometryOf(shape, detail) {
 
 /** Fewest triangles for the roundest look; smooth normals. */
 function sphere(radius, detail) {
-  if (detail === 2) return new THREE.SphereGeometry(radius, 24, 16).rotateX(Math.PI / 2);
-  if (detail === 1) return new THREE.SphereGeometry(radius, 14, 9).rotateX(Math.PI / 2);
-  return new THREE.SphereGeometry(radius, 8, 6).rotateX(Math.PI / 2);
+  if (detail === 0) return octahedron(radius * 1.15);
+  const [around, along] = [[8, 6], [14, 9], [24, 16]][detail - 1];
+  return new THREE.SphereGeometry(radius, around, along).rotateX(Math.PI / 2);
+}
+
+/** With one normal per corner it is shaded like a ball; six corners are all that it costs. */
+function octahedron(r) {
+  const points = [r, 0, 0, -r, 0, 0, 0, r, 0, 0, -r, 0, 0, 0, r, 0, 0, -r];
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+  geometry.setAttribute("normal", new THREE.Float32BufferAttribute(points.map((x) => x / r), 3));
+  geometry.setIndex([0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5]);
+  return geometry;
 }
 
 function mesh({ points, triangles }) {
