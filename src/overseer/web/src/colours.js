@@ -22,10 +22,10 @@ export function channels(colour) {
   return [(value >> 16) / 255, ((value >> 8) & 255) / 255, (value & 255) / 255];
 }
 
-/** Asleep: two fifths of the way to a darker grey. */
+/** Asleep: half of the way to a darker grey. The hue still tells the host. */
 export function asleep([r, g, b]) {
-  const grey = (0.3 * r + 0.59 * g + 0.11 * b) * 0.72;
-  const mix = (c) => c * 0.5 * 0.86 + grey * 0.5;
+  const grey = (0.3 * r + 0.59 * g + 0.11 * b) * 0.8;
+  const mix = (c) => c * 0.5 + grey * 0.5;
   return [mix(r), mix(g), mix(b)];
 }
 

@@ -215,16 +215,19 @@ function toggleFlying() {
   toast(picture.rig.flying ? "Flying: W A S D Q E move, drag looks around" : "Orbiting: drag turns round what you look at", "info");
 }
 
-const flyButton = iconButton("fly", "Orbit or fly (C)", toggleFlying, { "aria-pressed": "false" });
+const flyButton = iconButton("fly", "Orbit or fly (C)", toggleFlying, { "aria-pressed": "false", class: "icon wide" });
 document.getElementById("top-buttons").append(
   iconButton("frame", "Show everything (F)", () => picture?.frameAll()), flyButton,
-  iconButton("regions", "Draw the regions (R)", drawRegions, { id: "draw-regions" }),
+  iconButton("regions", "Draw the regions (R)", drawRegions, { id: "draw-regions", class: "icon wide" }),
   iconButton("panels", "Hide or show the panels (H)", togglePanels),
   iconButton("help", "Keys and mouse (?)", toggleHelp, { id: "help" }));
 
 function togglePanels() {
   document.body.classList.toggle("bare");
 }
+
+// On a small screen the world comes first.
+if (window.matchMedia("(max-width: 860px)").matches) togglePanels();
 
 const tool = (name) => () => hello?.mode !== "replay" && toolbox.setTool(name);
 const ifLive = (f) => () => isLive() && f();

@@ -66,7 +66,32 @@ export class Picture {
 
   setMap(map) {
     this.map = map;
-    this.walls.showMap(map, this.view.origin);
+    this.#showRegions();
+  }
+
+  #showRegions() {
+    this.reach = this.#reachOfBodies();
+    this.walls.showMap(this.map, this.view.origin, this.reach);
+  }
+
+  /** Where bodies are, but for a few that strayed. @returns {number[] | null} [x0, y0, x1, y1] */
+  #reachOfBodies() {
+    const places = [...this.world.slots()].map((slot) => this.world.position(slot));
+    if (places.length === 0) return null;
+    const range = [0, 1].map((axis) => {
+      const sorted = places.map((p) => p[axis]).sort((a, b) => a - b);
+      return [sorted[Math.floor(sorted.length * 0.02)], sorted[Math.floor((sorted.length - 1) * 0.98)]];
+    });
+    return [range[0][0], range[1][0], range[0][1], range[1][1]];
+  }
+
+  /** Now and then: have the bodies spread far beyond what is drawn of their regions? */
+  #followBodies(now_ms) {
+    if (now_ms - (this.followed_ms ?? 0) < 3000) return;
+    this.followed_ms = now_ms;
+    const reach = this.#reachOfBodies();
+    const spare = reach && 0.15 * Math.max(reach[2] - reach[0], reach[3] - reach[1], 20);
+    if (reach && (!this.reach || reach.some((x, i) => Math.abs(x - this.reach[i]) > spare))) this.#showRegions();
   }
 
   /** @param {import("./frames.js").Frame} frame */
@@ -81,6 +106,7 @@ export class Picture {
     const name = this.scene?.name ?? "";
     if (frame.key && this.framed !== name) {
       this.framed = name;
+      this.#showRegions();
       this.frameAll();
       this.rig.jump();
     }
@@ -91,7 +117,7 @@ export class Picture {
     const origin = middle.map((x) => (Math.abs(x) > FAR_OUT ? Math.round(x / 1000) * 1000 : 0));
     if (origin.every((x, i) => x === this.view.origin[i])) return;
     this.view.moveOrigin(origin);
-    this.walls.showMap(this.map, origin);
+    this.#showRegions();
     this.instances.shift();
     this.framed = null;
   }
@@ -109,7 +135,7 @@ export class Picture {
       return (sorted[Math.floor(sorted.length * 0.03)] + sorted[Math.floor(sorted.length * 0.97)]) / 2;
     }));
     const distances = centres.map((p) => p.distanceTo(centre)).sort((a, b) => a - b);
-    this.rig.frame(centre, Math.max(4, distances[Math.floor(distances.length * 0.97)] * 0.8 + 1.5));
+    this.rig.frame(centre, Math.max(4, distances[Math.floor(distances.length * 0.97)] * 0.78 + 1.5));
   }
 
   #frameMap() {
@@ -130,6 +156,7 @@ export class Picture {
       : this.view.toPicture(this.world.position(this.selectedSlot)).distanceTo(this.rig.camera.position);
     this.overlays.outlineBody(this.selectedSlot, this.rig.fromAbove ? 10 : distance);
     this.walls.group.visible = this.overlays.show.regions && !this.rig.fromAbove;
+    this.#followBodies(now_ms);
     this.walls.update(this.rig.perspective);
     tools(hover);
     const focus = this.rig.fromAbove ? new THREE.Vector3(this.rig.topCentre.x, this.rig.topCentre.y, 0) : this.rig.shown.target;

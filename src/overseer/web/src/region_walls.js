@@ -35,15 +35,18 @@ export class RegionWalls {
     this.labels = [];
   }
 
-  /** @param {{regions: any[]} | null} map  @param {number[]} origin */
-  showMap(map, origin) {
-    this.map = map;
+  /**
+   * @param {{regions: any[]} | null} map
+   * @param {number[]} origin
+   * @param {number[] | null} reach  [x0, y0, x1, y1]: where bodies are; infinite regions are drawn as far as that
+   */
+  showMap(map, origin, reach) {
     this.#dispose();
     if (!map || map.regions.length === 0) return;
     const boxes = boxesOfMap(map.regions);
     const margin = Math.max(20, spanOf(boxes) * 0.35);
     const extent = extentOf(boxes, margin, 40);
-    this.extent = extent;
+    reach?.forEach((x, i) => { extent[i] = i < 2 ? Math.min(extent[i], x - 4) : Math.max(extent[i], x + 4); });
     const clip = (x, axis) => Math.min(extent[axis + 2], Math.max(extent[axis], x)) - origin[axis];
     const ids = [...map.regions].map((r) => r.id).sort((a, b) => a - b);
     for (const border of bordersOf(boxes)) this.#addWall(border, clip, origin);
@@ -71,8 +74,8 @@ export class RegionWalls {
     if (tinted) {
       const tint = new THREE.Mesh(
         new THREE.PlaneGeometry(x1 - x0, y1 - y0),
-        new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.045, depthWrite: false,
-          polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }));
+        new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.06, depthWrite: false,
+          toneMapped: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }));
       tint.position.set((x0 + x1) / 2, (y0 + y1) / 2, TINT_HEIGHT - origin[2]);
       tint.renderOrder = -1;
       this.group.add(tint);
@@ -111,22 +114,25 @@ function numberSprite(id, colour) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [333, 128];
   const pen = canvas.getContext("2d");
-  pen.font = "600 58px system-ui, sans-serif";
+  pen.font = "600 50px system-ui, sans-serif";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  pen.fillStyle = "rgba(10, 14, 22, 0.72)";
+  pen.fillStyle = "rgba(15, 21, 33, 0.88)";
+  pen.strokeStyle = `${colour}99`;
+  pen.lineWidth = 4;
   pen.beginPath();
-  pen.roundRect(16, 16, 301, 96, 48);
+  pen.roundRect(8, 18, 317, 92, 46);
   pen.fill();
+  pen.stroke();
   pen.fillStyle = colour;
   pen.beginPath();
-  pen.arc(66, 64, 17, 0, 7);
+  pen.arc(56, 64, 15, 0, 7);
   pen.fill();
   pen.fillStyle = "#e8eefb";
-  pen.fillText(`region ${id}`, 190, 67, 210);
+  pen.fillText(`region ${id}`, 190, 66, 220);
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
   texture.anisotropy = 4;
   return new THREE.Sprite(new THREE.SpriteMaterial(
-    { map: texture, transparent: true, depthWrite: false, fog: false, toneMapped: false }));
+    { map: texture, transparent: true, depthWrite: false, depthTest: false, opacity: 0.92, fog: false, toneMapped: false }));
 }

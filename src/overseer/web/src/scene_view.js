@@ -16,7 +16,6 @@ export class SceneView {
     // Smooth edges cost a processor that draws by itself four times the work.
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.software, powerPreference: "high-performance" });
     this.renderer.setClearColor(HORIZON);
-    this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.05;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.quality = new Quality(this.software ? 3 : 5, pinnedLevel());
@@ -36,12 +35,12 @@ export class SceneView {
   }
 
   #addLights() {
-    this.scene.add(new THREE.HemisphereLight("#c4d6ff", "#2a2620", 1.25));
-    this.key = new THREE.DirectionalLight("#fff1dc", 2.3);
+    this.scene.add(new THREE.HemisphereLight("#cfdcff", "#4a4a58", 1.9));
+    this.key = new THREE.DirectionalLight("#fff1dc", 3.0);
     this.keyOffset = new THREE.Vector3(-0.45, -0.6, 1).normalize();
     this.key.shadow.bias = -0.0006;
     this.key.shadow.normalBias = 0.04;
-    const rim = new THREE.DirectionalLight("#8fb4ff", 0.7);
+    const rim = new THREE.DirectionalLight("#8fb4ff", 0.9);
     rim.position.set(0.7, 0.9, 0.35);
     this.scene.add(this.key, this.key.target, rim);
   }
@@ -93,6 +92,7 @@ export class SceneView {
   /** Brings the renderer to the level that the frame times allow. */
   applyQuality() {
     const { shadows } = this.quality.current;
+    this.renderer.toneMapping = this.lit ? THREE.NeutralToneMapping : THREE.NoToneMapping;
     this.renderer.shadowMap.enabled = shadows > 0;
     this.key.castShadow = shadows > 0;
     if (shadows && this.key.shadow.mapSize.x !== shadows) {
