@@ -1,0 +1,20 @@
+// A browser without a screen and without a graphics card, for tests of the page.
+import { chromium } from "playwright-core";
+
+const CHROMIUM = process.env.AURASIM_CHROMIUM ?? "/usr/bin/chromium";
+
+export const launchBrowser = () => chromium.launch({ executablePath: CHROMIUM, headless: true,
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+
+/** A page that has failed loudly if anything in it threw. */
+export async function openPage(browser, url, size = { width: 1440, height: 860 }) {
+  const page = await browser.newPage({ viewport: size });
+  page.errors = [];
+  page.on("pageerror", (error) => page.errors.push(String(error)));
+  page.on("console", (message) => {
+    // A server that is away is part of the tests; what the browser says about it is not an error of the page.
+    if (message.type() === "error" && !/ERR_CONNECTION|Failed to load resource|WebSocket/.test(message.text())) page.errors.push(message.text());
+  });
+  await page.goto(url);
+  return page;
+}
