@@ -17,6 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+/// Prototypes and statics that clients may add: what names them can be heard of before they are.
+constexpr std::size_t kRoomForClients = 20'000;
 constexpr auto kStatusPeriod = 100ms;
 constexpr auto kLinger = 1500ms;
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
@@ -27,8 +29,8 @@ dds::TransportSettings transport_settings(const config::Launch& launch, core::Re
   settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
   settings.map_version = launch.regions.version();
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
-  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size());
-  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size());
+  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients);
+  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + kRoomForClients);
   settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size());
   return settings;
 }
@@ -90,6 +92,7 @@ ExitCode NodeProcess::meet_and_run() {
   publish(dds::NodeState::kStarting);
   transport_.emplace(participant_, transport_settings(launch_, options_.region));
   observers_.emplace(launch_, participant_, options_.region);
+  desk_.emplace(launch_, participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
   begin_generation(start_->generation, start_->epoch_ns);
   return run_steps();
@@ -207,6 +210,8 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
   setup.hash_states = options_.report.has_value();
   node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
   node_->accept_early_mail(std::move(mail));
+  desk_->begin_generation(*node_);
+  run_orders_.clear();
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
   pacer_.set_epoch(0, epoch_ns);
@@ -227,6 +232,7 @@ bool NodeProcess::finished() const {
 ExitCode NodeProcess::run_steps() {
   while (!finished()) {
     obey_commands();
+    serve_clients();
     reset_if_due();
     if (!wait_until_due()) continue;
     compute_step();
@@ -275,12 +281,50 @@ void NodeProcess::compute_step() {
   const auto begin = Clock::now();
   const node::StepReport& report = node_->step();
   observers_->after_step(*node_, report);
+  desk_->after_step(report);
+  run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
   if (recorder_) recorder_->write(report, {frame_ms, wait_ms_}, *node_);
   wait_ms_ = 0;
   note(report, frame_ms);
   publish_running();
+  obey_orders();
+}
+
+/// The live node of the lowest region gives commands their place in time.
+bool NodeProcess::leads() {
+  const auto& statuses = control_.statuses();
+  return std::none_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
+    return entry.first < options_.region && is_live(entry.second) && entry.second.status.agreement == status_.agreement;
+  });
+}
+
+void NodeProcess::serve_clients() {
+  RunView run;
+  run.leads = leads();
+  const auto& statuses = control_.statuses();
+  for (const auto& [region, seen] : statuses) run.bodies += is_live(seen) ? seen.status.bodies : 0;
+  run.all_have = [&statuses](std::uint64_t mesh) {
+    return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
+      const std::vector<std::uint64_t>& known = entry.second.status.meshes;
+      return !is_live(entry.second) || std::find(known.begin(), known.end(), mesh) != known.end();
+    });
+  };
+  desk_->serve(*node_, run);
+  status_.meshes = desk_->meshes();
+}
+
+/// Orders about the run as a whole whose state has been computed.
+void NodeProcess::obey_orders() {
+  std::erase_if(run_orders_, [this](const core::Order& order) {
+    if (node_->current_step() < order.at_step) return false;
+    if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
+      pacer_.set_rate(order.at_step, rate->rate);
+      status_.rate = rate->rate;
+    }
+    return true;
+  });
 }
 
 void NodeProcess::note(const node::StepReport& report, double frame_ms) {

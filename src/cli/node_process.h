@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_desk.h"
 #include "cli/replica_publisher.h"
 #include "config/launch.h"
 #include "dds/control.h"
@@ -37,7 +38,6 @@ struct NodeOptions {
 
 class NodeProcess {
  public:
-  /// The launch outlives the process.
   NodeProcess(const config::Launch& launch, const NodeOptions& options);
 
   ExitCode run();
@@ -60,6 +60,9 @@ class NodeProcess {
   bool wait_until_due();
   void compute_step();
   void obey_commands();
+  void serve_clients();
+  bool leads();
+  void obey_orders();
   void obey(const dds::RunCommand& command);
   void reset_if_due();
   bool finished() const;
@@ -70,12 +73,14 @@ class NodeProcess {
   ExitCode refuse(const std::string& why);
   double real_time_factor() const;
 
-  const config::Launch& launch_;
+  config::Launch launch_;
   NodeOptions options_;
   dds::Participant participant_;
   dds::ControlBus control_;
   std::optional<dds::DdsTransport> transport_;  ///< once the domain is known to be free
   std::optional<ReplicaPublisher> observers_;   ///< likewise
+  std::optional<CommandDesk> desk_;             ///< likewise
+  std::vector<core::Order> run_orders_;         ///< about the run as a whole, not yet due
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;

@@ -245,6 +245,7 @@ Launch read_launch(const std::filesystem::path& file, const std::vector<std::str
   Errors errors;
   Launch launch;
   launch.file = std::filesystem::absolute(file).lexically_normal();
+  launch.overrides = overrides;
   std::optional<YamlNode> root = read_yaml(file, errors);
   std::vector<Override> of_launch, of_scene;
   split_overrides(parse_overrides(overrides, errors), of_launch, of_scene);

@@ -78,7 +78,8 @@ struct Overseer {
 };
 
 struct Launch {
-  std::filesystem::path file;  ///< absolute
+  std::filesystem::path file;          ///< absolute
+  std::vector<std::string> overrides;  ///< as they were given
   std::filesystem::path scene_file;
   core::Scene scene;
   core::RegionMap regions = core::RegionMap::columns(1, 1);

@@ -80,6 +80,7 @@ class Protocol {
   /// Numbers an order of our own and says it with the next step; receive() gives it out like those of others. Only on
   /// the one node that takes orders.
   const Order& announce(Order order) { return orders_.announce(std::move(order)); }
+  std::uint64_t last_order() const { return orders_.last(); }
   /// The earliest state in which an order announced now can take effect: all nodes have heard of it, and of the body
   /// that it brings or the kick that it gives, before.
   Step earliest_effect() const;

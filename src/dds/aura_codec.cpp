@@ -4,6 +4,7 @@
 #include "dds/codec.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
+#include "dds/order_columns.h"
 
 namespace aurasim::dds {
 
@@ -126,13 +127,19 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   fill(out.dead(), batch.dead, [](RegionId region) { return value_of(region); });
   fill(out.claim_id(), batch.claims, [](const core::BodyEpoch& claim) { return value_of(claim.id); });
   fill(out.claim_epoch(), batch.claims, [](const core::BodyEpoch& claim) { return claim.epoch; });
+  encode_orders(batch.orders, out);
 }
 
 Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   if (const auto error = check(in, expected)) {
     return *error;
   }
+  auto orders = decode_orders(in);
+  if (!orders) {
+    return WireError::kRange;
+  }
   AuraBatch batch;
+  batch.orders = std::move(*orders);
   batch.source = static_cast<RegionId>(in.source());
   batch.generation = in.generation();
   batch.stamp = in.stamp();

@@ -56,11 +56,13 @@ struct Status {
   Durations protocol;
   Durations transport;
   double real_time_factor = 0;  ///< simulated seconds per second
+  double rate = 1;              ///< the same, as asked for
   std::uint64_t largest_cluster = 0;
   core::Rectangle footprint;  ///< the region; infinite sides allowed, metres
   std::int32_t lookahead = 0;
   std::string text;  ///< e.g. why it failed; cut at 256 bytes
   std::vector<core::RegionId> dead;
+  std::vector<std::uint64_t> meshes;  ///< hashes of clients' meshes that it has
 };
 
 /// The last status of one region, and whether its node is still there.

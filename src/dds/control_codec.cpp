@@ -87,7 +87,7 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   const bool finite = finite_and_not_negative(
       {in.frame_p50_ms(), in.frame_p99_ms(), in.frame_max_ms(), in.physics_p50_ms(), in.physics_p99_ms(),
        in.physics_max_ms(), in.protocol_p50_ms(), in.protocol_p99_ms(), in.protocol_max_ms(), in.transport_p50_ms(),
-       in.transport_p99_ms(), in.transport_max_ms(), in.real_time_factor()});
+       in.transport_p99_ms(), in.transport_max_ms(), in.real_time_factor(), in.rate()});
   if (!finite) {
     return WireError::kNotFinite;
   }
@@ -126,6 +126,8 @@ void encode(const Status& status, wire::NodeStatus& out) {
   encode_counts(status, out);
   encode_durations(status, out);
   out.real_time_factor(status.real_time_factor);
+  out.rate(status.rate);
+  out.meshes(status.meshes);
   out.footprint_x0(status.footprint.x0);
   out.footprint_y0(status.footprint.y0);
   out.footprint_x1(status.footprint.x1);
@@ -150,6 +152,8 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   decode_counts(in, status);
   decode_durations(in, status);
   status.real_time_factor = in.real_time_factor();
+  status.rate = in.rate();
+  status.meshes = in.meshes();
   status.footprint = {in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()};
   status.lookahead = in.lookahead();
   status.text = in.text().to_string();

@@ -38,6 +38,9 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"run_control", "aurasim::wire::RunControl"},
     {"replica", "aurasim::wire::Replica"},
     {"replica_key", "aurasim::wire::Replica"},
+    {"command", "aurasim::wire::Command"},
+    {"command_reply", "aurasim::wire::CommandReply"},
+    {"shape", "aurasim::wire::MeshShape"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -106,6 +109,9 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::RegionMapPubSubType>()),
       TypeSupport(new GuardedType<wire::RunControlPubSubType>()),
       TypeSupport(new GuardedType<wire::ReplicaPubSubType>()),
+      TypeSupport(new GuardedType<wire::CommandPubSubType>()),
+      TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
+      TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -29,9 +29,12 @@ enum class TopicId : std::uint8_t {
   kRegionMap,
   kRunControl,
   kReplica,
-  kReplicaKey
+  kReplicaKey,
+  kCommand,
+  kCommandReply,
+  kShape
 };
-inline constexpr std::size_t kTopicCount = 8;
+inline constexpr std::size_t kTopicCount = 11;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 

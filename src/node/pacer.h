@@ -18,6 +18,9 @@ class Pacer {
   /// Step `first` is due at `epoch_ns` (wall clock, nanoseconds since 1970), the others follow.
   void set_epoch(core::Step first, std::int64_t epoch_ns);
 
+  /// From `step` on, so many simulated seconds per second; its own time stays.
+  void set_rate(core::Step step, double rate);
+
   /// Time until `step` is due; 0 when it is.
   std::chrono::nanoseconds until(core::Step step) const;
 
@@ -26,6 +29,8 @@ class Pacer {
   bool wait_;
   core::Step first_ = 0;
   std::int64_t epoch_ns_ = 0;
+  double rate_ = 1;
+  std::int64_t due_ns(core::Step step) const;
 };
 
 /// Nanoseconds since 1970.

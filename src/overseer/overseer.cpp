@@ -200,8 +200,9 @@ void Overseer::tell_status() {
   add("lost_ticks_total", "Ticks of a region that never came.", view.gaps);
   add("replicas_total", "Replicas received.", replicas_.received());
   add("refused_replicas_total", "Replicas refused.", replicas_.refused().total());
-  text += fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
-                      view_->body_count());
+  text +=
+      fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
+                  view_->body_count());
   web_.set_metrics(std::move(text));
 }
 

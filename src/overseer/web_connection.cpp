@@ -168,8 +168,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     asio::post(worker_, [self = shared_from_this()] {
       const Request& request = self->parser_->get();
       auto stored = self->hub_.shapes().add(query_value(view_of(request.target()), "name"), request.body());
-      asio::post(self->stream_.get_executor(),
-                 [self, stored = std::move(stored)] { self->answer_mesh(stored); });
+      asio::post(self->stream_.get_executor(), [self, stored = std::move(stored)] { self->answer_mesh(stored); });
     });
   }
 

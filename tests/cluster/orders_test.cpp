@@ -29,8 +29,8 @@ constexpr Cut kCuts[] = {{"TwoColumns", 1, 2}, {"TwoByTwo", 2, 2}, {"ThreeByThre
 
 ClusterOptions options_for(const Cut& cut, int seed) {
   ClusterOptions options;
-  options.map = core::RegionMap::grid(static_cast<std::size_t>(cut.rows), static_cast<std::size_t>(cut.columns), kCell,
-                                      kCell);
+  options.map =
+      core::RegionMap::grid(static_cast<std::size_t>(cut.rows), static_cast<std::size_t>(cut.columns), kCell, kCell);
   options.seed = static_cast<std::uint64_t>(seed);
   options.sync = core::SyncMode::kDeterministic;
   options.aura.lookahead = 1 + seed % 3;
@@ -67,7 +67,8 @@ std::vector<std::pair<core::Step, core::Action>> orders_for(const core::Scene& s
     const BodyId id = scene.bodies[any(random)].id;
     orders.push_back({when(random), core::Impulse{id, somewhere(random, 4) / 4, {}}});
     orders.push_back({when(random), core::SetVelocity{scene.bodies[any(random)].id, somewhere(random, 6) / 3, {}}});
-    orders.push_back({when(random), core::Spawn{BodyId{core::kFirstClientBody + static_cast<std::uint64_t>(i)}, brick,
+    orders.push_back({when(random), core::Spawn{BodyId{core::kFirstClientBody + static_cast<std::uint64_t>(i)},
+                                                brick,
                                                 {somewhere(random, 3 + i), core::Quat::Identity()},
                                                 somewhere(random, 1) / 4,
                                                 Vec3::Zero()}});

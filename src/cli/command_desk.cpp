@@ -1,0 +1,220 @@
+#include "cli/command_desk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/command_limits.h"
+#include "config/meshes.h"
+
+namespace aurasim::cli {
+namespace {
+
+constexpr int kRoundsForMesh = 300;
+
+struct Same {
+  bool operator()(const core::Sphere& a, const core::Sphere& b) const { return a.radius == b.radius; }
+  bool operator()(const core::Box& a, const core::Box& b) const { return a.half_extents == b.half_extents; }
+  bool operator()(const core::Capsule& a, const core::Capsule& b) const {
+    return a.radius == b.radius && a.height == b.height;
+  }
+  bool operator()(const core::Cylinder& a, const core::Cylinder& b) const {
+    return a.radius == b.radius && a.height == b.height;
+  }
+  bool operator()(const core::MeshRef& a, const core::MeshRef& b) const { return a.hash == b.hash && a.use == b.use; }
+  template <class A, class B>
+  bool operator()(const A&, const B&) const {
+    return false;
+  }
+};
+
+const core::ClientShape* shape_in(const core::Ask& ask) {
+  if (const auto* body = std::get_if<core::NewBody>(&ask)) return body->shape ? &*body->shape : nullptr;
+  const auto* const fixed = std::get_if<core::NewStatic>(&ask);
+  return fixed != nullptr ? &fixed->shape : nullptr;
+}
+
+const core::MeshRef* mesh_in(const core::Ask& ask) {
+  const core::ClientShape* const shape = shape_in(ask);
+  return shape != nullptr ? std::get_if<core::MeshRef>(shape) : nullptr;
+}
+
+}  // namespace
+
+CommandDesk::CommandDesk(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
+    : launch_(launch), region_(region), door_(participant, region, launch.regions.version()) {}
+
+void CommandDesk::begin_generation(node::Node& node) {
+  for (const auto& [request, step] : std::exchange(due_, {})) {
+    core::CommandReply done;
+    done.request = request;
+    done.outcome = core::Outcome::kDone;
+    door_.reply(std::move(done));
+  }
+  own_shapes_.clear();
+  own_kinds_.clear();
+  shapes_ = prototypes_ = statics_ = 0;
+  node.use_meshes([this](const core::MeshRef& mesh) { return make_mesh(mesh); });
+}
+
+void CommandDesk::serve(node::Node& node, const RunView& run) {
+  shapes_ = std::max(shapes_, node.scene().shapes.size());
+  prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
+  statics_ = std::max(statics_, node.scene().statics.size());
+  std::vector<core::Command> commands = std::exchange(waiting_for_mesh_, {});
+  for (core::Command& command : door_.take()) commands.push_back(std::move(command));
+  for (const core::Command& command : commands) {
+    if (const auto* mesh = mesh_in(command.ask)) make_mesh(*mesh);
+    if (const auto* ray = std::get_if<core::Ray>(&command.ask)) {
+      answer(command, *ray, node);
+    } else if (run.leads && !waits_for_mesh(command, run)) {
+      decide(command, node, run);
+    }
+  }
+}
+
+void CommandDesk::answer(const core::Command& command, const core::Ray& ray, const node::Node& node) {
+  const bool asked = ray.regions.empty() || std::ranges::find(ray.regions, region_) != ray.regions.end();
+  if (!asked) return;
+  const physics::RayHit hit = node.world().cast(ray.from_W, ray.to_W);
+  core::CommandReply seen;
+  seen.request = command.request;
+  seen.outcome = core::Outcome::kSeen;
+  seen.at_step = node.current_step();
+  seen.object = hit.object;
+  seen.p_W = hit.p_W;
+  seen.normal_W = hit.normal_W;
+  seen.distance_m = hit.distance_m;
+  door_.reply(std::move(seen));
+}
+
+/// A mesh is on its way to all nodes; after some seconds it is not.
+bool CommandDesk::waits_for_mesh(const core::Command& command, const RunView& run) {
+  const core::MeshRef* mesh = mesh_in(command.ask);
+  if (mesh == nullptr || (make_mesh(*mesh) && run.all_have(mesh->hash))) return false;
+  if (++rounds_waited_[command.request] > kRoundsForMesh) {
+    refuse(command, "not every node has got the mesh; was it sent to /api/shapes?");
+  } else {
+    waiting_for_mesh_.push_back(command);
+  }
+  return true;
+}
+
+void CommandDesk::refuse(const core::Command& command, std::string why) {
+  core::CommandReply reply;
+  reply.request = command.request;
+  reply.outcome = core::Outcome::kRefused;
+  reply.text = std::move(why);
+  door_.reply(std::move(reply));
+}
+
+void CommandDesk::accept(const core::Command& command, const core::Order& order, std::optional<core::ObjectRef> object) {
+  core::CommandReply reply;
+  reply.request = command.request;
+  reply.outcome = core::Outcome::kAccepted;
+  reply.at_step = order.at_step;
+  reply.object = object;
+  door_.reply(std::move(reply));
+  const bool of_a_body = core::body_of(order) || std::holds_alternative<core::Spawn>(order.action);
+  if (!of_a_body) due_[command.request] = order.at_step;  // what bodies obey is told by their hosts
+}
+
+void CommandDesk::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  const core::ClientShape* const own_shape = shape_in(command.ask);
+  const CommandContext context{launch_, node.scene(), run.bodies,
+                               own_shape != nullptr ? make_shape(*own_shape) : std::nullopt};
+  if (std::string why = problem_with(command.ask, context); !why.empty()) return refuse(command, std::move(why));
+  if (const auto* body = std::get_if<core::NewBody>(&command.ask)) return spawn(command, *body, node);
+  if (const auto* fixed = std::get_if<core::NewStatic>(&command.ask)) return place(command, *fixed, node);
+  const core::Action action = std::visit(
+      [](const auto& ask) -> core::Action {
+        if constexpr (std::is_constructible_v<core::Action, decltype(ask)>) {
+          return ask;
+        } else {
+          return core::RemoveBody{};  // a new body, a new static or a ray: not here
+        }
+      },
+      command.ask);
+  accept(command, node.order(action, command.request, command.at_step));
+}
+
+void CommandDesk::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
+  const core::PrototypeId prototype = prototype_id(body, command.request, node);
+  const core::BodyId id{core::kFirstClientBody + node.protocol().last_order() + 1};
+  const core::Spawn spawn{id, prototype, body.pose, body.v_WB, body.w_WB};
+  accept(command, node.order(spawn, command.request, command.at_step), core::ref_of(id));
+}
+
+void CommandDesk::place(const core::Command& command, const core::NewStatic& fixed, node::Node& node) {
+  const std::uint32_t shape = shape_index(fixed.shape, command.request, node);
+  const core::StaticId id{static_cast<std::uint32_t>(statics_++)};
+  accept(command, node.order(core::AddStatic{id, shape, fixed.pose}, command.request, command.at_step),
+         core::ref_of(id));
+}
+
+std::uint32_t CommandDesk::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {
+  for (const OwnShape& known : own_shapes_) {
+    if (std::visit(Same{}, known.shape, shape)) return known.index;
+  }
+  node.order(core::DefineShape{shape}, request);
+  own_shapes_.push_back({shape, static_cast<std::uint32_t>(shapes_++)});
+  return own_shapes_.back().index;
+}
+
+core::PrototypeId CommandDesk::prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node) {
+  if (!body.shape) {
+    const auto& known = node.scene().prototypes;
+    const auto found = std::ranges::find(known, body.prototype, &core::Prototype::name);
+    return core::PrototypeId{static_cast<std::uint32_t>(found - known.begin())};
+  }
+  const std::uint32_t shape = shape_index(*body.shape, request, node);
+  for (const OwnKind& kind : own_kinds_) {
+    if (kind.shape == shape && kind.mass_kg == body.mass_kg) return kind.id;
+  }
+  node.order(core::DefinePrototype{shape, body.mass_kg}, request);
+  own_kinds_.push_back({shape, body.mass_kg, core::PrototypeId{static_cast<std::uint32_t>(prototypes_++)}});
+  return own_kinds_.back().id;
+}
+
+std::optional<core::Shape> CommandDesk::make_shape(const core::ClientShape& shape) {
+  if (const auto* mesh = std::get_if<core::MeshRef>(&shape)) return make_mesh(*mesh);
+  return std::visit(
+      [](const auto& s) -> core::Shape {
+        if constexpr (std::is_constructible_v<core::Shape, decltype(s)>) {
+          return s;
+        } else {
+          return core::Sphere{};  // a mesh: not here
+        }
+      },
+      shape);
+}
+
+std::optional<core::Shape> CommandDesk::make_mesh(const core::MeshRef& ref) {
+  std::optional<core::TriangleMesh> mesh = door_.mesh(ref.hash);
+  if (!mesh) return {};
+  if (std::ranges::find(meshes_, ref.hash) == meshes_.end()) meshes_.push_back(ref.hash);
+  if (ref.use == core::MeshUse::kTriangles) return *std::move(mesh);
+  const core::Vec3 centre = config::centre_of_mass(*mesh);
+  core::ConvexHull hull{config::hull_points(*mesh)};
+  for (core::Vec3& p : hull.points) p -= centre;
+  return hull;
+}
+
+void CommandDesk::after_step(const node::StepReport& report) {
+  const auto tell = [this, &report](std::uint64_t request) {
+    core::CommandReply done;
+    done.request = request;
+    done.outcome = core::Outcome::kDone;
+    done.at_step = report.step;
+    door_.reply(std::move(done));
+  };
+  for (const std::uint64_t request : report.obeyed) tell(request);
+  std::erase_if(due_, [&](const auto& entry) {
+    if (entry.second > report.step) return false;
+    tell(entry.first);
+    return true;
+  });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,28 @@
+// Why a command cannot be done, in words for the person who asked.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "config/launch.h"
+#include "core/command.h"
+#include "core/scene.h"
+
+namespace aurasim::cli {
+
+struct CommandContext {
+  const config::Launch& launch;
+  const core::Scene& scene;          ///< as it has grown
+  std::uint64_t bodies = 0;          ///< in the whole run
+  std::optional<core::Shape> shape;  ///< what the command's own shape comes to, if it has one
+};
+
+/// Empty: it can be done.
+std::string problem_with(const core::Ask& ask, const CommandContext& context);
+
+/// The launch with another map or another scene. Throws config::BadConfig.
+config::Launch with_regions(const config::Launch& launch, const std::vector<core::Rectangle>& boxes);
+config::Launch with_scene(const config::Launch& launch, const std::string& name);
+
+}  // namespace aurasim::cli

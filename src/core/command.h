@@ -1,0 +1,64 @@
+// What clients ask for, before it has a place in time (core/order.h), and what they are told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/order.h"
+
+namespace aurasim::core {
+
+using ClientShape = std::variant<Sphere, Box, Capsule, Cylinder, MeshRef>;
+
+struct NewBody {
+  std::string prototype;             ///< name of one of the scene's, or empty:
+  std::optional<ClientShape> shape;  ///< a kind of its own
+  double mass_kg = 1;                ///< of that
+  Pose pose;
+  Vec3 v_WB = Vec3::Zero();
+  Vec3 w_WB = Vec3::Zero();
+};
+struct NewStatic {
+  ClientShape shape;
+  Pose pose;
+};
+/// What does the way from one point to another hit first? Each region that is named answers for itself; none named:
+/// all answer.
+struct Ray {
+  Vec3 from_W = Vec3::Zero();
+  Vec3 to_W = Vec3::Zero();
+  std::vector<RegionId> regions;
+};
+
+using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity, SetRate, Repartition,
+                         ChangeScene, Ray>;
+
+struct Command {
+  std::uint64_t request = 0;  ///< random; copies carry the same
+  Step at_step = 0;           ///< not before this state; 0: as soon as possible
+  Ask ask;
+};
+
+enum class Outcome : std::uint8_t {
+  kAccepted,  ///< takes effect at `at_step`
+  kDone,      ///< has taken effect
+  kRefused,   ///< text says why
+  kSeen,      ///< answer to a ray, from one region
+};
+
+struct CommandReply {
+  RegionId source{};
+  std::uint64_t request = 0;
+  Outcome outcome = Outcome::kAccepted;
+  Step at_step = 0;
+  std::string text;
+  std::optional<ObjectRef> object;  ///< the new body or static; what a ray has hit
+  Vec3 p_W = Vec3::Zero();          ///< where a ray hit
+  Vec3 normal_W = Vec3::Zero();
+  double distance_m = 0;
+};
+
+}  // namespace aurasim::core

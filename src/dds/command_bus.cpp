@@ -1,0 +1,155 @@
+#include "dds/command_bus.h"
+
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "aurasim.h"
+#include "dds/command_codec.h"
+#include "dds/endpoints.h"
+
+namespace aurasim::dds {
+namespace {
+
+std::uint64_t draw_id() {
+  std::random_device device;  // not physics: only has to differ between processes
+  std::uint64_t id = 0;
+  while (id == 0) id = (std::uint64_t{device()} << 32U) | device();
+  return id;
+}
+
+EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }
+
+}  // namespace
+
+struct CommandDoor::Impl {
+  Impl(Participant& participant_in, core::RegionId region_in, std::uint64_t map_version_in)
+      : participant(participant_in),
+        region(region_in),
+        map_version(map_version_in),
+        commands(participant.domain(), in_world(TopicId::kCommand), bell),
+        replies(participant.domain(), in_world(TopicId::kCommandReply), bell),
+        shapes(participant.domain(), in_world(TopicId::kShape), bell) {}
+
+  Participant& participant;
+  core::RegionId region;
+  std::uint64_t map_version;
+  Bell bell;
+  Reader commands;
+  Writer replies;
+  Reader shapes;
+  wire::Command command;  // reused
+  wire::CommandReply reply;
+  wire::MeshShape shape;
+  std::set<std::uint64_t> requests;
+  std::map<std::uint64_t, core::TriangleMesh> meshes;
+  WireErrors refused;
+};
+
+CommandDoor::CommandDoor(Participant& participant, core::RegionId region, std::uint64_t map_version)
+    : impl_(std::make_unique<Impl>(participant, region, map_version)) {}
+
+CommandDoor::~CommandDoor() = default;
+
+void CommandDoor::use_map(std::uint64_t map_version) { impl_->map_version = map_version; }
+
+std::vector<core::Command> CommandDoor::take() {
+  std::vector<core::Command> commands;
+  Expected expected;
+  expected.map_version = impl_->map_version;
+  while (impl_->commands.take(&impl_->command)) {
+    auto decoded = decode(impl_->command, expected);
+    if (const auto* error = std::get_if<WireError>(&decoded)) {
+      impl_->refused.add(*error);
+      if (*error == WireError::kMapVersion || impl_->command.request() == 0) continue;  // not for us
+      core::CommandReply refusal;
+      refusal.request = impl_->command.request();
+      refusal.outcome = core::Outcome::kRefused;
+      refusal.text = "malformed: " + std::string(name_of(*error));
+      reply(std::move(refusal));
+    } else if (impl_->requests.insert(impl_->command.request()).second) {
+      commands.push_back(std::move(std::get<core::Command>(decoded)));
+    }
+  }
+  return commands;
+}
+
+void CommandDoor::reply(core::CommandReply reply) {
+  reply.source = impl_->region;
+  encode(reply, impl_->map_version, impl_->reply);
+  impl_->replies.write(&impl_->reply);
+}
+
+std::optional<core::TriangleMesh> CommandDoor::mesh(std::uint64_t hash) {
+  while (impl_->shapes.take(&impl_->shape)) {
+    auto decoded = decode(impl_->shape, {});
+    if (const auto* error = std::get_if<WireError>(&decoded)) {
+      impl_->refused.add(*error);
+    } else {
+      auto& named = std::get<NamedMesh>(decoded);
+      impl_->meshes.try_emplace(named.hash, std::move(named.mesh));
+    }
+  }
+  const auto found = impl_->meshes.find(hash);
+  return found == impl_->meshes.end() ? std::nullopt : std::optional(found->second);
+}
+
+const WireErrors& CommandDoor::refused() const { return impl_->refused; }
+
+struct CommandClient::Impl {
+  explicit Impl(Participant& participant_in)
+      : participant(participant_in),
+        commands(participant.domain(), in_world(TopicId::kCommand), bell),
+        replies(participant.domain(), in_world(TopicId::kCommandReply), bell),
+        shapes(participant.domain(), in_world(TopicId::kShape), bell) {}
+
+  Participant& participant;
+  std::uint64_t sender = draw_id();
+  Bell bell;
+  Writer commands;
+  Reader replies;
+  Writer shapes;
+  wire::Command command;  // reused
+  wire::CommandReply reply;
+  wire::MeshShape shape;
+  std::set<std::uint64_t> brought;
+};
+
+CommandClient::CommandClient(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+
+CommandClient::~CommandClient() = default;
+
+std::size_t CommandClient::listeners() const { return impl_->commands.foreign_reader_count(); }
+
+std::uint64_t CommandClient::send(core::Command command, std::uint64_t map_version) {
+  if (command.request == 0) command.request = draw_id();
+  encode(command, impl_->sender, map_version, impl_->command);
+  if (impl_->commands.write(&impl_->command) == WriteResult::kFailed) {
+    throw DdsError("cannot send the command: topic command does not take it");
+  }
+  return command.request;
+}
+
+std::vector<core::CommandReply> CommandClient::take() {
+  std::vector<core::CommandReply> replies;
+  while (impl_->replies.take(&impl_->reply)) {
+    auto decoded = decode(impl_->reply, {});
+    if (auto* reply = std::get_if<core::CommandReply>(&decoded)) replies.push_back(std::move(*reply));
+  }
+  return replies;
+}
+
+void CommandClient::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
+  if (!impl_->brought.insert(hash).second) return;
+  encode(NamedMesh{hash, mesh}, impl_->shape);
+  impl_->shapes.write(&impl_->shape);
+}
+
+void CommandClient::wait(std::chrono::nanoseconds time_out) {
+  impl_->participant.progress();
+  impl_->bell.wait(time_out);
+}
+
+}  // namespace aurasim::dds

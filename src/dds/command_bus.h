@@ -1,0 +1,59 @@
+// Topics command, command_reply and shape: what clients ask of a run, what they are told, and the meshes that they bring.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/command.h"
+#include "core/scene.h"
+#include "dds/participant.h"
+#include "dds/wire_error.h"
+
+namespace aurasim::dds {
+
+/// The end of a node. Used by one thread. The participant must outlive it.
+class CommandDoor {
+ public:
+  /// Commands for other maps are refused and counted, until the map changes.
+  CommandDoor(Participant& participant, core::RegionId region, std::uint64_t map_version);
+  ~CommandDoor();
+
+  void use_map(std::uint64_t map_version);
+  /// New ones, in order of arrival; each request once.
+  std::vector<core::Command> take();
+  void reply(core::CommandReply reply);
+  /// Takes in what has come; nothing if there is no such mesh (yet).
+  std::optional<core::TriangleMesh> mesh(std::uint64_t hash);
+
+  const WireErrors& refused() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The end of a client. Used by one thread. The participant must outlive it.
+class CommandClient {
+ public:
+  explicit CommandClient(Participant& participant);
+  ~CommandClient();
+
+  /// How many other processes take commands.
+  std::size_t listeners() const;
+  /// Draws a request id if there is none, and returns it. Throws DdsError when the write failed.
+  std::uint64_t send(core::Command command, std::uint64_t map_version);
+  std::vector<core::CommandReply> take();
+  /// Gives a mesh to all nodes, now and later, as long as this process lives.
+  void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
+  /// Returns when something arrived, or at the time-out.
+  void wait(std::chrono::nanoseconds time_out);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aurasim::dds
