@@ -47,8 +47,9 @@ void WebArguments::add_to(CLI::App& command) {
   command.add_option("--port", port, "port of the viewer; 0: any that is free (overseer.port)")
       ->check(CLI::Range(0, 65535));
   command.add_option("--bind", bind, "address that the viewer listens on (overseer.bind)");
-  command.add_option("--token", token, "what a page must know to change the world; drawn and printed when the viewer "
-                                       "listens on more than loopback");
+  command.add_option("--token", token,
+                     "what a page must know to change the world; drawn and printed when the viewer "
+                     "listens on more than loopback");
   command.add_option("--web", pages, "folder of the built page")->check(CLI::ExistingDirectory);
 }
 

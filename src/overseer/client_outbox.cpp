@@ -9,7 +9,9 @@ constexpr std::size_t kMostReplies = 256;
 
 }  // namespace
 
-void ClientOutbox::tell(Notice notice, SharedText text) { notices_[static_cast<std::size_t>(notice)] = std::move(text); }
+void ClientOutbox::tell(Notice notice, SharedText text) {
+  notices_[static_cast<std::size_t>(notice)] = std::move(text);
+}
 
 bool ClientOutbox::reply(std::string text) {
   if (replies_.size() >= kMostReplies) return false;

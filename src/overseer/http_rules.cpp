@@ -125,9 +125,8 @@ bool is_loopback_name(std::string_view host) {
 
 bool is_loopback_address(std::string_view address) {
   if (address == "::1" || address == "localhost") return true;
-  return address.starts_with("127.") && std::all_of(address.begin(), address.end(), [](unsigned char c) {
-           return std::isdigit(c) != 0 || c == '.';
-         });
+  return address.starts_with("127.") &&
+         std::all_of(address.begin(), address.end(), [](unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
 }
 
 std::string_view bearer_token(std::string_view authorization) {

@@ -99,9 +99,7 @@ Spawn read_spawn(const Json& json) {
   return spawn;
 }
 
-PlaceStatic read_static(const Json& json) {
-  return {read_shape_choice(field(json, "shape"), false), pose_in(json)};
-}
+PlaceStatic read_static(const Json& json) { return {read_shape_choice(field(json, "shape"), false), pose_in(json)}; }
 
 core::BodyId body_in(const Json& json) {
   return core::BodyId{static_cast<std::uint64_t>(whole_of(field(json, "body"), "body", 0, std::int64_t{1} << 53))};

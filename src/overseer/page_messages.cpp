@@ -60,8 +60,12 @@ Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
 }  // namespace
 
 std::string hello_message(const Hello& hello) {
-  Json json = {{"type", "hello"},         {"version", 1},           {"mode", hello.replay ? "replay" : "live"},
-               {"scene", hello.scene},    {"step_s", hello.step_s}, {"tick_hz", hello.tick_hz},
+  Json json = {{"type", "hello"},
+               {"version", 1},
+               {"mode", hello.replay ? "replay" : "live"},
+               {"scene", hello.scene},
+               {"step_s", hello.step_s},
+               {"tick_hz", hello.tick_hz},
                {"token_needed", hello.token_needed}};
   if (hello.replay) {
     json["first_step"] = hello.first_step;
@@ -144,9 +148,9 @@ std::string node_metrics(const RunStatus& status) {
   text += "# HELP aurasim_violations_total Broken promises.\n# TYPE aurasim_violations_total counter\n";
   for (const auto& [region, seen] : status.nodes) {
     const dds::Violations& v = seen.status.violations;
-    for (const auto& [kind, count] : {std::pair{"speed", v.speed}, std::pair{"latency", v.latency},
-                                      std::pair{"frame", v.frame}, std::pair{"promise", v.promise},
-                                      std::pair{"span", v.span}}) {
+    for (const auto& [kind, count] :
+         {std::pair{"speed", v.speed}, std::pair{"latency", v.latency}, std::pair{"frame", v.frame},
+          std::pair{"promise", v.promise}, std::pair{"span", v.span}}) {
       text += fmt::format("aurasim_violations_total{{region=\"{}\",kind=\"{}\"}} {}\n", value_of(region), kind, count);
     }
   }
@@ -168,6 +172,8 @@ std::string body_message(const ViewBody& body) {
                   {"awake", !body.asleep}});
 }
 
-std::string body_gone_message(core::BodyId id) { return text_of({{"type", "body"}, {"id", value_of(id)}, {"gone", true}}); }
+std::string body_gone_message(core::BodyId id) {
+  return text_of({{"type", "body"}, {"id", value_of(id)}, {"gone", true}});
+}
 
 }  // namespace aurasim::overseer

@@ -47,9 +47,8 @@ struct ToJson {
   Json operator()(const core::Compound& s) const {
     Json parts = Json::array();
     for (const core::CompoundPart& part : s.parts) {
-      parts.push_back({{"shape", std::visit(*this, part.shape)},
-                       {"p", to_json(part.pose.p_WB)},
-                       {"q", to_json(part.pose.q_WB)}});
+      parts.push_back(
+          {{"shape", std::visit(*this, part.shape)}, {"p", to_json(part.pose.p_WB)}, {"q", to_json(part.pose.q_WB)}});
     }
     return {{"kind", "compound"}, {"parts", std::move(parts)}};
   }
@@ -77,7 +76,8 @@ core::TriangleMesh read_mesh(const Json& json) {
   const auto index = [&](std::size_t i) {
     return static_cast<std::uint32_t>(whole_of(triangles[i], "triangles", 0, last));
   };
-  for (std::size_t i = 0; i < triangles.size(); i += 3) mesh.triangles.push_back({index(i), index(i + 1), index(i + 2)});
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+    mesh.triangles.push_back({index(i), index(i + 1), index(i + 2)});
   return mesh;
 }
 
@@ -188,7 +188,8 @@ core::Shape read_shape(const Json& json) {
   if (kind == "box") {
     fields({"half_extents"});
     const Vec3 half = vector_of(field(json, "half_extents"), "half_extents");
-    if (!(half.minCoeff() >= 1e-3 && half.maxCoeff() <= 1e4)) throw BadField("half_extents are not from 0.001 to 10000");
+    if (!(half.minCoeff() >= 1e-3 && half.maxCoeff() <= 1e4))
+      throw BadField("half_extents are not from 0.001 to 10000");
     return core::Box{half};
   }
   if (kind == "capsule" || kind == "cylinder") {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -35,7 +36,8 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 /// A page with its WebSocket.
 class PageSocket final : public PageConnection, public std::enable_shared_from_this<PageSocket> {
  public:
-  PageSocket(beast::tcp_stream stream, WebHub& hub) : socket_(std::move(stream)), hub_(hub) {}
+  PageSocket(beast::tcp_stream stream, WebHub& hub)
+      : socket_(std::move(stream)), hub_(hub), spacing_(socket_.get_executor()) {}
 
   void start(const http::request<http::string_body>& upgrade) {
     beast::get_lowest_layer(socket_).expires_never();
@@ -52,9 +54,9 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   }
 
   void pump() override {
-    if (sending_) return;
+    if (sending_ || ended_) return;
     std::optional<Message> message = outbox.next(hub_.table(), Clock::now() - last_frame_ >= kFrameSpacing);
-    if (!message) return;
+    if (!message) return pump_later();
     in_flight_ = std::move(*message);
     sending_ = true;
     send_began_ = Clock::now();
@@ -71,7 +73,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   }
 
   bool drop_if_stalled(Clock::duration limit) override {
-    if (!sending_ || Clock::now() - send_began_ <= limit) return false;
+    if (!sending_ || ended_ || Clock::now() - send_began_ <= limit) return false;
     end();
     return true;
   }
@@ -95,7 +97,19 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     }
   }
 
+  /// A frame that comes too soon after the last one is sent after a moment, unless another comes first.
+  void pump_later() {
+    if (!outbox.has_frame() || waiting_) return;
+    waiting_ = true;
+    spacing_.expires_after(kFrameSpacing);
+    spacing_.async_wait([self = shared_from_this()](Error) {
+      self->waiting_ = false;
+      self->pump();
+    });
+  }
+
   void end() {
+    ended_ = true;
     Error ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
     hub_.leave(id);
@@ -105,7 +119,10 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   WebHub& hub_;
   beast::flat_buffer buffer_{kLongestMessage};
   Message in_flight_;
+  asio::steady_timer spacing_;
+  bool waiting_ = false;
   bool sending_ = false;
+  bool ended_ = false;
   Clock::time_point send_began_;
   Clock::time_point last_frame_;
 };
@@ -168,8 +185,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     asio::post(worker_, [self = shared_from_this()] {
       const Request& request = self->parser_->get();
       auto stored = self->hub_.shapes().add(query_value(view_of(request.target()), "name"), request.body());
-      asio::post(self->stream_.get_executor(),
-                 [self, stored = std::move(stored)] { self->answer_mesh(stored); });
+      asio::post(self->stream_.get_executor(), [self, stored = std::move(stored)] { self->answer_mesh(stored); });
     });
   }
 

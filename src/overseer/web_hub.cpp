@@ -42,7 +42,8 @@ void WebHub::join(const std::shared_ptr<PageConnection>& page) {
   for (std::size_t i = 0; i < kNotices; ++i) {
     if (notices_[i]) page->outbox.tell(static_cast<Notice>(i), notices_[i]);
   }
-  page->outbox.note({.generation = table_.generation(), .stamp = table_.stamp(), .restart = true, .deleted = {}, .changed = {}});
+  page->outbox.note(
+      {.generation = table_.generation(), .stamp = table_.stamp(), .restart = true, .deleted = {}, .changed = {}});
   page->pump();
 }
 
@@ -182,8 +183,7 @@ void WebHub::count_sent(const Message& message, std::size_t bytes) {
 }
 
 WebCounters WebHub::counters() const {
-  return {clients_,     aura_watchers_,  connections_, frames_sent_,
-          frames_skipped_, bytes_sent_, refused_,     dropped_};
+  return {clients_, aura_watchers_, connections_, frames_sent_, frames_skipped_, bytes_sent_, refused_, dropped_};
 }
 
 std::string WebHub::why_not(std::string_view host, std::string_view origin) const {

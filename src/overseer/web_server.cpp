@@ -102,9 +102,8 @@ WebServer::~WebServer() = default;
 std::uint16_t WebServer::port() const { return impl_->port; }
 
 void WebServer::tell(Notice notice, std::string json) {
-  impl_->post([this, notice, text = std::make_shared<const std::string>(std::move(json))] {
-    impl_->hub.tell(notice, text);
-  });
+  impl_->post(
+      [this, notice, text = std::make_shared<const std::string>(std::move(json))] { impl_->hub.tell(notice, text); });
 }
 
 void WebServer::show(const WorldFrame& frame) {

@@ -44,8 +44,7 @@ struct WebCounters {
 /// The address is in use, or is not one of this host.
 class CannotListen : public std::runtime_error {
  public:
-  CannotListen(const std::string& what, bool port_is_taken)
-      : std::runtime_error(what), port_is_taken_(port_is_taken) {}
+  CannotListen(const std::string& what, bool port_is_taken) : std::runtime_error(what), port_is_taken_(port_is_taken) {}
   bool port_is_taken() const { return port_is_taken_; }
 
  private:

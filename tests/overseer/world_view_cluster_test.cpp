@@ -141,9 +141,10 @@ class Observed {
       const auto found = seen.find(id);
       const bool right = found != seen.end() && (found->second.p - p_WB).norm() < 5e-4;
       wrong_poses += !right;
-      if (!right) why << "\n  body " << id << " in frame " << frame.stamp << " at " << now_s_ << " s, off by "
-                      << (found == seen.end() ? -1 : (found->second.p - p_WB).norm()) << ", flags "
-                      << (found == seen.end() ? 0 : found->second.flags);
+      if (!right)
+        why << "\n  body " << id << " in frame " << frame.stamp << " at " << now_s_ << " s, off by "
+            << (found == seen.end() ? -1 : (found->second.p - p_WB).norm()) << ", flags "
+            << (found == seen.end() ? 0 : found->second.flags);
       wrong = wrong || !right;
     }
     for (const auto& [id, body] : seen) under_way += (body.flags & 2) != 0;
