@@ -64,8 +64,8 @@ class FrameReader {
     for (std::uint32_t& count : counts_) count = in_.get<std::uint32_t>();
     frame_.restart = (flags & 1) != 0;
     const std::uint64_t rows = std::uint64_t{counts_[0]} + counts_[1] + counts_[2] + counts_[3];
-    const bool sound = type == 1 && version == 1 && stamp >= 0 && stamp < 1e15 && origin_.allFinite() &&
-                       rows * 4 <= in_.left();
+    const bool sound =
+        type == 1 && version == 1 && stamp >= 0 && stamp < 1e15 && origin_.allFinite() && rows * 4 <= in_.left();
     if (!sound) return in_.refuse();
     frame_.stamp = static_cast<core::Step>(stamp);
   }

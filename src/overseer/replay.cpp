@@ -64,7 +64,8 @@ std::string recorded_run_text(const RecordedRun& run) {
 
 Replay::Replay(const std::filesystem::path& file) : reader_(file) {
   const auto& chunks = reader_.chunks();
-  const auto about = std::find_if(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.kind == ChunkKind::kAbout; });
+  const auto about =
+      std::find_if(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.kind == ChunkKind::kAbout; });
   if (about == chunks.end()) throw BadRecording("the recording does not say what it is of");
   run_ = read_run(reader_.read(*about));
   const auto first = std::find_if(chunks.begin(), chunks.end(), is_frame);
@@ -92,13 +93,14 @@ void Replay::obey(const ReplayControl& control) {
       speed_ = control.value;
       break;
     case Action::kSeek:
-      seek(static_cast<core::Step>(std::clamp(control.value, static_cast<double>(first_step_),
-                                              static_cast<double>(last_step_))));
+      seek(static_cast<core::Step>(
+          std::clamp(control.value, static_cast<double>(first_step_), static_cast<double>(last_step_))));
       break;
   }
 }
 
-/// To the last key frame up to `step`, in the generation that is being shown if it went so far; advance() does the rest.
+/// To the last key frame up to `step`, in the generation that is being shown if it went so far; advance() does the
+/// rest.
 void Replay::seek(core::Step step) {
   const auto& chunks = reader_.chunks();
   std::optional<std::size_t> best;

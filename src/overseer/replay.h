@@ -52,12 +52,12 @@ class Replay {
   RecordedRun run_;
   core::Step first_step_ = 0;
   core::Step last_step_ = 0;
-  std::size_t next_ = 0;      ///< chunk
-  double position_ = 0;       ///< step
+  std::size_t next_ = 0;  ///< chunk
+  double position_ = 0;   ///< step
   double now_s_ = -1;
   bool playing_ = true;
   double speed_ = 1;
-  bool jumped_ = true;        ///< the next frame has to be a key frame
+  bool jumped_ = true;  ///< the next frame has to be a key frame
   core::Generation generation_ = 0;
   SlotTable table_;
 };

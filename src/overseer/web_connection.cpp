@@ -46,6 +46,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     socket_.set_option(websocket::stream_base::timeout{kHttpLimit, kSilenceLimit, true});
     socket_.read_message_max(kLongestMessage);
+    socket_.auto_fragment(false);
     socket_.async_accept(upgrade, [self = shared_from_this()](Error error) {
       if (error) return;
       self->hub_.join(self);

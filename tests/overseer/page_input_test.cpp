@@ -51,8 +51,8 @@ TEST(PageInput, EveryKindOfCommandIsRead) {
   const auto box = sound<Spawn>(
       R"({"kind":"spawn","shape":{"kind":"box","half_extents":[1,1,2]},"mass_kg":3,"p":[0,0,0],"q":[0,1,0,0]})");
   EXPECT_EQ(std::get<NewKind>(box.kind).mass_kg, 3);
-  const auto stored = sound<Spawn>(
-      R"({"kind":"spawn","shape":{"hash":"00000000000000ff","as":"hull"},"mass_kg":3,"p":[0,0,0]})");
+  const auto stored =
+      sound<Spawn>(R"({"kind":"spawn","shape":{"hash":"00000000000000ff","as":"hull"},"mass_kg":3,"p":[0,0,0]})");
   EXPECT_EQ(std::get<StoredShape>(std::get<NewKind>(stored.kind).shape).hash, 255U);
   sound<PlaceStatic>(R"({"kind":"static","shape":{"hash":"00000000000000ff"},"p":[0,0,0]})");
   sound<PlaceStatic>(R"({"kind":"static","shape":{"kind":"plane","normal":[0,0,1],"offset":0},"p":[0,0,0]})");
@@ -87,9 +87,10 @@ TEST(PageInput, WhatIsWrongIsSaid) {
   EXPECT_THAT(refused(R"({"kind":"static","shape":{"kind":"compound","parts":[{"shape":{"kind":"plane","normal":[0,0,1],
               "offset":0},"p":[0,0,0]}]},"p":[0,0,0]})"),
               HasSubstr("not convex"));
-  EXPECT_THAT(refused(R"({"kind":"static","shape":{"kind":"mesh","points":[0,0,0,1,0,0,0,1,0,0,0,1],"triangles":[0,1,9]},
+  EXPECT_THAT(
+      refused(R"({"kind":"static","shape":{"kind":"mesh","points":[0,0,0,1,0,0,0,1,0,0,0,1],"triangles":[0,1,9]},
               "p":[0,0,0]})"),
-              HasSubstr("triangles"));
+      HasSubstr("triangles"));
   EXPECT_THAT(refused(R"({"kind":"remove","body":1,"static":2})"), HasSubstr("either body or static"));
   EXPECT_THAT(refused(R"({"kind":"remove","body":-1})"), HasSubstr("body"));
   EXPECT_THAT(refused(R"({"kind":"velocity","body":1,"v":["a",0,0]})"), HasSubstr("v is not a number"));

@@ -18,9 +18,9 @@ using Action = ReplayControl::Action;
 class Recording : public ::testing::Test {
  protected:
   void SetUp() override {
-    file_ = std::filesystem::path(::testing::TempDir()) /
-            ("aurasim_recording_" + std::to_string(::getpid()) + "_" +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    file_ =
+        std::filesystem::path(::testing::TempDir()) / ("aurasim_recording_" + std::to_string(::getpid()) + "_" +
+                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
     record();
   }
   void TearDown() override { std::filesystem::remove(file_); }

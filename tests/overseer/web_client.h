@@ -25,9 +25,7 @@ namespace http = beast::http;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-inline asio::ip::tcp::endpoint local(std::uint16_t port) {
-  return {asio::ip::make_address("127.0.0.1"), port};
-}
+inline asio::ip::tcp::endpoint local(std::uint16_t port) { return {asio::ip::make_address("127.0.0.1"), port}; }
 
 struct HttpReply {
   unsigned status = 0;  ///< 0: none came
@@ -86,10 +84,11 @@ class Page {
 
   explicit Page(std::uint16_t port, const Fields& fields = {}) : socket_(io_) {
     const std::string host = "127.0.0.1:" + std::to_string(port);
-    socket_.set_option(beast::websocket::stream_base::decorator([fields, host](beast::websocket::request_type& request) {
-      request.set(http::field::origin, "http://" + host);
-      for (const auto& [name, value] : fields) request.set(name, value);
-    }));
+    socket_.set_option(
+        beast::websocket::stream_base::decorator([fields, host](beast::websocket::request_type& request) {
+          request.set(http::field::origin, "http://" + host);
+          for (const auto& [name, value] : fields) request.set(name, value);
+        }));
     socket_.read_message_max(64 << 20);
     beast::get_lowest_layer(socket_).async_connect(local(port), [this, host](beast::error_code failed) {
       if (failed) return;

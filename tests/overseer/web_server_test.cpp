@@ -13,22 +13,21 @@
 namespace aurasim::overseer {
 namespace {
 
-using testing::http::verb;
+using ::testing::HasSubstr;
 using testing::Page;
 using testing::request;
-using ::testing::HasSubstr;
+using testing::http::verb;
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-constexpr const char* kTetrahedron =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+constexpr const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
 class Web : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ("aurasim_web_" + std::to_string(::getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) / ("aurasim_web_" + std::to_string(::getpid()) + "_" +
+                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_ / "pages" / "assets");
     std::ofstream(folder_ / "pages" / "index.html") << "<p>the page";
     std::ofstream(folder_ / "pages" / "assets" / "main.js") << "1;";
@@ -162,8 +161,8 @@ TEST_F(Web, CommandsReachTheOwnerAndRepliesThePageThatAsked) {
   EXPECT_EQ(std::get<StepOn>(asked.command).count, 7);
   server_->answer({asked.client, asked.id, true, "done", {{"hit", false}}});
   ASSERT_TRUE(page.wait_until([&] { return page.has("reply"); }));
-  EXPECT_EQ(page.latest["reply"], Json({{"type", "reply"}, {"request", "r1"}, {"ok", true}, {"text", "done"},
-                                        {"result", {{"hit", false}}}}));
+  EXPECT_EQ(page.latest["reply"],
+            Json({{"type", "reply"}, {"request", "r1"}, {"ok", true}, {"text", "done"}, {"result", {{"hit", false}}}}));
   EXPECT_FALSE(other.wait_until([&] { return other.has("reply"); }, 200ms));
 }
 
@@ -191,7 +190,8 @@ TEST_F(Web, WhereThereIsATokenTheWorldChangesOnlyByIt) {
   EXPECT_EQ(page.ask({{"kind", "pause"}}, "the tokem").at("ok"), false);
   EXPECT_TRUE(server_->take_requests().empty());
   page.send(Json{{"type", "command"}, {"request", "a"}, {"token", "the token"}, {"command", {{"kind", "pause"}}}});
-  page.send(Json{{"type", "command"}, {"request", "b"}, {"command", {{"kind", "ray"}, {"from", {0, 0, 9}}, {"to", {0, 0, 0}}}}});
+  page.send(Json{
+      {"type", "command"}, {"request", "b"}, {"command", {{"kind", "ray"}, {"from", {0, 0, 9}}, {"to", {0, 0, 0}}}}});
   std::size_t count = 0;
   EXPECT_TRUE(holds_in_time([&] { return (count += server_->take_requests().size()) == 2; }));
   EXPECT_EQ(request(port(), verb::post, "/api/shapes?name=a.obj", {}, kTetrahedron).status, 401U);
@@ -218,7 +218,8 @@ TEST_F(Web, MeshesAreKeptByTheHashOfTheirBytes) {
                 .status,
             422U)
       << "no other file is read";
-  const std::string head = "POST /api/shapes?name=a.stl HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99000000\r\n\r\n";
+  const std::string head =
+      "POST /api/shapes?name=a.stl HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99000000\r\n\r\n";
   EXPECT_THAT(testing::raw(port(), head), ::testing::Not(HasSubstr("200")));
 }
 

@@ -62,7 +62,8 @@ class Overseers : public SystemTest {
       return page.latest["status"].value("state", "") == "paused" &&
              page.world.stamp == page.latest["status"].at("step").get<double>() &&
              page.world.by_id().size() == bodies_of(page.latest["status"]);
-    })) << page.latest["status"] << page.world.bodies.size() << " bodies, stamp " << page.world.stamp;
+    })) << page.latest["status"]
+        << page.world.bodies.size() << " bodies, stamp " << page.world.stamp;
   }
 
   const std::string file_ = launch_file("corner_stacks");
@@ -87,6 +88,12 @@ TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
   EXPECT_EQ(page.latest["map"].at("regions")[0].at("x0"), nullptr);
   EXPECT_EQ(page.latest["status"].at("state"), "running");
 
+  page.send(Json{{"type", "show"}, {"auras", true}});
+  EXPECT_TRUE(page.wait_until([&] { return page.overlays.size() > 16; })) << "auras of bodies near the borders";
+  page.send(Json{{"type", "show"}, {"auras", false}});
+  page.send(Json{{"type", "watch"}, {"slot", page.world.bodies.begin()->first}});
+  EXPECT_TRUE(page.wait_until([&] { return page.has("body"); }));
+
   ASSERT_NO_FATAL_FAILURE(expect_whole_when_paused(page));
   const double paused_at = page.world.stamp;
   EXPECT_EQ(page.ask({{"kind", "step"}, {"count", 5}}).at("ok"), true);
@@ -108,7 +115,7 @@ TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
 }
 
 TEST_F(Overseers, MayBeKilledAndStartedAgainAndNoNodeNotices) {
-  ASSERT_NO_FATAL_FAILURE(start_run(158, {"--duration", "12"}));
+  ASSERT_NO_FATAL_FAILURE(start_run(158, {"--duration", "6"}));
   for (int i = 0; i < 2; ++i) {
     Process& overseer = start_overseer();
     Page page(port_of(overseer));
@@ -137,7 +144,8 @@ TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
   ASSERT_TRUE(sees_the_run(page));
   EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), false);
   EXPECT_EQ(page.ask({{"kind", "pause"}}, "guess").at("ok"), false);
-  page.send(std::string(R"({"type":"command","request":"x","token":"open sesame","command":{"kind":"step","count":1e308}})"));
+  page.send(
+      std::string(R"({"type":"command","request":"x","token":"open sesame","command":{"kind":"step","count":1e308}})"));
   EXPECT_TRUE(page.wait_until([&] { return page.replies.contains("x"); }));
   EXPECT_EQ(page.ask({{"kind", "pause"}}, "open sesame").at("ok"), true);
   EXPECT_TRUE(overseer.running() && run_->running());
