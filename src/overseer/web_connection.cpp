@@ -133,6 +133,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   HttpConnection(asio::ip::tcp::socket socket, WebHub& hub, asio::any_io_executor worker)
       : stream_(std::move(socket)), hub_(hub), worker_(std::move(worker)) {}
 
+  ~HttpConnection() { hub_.close_connection(); }
+  HttpConnection(const HttpConnection&) = delete;
+  HttpConnection& operator=(const HttpConnection&) = delete;
+
   void read_header() {
     parser_.emplace();
     parser_->header_limit(kLongestHeader);
@@ -237,6 +241,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 }  // namespace
 
 void serve_connection(asio::ip::tcp::socket socket, WebHub& hub, const asio::any_io_executor& worker) {
+  if (!hub.open_connection()) return hub.refuse();
   std::make_shared<HttpConnection>(std::move(socket), hub, worker)->read_header();
 }
 

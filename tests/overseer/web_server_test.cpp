@@ -258,6 +258,21 @@ TEST_F(Web, NoMorePagesThanAllowed) {
   EXPECT_FALSE(Page(port()).open());
 }
 
+TEST_F(Web, IdleConnectionsAreLimited) {
+  serve();
+  testing::asio::io_context io;
+  std::vector<testing::asio::ip::tcp::socket> idle;
+  for (int i = 0; i < 300; ++i) {
+    idle.emplace_back(io);
+    testing::beast::error_code ignored;
+    idle.back().connect(testing::local(port()), ignored);
+  }
+  ASSERT_TRUE(holds_in_time([&] { return server_->counters().connections == 300; }));
+  EXPECT_EQ(server_->counters().refused, 44U);
+  idle.clear();
+  EXPECT_TRUE(holds_in_time([&] { return request(port(), verb::get, "/healthz").status == 200; }));
+}
+
 TEST_F(Web, AWatchedBodyIsToldWithEachStatusUntilItIsGone) {
   serve();
   show(3);
