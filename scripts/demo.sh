@@ -27,6 +27,7 @@ One process per region starts now and stays on this machine (DDS on 127.0.0.1). 
   sent, received  bodies handed over; the sums agree but for what is on its way
   broken          promises about speed, latency or frame time that did not hold
   rtf             simulated seconds per second; 1.00 keeps up with the clock
+Below the table stands the address of the viewer: open it in a browser.
 Ctrl-C stops all of it.
 
 TEXT

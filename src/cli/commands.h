@@ -17,6 +17,7 @@ void add_node(CLI::App& program, Action& action);
 void add_launch(CLI::App& program, Action& action);
 void add_top(CLI::App& program, Action& action);
 void add_overseer(CLI::App& program, Action& action);
+void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
 

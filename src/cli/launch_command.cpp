@@ -36,6 +36,7 @@ void add_launch(CLI::App& program, Action& action) {
       ->check(CLI::Range(0.0, 1e9))
       ->excludes(steps);
   command->add_flag("--headless", arguments->options.headless, "no table, no viewer");
+  command->add_option("--record", arguments->options.recording, "file for what the viewer sees; starts it in any case");
   command->add_option("--report", arguments->report, "folder for what the nodes record");
   command->add_option("--start-time-out", arguments->options.start_time_out_s, "seconds to wait for all regions")
       ->check(CLI::Range(1, 3600));

@@ -43,7 +43,7 @@ Launcher::~Launcher() {
 ExitCode Launcher::run() {
   catch_stop_signals();
   start_nodes();
-  if (!options_.headless) viewer_.start(options_.files);
+  if (!options_.headless || !options_.recording.empty()) viewer_.start(options_.files, options_.recording);
   auto next_show = Clock::now();
   bool stopping = false;
   while (any_running()) {

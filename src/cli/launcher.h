@@ -21,6 +21,7 @@ struct LaunchOptions {
   std::optional<core::Step> steps;
   std::optional<std::filesystem::path> report;
   bool headless = false;
+  std::string recording;  ///< file; empty: none
   int start_time_out_s = 30;
 };
 

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   cli::add_top(program, action);
   cli::add_send(program, action);
   cli::add_overseer(program, action);
+  cli::add_replay(program, action);
   cli::add_compare(program, action);
   try {
     program.parse(argc, argv);

@@ -17,6 +17,7 @@ namespace {
 struct Arguments {
   FileArguments files;
   WebArguments web;
+  std::string recording;
 };
 
 int oversee(const Arguments& arguments) {
@@ -28,6 +29,7 @@ int oversee(const Arguments& arguments) {
   dds::ControlBus control(participant, {launch.regions.version(), {}});
   RunCommandSink sink(launch, control);
   overseer::Overseer overseer(launch, participant, control, *web, sink, !settings.token.empty());
+  if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();
   while (!stop_requested()) overseer.turn();
   leave(0);
@@ -40,6 +42,7 @@ void add_overseer(CLI::App& program, Action& action) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->files.add_to(*command);
   arguments->web.add_to(*command);
+  command->add_option("--record", arguments->recording, "write down what pages see; `aurasim replay` shows it again");
   command->callback([arguments, &action] { action = [arguments] { return oversee(*arguments); }; });
 }
 

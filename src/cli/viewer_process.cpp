@@ -17,9 +17,10 @@ namespace aurasim::cli {
 
 ViewerProcess::~ViewerProcess() { stop(); }
 
-void ViewerProcess::start(const FileArguments& files) {
+void ViewerProcess::start(const FileArguments& files, const std::string& recording) {
   std::vector<std::string> words = {executable_for("double").string(), "overseer", files.file};
   for (const std::string& change : files.overrides) words.insert(words.end(), {"--set", change});
+  if (!recording.empty()) words.insert(words.end(), {"--record", recording});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

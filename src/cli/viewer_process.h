@@ -17,7 +17,8 @@ class ViewerProcess {
   ViewerProcess(const ViewerProcess&) = delete;
   ViewerProcess& operator=(const ViewerProcess&) = delete;
 
-  void start(const FileArguments& files);
+  /// `recording`: file; empty: none.
+  void start(const FileArguments& files, const std::string& recording);
   /// Reads what it has printed; notices when it has ended. Never waits.
   void look();
   /// Its address, and its token if it has one; empty before it listens.

@@ -36,6 +36,7 @@ class ClientOutbox {
   /// What to send next, or nothing. `frames_too`: false when the last frame was sent only a moment ago.
   std::optional<Message> next(const SlotTable& table, bool frames_too);
 
+  bool has_frame() const { return frames_.has_news(); }
   std::uint64_t frames_merged() const { return frames_.merged(); }
 
  private:

@@ -36,7 +36,7 @@ class Hull {
     const std::uint32_t c = far([&](const Vec3& p) { return (p - points_[a]).cross(along).norm(); });
     const Vec3 normal = (points_[b] - points_[a]).cross(points_[c] - points_[a]).normalized();
     const std::uint32_t d = far([&](const Vec3& p) { return std::abs((p - points_[a]).dot(normal)); });
-    if (!normal.allFinite() || std::abs((points_[d] - points_[a]).dot(normal)) < tolerance()) return false;
+    if (!normal.allFinite() || std::abs((points_[d] - points_[a]).dot(normal)) <= tolerance()) return false;
     middle_ = (points_[a] + points_[b] + points_[c] + points_[d]) / 4;
     for (const Triangle& t : {Triangle{a, b, c}, Triangle{a, b, d}, Triangle{a, c, d}, Triangle{b, c, d}}) add(t);
     return true;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,9 @@ class ClientFrames {
   bool has_news_ = false;
   std::uint64_t merged_ = 0;
 };
+
+/// A frame as a difference to `before`; nothing, if the bytes are no frame or do not fit to it. For recordings.
+std::optional<WorldFrame> decode_frame(std::span<const std::uint8_t> bytes, const SlotTable& before);
 
 /// A rotation in 32 bits: the smallest three of the components w x y z, 10 bits each.
 std::uint32_t pack_rotation(const Eigen::Quaternionf& q);

@@ -4,6 +4,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "overseer/replay.h"
 
 namespace aurasim::overseer {
 
@@ -55,8 +58,42 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
   hello.tick_hz = launch.observe.tick_hz;
   hello.token_needed = token_needed;
   web_.tell(Notice::kHello, hello_message(hello));
-  web_.tell(Notice::kScene, scene_message(launch.scene, 0));
+  tell_scene();
   web_.tell(Notice::kMap, map_message(launch.regions));
+}
+
+void Overseer::record(const std::filesystem::path& file) {
+  recording_.emplace(file);
+  recording_began_s_ = now_s();
+  write_down(ChunkKind::kAbout, recorded_run_text({launch_.scene.name, launch_.step_s(), launch_.observe.tick_hz}));
+  write_down(ChunkKind::kScene, scene_message(launch_.scene, told_generation_));
+  write_down(ChunkKind::kMap, map_message(launch_.regions));
+}
+
+/// A full disk ends the recording, not the overseer.
+template <class Job>
+void Overseer::keep_recording(Job job) {
+  if (!recording_) return;
+  try {
+    job(*recording_, now_s() - recording_began_s_);
+  } catch (const BadRecording& error) {
+    spdlog::error("recording ends: {}", error.what());
+    recording_.reset();
+  }
+}
+
+void Overseer::write_down(ChunkKind kind, const std::string& text) {
+  keep_recording([&](RecordingWriter& recording, double time_s) { recording.write(kind, text, time_s); });
+}
+
+void Overseer::write_down(const WorldFrame& frame) {
+  keep_recording([&](RecordingWriter& recording, double time_s) { recording.write(frame, time_s); });
+}
+
+void Overseer::tell_scene() {
+  const std::string text = scene_message(launch_.scene, told_generation_);
+  web_.tell(Notice::kScene, text);
+  write_down(ChunkKind::kScene, text);
 }
 
 double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
@@ -98,9 +135,10 @@ void Overseer::compose_frames() {
     any = true;
     if (frame->generation != told_generation_) {
       told_generation_ = frame->generation;
-      web_.tell(Notice::kScene, scene_message(launch_.scene, told_generation_));
+      tell_scene();
     }
     web_.show(*frame);
+    write_down(*frame);
   }
   if (any) show_auras();
 }
@@ -188,7 +226,9 @@ void Overseer::tell_status() {
   if (Clock::now() < next_status_) return;
   next_status_ = Clock::now() + kStatusPeriod;
   const RunStatus now = status();
-  web_.tell(Notice::kStatus, status_message(now));
+  const std::string message = status_message(now);
+  web_.tell(Notice::kStatus, message);
+  write_down(ChunkKind::kStatus, message);
   const ViewCounters& view = view_->counters();
   std::string text = node_metrics(now);
   const auto add = [&](const char* name, const char* help, std::uint64_t value) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "dds/replica_bus.h"
 #include "overseer/commands.h"
 #include "overseer/page_messages.h"
+#include "overseer/recording.h"
 #include "overseer/web_server.h"
 #include "overseer/world_view.h"
 
@@ -26,6 +28,9 @@ class Overseer {
   Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, WebServer& web,
            CommandSink& sink, bool token_needed);
 
+  /// From now on writes down what pages are told. Throws BadRecording when the file cannot be written.
+  void record(const std::filesystem::path& file);
+
   /// One round: waits a few milliseconds for news and passes on what there is.
   void turn();
 
@@ -33,6 +38,11 @@ class Overseer {
   using Clock = std::chrono::steady_clock;
 
   double now_s() const;
+  void tell_scene();
+  void write_down(ChunkKind kind, const std::string& text);
+  void write_down(const WorldFrame& frame);
+  template <class Job>
+  void keep_recording(Job job);
   bool is_of_this_run(const dds::SeenStatus& seen) const { return seen.status.agreement == agreement_; }
   void look_at_nodes();
   bool run_was_restarted();
@@ -57,6 +67,8 @@ class Overseer {
   ViewSettings view_settings_;
   std::optional<WorldView> view_;
   core::Generation told_generation_ = 0;
+  std::optional<RecordingWriter> recording_;
+  double recording_began_s_ = 0;
   std::map<core::RegionId, dds::SeenStatus> nodes_;
   std::map<core::RegionId, std::uint32_t> pids_;
   struct HandOffs {

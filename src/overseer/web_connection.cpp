@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -35,7 +36,8 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 /// A page with its WebSocket.
 class PageSocket final : public PageConnection, public std::enable_shared_from_this<PageSocket> {
  public:
-  PageSocket(beast::tcp_stream stream, WebHub& hub) : socket_(std::move(stream)), hub_(hub) {}
+  PageSocket(beast::tcp_stream stream, WebHub& hub)
+      : socket_(std::move(stream)), hub_(hub), spacing_(socket_.get_executor()) {}
 
   void start(const http::request<http::string_body>& upgrade) {
     beast::get_lowest_layer(socket_).expires_never();
@@ -44,6 +46,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     socket_.set_option(websocket::stream_base::timeout{kHttpLimit, kSilenceLimit, true});
     socket_.read_message_max(kLongestMessage);
+    socket_.auto_fragment(false);
     socket_.async_accept(upgrade, [self = shared_from_this()](Error error) {
       if (error) return;
       self->hub_.join(self);
@@ -52,9 +55,9 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   }
 
   void pump() override {
-    if (sending_) return;
+    if (sending_ || ended_) return;
     std::optional<Message> message = outbox.next(hub_.table(), Clock::now() - last_frame_ >= kFrameSpacing);
-    if (!message) return;
+    if (!message) return pump_later();
     in_flight_ = std::move(*message);
     sending_ = true;
     send_began_ = Clock::now();
@@ -71,7 +74,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   }
 
   bool drop_if_stalled(Clock::duration limit) override {
-    if (!sending_ || Clock::now() - send_began_ <= limit) return false;
+    if (!sending_ || ended_ || Clock::now() - send_began_ <= limit) return false;
     end();
     return true;
   }
@@ -95,7 +98,19 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     }
   }
 
+  /// A frame that comes too soon after the last one is sent after a moment, unless another comes first.
+  void pump_later() {
+    if (!outbox.has_frame() || waiting_) return;
+    waiting_ = true;
+    spacing_.expires_after(kFrameSpacing);
+    spacing_.async_wait([self = shared_from_this()](Error) {
+      self->waiting_ = false;
+      self->pump();
+    });
+  }
+
   void end() {
+    ended_ = true;
     Error ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
     hub_.leave(id);
@@ -105,7 +120,10 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   WebHub& hub_;
   beast::flat_buffer buffer_{kLongestMessage};
   Message in_flight_;
+  asio::steady_timer spacing_;
+  bool waiting_ = false;
   bool sending_ = false;
+  bool ended_ = false;
   Clock::time_point send_began_;
   Clock::time_point last_frame_;
 };
@@ -114,6 +132,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(asio::ip::tcp::socket socket, WebHub& hub, asio::any_io_executor worker)
       : stream_(std::move(socket)), hub_(hub), worker_(std::move(worker)) {}
+
+  ~HttpConnection() { hub_.close_connection(); }
+  HttpConnection(const HttpConnection&) = delete;
+  HttpConnection& operator=(const HttpConnection&) = delete;
 
   void read_header() {
     parser_.emplace();
@@ -219,6 +241,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 }  // namespace
 
 void serve_connection(asio::ip::tcp::socket socket, WebHub& hub, const asio::any_io_executor& worker) {
+  if (!hub.open_connection()) return hub.refuse();
   std::make_shared<HttpConnection>(std::move(socket), hub, worker)->read_header();
 }
 

@@ -13,6 +13,7 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr std::size_t kMostRequests = 1000;
+constexpr std::uint64_t kMostConnections = 256;  // that ask by HTTP, pages not counted
 
 template <class... Functions>
 struct Overloaded : Functions... {
@@ -105,6 +106,13 @@ bool WebHub::enqueue(PageRequest request) {
   const std::lock_guard lock(requests_mutex_);
   if (requests_.size() >= kMostRequests) return false;
   requests_.push_back(std::move(request));
+  return true;
+}
+
+bool WebHub::open_connection() {
+  ++connections_;
+  if (open_ >= kMostConnections) return false;
+  ++open_;
   return true;
 }
 

@@ -69,7 +69,9 @@ class WebHub {
   // -- any thread
   std::vector<PageRequest> take_requests();
   WebCounters counters() const;
-  void count_connection() { ++connections_; }
+  /// False: there are so many that this one has to go.
+  bool open_connection();
+  void close_connection() { --open_; }
   void count_sent(const Message& message, std::size_t bytes);
 
  private:
@@ -93,6 +95,7 @@ class WebHub {
 
   std::mutex requests_mutex_;
   std::vector<PageRequest> requests_;
+  std::atomic<std::uint64_t> open_{0};
   std::atomic<std::uint64_t> clients_{0}, aura_watchers_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0},
       bytes_sent_{0}, refused_{0}, dropped_{0};
 };

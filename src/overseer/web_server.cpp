@@ -45,7 +45,7 @@ void open(tcp::acceptor& acceptor, const WebSettings& settings) {
 }  // namespace
 
 struct WebServer::Impl {
-  Impl(const WebSettings& settings, ShapeStore& shapes) : hub(settings, shapes), acceptor(io), timer(io) {
+  Impl(const WebSettings& settings, ShapeStore& shapes) : hub(settings, shapes), acceptor(io), timer(io), retry(io) {
     open(acceptor, settings);
     port = acceptor.local_endpoint().port();
     accept();
@@ -63,10 +63,13 @@ struct WebServer::Impl {
   void accept() {
     acceptor.async_accept([this](const Error& error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error) {
-        hub.count_connection();
-        serve_connection(std::move(socket), hub, worker.get_executor());
+      if (error) {  // out of files, say: not again at once
+        retry.expires_after(kLookAfter);
+        return retry.async_wait([this](const Error& ended) {
+          if (!ended) accept();
+        });
       }
+      serve_connection(std::move(socket), hub, worker.get_executor());
       accept();
     });
   }
@@ -90,6 +93,7 @@ struct WebServer::Impl {
   asio::io_context io{1};
   tcp::acceptor acceptor;
   asio::steady_timer timer;
+  asio::steady_timer retry;
   std::uint16_t port = 0;
   std::thread thread;
 };

@@ -1,7 +1,6 @@
 #include "overseer/world_view.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace aurasim::overseer {
@@ -82,23 +81,33 @@ bool WorldView::is_ready(Step stamp, double now_s) {
 }
 
 const WorldFrame* WorldView::compose(double now_s) {
-  constexpr Step kNone = std::numeric_limits<Step>::max();
-  Step stamp = kNone;
-  for (const Source& source : sources_) {
-    if (!source.pending.empty()) stamp = std::min(stamp, source.pending.front().replica.stamp);
-  }
-  if (stamp == kNone || !is_ready(stamp, now_s)) return nullptr;
-  stamp_ = std::max(stamp_, stamp);
-  for (Source& source : sources_) {
-    while (!source.pending.empty() && source.pending.front().replica.stamp <= stamp) {
-      const Replica replica = std::move(source.pending.front().replica);
-      source.pending.pop_front();
-      apply(replica);
+  while (const std::optional<Step> stamp = oldest_pending()) {
+    if (!is_ready(*stamp, now_s)) break;
+    const bool is_new = *stamp > stamp_;
+    stamp_ = std::max(stamp_, *stamp);
+    for (Source& source : sources_) {
+      while (!source.pending.empty() && source.pending.front().replica.stamp <= *stamp) {
+        const Replica replica = std::move(source.pending.front().replica);
+        source.pending.pop_front();
+        apply(replica);
+      }
     }
+    give_up_the_unclaimed();
+    if (!is_new && touched_.empty()) continue;  // a late key frame that only confirms what is known
+    write_frame();
+    return &frame_;
   }
-  give_up_the_unclaimed();
-  write_frame();
-  return &frame_;
+  return nullptr;
+}
+
+std::optional<Step> WorldView::oldest_pending() const {
+  std::optional<Step> oldest;
+  for (const Source& source : sources_) {
+    if (source.pending.empty()) continue;
+    const Step stamp = source.pending.front().replica.stamp;
+    oldest = std::min(oldest.value_or(stamp), stamp);
+  }
+  return oldest;
 }
 
 void WorldView::apply(const Replica& replica) {

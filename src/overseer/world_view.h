@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -77,6 +78,7 @@ class WorldView {
   };
 
   void begin_generation(core::Generation generation);
+  std::optional<core::Step> oldest_pending() const;
   bool is_ready(core::Step stamp, double now_s);
   void apply(const core::Replica& replica);
   void apply_row(const core::ReplicaBody& row, const core::Replica& replica);

@@ -1,0 +1,89 @@
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/leave.h"
+#include "cli/stop_signal.h"
+#include "cli/web_setup.h"
+#include "overseer/page_messages.h"
+#include "overseer/replay.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kRound = 5ms;
+constexpr auto kStatusPeriod = 250ms;
+
+struct Arguments {
+  std::string file;
+  WebArguments web;
+};
+
+std::string replay_message(const overseer::Replay& replay) {
+  return nlohmann::json{
+      {"type", "replay"}, {"step", replay.step()}, {"playing", replay.playing()}, {"speed", replay.speed()}}
+      .dump();
+}
+
+overseer::Hello hello_of(const overseer::Replay& replay) {
+  overseer::Hello hello;
+  hello.replay = true;
+  hello.scene = replay.run().scene;
+  hello.step_s = replay.run().step_s;
+  hello.tick_hz = replay.run().tick_hz;
+  hello.first_step = replay.first_step();
+  hello.last_step = replay.last_step();
+  return hello;
+}
+
+void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
+  for (const overseer::PageRequest& page_request : web.take_requests()) {
+    if (const auto* control = std::get_if<overseer::ReplayControl>(&page_request)) {
+      replay.obey(*control);
+      web.tell(overseer::Notice::kReplay, replay_message(replay));
+    } else {
+      const auto& request = std::get<overseer::Request>(page_request);
+      web.answer({request.client, request.id, false, "this is a recording", nullptr});
+    }
+  }
+}
+
+int replay(const Arguments& arguments) {
+  overseer::Replay replay(arguments.file);
+  overseer::ShapeStore shapes;
+  const auto web = open_web_server(web_settings({}, arguments.web), shapes);
+  web->tell(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
+  catch_stop_signals();
+  auto next_status = Clock::now();
+  while (!stop_requested()) {
+    serve_requests(*web, replay);
+    overseer::Replay::Output due =
+        replay.advance(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
+    for (auto& [notice, text] : due.texts) web->tell(notice, std::move(text));
+    for (const overseer::WorldFrame& frame : due.frames) web->show(frame);
+    if (Clock::now() >= next_status) {
+      next_status = Clock::now() + kStatusPeriod;
+      web->tell(overseer::Notice::kReplay, replay_message(replay));
+    }
+    std::this_thread::sleep_for(kRound);
+  }
+  leave(0);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("replay", "show a recording in the viewer");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "what --record has written")->required()->check(CLI::ExistingFile);
+  arguments->web.add_to(*command);
+  command->callback([arguments, &action] { action = [arguments] { return replay(*arguments); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,221 @@
+// The overseer beside real runs. Domains 157 to 162.
+#include <csignal>
+
+#include <sys/wait.h>
+
+#include "overseer/web_client.h"
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+using overseer::testing::Page;
+using overseer::testing::request;
+using overseer::testing::http::verb;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class Overseers : public SystemTest {
+ protected:
+  void start_run(int domain, const Words& more = {}) {
+    domain_ = "dds.domain=" + std::to_string(domain);
+    run_ = &launch("run", file_, domain, more);
+    ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 30));
+  }
+
+  /// Port in the address that a program has printed; 0 if it prints none.
+  static std::uint16_t port_of(Process& program, Clock::duration time_out = 10s) {
+    const std::string head = "http://127.0.0.1:";
+    wait_until([&] { return program.out().find(head) != std::string::npos; }, time_out);
+    const std::string said = program.out();
+    const std::size_t at = said.find(head);
+    return at == std::string::npos ? 0 : static_cast<std::uint16_t>(std::stoi(said.substr(at + head.size())));
+  }
+
+  Process& start_overseer(const Words& more = {}) {
+    return start(Words{"overseer", file_, "--port", "0"} + set({domain_}) + more);
+  }
+
+  static std::uint64_t bodies_of(const Json& status) {
+    std::uint64_t bodies = 0;
+    for (const Json& node : status.at("nodes")) bodies += node.at("bodies").get<std::uint64_t>();
+    return bodies;
+  }
+
+  static bool sees_the_run(Page& page) {
+    return page.wait_until(
+        [&] { return page.has("status") && page.latest["status"].at("nodes").size() == 4 && page.world.frames > 0; });
+  }
+
+  /// Ctrl-C, as the last thing.
+  void end_run(int code = 0) {
+    run_->signal(SIGINT);
+    expect_exit(*run_, code);
+  }
+
+  /// Pauses the run and expects the page to show every body that the nodes host, and nothing under way.
+  void expect_whole_when_paused(Page& page) {
+    ASSERT_TRUE(sees_the_run(page));
+    const Json reply = page.ask({{"kind", "pause"}});
+    ASSERT_EQ(reply.value("ok", false), true) << reply;
+    ASSERT_TRUE(page.wait_until([&] {
+      return page.latest["status"].value("state", "") == "paused" &&
+             page.world.stamp == page.latest["status"].at("step").get<double>() &&
+             page.world.by_id().size() == bodies_of(page.latest["status"]);
+    })) << page.latest["status"]
+        << page.world.bodies.size() << " bodies, stamp " << page.world.stamp;
+  }
+
+  const std::string file_ = launch_file("corner_stacks");
+  std::string domain_;
+  Process* run_ = nullptr;
+};
+
+TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
+  ASSERT_NO_FATAL_FAILURE(start_run(157));
+  Process& overseer = start_overseer();
+  Page page(port_of(overseer));
+  ASSERT_TRUE(page.open()) << overseer.said();
+  const auto begin = Clock::now();
+  ASSERT_TRUE(page.wait_until([&] {
+    return page.has("hello") && page.has("scene") && page.has("map") && page.has("status") &&
+           page.latest["status"].at("nodes").size() == 4 && page.world.bodies.size() >= 96;
+  }));
+  EXPECT_LT(Clock::now() - begin, 4s) << "two, and as many for a busy host to find its nodes";
+  EXPECT_EQ(page.latest["hello"].at("mode"), "live");
+  EXPECT_EQ(page.latest["scene"].at("prototypes").size(), 4U);
+  EXPECT_EQ(page.latest["map"].at("regions").size(), 4U);
+  EXPECT_EQ(page.latest["map"].at("regions")[0].at("x0"), nullptr);
+  EXPECT_EQ(page.latest["status"].at("state"), "running");
+
+  page.send(Json{{"type", "show"}, {"auras", true}});
+  EXPECT_TRUE(page.wait_until([&] { return page.overlays.size() > 16; })) << "auras of bodies near the borders";
+  page.send(Json{{"type", "show"}, {"auras", false}});
+  page.send(Json{{"type", "watch"}, {"slot", page.world.bodies.begin()->first}});
+  EXPECT_TRUE(page.wait_until([&] { return page.has("body"); }));
+
+  ASSERT_NO_FATAL_FAILURE(expect_whole_when_paused(page));
+  const double paused_at = page.world.stamp;
+  EXPECT_EQ(page.ask({{"kind", "step"}, {"count", 5}}).at("ok"), true);
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == paused_at + 5; })) << page.world.stamp;
+  EXPECT_EQ(page.ask({{"kind", "spawn"}, {"prototype", "ball"}, {"p", {0, 0, 5}}}).at("text"),
+            "not supported by this run");
+  EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp > paused_at + 20; }));
+  EXPECT_EQ(page.ask({{"kind", "step"}}).at("ok"), false) << "not while it runs";
+  EXPECT_EQ(page.ask({{"kind", "reset"}}).at("ok"), true);
+  EXPECT_TRUE(page.wait_until([&] { return page.world.generation == 1 && page.world.stamp > 30; }));
+  EXPECT_GE(page.world.by_id().size(), 96U);
+  EXPECT_EQ(page.latest["scene"].at("generation"), 1);
+  EXPECT_THAT(request(port_of(overseer), verb::get, "/metrics").body, HasSubstr("aurasim_step{region=\"3\"}"));
+  overseer.signal(SIGTERM);
+  expect_exit(overseer, 0, 5s);
+  end_run();
+  expect_all_bodies_accounted_for(report_of("run"));
+}
+
+TEST_F(Overseers, MayBeKilledAndStartedAgainAndNoNodeNotices) {
+  ASSERT_NO_FATAL_FAILURE(start_run(158, {"--duration", "6"}));
+  for (int i = 0; i < 2; ++i) {
+    Process& overseer = start_overseer();
+    Page page(port_of(overseer));
+    EXPECT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96; })) << overseer.said();
+    overseer.signal(SIGKILL);
+    expect_exit(overseer, 128 + SIGKILL);
+  }
+  Process& last = start_overseer();
+  Page page(port_of(last));
+  ASSERT_NO_FATAL_FAILURE(expect_whole_when_paused(page));
+  EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
+  expect_exit(*run_, 0);
+  expect_all_bodies_accounted_for(report_of("run"));
+  EXPECT_TRUE(page.wait_until([&] { return page.latest["status"].at("state") == "finished"; }));
+}
+
+TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
+  ASSERT_NO_FATAL_FAILURE(start_run(159));
+  Process& overseer = start_overseer({"--token", "open sesame"});
+  const std::uint16_t port = port_of(overseer);
+  EXPECT_FALSE(Page(port, {{"Origin", "http://evil.example"}}).open());
+  EXPECT_EQ(request(port, verb::get, "/", {{"Host", "evil.example"}}).status, 403U);
+  EXPECT_EQ(request(port, verb::get, "/../../../../etc/passwd").status, 404U);
+  overseer::testing::raw(port, std::string(70'000, '\xff'));
+  Page page(port);
+  ASSERT_TRUE(sees_the_run(page));
+  EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), false);
+  EXPECT_EQ(page.ask({{"kind", "pause"}}, "guess").at("ok"), false);
+  page.send(
+      std::string(R"({"type":"command","request":"x","token":"open sesame","command":{"kind":"step","count":1e308}})"));
+  EXPECT_TRUE(page.wait_until([&] { return page.replies.contains("x"); }));
+  EXPECT_EQ(page.ask({{"kind", "pause"}}, "open sesame").at("ok"), true);
+  EXPECT_TRUE(overseer.running() && run_->running());
+  end_run();
+}
+
+TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
+  ASSERT_NO_FATAL_FAILURE(start_run(160));
+  Process& overseer = start_overseer();
+  Page page(port_of(overseer));
+  ASSERT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96; }));
+  pid_t node = 0;
+  for (const pid_t child : children_of(run_->pid())) {
+    const Words words = command_line_of(child);
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+      if (words[i] == "--region" && words[i + 1] == "2") node = child;
+    }
+  }
+  ASSERT_GT(node, 0);
+  ::kill(node, SIGKILL);
+  const auto of_the_dead = [&] {
+    std::size_t count = 0;
+    for (const auto& [id, body] : page.world.by_id()) count += body.host == 2;
+    return count;
+  };
+  EXPECT_GT(of_the_dead(), 0U);
+  EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, 20s));
+  EXPECT_GT(page.world.bodies.size(), 20U);
+  EXPECT_EQ(page.latest["status"].at("nodes")[2].at("lost"), true);
+  EXPECT_EQ(page.latest["status"].at("state"), "running");
+  end_run(1);
+}
+
+TEST_F(Overseers, WhatTheyRecordIsShownAgain) {
+  const std::string recording = (folder() / "recording").string();
+  domain_ = "dds.domain=162";
+  Process& run = launch("run", file_, 162, {"--record", recording, "--duration", "4"});
+  expect_exit(run, 0);
+  Process& replay = start({"replay", recording, "--port", "0"});
+  Page page(port_of(replay));
+  ASSERT_TRUE(page.wait_until([&] { return page.has("hello") && page.has("replay") && page.has("scene"); }))
+      << replay.said();
+  const Json hello = page.latest["hello"];
+  EXPECT_EQ(hello.at("mode"), "replay");
+  EXPECT_EQ(hello.at("scene"), "corner_stacks");
+  EXPECT_EQ(hello.at("last_step"), 240);
+  page.send(Json{{"type", "replay"}, {"action", "pause"}});
+  page.send(Json{{"type", "replay"}, {"action", "seek"}, {"value", 240}});
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == 240; }));
+  EXPECT_EQ(page.world.by_id().size(), static_cast<std::size_t>(report_of("run").count("bodies_alive")));
+  page.send(Json{{"type", "replay"}, {"action", "seek"}, {"value", 120}});
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == 120; }));
+  EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), false);
+}
+
+TEST_F(Overseers, ALaunchBringsOneAndTakesAnotherPortWhenItsOwnIsTaken) {
+  Process& first = start(Words{"launch", file_} + set({"dds.domain=161", "overseer.port=0"}));
+  const std::uint16_t port = port_of(first);
+  ASSERT_GT(port, 0);
+  Process& second = start(Words{"overseer", file_, "--port", std::to_string(port)} + set({"dds.domain=161"}));
+  const std::uint16_t other = port_of(second);
+  EXPECT_NE(other, port);
+  EXPECT_THAT(second.err(), HasSubstr(std::to_string(port)));
+  for (const std::uint16_t each : {port, other}) {
+    Page page(each);
+    EXPECT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96; })) << each;
+  }
+  first.signal(SIGINT);
+  expect_exit(first, 0);
+}
+
+}  // namespace
+}  // namespace aurasim::system_test
