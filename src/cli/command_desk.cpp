@@ -43,9 +43,14 @@ const core::MeshRef* mesh_in(const core::Ask& ask) {
 }  // namespace
 
 CommandDesk::CommandDesk(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
-    : launch_(launch), region_(region), door_(participant, region, launch.regions.version()) {}
+    : launch_(launch),
+      region_(region),
+      door_(participant, region, launch.regions.version()),
+      mesh_reader_(participant),
+      growth_writer_(participant, region) {}
 
-void CommandDesk::begin_generation(node::Node& node) {
+void CommandDesk::begin_generation(node::Node& node, core::Generation generation) {
+  growth_ = {generation, {}};
   for (const auto& [request, step] : std::exchange(due_, {})) {
     core::CommandReply done;
     done.request = request;
@@ -59,6 +64,7 @@ void CommandDesk::begin_generation(node::Node& node) {
 }
 
 void CommandDesk::serve(node::Node& node, const RunView& run) {
+  leads_ = run.leads;
   shapes_ = std::max(shapes_, node.scene().shapes.size());
   prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
   statics_ = std::max(statics_, node.scene().statics.size());
@@ -191,17 +197,27 @@ std::optional<core::Shape> CommandDesk::make_shape(const core::ClientShape& shap
 }
 
 std::optional<core::Shape> CommandDesk::make_mesh(const core::MeshRef& ref) {
-  std::optional<core::TriangleMesh> mesh = door_.mesh(ref.hash);
-  if (!mesh) return {};
+  const core::TriangleMesh* const mesh = mesh_reader_.mesh(ref.hash);
+  if (mesh == nullptr) return {};
   if (std::ranges::find(meshes_, ref.hash) == meshes_.end()) meshes_.push_back(ref.hash);
-  if (ref.use == core::MeshUse::kTriangles) return *std::move(mesh);
-  const core::Vec3 centre = config::centre_of_mass(*mesh);
-  core::ConvexHull hull{config::hull_points(*mesh)};
-  for (core::Vec3& p : hull.points) p -= centre;
-  return hull;
+  return config::shape_for(*mesh, ref.use);
+}
+
+/// Tells observers what the scene has got, when it has got something.
+void CommandDesk::tell_growth(const node::StepReport& report) {
+  const std::size_t before = growth_.orders.size();
+  for (const core::Order& order : report.orders) {
+    const bool grows = std::holds_alternative<core::DefineShape>(order.action) ||
+                       std::holds_alternative<core::DefinePrototype>(order.action) ||
+                       std::holds_alternative<core::AddStatic>(order.action) ||
+                       std::holds_alternative<core::RemoveStatic>(order.action);
+    if (grows) growth_.orders.push_back(order);
+  }
+  if (growth_.orders.size() > before && leads_) growth_writer_.send(growth_);
 }
 
 void CommandDesk::after_step(const node::StepReport& report) {
+  tell_growth(report);
   const auto tell = [this, &report](std::uint64_t request) {
     core::CommandReply done;
     done.request = request;

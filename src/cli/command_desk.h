@@ -12,6 +12,7 @@
 #include "config/launch.h"
 #include "core/command.h"
 #include "dds/command_bus.h"
+#include "dds/growth_bus.h"
 #include "node/node.h"
 
 namespace aurasim::cli {
@@ -34,7 +35,7 @@ class CommandDesk {
   /// Tells clients what has taken effect.
   void after_step(const node::StepReport& report);
   /// A new generation: what was under way is not any longer.
-  void begin_generation(node::Node& node);
+  void begin_generation(node::Node& node, core::Generation generation);
 
   /// Meshes that have come so far, by hash.
   const std::vector<std::uint64_t>& meshes() const { return meshes_; }
@@ -49,12 +50,17 @@ class CommandDesk {
   void place(const core::Command& command, const core::NewStatic& fixed, node::Node& node);
   std::uint32_t shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node);
   core::PrototypeId prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node);
+  void tell_growth(const node::StepReport& report);
   std::optional<core::Shape> make_shape(const core::ClientShape& shape);
   std::optional<core::Shape> make_mesh(const core::MeshRef& mesh);
 
   const config::Launch& launch_;
   core::RegionId region_;
   dds::CommandDoor door_;
+  dds::MeshReader mesh_reader_;
+  dds::GrowthWriter growth_writer_;
+  dds::Growth growth_;
+  bool leads_ = false;
   std::vector<std::uint64_t> meshes_;
   std::vector<core::Command> waiting_for_mesh_;
   std::map<std::uint64_t, int> rounds_waited_;

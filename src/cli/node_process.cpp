@@ -210,7 +210,7 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
   setup.hash_states = options_.report.has_value();
   node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
   node_->accept_early_mail(std::move(mail));
-  desk_->begin_generation(*node_);
+  desk_->begin_generation(*node_, generation);
   run_orders_.clear();
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);

@@ -27,7 +27,7 @@ int oversee(const Arguments& arguments) {
   const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, shapes);
   dds::Participant participant(dds_settings(launch));
   dds::ControlBus control(participant, {launch.regions.version(), {}});
-  RunCommandSink sink(launch, control);
+  RunCommandSink sink(launch, participant, control, shapes);
   overseer::Overseer overseer(launch, participant, control, *web, sink, !settings.token.empty());
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();

@@ -1,8 +1,10 @@
 #include "cli/run_command_sink.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace aurasim::cli {
 namespace {
@@ -12,6 +14,33 @@ using Clock = std::chrono::steady_clock;
 using Kind = dds::RunCommandKind;
 
 constexpr auto kPatience = 10s;
+
+class BadAsk : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json object_json(const std::optional<core::ObjectRef>& object) {
+  nlohmann::json json = {{"body", nullptr}, {"static", nullptr}};
+  if (object) json[*object >= 0 ? "body" : "static"] = *object >= 0 ? *object : -1 - *object;
+  return json;
+}
+
+nlohmann::json result_of(const Delivery& delivery) {
+  nlohmann::json json = object_json(delivery.object);
+  json["step"] = delivery.at_step;
+  if (!delivery.is_ray) return json;
+  json["hit"] = delivery.object.has_value();
+  json["p"] = list(delivery.p_W);
+  json["normal"] = list(delivery.normal_W);
+  json["distance"] = delivery.object ? nlohmann::json(delivery.distance_m) : nlohmann::json(nullptr);
+  json["complete"] = delivery.silent.empty();
+  json["silent_regions"] = nlohmann::json::array();
+  for (const core::RegionId region : delivery.silent) json["silent_regions"].push_back(core::value_of(region));
+  return json;
+}
 
 }  // namespace
 
@@ -25,7 +54,7 @@ void RunCommandSink::submit(overseer::Request request) {
   } else if (const auto* step = std::get_if<overseer::StepOn>(&request.command)) {
     steer(request, Kind::kStep, step->count);
   } else {
-    replies_.push_back(overseer::not_supported(request));
+    carry(request);
   }
 }
 
@@ -42,7 +71,79 @@ void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int
   }
 }
 
+/// Throws BadAsk.
+core::ClientShape RunCommandSink::client_shape(const overseer::ShapeChoice& choice) {
+  if (const auto* stored = std::get_if<overseer::StoredShape>(&choice)) {
+    const auto mesh = shapes_.find(stored->hash);
+    if (mesh) courier_.bring(stored->hash, *mesh);  // or some other overseer has brought it
+    using As = overseer::StoredShape::As;
+    const core::MeshUse use = stored->as == As::kMesh   ? core::MeshUse::kTriangles
+                              : stored->as == As::kHull ? core::MeshUse::kHull
+                                                        : core::MeshUse::kDecomposition;
+    return core::MeshRef{stored->hash, use};
+  }
+  return std::visit(
+      [](const auto& shape) -> core::ClientShape {
+        if constexpr (std::is_constructible_v<core::ClientShape, decltype(shape)>) {
+          return shape;
+        } else {
+          throw BadAsk("a shape of this kind has to be sent to /api/shapes as a mesh");
+        }
+      },
+      std::get<core::Shape>(choice));
+}
+
+core::Ask RunCommandSink::ask_for(const overseer::Command& command) {
+  if (const auto* c = std::get_if<overseer::Spawn>(&command)) {
+    core::NewBody body;
+    body.pose = c->pose;
+    body.v_WB = c->v_WB;
+    body.w_WB = c->w_WB;
+    if (const auto* name = std::get_if<std::string>(&c->kind)) {
+      body.prototype = *name;
+    } else {
+      const auto& kind = std::get<overseer::NewKind>(c->kind);
+      body.shape = client_shape(kind.shape);
+      body.mass_kg = kind.mass_kg;
+    }
+    return body;
+  }
+  if (const auto* c = std::get_if<overseer::PlaceStatic>(&command)) {
+    return core::NewStatic{client_shape(c->shape), c->pose};
+  }
+  if (const auto* c = std::get_if<overseer::Remove>(&command)) {
+    if (const auto* body = std::get_if<core::BodyId>(&c->what)) return core::RemoveBody{*body};
+    return core::RemoveStatic{std::get<core::StaticId>(c->what)};
+  }
+  if (const auto* c = std::get_if<overseer::Impulse>(&command)) return core::Impulse{c->body, c->J_W, c->p_W};
+  if (const auto* c = std::get_if<overseer::SetVelocity>(&command)) {
+    return core::SetVelocity{c->body, c->v_WB, c->w_WB};
+  }
+  if (const auto* c = std::get_if<overseer::SetRate>(&command)) return core::SetRate{c->value};
+  if (const auto* c = std::get_if<overseer::SetRegions>(&command)) return core::Repartition{c->boxes};
+  if (const auto* c = std::get_if<overseer::LoadScene>(&command)) return core::ChangeScene{c->name};
+  if (const auto* c = std::get_if<overseer::CastRay>(&command)) return core::Ray{c->from, c->to, {}};
+  throw BadAsk("not supported by this run");
+}
+
+void RunCommandSink::carry(const overseer::Request& request) {
+  try {
+    if (!steering_.is_there()) throw BadAsk("no node of this run is there");
+    core::Command command;
+    command.ask = ask_for(request.command);
+    sent_[courier_.send(std::move(command))] = {request.client, request.id};
+  } catch (const std::runtime_error& error) {
+    replies_.push_back({request.client, request.id, false, error.what(), nullptr});
+  }
+}
+
 std::vector<overseer::Reply> RunCommandSink::take_replies() {
+  for (const Delivery& delivery : courier_.take()) {
+    const auto found = sent_.find(delivery.request);
+    if (found == sent_.end()) continue;
+    replies_.push_back({found->second.client, found->second.request, delivery.done, delivery.text, result_of(delivery)});
+    sent_.erase(found);
+  }
   std::erase_if(under_way_, [this](const UnderWay& waiting) {
     const bool done = steering_.has_taken_effect(waiting.command);
     if (!done && Clock::now() < waiting.deadline) return false;

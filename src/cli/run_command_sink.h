@@ -1,20 +1,25 @@
-// What pages can ask of a run that is steered by run commands: pause, resume, step, reset. Never waits; a request is
-// answered when every node shows its effect.
+// Carries what pages ask for to the run: pause, resume, step and reset as run commands, everything else as commands of
+// clients (cli/courier.h). Never waits; a request is answered when its effect has been seen.
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "cli/courier.h"
 #include "cli/run_steering.h"
 #include "overseer/commands.h"
+#include "overseer/shape_store.h"
 
 namespace aurasim::cli {
 
 class RunCommandSink final : public overseer::CommandSink {
  public:
-  /// Both outlive it.
-  RunCommandSink(const config::Launch& launch, dds::ControlBus& control) : steering_(launch, control) {}
+  /// All of these outlive it.
+  RunCommandSink(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
+                 const overseer::ShapeStore& shapes)
+      : steering_(launch, control), courier_(participant, control, launch.agreement()), shapes_(shapes) {}
 
   void submit(overseer::Request request) override;
   std::vector<overseer::Reply> take_replies() override;
@@ -28,7 +33,18 @@ class RunCommandSink final : public overseer::CommandSink {
   };
   void steer(const overseer::Request& request, dds::RunCommandKind kind, std::int64_t count);
 
+  struct Sent {
+    overseer::ClientId client{};
+    std::string request;
+  };
+  void carry(const overseer::Request& request);
+  core::ClientShape client_shape(const overseer::ShapeChoice& choice);
+  core::Ask ask_for(const overseer::Command& command);
+
   RunSteering steering_;
+  Courier courier_;
+  const overseer::ShapeStore& shapes_;
+  std::map<std::uint64_t, Sent> sent_;
   std::vector<UnderWay> under_way_;
   std::vector<overseer::Reply> replies_;
 };

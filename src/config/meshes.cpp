@@ -167,4 +167,12 @@ Vec3 centre_of_mass(const TriangleMesh& mesh) {
   return mean + moment / volume;
 }
 
+core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use) {
+  if (use == core::MeshUse::kTriangles) return mesh;
+  core::ConvexHull hull{hull_points(mesh)};
+  const core::Vec3 centre = centre_of_mass(mesh);
+  for (core::Vec3& p : hull.points) p -= centre;
+  return hull;
+}
+
 }  // namespace aurasim::config

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/order.h"
 #include "core/scene.h"
 
 namespace aurasim::config {
@@ -31,6 +32,9 @@ std::variant<core::TriangleMesh, std::string> read_mesh(const std::string& name,
 
 /// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
 std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);
+
+/// A client's mesh for the use that it is meant for. A hull's points are about their centre of mass.
+core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use);
 
 /// Centre of mass of the volume inside a closed mesh; the mean of its points if it encloses nothing.
 core::Vec3 centre_of_mass(const core::TriangleMesh& mesh);

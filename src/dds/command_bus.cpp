@@ -1,6 +1,5 @@
 #include "dds/command_bus.h"
 
-#include <map>
 #include <random>
 #include <set>
 #include <utility>
@@ -30,8 +29,7 @@ struct CommandDoor::Impl {
         region(region_in),
         map_version(map_version_in),
         commands(participant.domain(), in_world(TopicId::kCommand), bell),
-        replies(participant.domain(), in_world(TopicId::kCommandReply), bell),
-        shapes(participant.domain(), in_world(TopicId::kShape), bell) {}
+        replies(participant.domain(), in_world(TopicId::kCommandReply), bell) {}
 
   Participant& participant;
   core::RegionId region;
@@ -39,12 +37,9 @@ struct CommandDoor::Impl {
   Bell bell;
   Reader commands;
   Writer replies;
-  Reader shapes;
   wire::Command command;  // reused
   wire::CommandReply reply;
-  wire::MeshShape shape;
   std::set<std::uint64_t> requests;
-  std::map<std::uint64_t, core::TriangleMesh> meshes;
   WireErrors refused;
 };
 
@@ -80,20 +75,6 @@ void CommandDoor::reply(core::CommandReply reply) {
   reply.source = impl_->region;
   encode(reply, impl_->map_version, impl_->reply);
   impl_->replies.write(&impl_->reply);
-}
-
-std::optional<core::TriangleMesh> CommandDoor::mesh(std::uint64_t hash) {
-  while (impl_->shapes.take(&impl_->shape)) {
-    auto decoded = decode(impl_->shape, {});
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
-      impl_->refused.add(*error);
-    } else {
-      auto& named = std::get<NamedMesh>(decoded);
-      impl_->meshes.try_emplace(named.hash, std::move(named.mesh));
-    }
-  }
-  const auto found = impl_->meshes.find(hash);
-  return found == impl_->meshes.end() ? std::nullopt : std::optional(found->second);
 }
 
 const WireErrors& CommandDoor::refused() const { return impl_->refused; }

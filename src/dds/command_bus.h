@@ -1,10 +1,9 @@
-// Topics command, command_reply and shape: what clients ask of a run, what they are told, and the meshes that they bring.
+// Topics command, command_reply and shape: what clients ask of a run, what they are told, the meshes that they bring.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/command.h"
@@ -25,8 +24,6 @@ class CommandDoor {
   /// New ones, in order of arrival; each request once.
   std::vector<core::Command> take();
   void reply(core::CommandReply reply);
-  /// Takes in what has come; nothing if there is no such mesh (yet).
-  std::optional<core::TriangleMesh> mesh(std::uint64_t hash);
 
   const WireErrors& refused() const;
 

@@ -41,6 +41,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"command", "aurasim::wire::Command"},
     {"command_reply", "aurasim::wire::CommandReply"},
     {"shape", "aurasim::wire::MeshShape"},
+    {"orders", "aurasim::wire::AuraBatch"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.

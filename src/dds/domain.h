@@ -32,9 +32,10 @@ enum class TopicId : std::uint8_t {
   kReplicaKey,
   kCommand,
   kCommandReply,
-  kShape
+  kShape,
+  kOrders
 };
-inline constexpr std::size_t kTopicCount = 11;
+inline constexpr std::size_t kTopicCount = 12;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "config/meshes.h"
+#include "node/scene_growth.h"
 #include "overseer/replay.h"
 
 namespace aurasim::overseer {
@@ -15,6 +17,7 @@ using core::RegionId;
 
 namespace {
 
+constexpr std::size_t kRoomForClients = 20'000;  // prototypes that clients may add
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kLookPeriod = 20ms;
@@ -47,10 +50,13 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
       web_(web),
       sink_(sink),
       observer_settings_{launch.regions.version(), static_cast<std::uint32_t>(launch.regions.size()),
-                         static_cast<std::uint32_t>(launch.scene.prototypes.size())},
-      replicas_(participant, observer_settings_),
+                         static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients)},
+      growth_reader_(participant),
+      meshes_(participant),
+      scene_(launch.scene),
       view_settings_{.region_count = launch.regions.size(),
                      .unclaimed_patience = static_cast<core::Step>(3 * launch.time.step_hz)} {
+  replicas_->emplace(participant, observer_settings_);
   view_.emplace(view_settings_);
   Hello hello;
   hello.scene = launch.scene.name;
@@ -66,7 +72,7 @@ void Overseer::record(const std::filesystem::path& file) {
   recording_.emplace(file);
   recording_began_s_ = now_s();
   write_down(ChunkKind::kAbout, recorded_run_text({launch_.scene.name, launch_.step_s(), launch_.observe.tick_hz}));
-  write_down(ChunkKind::kScene, scene_message(launch_.scene, told_generation_));
+  write_down(ChunkKind::kScene, scene_text());
   write_down(ChunkKind::kMap, map_message(launch_.regions));
 }
 
@@ -91,17 +97,38 @@ void Overseer::write_down(const WorldFrame& frame) {
 }
 
 void Overseer::tell_scene() {
-  const std::string text = scene_message(launch_.scene, told_generation_);
+  const std::string text = scene_text();
   web_.tell(Notice::kScene, text);
   write_down(ChunkKind::kScene, text);
+}
+
+std::string Overseer::scene_text() const { return scene_message(scene_, told_generation_, removed_statics_); }
+
+/// What clients have added to the scene, once the run shows that generation.
+void Overseer::grow() {
+  if (std::optional<dds::Growth> newest = growth_reader_.take()) growth_ = std::move(newest);
+  if (!growth_ || growth_->generation != told_generation_) return;
+  const auto mesh = [this](const core::MeshRef& ref) -> std::optional<core::Shape> {
+    const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
+    return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
+  };
+  scene_ = launch_.scene;
+  removed_statics_.clear();
+  for (const core::Order& order : growth_->orders) {
+    node::extend(scene_, order.action, mesh);
+    if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) removed_statics_.insert(removed->id);
+  }
+  growth_.reset();
+  tell_scene();
 }
 
 double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
 void Overseer::turn() {
-  replicas_.wait(kRound);
+  replicas_->wait(kRound);
   look_at_nodes();
-  for (core::Replica& replica : replicas_.take()) view_->accept(std::move(replica), now_s());
+  for (core::Replica& replica : replicas_->take()) view_->accept(std::move(replica), now_s());
+  grow();
   compose_frames();
   serve_commands();
   tell_status();
@@ -135,7 +162,10 @@ void Overseer::compose_frames() {
     any = true;
     if (frame->generation != told_generation_) {
       told_generation_ = frame->generation;
+      scene_ = launch_.scene;
+      removed_statics_.clear();
       tell_scene();
+      grow();
     }
     web_.show(*frame);
     write_down(*frame);
@@ -160,8 +190,9 @@ void Overseer::show_auras() {
       });
     }
     for (const core::AuraRecord& aura : batch.updates) {
-      const core::Prototype& prototype = launch_.scene.prototypes[core::value_of(aura.prototype)];
-      const double radius_m = core::bounding_radius(launch_.scene.shapes[prototype.shape].shape);
+      if (core::value_of(aura.prototype) >= scene_.prototypes.size()) continue;
+      const core::Prototype& prototype = scene_.prototypes[core::value_of(aura.prototype)];
+      const double radius_m = core::bounding_radius(scene_.shapes[prototype.shape].shape);
       aura_radius_m_[aura.id] = static_cast<float>(radius_m + aura.speed_m_s * ahead_s);
     }
     for (const core::BodyId id : batch.deletes) aura_radius_m_.erase(id);
@@ -238,8 +269,8 @@ void Overseer::tell_status() {
   add("frames_total", "Frames composed.", view.frames);
   add("incomplete_frames_total", "Frames composed without a region that is alive.", view.incomplete);
   add("lost_ticks_total", "Ticks of a region that never came.", view.gaps);
-  add("replicas_total", "Replicas received.", replicas_.received());
-  add("refused_replicas_total", "Replicas refused.", replicas_.refused().total());
+  add("replicas_total", "Replicas received.", replicas_->received());
+  add("refused_replicas_total", "Replicas refused.", replicas_->refused().total());
   text +=
       fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
                   view_->body_count());

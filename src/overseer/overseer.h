@@ -7,11 +7,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "config/launch.h"
 #include "dds/control.h"
+#include "dds/growth_bus.h"
 #include "dds/replica_bus.h"
 #include "overseer/commands.h"
 #include "overseer/page_messages.h"
@@ -39,6 +41,8 @@ class Overseer {
 
   double now_s() const;
   void tell_scene();
+  std::string scene_text() const;
+  void grow();
   void write_down(ChunkKind kind, const std::string& text);
   void write_down(const WorldFrame& frame);
   template <class Job>
@@ -61,7 +65,12 @@ class Overseer {
   WebServer& web_;
   CommandSink& sink_;
   dds::ObserverSettings observer_settings_;
-  dds::ReplicaReader replicas_;
+  std::optional<dds::ReplicaReader> replicas_;
+  dds::GrowthReader growth_reader_;
+  dds::MeshReader meshes_;
+  core::Scene scene_;                  ///< as it has grown
+  std::set<core::StaticId> removed_statics_;
+  std::optional<dds::Growth> growth_;  ///< waits until its generation is shown
   std::unique_ptr<dds::AuraWatch> auras_;  ///< while a page wants them
   std::map<core::BodyId, float> aura_radius_m_;
   ViewSettings view_settings_;

@@ -74,7 +74,8 @@ std::string hello_message(const Hello& hello) {
   return text_of(json);
 }
 
-std::string scene_message(const core::Scene& scene, core::Generation generation) {
+std::string scene_message(const core::Scene& scene, core::Generation generation,
+                          const std::set<core::StaticId>& removed) {
   Json shapes = Json::array(), prototypes = Json::array(), statics = Json::array();
   for (const core::NamedShape& shape : scene.shapes) {
     shapes.push_back(shape_to_json(shape.shape));
@@ -83,6 +84,7 @@ std::string scene_message(const core::Scene& scene, core::Generation generation)
   for (const core::Prototype& prototype : scene.prototypes)
     prototypes.push_back({{"name", prototype.name}, {"shape", prototype.shape}, {"mass_kg", prototype.mass_kg}});
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
+    if (removed.contains(core::StaticId{static_cast<std::uint32_t>(i)})) continue;
     const core::StaticBody& body = scene.statics[i];
     statics.push_back({{"id", i},
                        {"name", body.name},

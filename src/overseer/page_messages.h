@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <optional>
 #include <string>
 
@@ -24,7 +25,9 @@ struct Hello {
 };
 std::string hello_message(const Hello& hello);
 
-std::string scene_message(const core::Scene& scene, core::Generation generation);
+/// `removed`: statics that are there no longer; the others keep their ids.
+std::string scene_message(const core::Scene& scene, core::Generation generation,
+                          const std::set<core::StaticId>& removed = {});
 std::string map_message(const core::RegionMap& map);
 
 struct RunStatus {

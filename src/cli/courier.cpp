@@ -1,0 +1,130 @@
+#include "cli/courier.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 6s;
+constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it has obeyed
+constexpr auto kPatienceForRays = 400ms;
+
+std::optional<core::BodyId> subject_of(const core::Ask& ask) {
+  if (const auto* a = std::get_if<core::RemoveBody>(&ask)) return a->id;
+  if (const auto* a = std::get_if<core::Impulse>(&ask)) return a->id;
+  if (const auto* a = std::get_if<core::SetVelocity>(&ask)) return a->id;
+  return {};
+}
+
+}  // namespace
+
+Courier::Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
+    : control_(control), agreement_(agreement), client_(participant) {}
+
+std::vector<const dds::Status*> Courier::live_nodes() {
+  std::vector<const dds::Status*> live;
+  for (const auto& [region, seen] : control_.statuses()) {
+    const bool ended = seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
+    if (!seen.lost && !ended && seen.status.agreement == agreement_) live.push_back(&seen.status);
+  }
+  return live;
+}
+
+std::uint64_t Courier::send(core::Command command) {
+  UnderWay under_way;
+  under_way.subject = subject_of(command.ask);
+  under_way.delivery.is_ray = std::holds_alternative<core::Ray>(command.ask);
+  under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
+  under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
+  const auto live = live_nodes();
+  const std::uint64_t map_version = live.empty() ? 0 : live.front()->map_version;
+  const std::uint64_t request = client_.send(std::move(command), map_version);
+  under_way.delivery.request = request;
+  under_way_.emplace(request, std::move(under_way));
+  return request;
+}
+
+void Courier::note(const core::CommandReply& reply, UnderWay& under_way) {
+  Delivery& delivery = under_way.delivery;
+  switch (reply.outcome) {
+    case core::Outcome::kAccepted:
+      under_way.accepted = true;
+      under_way.deadline = Clock::now() + kPatienceAfterIt;
+      delivery.at_step = reply.at_step;
+      delivery.object = reply.object;
+      return;
+    case core::Outcome::kDone:
+      delivery.done = true;
+      delivery.at_step = reply.at_step;
+      delivery.text = fmt::format("done at step {}", reply.at_step);
+      under_way.deadline = {};
+      return;
+    case core::Outcome::kRefused:
+      delivery.text = reply.text;
+      under_way.deadline = {};
+      return;
+    case core::Outcome::kSeen:
+      under_way.answered.push_back(reply.source);
+      delivery.at_step = std::max(delivery.at_step, reply.at_step);
+      if (!reply.object || reply.distance_m >= delivery.distance_m) return;
+      delivery.object = reply.object;
+      delivery.p_W = reply.p_W;
+      delivery.normal_W = reply.normal_W;
+      delivery.distance_m = reply.distance_m;
+      return;
+  }
+}
+
+bool Courier::has_ended(UnderWay& under_way) {
+  Delivery& delivery = under_way.delivery;
+  const bool late = Clock::now() >= under_way.deadline;
+  if (delivery.is_ray) {
+    delivery.silent.clear();
+    for (const dds::Status* node : live_nodes()) {
+      if (std::ranges::find(under_way.answered, node->region) == under_way.answered.end()) {
+        delivery.silent.push_back(node->region);
+      }
+    }
+    if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
+    delivery.done = !under_way.answered.empty();
+    delivery.text = delivery.done ? "" : "no region has answered";
+    return true;
+  }
+  if (!late) {
+    const auto live = live_nodes();
+    const bool paused = !live.empty() && std::ranges::all_of(live, [](const dds::Status* node) {
+      return node->state == dds::NodeState::kPaused;
+    });
+    if (!under_way.accepted || !paused) return false;
+    delivery.done = true;
+    delivery.text = fmt::format("the run is paused; takes effect in step {}", delivery.at_step);
+    return true;
+  }
+  if (!delivery.text.empty()) return true;
+  delivery.text = !under_way.accepted ? "no node has taken it"
+                  : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
+                                      : "it was taken, but nobody has shown its effect";
+  return true;
+}
+
+std::vector<Delivery> Courier::take() {
+  for (const core::CommandReply& reply : client_.take()) {
+    const auto found = under_way_.find(reply.request);
+    if (found != under_way_.end()) note(reply, found->second);
+  }
+  std::vector<Delivery> ended;
+  std::erase_if(under_way_, [&](auto& entry) {
+    if (!has_ended(entry.second)) return false;
+    ended.push_back(entry.second.delivery);
+    return true;
+  });
+  return ended;
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,65 @@
+// Carries commands to a run and brings back what became of them: one outcome for each, whatever replies there were on
+// the way. Never waits.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/command.h"
+#include "dds/command_bus.h"
+#include "dds/control.h"
+
+namespace aurasim::cli {
+
+struct Delivery {
+  std::uint64_t request = 0;
+  bool done = false;
+  std::string text;  ///< why not, or what was done
+  core::Step at_step = 0;
+  std::optional<core::ObjectRef> object;  ///< the new body or static; what the ray hit
+  // Of a ray:
+  bool is_ray = false;
+  core::Vec3 p_W = core::Vec3::Zero();
+  core::Vec3 normal_W = core::Vec3::Zero();
+  double distance_m = 0;
+  std::vector<core::RegionId> silent;  ///< regions that did not answer: there may be something nearer
+};
+
+class Courier {
+ public:
+  /// Both outlive it. `agreement`: of the run that is meant.
+  Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement);
+
+  bool somebody_listens() const { return client_.listeners() > 0; }
+  /// Returns the request's id.
+  std::uint64_t send(core::Command command);
+  void bring(std::uint64_t hash, const core::TriangleMesh& mesh) { client_.bring(hash, mesh); }
+  /// What has come to an end since the last call.
+  std::vector<Delivery> take();
+  void wait(std::chrono::nanoseconds time_out) { client_.wait(time_out); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct UnderWay {
+    Delivery delivery;
+    bool accepted = false;
+    std::optional<core::BodyId> subject;
+    std::vector<core::RegionId> answered;
+    Clock::time_point deadline;
+  };
+
+  std::vector<const dds::Status*> live_nodes();
+  void note(const core::CommandReply& reply, UnderWay& under_way);
+  bool has_ended(UnderWay& under_way);
+
+  dds::ControlBus& control_;
+  std::uint64_t agreement_;
+  dds::CommandClient client_;
+  std::map<std::uint64_t, UnderWay> under_way_;
+};
+
+}  // namespace aurasim::cli

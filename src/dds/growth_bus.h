@@ -1,0 +1,62 @@
+// Topics orders and shape: what clients have added to the scene since the run began, for observers and for tools that
+// come late.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/order.h"
+#include "core/scene.h"
+#include "dds/participant.h"
+
+namespace aurasim::dds {
+
+/// Additions in sequence: all of one generation.
+struct Growth {
+  core::Generation generation = 0;
+  std::vector<core::Order> orders;
+};
+
+/// One per node; only the one that leads the run speaks. Used by one thread. The participant must outlive it.
+class GrowthWriter {
+ public:
+  GrowthWriter(Participant& participant, core::RegionId region);
+  ~GrowthWriter();
+  void send(const Growth& growth);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Used by one thread. The participant must outlive it.
+class GrowthReader {
+ public:
+  explicit GrowthReader(Participant& participant);
+  ~GrowthReader();
+  /// The newest that came since the last call.
+  std::optional<Growth> take();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Meshes that clients have brought. Used by one thread. The participant must outlive it.
+class MeshReader {
+ public:
+  explicit MeshReader(Participant& participant);
+  ~MeshReader();
+  /// Takes in what has come; null if there is no such mesh (yet).
+  const core::TriangleMesh* mesh(std::uint64_t hash);
+  std::uint64_t refused() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aurasim::dds
