@@ -156,7 +156,13 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   ASSERT_NO_FATAL_FAILURE(start_run(160));
   Process& overseer = start_overseer();
   Page page(port_of(overseer));
-  ASSERT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96; }));
+  const auto of_the_dead = [&] {
+    std::size_t count = 0;
+    for (const auto& [id, body] : page.world.by_id()) count += body.host == 2;
+    return count;
+  };
+  ASSERT_TRUE(sees_the_run(page));
+  ASSERT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96 && of_the_dead() > 0; }));
   pid_t node = 0;
   for (const pid_t child : children_of(run_->pid())) {
     const Words words = command_line_of(child);
@@ -166,12 +172,6 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   }
   ASSERT_GT(node, 0);
   ::kill(node, SIGKILL);
-  const auto of_the_dead = [&] {
-    std::size_t count = 0;
-    for (const auto& [id, body] : page.world.by_id()) count += body.host == 2;
-    return count;
-  };
-  EXPECT_GT(of_the_dead(), 0U);
   EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, 20s));
   EXPECT_GT(page.world.bodies.size(), 20U);
   EXPECT_EQ(page.latest["status"].at("nodes")[2].at("lost"), true);
