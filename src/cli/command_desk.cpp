@@ -115,7 +115,8 @@ void CommandDesk::refuse(const core::Command& command, std::string why) {
   door_.reply(std::move(reply));
 }
 
-void CommandDesk::accept(const core::Command& command, const core::Order& order, std::optional<core::ObjectRef> object) {
+void CommandDesk::accept(const core::Command& command, const core::Order& order,
+                         std::optional<core::ObjectRef> object) {
   core::CommandReply reply;
   reply.request = command.request;
   reply.outcome = core::Outcome::kAccepted;

@@ -20,8 +20,8 @@ namespace aurasim::cli {
 /// What the lead knows of the run when a command comes.
 struct RunView {
   bool leads = false;
-  std::uint64_t bodies = 0;                             ///< in the whole run
-  std::function<bool(std::uint64_t hash)> all_have;     ///< has every node that is alive this mesh?
+  std::uint64_t bodies = 0;                          ///< in the whole run
+  std::function<bool(std::uint64_t hash)> all_have;  ///< has every node that is alive this mesh?
 };
 
 class CommandDesk {

@@ -91,11 +91,12 @@ struct Problem {
     const std::string where = first_of({problem_with_place(ask.pose.p_WB), problem_with_speed(ask.v_WB, c.launch)});
     if (!where.empty()) return where;
     if (!ask.shape) {
-      const bool known = std::ranges::find(c.scene.prototypes, ask.prototype, &core::Prototype::name) !=
-                         c.scene.prototypes.end();
+      const bool known =
+          std::ranges::find(c.scene.prototypes, ask.prototype, &core::Prototype::name) != c.scene.prototypes.end();
       return known ? std::string() : fmt::format("the scene has no prototype \"{}\"", ask.prototype);
     }
-    if (const auto* mesh = std::get_if<core::MeshRef>(&*ask.shape); mesh && mesh->use == core::MeshUse::kDecomposition) {
+    if (const auto* mesh = std::get_if<core::MeshRef>(&*ask.shape);
+        mesh && mesh->use == core::MeshUse::kDecomposition) {
       return "bodies are not decomposed into convex parts; use the hull of the mesh";
     }
     if (!(ask.mass_kg >= kLightest_kg && ask.mass_kg <= kHeaviest_kg)) {

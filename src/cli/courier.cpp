@@ -119,11 +119,14 @@ std::vector<Delivery> Courier::take() {
     if (found != under_way_.end()) note(reply, found->second);
   }
   std::vector<Delivery> ended;
-  std::erase_if(under_way_, [&](auto& entry) {
-    if (!has_ended(entry.second)) return false;
-    ended.push_back(entry.second.delivery);
-    return true;
-  });
+  for (auto entry = under_way_.begin(); entry != under_way_.end();) {
+    if (!has_ended(entry->second)) {
+      ++entry;
+      continue;
+    }
+    ended.push_back(std::move(entry->second.delivery));
+    entry = under_way_.erase(entry);
+  }
   return ended;
 }
 

@@ -141,7 +141,8 @@ std::vector<overseer::Reply> RunCommandSink::take_replies() {
   for (const Delivery& delivery : courier_.take()) {
     const auto found = sent_.find(delivery.request);
     if (found == sent_.end()) continue;
-    replies_.push_back({found->second.client, found->second.request, delivery.done, delivery.text, result_of(delivery)});
+    replies_.push_back(
+        {found->second.client, found->second.request, delivery.done, delivery.text, result_of(delivery)});
     sent_.erase(found);
   }
   std::erase_if(under_way_, [this](const UnderWay& waiting) {

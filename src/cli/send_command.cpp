@@ -1,33 +1,50 @@
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
+#include "cli/courier.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
 #include "cli/run_steering.h"
+#include "config/meshes.h"
 
 namespace aurasim::cli {
 namespace {
 
 using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
+using Numbers = std::vector<double>;
 
-const std::map<std::string, Kind> kKinds = {{"pause", Kind::kPause},
-                                            {"resume", Kind::kResume},
-                                            {"step", Kind::kStep},
-                                            {"reset", Kind::kReset},
-                                            {"stop", Kind::kStop}};
+constexpr auto kPatience = 10s;
+
+const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
+                                               {"resume", Kind::kResume},
+                                               {"step", Kind::kStep},
+                                               {"reset", Kind::kReset},
+                                               {"stop", Kind::kStop}};
 
 struct Arguments {
-  std::string what;
   FileArguments files;
+  std::string what;
   std::int64_t count = 1;
+  core::Step at_step = 0;
+  std::string prototype;
+  std::string mesh_file;
+  std::string scene;
+  std::uint64_t body = 0;
+  std::uint32_t fixed = 0;
+  bool is_static = false;
+  double radius_m = 0;
+  double height_m = 0;
+  double mass_kg = 1;
+  double rate = 1;
+  Numbers size, p, q, v, w, J, from, to, boxes;
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -35,33 +52,223 @@ struct Arguments {
   leave(static_cast<int>(ExitCode::kFailed));
 }
 
-int send(const Arguments& arguments) {
-  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {launch.regions.version(), {}});
-  RunSteering steering(launch, control);
-  if (!steering.find_run(5s)) {
-    fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
+core::Vec3 vector(const Numbers& v) { return v.size() == 3 ? core::Vec3(v[0], v[1], v[2]) : core::Vec3::Zero(); }
+
+core::Pose pose(const Arguments& a) {
+  core::Pose pose{vector(a.p), core::Quat::Identity()};
+  if (a.q.size() == 4) pose.q_WB = core::Quat(a.q[0], a.q[1], a.q[2], a.q[3]).normalized();
+  return pose;
+}
+
+/// FNV-1a.
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, Courier& courier) {
+  auto mesh = config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
+  if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
+  const auto& triangles = std::get<core::TriangleMesh>(mesh);
+  std::string content;
+  for (const core::Vec3& p : triangles.points) content += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+  const std::uint64_t hash = hash_of(content);
+  courier.bring(hash, triangles);
+  return {hash, use};
+}
+
+core::ClientShape shape(const Arguments& a, core::MeshUse use, Courier& courier) {
+  if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, courier);
+  if (a.size.size() == 3) return core::Box{vector(a.size) / 2};
+  if (a.radius_m > 0 && a.height_m > 0) return core::Capsule{a.radius_m, a.height_m};
+  if (a.radius_m > 0) return core::Sphere{a.radius_m};
+  fail("which shape? --size X Y Z, --radius R [--height H] or --mesh FILE");
+}
+
+core::Ask ask_for(const Arguments& a, Courier& courier) {
+  if (a.what == "spawn") {
+    core::NewBody body;
+    body.prototype = a.prototype;
+    if (a.prototype.empty()) body.shape = shape(a, core::MeshUse::kHull, courier);
+    body.mass_kg = a.mass_kg;
+    body.pose = pose(a);
+    body.v_WB = vector(a.v);
+    body.w_WB = vector(a.w);
+    return body;
   }
-  const dds::RunCommand command = steering.send(kKinds.at(arguments.what), arguments.count);
-  if (!steering.wait_for_effect(command, 10s)) {
+  if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, courier), pose(a)};
+  if (a.what == "remove" && a.is_static) return core::RemoveStatic{core::StaticId{a.fixed}};
+  if (a.what == "remove") return core::RemoveBody{core::BodyId{a.body}};
+  if (a.what == "impulse") {
+    return core::Impulse{core::BodyId{a.body}, vector(a.J), a.p.empty() ? std::nullopt : std::optional(vector(a.p))};
+  }
+  if (a.what == "velocity") {
+    return core::SetVelocity{core::BodyId{a.body}, vector(a.v),
+                             a.w.empty() ? std::nullopt : std::optional(vector(a.w))};
+  }
+  if (a.what == "rate") return core::SetRate{a.rate};
+  if (a.what == "scene") return core::ChangeScene{a.scene};
+  if (a.what == "ray") return core::Ray{vector(a.from), vector(a.to), {}};
+  core::Repartition regions;
+  for (std::size_t i = 0; i + 3 < a.boxes.size(); i += 4) {
+    regions.boxes.push_back({a.boxes[i], a.boxes[i + 1], a.boxes[i + 2], a.boxes[i + 3]});
+  }
+  return regions;
+}
+
+nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+[[noreturn]] void print(const Delivery& delivery) {
+  if (!delivery.done) fail(delivery.text);
+  nlohmann::json out = {{"step", delivery.at_step}};
+  if (delivery.object)
+    out[*delivery.object >= 0 ? "body" : "static"] = *delivery.object >= 0 ? *delivery.object : -1 - *delivery.object;
+  if (delivery.is_ray) {
+    out["hit"] = delivery.object.has_value();
+    out["complete"] = delivery.silent.empty();
+    if (delivery.object) {
+      out["p"] = list(delivery.p_W);
+      out["normal"] = list(delivery.normal_W);
+      out["distance_m"] = delivery.distance_m;
+    }
+  }
+  fmt::print("{}\n", out.dump());
+  leave(0);
+}
+
+[[noreturn]] void carry(const Arguments& arguments, dds::Participant& participant, dds::ControlBus& control,
+                        std::uint64_t agreement) {
+  Courier courier(participant, control, agreement);
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
+  while (!courier.somebody_listens() && in_time()) courier.wait(20ms);
+  core::Command command;
+  command.at_step = arguments.at_step;
+  command.ask = ask_for(arguments, courier);
+  courier.send(std::move(command));
+  while (in_time()) {
+    courier.wait(20ms);
+    for (const Delivery& delivery : courier.take()) print(delivery);
+  }
+  fail("no answer");
+}
+
+[[noreturn]] void steer(const Arguments& arguments, RunSteering& steering) {
+  const dds::RunCommand command = steering.send(kSteering.at(arguments.what), arguments.count);
+  if (!steering.wait_for_effect(command, kPatience)) {
     fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
   }
   fmt::print("{}: done at step {}\n", arguments.what, command.at_step);
   leave(0);
 }
 
+int send(const Arguments& arguments) {
+  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  dds::Participant participant(dds_settings(launch));
+  dds::ControlBus control(participant, {{}, {}});
+  RunSteering steering(launch, control);
+  if (!steering.find_run(5s)) {
+    fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
+  }
+  if (kSteering.contains(arguments.what)) steer(arguments, steering);
+  carry(arguments, participant, control, launch.agreement());
+}
+
+using Options = std::function<void(CLI::App&, Arguments&)>;
+
+void vector_option(CLI::App& command, const char* name, Numbers& value, const char* text, int count = 3) {
+  command.add_option(name, value, text)->expected(count);
+}
+
+void shape_options(CLI::App& command, Arguments& a) {
+  vector_option(command, "--size", a.size, "a box, side lengths in m");
+  command.add_option("--radius", a.radius_m, "a ball, m; with --height a capsule along z");
+  command.add_option("--height", a.height_m, "between the centres of the capsule's caps, m");
+  command.add_option("--mesh", a.mesh_file, "OBJ, STL or glTF file; bodies take its hull")->check(CLI::ExistingFile);
+}
+
+void place_options(CLI::App& command, Arguments& a) {
+  vector_option(command, "--p", a.p, "position, m");
+  vector_option(command, "--q", a.q, "rotation, quaternion w x y z", 4);
+}
+
+void spawn_options(CLI::App& command, Arguments& a) {
+  command.add_option("--prototype", a.prototype, "name of one of the scene's, instead of a shape");
+  shape_options(command, a);
+  place_options(command, a);
+  vector_option(command, "--v", a.v, "velocity, m/s");
+  vector_option(command, "--w", a.w, "angular velocity, rad/s");
+  command.add_option("--mass", a.mass_kg, "kg");
+}
+
+void static_options(CLI::App& command, Arguments& a) {
+  shape_options(command, a);
+  place_options(command, a);
+}
+
+void remove_options(CLI::App& command, Arguments& a) {
+  CLI::Option* body = command.add_option("--body", a.body, "id");
+  command.add_option("--static", a.fixed, "id")->excludes(body)->each([&a](const std::string&) { a.is_static = true; });
+}
+
+void impulse_options(CLI::App& command, Arguments& a) {
+  command.add_option("--body", a.body, "id")->required();
+  vector_option(command, "--J", a.J, "impulse, N s");
+  vector_option(command, "--p", a.p, "point of attack, m; otherwise the centre of mass");
+}
+
+void velocity_options(CLI::App& command, Arguments& a) {
+  command.add_option("--body", a.body, "id")->required();
+  vector_option(command, "--v", a.v, "m/s");
+  vector_option(command, "--w", a.w, "rad/s; otherwise the spin stays");
+}
+
+void ray_options(CLI::App& command, Arguments& a) {
+  vector_option(command, "--from", a.from, "m");
+  vector_option(command, "--to", a.to, "m");
+}
+
 }  // namespace
 
 void add_send(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("send", "steer a run: pause, resume, step, reset, stop");
+  CLI::App* send_app = program.add_subcommand("send", "tell a run what to do");
+  send_app->require_subcommand(1);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("COMMAND", arguments->what, "what to do")
-      ->required()
-      ->check(CLI::IsMember({"pause", "resume", "step", "reset", "stop"}));
-  arguments->files.add_to(*command);
-  command->add_option("--count", arguments->count, "step: how many steps")->check(CLI::Range(1, 1'000'000));
-  command->callback([arguments, &action] { action = [arguments] { return send(*arguments); }; });
+  const auto none = [](CLI::App&, Arguments&) {};
+  const std::vector<std::tuple<const char*, const char*, Options>> kinds = {
+      {"pause", "stand still", none},
+      {"resume", "go on", none},
+      {"step", "compute some states while paused",
+       [](CLI::App& c, Arguments& a) {
+         c.add_option("--count", a.count, "how many")->check(CLI::Range(1, 1'000'000));
+       }},
+      {"reset", "begin anew", none},
+      {"stop", "end the run", none},
+      {"spawn", "a new body", spawn_options},
+      {"static", "a new static, on every node", static_options},
+      {"remove", "take a body or a static out", remove_options},
+      {"impulse", "push a body", impulse_options},
+      {"velocity", "set a body's velocity", velocity_options},
+      {"rate", "slow motion and the like",
+       [](CLI::App& c, Arguments& a) { c.add_option("--value", a.rate, "simulated seconds per second")->required(); }},
+      {"scene", "begin anew with another scene",
+       [](CLI::App& c, Arguments& a) { c.add_option("--name", a.scene, "of its file")->required(); }},
+      {"regions", "give the nodes other regions",
+       [](CLI::App& c, Arguments& a) {
+         c.add_option("--boxes", a.boxes, "x0 y0 x1 y1 of each region, m")->required()->expected(4, 4096);
+       }},
+      {"ray", "what is first on the way from a point to another?", ray_options}};
+  for (const auto& [name, text, options] : kinds) {
+    CLI::App* command = send_app->add_subcommand(name, text);
+    arguments->files.add_to(*command);
+    options(*command, *arguments);
+    command->add_option("--at", arguments->at_step, "not before this state");
+    command->callback([arguments, &action, what = std::string(name)] {
+      arguments->what = what;
+      action = [arguments] { return send(*arguments); };
+    });
+  }
 }
 
 }  // namespace aurasim::cli

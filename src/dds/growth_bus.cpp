@@ -55,8 +55,8 @@ GrowthReader::~GrowthReader() = default;
 std::optional<Growth> GrowthReader::take() {
   std::optional<Growth> newest;
   const auto is_newer = [&newest](const core::AuraBatch& batch) {
-    return !newest || std::pair(batch.generation, batch.orders.size()) >=
-                          std::pair(newest->generation, newest->orders.size());
+    return !newest ||
+           std::pair(batch.generation, batch.orders.size()) >= std::pair(newest->generation, newest->orders.size());
   };
   while (impl_->reader.take(&impl_->sample)) {
     auto decoded = decode(impl_->sample, {});

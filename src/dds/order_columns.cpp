@@ -182,7 +182,8 @@ bool have_room(const wire::AuraBatch& in) {
                           {in.order_subject().size()},
                           {in.order_index().size()},
                           {in.order_number_count().size()}}) &&
-         none_negative(in.order_step()) && all_body_ids(in.order_subject()) && all_below(in.order_index(), kMostIndices);
+         none_negative(in.order_step()) && all_body_ids(in.order_subject()) &&
+         all_below(in.order_index(), kMostIndices);
 }
 
 }  // namespace

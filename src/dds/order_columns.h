@@ -1,5 +1,5 @@
-// Orders as the order_* columns of an AuraBatch. Kinds: the place of the action in core::Action. For each kind, what its
-// subject, index and numbers mean:
+// Orders as the order_* columns of an AuraBatch. Kinds: the place of the action in core::Action. For each kind, what
+// its subject, index and numbers mean:
 //    0 define shape      hash of a mesh; 0 sphere, 1 box, 2 capsule, 3 cylinder, 4 hull, 5 decomposition, 6 triangles
 //                        of the mesh; radius, half extents, or radius and height
 //    1 define prototype  -; shape; mass

@@ -56,7 +56,7 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
       scene_(launch.scene),
       view_settings_{.region_count = launch.regions.size(),
                      .unclaimed_patience = static_cast<core::Step>(3 * launch.time.step_hz)} {
-  replicas_->emplace(participant, observer_settings_);
+  replicas_.emplace(participant, observer_settings_);
   view_.emplace(view_settings_);
   Hello hello;
   hello.scene = launch.scene.name;

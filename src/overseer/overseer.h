@@ -68,9 +68,9 @@ class Overseer {
   std::optional<dds::ReplicaReader> replicas_;
   dds::GrowthReader growth_reader_;
   dds::MeshReader meshes_;
-  core::Scene scene_;                  ///< as it has grown
+  core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
-  std::optional<dds::Growth> growth_;  ///< waits until its generation is shown
+  std::optional<dds::Growth> growth_;      ///< waits until its generation is shown
   std::unique_ptr<dds::AuraWatch> auras_;  ///< while a page wants them
   std::map<core::BodyId, float> aura_radius_m_;
   ViewSettings view_settings_;
