@@ -1,6 +1,7 @@
 #include "dds/order_columns.h"
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -22,6 +23,7 @@ constexpr std::size_t kMostNumbers = 1 << 16;
 constexpr std::size_t kMostText = 1 << 16;
 constexpr std::uint32_t kMostIndices = 1 << 20;
 constexpr std::uint32_t kFirstMeshShape = 4;
+constexpr auto kMostSubjects = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
 struct Row {
   std::uint64_t subject = 0;
@@ -143,6 +145,8 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
   const std::size_t count = n.all.size();
   const bool finite = all_finite(row.numbers);
   const StaticId fixed{static_cast<std::uint32_t>(row.subject)};
+  const bool about_a_mesh = kind == 0;
+  if (!about_a_mesh && row.subject > kMostSubjects) return {};
   if (kind == 9) return regions_of(n);
   if (!finite) return {};
   switch (kind) {
@@ -182,8 +186,7 @@ bool have_room(const wire::AuraBatch& in) {
                           {in.order_subject().size()},
                           {in.order_index().size()},
                           {in.order_number_count().size()}}) &&
-         none_negative(in.order_step()) && all_body_ids(in.order_subject()) &&
-         all_below(in.order_index(), kMostIndices);
+         none_negative(in.order_step()) && all_below(in.order_index(), kMostIndices);
 }
 
 }  // namespace

@@ -44,6 +44,23 @@ TEST(AuraCodec, RoundTripKeepsEveryBit) {
   }
 }
 
+/// A batch that is refused for its orders would stop the cluster: whatever can be announced can be read.
+TEST(AuraCodec, OrdersOfEveryKindComeBack) {
+  core::AuraBatch batch = batch_of(1);
+  const wire::AuraBatch sent = encoded(batch);
+  const auto decoded = decode(sent, expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  const core::AuraBatch& got = std::get<core::AuraBatch>(decoded);
+  ASSERT_EQ(got.orders.size(), batch.orders.size());
+  for (std::size_t i = 0; i < got.orders.size(); ++i) {
+    EXPECT_EQ(got.orders[i].action.index(), batch.orders[i].action.index());
+    EXPECT_EQ(got.orders[i].sequence, batch.orders[i].sequence);
+    EXPECT_EQ(got.orders[i].request, batch.orders[i].request);
+    EXPECT_EQ(got.orders[i].at_step, batch.orders[i].at_step);
+  }
+  EXPECT_EQ(encoded(got), sent) << "every number of every order";
+}
+
 TEST(AuraCodec, AReusedTargetKeepsNothingOfTheLastMessage) {
   wire::AuraBatch out;
   encode(batch_of(50), out);
@@ -53,6 +70,24 @@ TEST(AuraCodec, AReusedTargetKeepsNothingOfTheLastMessage) {
   small.map_version = 0xfedc'ba98'7654'3210U;
   encode(small, out);
   EXPECT_EQ(out, encoded(small));
+}
+
+TEST(AuraCodec, OrdersThatAreNotSoundAreRefused) {
+  const std::vector<std::function<void(wire::AuraBatch&)>> spoilers = {
+      [](wire::AuraBatch& b) { b.order_kind()[0] = 11; },
+      [](wire::AuraBatch& b) { b.order_numbers()[0] = kNan; },
+      [](wire::AuraBatch& b) { b.order_numbers()[0] = -1; },
+      [](wire::AuraBatch& b) { b.order_number_count()[2] = 1'000'000; },
+      [](wire::AuraBatch& b) { b.order_number_count()[6] = 12; },
+      [](wire::AuraBatch& b) { b.order_text().clear(); },
+      [](wire::AuraBatch& b) { b.order_step()[3] = -1; },
+      [](wire::AuraBatch& b) { b.order_subject()[6] = ~0ULL; },
+      [](wire::AuraBatch& b) { b.order_request().pop_back(); }};
+  for (std::size_t i = 0; i < spoilers.size(); ++i) {
+    wire::AuraBatch batch = encoded(batch_of(1));
+    spoilers[i](batch);
+    EXPECT_TRUE(std::holds_alternative<WireError>(decode(batch, expected()))) << i;
+  }
 }
 
 struct Spoilt {

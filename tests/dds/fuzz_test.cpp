@@ -12,6 +12,7 @@
 #include "aurasimPubSubTypes.h"
 #include "control_messages.h"
 #include "dds/codec.h"
+#include "dds/command_codec.h"
 #include "dds/control_codec.h"
 #include "dds/guarded_type.h"
 #include "dds/replica_codec.h"
@@ -164,6 +165,27 @@ TEST(Fuzz, Replicas) {
   wire::Replica message;
   encode(testing::replica_of(5), message);
   report("replica", read_mutations<wire::ReplicaPubSubType>(message));
+}
+
+TEST(Fuzz, ClientCommands) {
+  wire::Command message;
+  encode(core::Command{42, 100, core::NewStatic{core::Box{{1, 2, 3}}, {}}}, 9, 1, message);
+  report("command", read_mutations<wire::CommandPubSubType>(message));
+}
+
+TEST(Fuzz, CommandReplies) {
+  wire::CommandReply message;
+  core::CommandReply reply;
+  reply.outcome = core::Outcome::kSeen;
+  reply.object = 3;
+  encode(reply, 1, message);
+  report("command_reply", read_mutations<wire::CommandReplyPubSubType>(message));
+}
+
+TEST(Fuzz, Meshes) {
+  wire::MeshShape message;
+  encode(NamedMesh{5, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}}, message);
+  report("shape", read_mutations<wire::MeshShapePubSubType>(message));
 }
 
 TEST(Guard, AnAbsurdLengthAsksForNoMemory) {

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "core/messages.h"
 
@@ -29,6 +30,35 @@ inline core::AuraRecord aura_of(std::uint64_t id) {
   return aura;
 }
 
+/// Hashes of meshes use all 64 bits.
+inline std::vector<core::Order> one_order_of_each_kind() {
+  const core::Pose pose{core::Vec3(1.5, -2, 1e-9), turn(0.7)};
+  const core::Vec3 v(0.1, -0.0, 3);
+  const std::vector<core::Action> actions = {
+      core::DefineShape{core::Sphere{0.3}},
+      core::DefineShape{core::Box{{0.1, 0.2, 0.3}}},
+      core::DefineShape{core::Capsule{0.2, 0.7}},
+      core::DefineShape{core::Cylinder{0.4, 0.9}},
+      core::DefineShape{core::MeshRef{0xffff'0000'1234'5678U, core::MeshUse::kTriangles}},
+      core::DefinePrototype{5, 2.5},
+      core::Spawn{core::BodyId{1'000'000'007}, core::PrototypeId{6}, pose, v, -v},
+      core::AddStatic{core::StaticId{3}, 4, pose},
+      core::RemoveBody{core::BodyId{12}},
+      core::RemoveStatic{core::StaticId{2}},
+      core::Impulse{core::BodyId{9}, v, {}},
+      core::Impulse{core::BodyId{9}, v, pose.p_WB},
+      core::SetVelocity{core::BodyId{8}, v, {}},
+      core::SetVelocity{core::BodyId{8}, v, -v},
+      core::SetRate{0.25},
+      core::Repartition{{{-1, -2, 0, 3}, {0, -2, 4, 3}}},
+      core::ChangeScene{"tower"}};
+  std::vector<core::Order> orders;
+  for (const core::Action& action : actions) {
+    orders.push_back({orders.size() + 1, 0xabcd'0000'0000'0000U + orders.size(), 1000, action});
+  }
+  return orders;
+}
+
 inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core::RegionId{1}) {
   core::AuraBatch batch;
   batch.source = source;
@@ -46,6 +76,7 @@ inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core:
   batch.hand_offs = {{core::RegionId{0}, 17}, {core::RegionId{2}, 0}};
   batch.dead = {core::RegionId{3}};
   batch.claims = {{core::BodyId{44}, 8}};
+  batch.orders = one_order_of_each_kind();
   return batch;
 }
 
