@@ -3,11 +3,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include "cli/command_limits.h"
 #include "cli/launch_setup.h"
 #include "cli/node_process.h"
 #include "cli/repartition.h"
 #include "cli/stop_signal.h"
+#include "config/launch_variants.h"
 
 namespace aurasim::cli {
 namespace {
@@ -28,8 +28,8 @@ void NodeProcess::change_if_due() {
 
 /// Bodies of the old scene are forgotten; the regions stay.
 void NodeProcess::change_scene(const std::string& name) {
-  launch_ = with_scene(launch_, name);
-  spdlog::info("region {}: scene {} from step {} on", core::value_of(options_.region), name, node_->current_step());
+  launch_ = config::with_scene(launch_, name);
+  spdlog::info("scene {} after step {}", name, node_->current_step());
   waits_to_start_ = generation_ + 1;
   node_.reset();
   connect_anew(neighbour_transport(launch_, options_.region));
@@ -90,15 +90,14 @@ void NodeProcess::wait_until_all_have_exchanged() {
 }
 
 void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
-  const std::uint64_t old_map = launch_.regions.version();
   settle_all();
   RepartitionSettings settings;
   settings.region = options_.region;
   settings.census = generation_ + 1;
-  settings.old_map = old_map;
   settings.deadline = Clock::now() + kPatience;
+  const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
+  observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
   observers_->tell_census(*node_, settings.census);
-  const auto changed = std::make_unique<config::Launch>(with_regions(launch_, boxes));
   const std::vector<core::Departure> departures = find_new_hosts(settings, *changed, participant_, *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
@@ -124,7 +123,6 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   waits_to_start_ = settings.census + 1;
   connect_anew(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
-  observers_->use_map(launch_.regions.version());
   observers_->begin_generation(generation_);
   desk_->change_map(generation_);
   control_.use_map(launch_.regions.version());
@@ -136,8 +134,8 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   map.generation = generation_;
   map.from_step = node_->current_step();
   control_.publish_map(map);
-  spdlog::info("region {}: new regions after step {}, {} bodies sent, {} taken in", core::value_of(options_.region),
-               node_->current_step(), moved.departures.size(), moved.arrivals.size());
+  spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
+               moved.arrivals.size());
 }
 
 }  // namespace aurasim::cli

@@ -88,14 +88,14 @@ std::vector<core::Contact> joint_pairs(const core::Scene& scene, const std::vect
   return pairs;
 }
 
-std::vector<Resident> take_census(const RepartitionSettings& settings, std::size_t regions,
+std::vector<Resident> take_census(const RepartitionSettings& settings, const core::RegionMap& map,
                                   dds::Participant& participant, const node::Node& node) {
   dds::ObserverSettings watched;
-  watched.map_version = settings.old_map;
-  watched.region_count = static_cast<std::uint32_t>(regions);
+  watched.map_version = map.version();
+  watched.region_count = static_cast<std::uint32_t>(map.size());
   watched.prototype_count = static_cast<std::uint32_t>(node.scene().prototypes.size());
   dds::ReplicaReader reader(participant, watched);
-  Census census(settings, regions, node.current_step());
+  Census census(settings, map.size(), node.current_step());
   while (!census.complete()) {
     if (Clock::now() > settings.deadline) {
       throw RepartitionFailed(fmt::format("new regions: regions {} have not said what they host", census.silent()));
@@ -110,7 +110,7 @@ std::vector<Resident> take_census(const RepartitionSettings& settings, std::size
 
 std::vector<core::Departure> find_new_hosts(const RepartitionSettings& settings, const config::Launch& launch,
                                             dds::Participant& participant, node::Node& node) {
-  const std::vector<Resident> residents = take_census(settings, launch.regions.size(), participant, node);
+  const std::vector<Resident> residents = take_census(settings, launch.regions, participant, node);
   core::Snapshot all;
   all.step = node.current_step();
   for (const Resident& resident : residents) all.bodies.push_back(resident.state);

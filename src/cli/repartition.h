@@ -24,7 +24,6 @@ class RepartitionFailed : public std::runtime_error {
 struct RepartitionSettings {
   core::RegionId region{};
   core::Generation census = 0;  ///< generation of the key frames that say who hosts what
-  std::uint64_t old_map = 0;
   std::chrono::steady_clock::time_point deadline;
 };
 
