@@ -36,9 +36,15 @@ std::vector<const dds::Status*> Courier::live_nodes() {
   return live;
 }
 
+bool Courier::all_listen() {
+  const std::size_t live = live_nodes().size();
+  return live > 0 && client_.listeners() >= live;
+}
+
 std::uint64_t Courier::send(core::Command command) {
   UnderWay under_way;
   under_way.subject = subject_of(command.ask);
+  under_way.has_time = command.at_step > 0;
   under_way.delivery.is_ray = std::holds_alternative<core::Ray>(command.ask);
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
@@ -94,6 +100,11 @@ bool Courier::has_ended(UnderWay& under_way) {
     if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
     delivery.done = !under_way.answered.empty();
     delivery.text = delivery.done ? "" : "no region has answered";
+    return true;
+  }
+  if (under_way.accepted && under_way.has_time && !delivery.done) {
+    delivery.done = true;
+    delivery.text = fmt::format("takes effect in step {}", delivery.at_step);
     return true;
   }
   if (!late) {

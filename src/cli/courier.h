@@ -34,7 +34,8 @@ class Courier {
   /// Both outlive it. `agreement`: of the run that is meant.
   Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement);
 
-  bool somebody_listens() const { return client_.listeners() > 0; }
+  /// All nodes that are alive hear us, and we them.
+  bool all_listen();
   /// Returns the request's id.
   std::uint64_t send(core::Command command);
   void bring(std::uint64_t hash, const core::TriangleMesh& mesh) { client_.bring(hash, mesh); }
@@ -47,6 +48,7 @@ class Courier {
   struct UnderWay {
     Delivery delivery;
     bool accepted = false;
+    bool has_time = false;  ///< its state was named: who asked does not wait for it
     std::optional<core::BodyId> subject;
     std::vector<core::RegionId> answered;
     Clock::time_point deadline;

@@ -142,7 +142,7 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
   Courier courier(participant, control, agreement);
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
-  while (!courier.somebody_listens() && in_time()) courier.wait(20ms);
+  while (!courier.all_listen() && in_time()) courier.wait(20ms);
   core::Command command;
   command.at_step = arguments.at_step;
   command.ask = ask_for(arguments, courier);

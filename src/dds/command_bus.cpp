@@ -1,5 +1,6 @@
 #include "dds/command_bus.h"
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <utility>
@@ -102,7 +103,9 @@ CommandClient::CommandClient(Participant& participant) : impl_(std::make_unique<
 
 CommandClient::~CommandClient() = default;
 
-std::size_t CommandClient::listeners() const { return impl_->commands.foreign_reader_count(); }
+std::size_t CommandClient::listeners() const {
+  return std::min(impl_->commands.foreign_reader_count(), impl_->replies.watch().writers().size());
+}
 
 std::uint64_t CommandClient::send(core::Command command, std::uint64_t map_version) {
   if (command.request == 0) command.request = draw_id();

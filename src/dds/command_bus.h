@@ -38,7 +38,7 @@ class CommandClient {
   explicit CommandClient(Participant& participant);
   ~CommandClient();
 
-  /// How many other processes take commands.
+  /// How many nodes take commands and can answer.
   std::size_t listeners() const;
   /// Draws a request id if there is none, and returns it. Throws DdsError when the write failed.
   std::uint64_t send(core::Command command, std::uint64_t map_version);
