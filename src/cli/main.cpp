@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   cli::add_top(program, action);
   cli::add_send(program, action);
   cli::add_compare(program, action);
+  cli::add_experiment(program, action);
   try {
     program.parse(argc, argv);
     return action();
