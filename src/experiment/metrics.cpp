@@ -20,6 +20,7 @@ void Tally::add(const Trial& trial) {
   late += trial.late();
   missed += trial.missed();
   thrashed += trial.thrashed();
+  pulled_twice += trial.pulls > 1;
   late_without_violation += trial.late_without_violation();
   missed_without_violation += trial.missed_without_violation();
   later_than_central += trial.later_than_central();
@@ -35,6 +36,7 @@ void Tally::add(const Tally& other) {
   late += other.late;
   missed += other.missed;
   thrashed += other.thrashed;
+  pulled_twice += other.pulled_twice;
   late_without_violation += other.late_without_violation;
   missed_without_violation += other.missed_without_violation;
   later_than_central += other.later_than_central;

@@ -42,7 +42,8 @@ struct Trial {
   std::optional<Contact> contact;
   std::optional<core::Step> central_step;  ///< of the contact in the control
   bool same_bits = false;                  ///< as in the control, to the last bit
-  std::uint64_t hand_offs = 0;             ///< until the contact; a cluster that moves together is one
+  std::uint64_t hand_offs = 0;             ///< before the contact, or before it should be; a cluster moves as one
+  std::uint64_t pulls = 0;                 ///< those of them that an aura hit asked for
   std::uint64_t violations = 0;            ///< broken promises before the contact, all nodes together
   bool flagged = false;                    ///< the node that saw the contact holds a violation for its possible cause
   double slow_down = 1;                    ///< time taken over time simulated
@@ -62,6 +63,7 @@ struct Tally {
   std::uint64_t late = 0;
   std::uint64_t missed = 0;
   std::uint64_t thrashed = 0;
+  std::uint64_t pulled_twice = 0;  ///< thrashed as in the thesis: by more than one aura hit
   std::uint64_t late_without_violation = 0;
   std::uint64_t missed_without_violation = 0;
   std::uint64_t later_than_central = 0;

@@ -34,6 +34,9 @@ inline constexpr std::array<ThesisRow, 9> kThesisBeyond = {{{"speed_16m_s", 800,
                                                             {"frame_15ms", 750, 58.13, 0, 0},
                                                             {"frame_33.33ms", 106, 1.89, 0, 693}}};
 
+inline constexpr double kThesisWorstBeyondSpeed = 49.9;
+inline constexpr double kThesisWorstBeyondFrame = 58.13;
+
 /// Late collisions at 15% packet loss, percent (section 5.2.5).
 inline constexpr double kThesisLateAtFifteenPercentLoss = 50;
 

@@ -30,6 +30,9 @@ ClusterRules rules_of(const Conditions& conditions, const Variant& variant, cons
   return rules;
 }
 
+/// One for each cluster that left: when, from where, to where, why.
+using HandOffs = std::set<std::tuple<core::Step, core::RegionId, core::RegionId, core::HandOffReason>>;
+
 Contact contact_of(const node::SeenCollision& seen) {
   return {seen.collision.step, seen.collision.penetration_m, seen.collision.relative_speed_m_s};
 }
@@ -70,20 +73,24 @@ Trial run_pair(const Pair& pair, const Conditions& conditions, const Variant& va
   if (central) trial.central_step = central->step;
   VirtualCluster cluster(pair.scene, pair.map, rules_of(conditions, variant, disorder));
   const core::Step last = last_step(pair, conditions, central);
-  std::set<std::tuple<core::Step, core::RegionId, core::RegionId>> hand_offs;
+  HandOffs hand_offs;
   while (!trial.contact && cluster.slowest() < last) {
     trial.violations = cluster.violations();
     const VirtualCluster::Event event = cluster.next();
     for (const node::HandOffRow& row : event.report->departures) {
-      hand_offs.emplace(row.stamp, row.source, row.destination);
+      hand_offs.emplace(row.stamp, row.source, row.destination, row.reason);
     }
     if (const node::SeenCollision* seen = first_contact(*event.report)) {
       trial.contact = contact_of(*seen);
       trial.flagged = seen->flagged;
     }
   }
-  std::erase_if(hand_offs, [&](const auto& h) { return trial.contact && std::get<0>(h) >= trial.contact->step; });
+  const core::Step met = trial.contact ? trial.contact->step : trial.central_step.value_or(last);
+  std::erase_if(hand_offs, [&](const auto& h) { return std::get<0>(h) >= met; });
   trial.hand_offs = hand_offs.size();
+  trial.pulls = static_cast<std::uint64_t>(std::count_if(hand_offs.begin(), hand_offs.end(), [](const auto& h) {
+    return std::get<core::HandOffReason>(h) == core::HandOffReason::kAuraCollision;
+  }));
   trial.same_bits = trial.contact == central;
   trial.slow_down = cluster.slow_down();
   return trial;

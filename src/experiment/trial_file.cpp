@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::string_view kHeader =
     "pairs,series,tolerance,value,within,aura,sync,repeat,contact_step,central_step,penetration_m,relative_speed_m_s,"
-    "penetration_time_ms,late,missed,thrashed,hand_offs,violations,flagged,same_bits,slow_down";
-constexpr std::size_t kColumns = 21;
+    "penetration_time_ms,late,missed,thrashed,hand_offs,pulls,violations,flagged,same_bits,slow_down";
+constexpr std::size_t kColumns = 22;
 
 using Cells = std::vector<std::string_view>;
 
@@ -49,10 +49,11 @@ Trial trial_in(const Cells& cells) {
   if (const auto step = step_in(cells[8])) t.contact = Contact{*step, node::number(cells[10]), node::number(cells[11])};
   t.central_step = step_in(cells[9]);
   t.hand_offs = node::whole(cells[16]);
-  t.violations = node::whole(cells[17]);
-  t.flagged = cells[18] == "1";
-  t.same_bits = cells[19] == "1";
-  t.slow_down = node::number(cells[20]);
+  t.pulls = node::whole(cells[17]);
+  t.violations = node::whole(cells[18]);
+  t.flagged = cells[19] == "1";
+  t.same_bits = cells[20] == "1";
+  t.slow_down = node::number(cells[21]);
   return t;
 }
 
@@ -66,11 +67,11 @@ std::string trial_row(const Trial& t) {
     contact = fmt::format("{},{},{:.5f}", t.contact->penetration_m, t.contact->relative_speed_m_s,
                           penetration_time_s(*t.contact) * 1e3);
   }
-  return fmt::format("{},{},{},{},{:d},{},{},{},{},{},{},{:d},{:d},{:d},{},{},{:d},{:d},{:.4f}\n", name_of(t.pairs),
+  return fmt::format("{},{},{},{},{:d},{},{},{},{},{},{},{:d},{:d},{:d},{},{},{},{:d},{:d},{:.4f}\n", name_of(t.pairs),
                      t.series, t.tolerance, t.value, t.within, t.variant.central ? "central" : name_of(t.variant.aura),
                      t.variant.central ? "" : name_of(t.variant.sync), t.repeat,
                      t.contact ? fmt::to_string(t.contact->step) : "", cell_of(t.central_step), contact, t.late(),
-                     t.missed(), t.thrashed(), t.hand_offs, t.violations, t.flagged, t.same_bits, t.slow_down);
+                     t.missed(), t.thrashed(), t.hand_offs, t.pulls, t.violations, t.flagged, t.same_bits, t.slow_down);
 }
 
 void read_trials(const std::filesystem::path& file, const std::function<void(const Trial&)>& row) {
