@@ -65,6 +65,8 @@ class TargetList {
 
 double late_percent(const Tally& t) { return percent(t.late, t.trials); }
 std::uint64_t wrong(const Tally& t) { return t.late + t.missed; }
+std::uint64_t thrashed(const Tally& t) { return t.thrashed; }
+std::uint64_t pulled_twice(const Tally& t) { return t.pulled_twice; }
 std::uint64_t wrong_unwarned(const Tally& t) { return t.late_without_violation + t.missed_without_violation; }
 
 /// The thesis's worst series of a factor bounds ours; with auras as large as its own, each series bounds its like.
@@ -157,8 +159,11 @@ std::vector<Target> collision_targets(const Tallies& tallies) {
   list.at_most(
       "late and missed, swept, bounded, beyond tolerance in latency or frame time", 0, wrong,
       [](const Key& k) { return is(k, AuraChoice::kSwept, SyncMode::kBounded) && !k.within && k.series[0] != 's'; });
-  list.at_most(
-      "thrashed, every aura and mode", 0, [](const Tally& t) { return t.thrashed; }, is_aura);
+  list.at_most("thrashed, every aura and mode, two regions", 0, thrashed,
+               [](const Key& k) { return is_aura(k) && k.pairs != PairKind::kCorner; });
+  list.at_most("thrashed, every aura and mode, corner", 0, thrashed,
+               [](const Key& k) { return is_aura(k) && k.pairs == PairKind::kCorner; });
+  list.at_most("pulled more than once, every aura and mode", 0, pulled_twice, is_aura);
   list.at_most("late or missed with no violation flagged, every aura and mode, also beyond tolerance", 0,
                wrong_unwarned, is_aura);
   for (const ThesisRow& row : kThesisBeyond) {
@@ -191,8 +196,7 @@ std::vector<Target> loss_targets(const Tallies& tallies) {
     list.at_most(fmt::format("late %, {}, free_running, 15% loss", name_of(aura)), kThesisLateAtFifteenPercentLoss / 2,
                  late_percent, at_15(aura, SyncMode::kFreeRunning));
   }
-  list.at_most(
-      "thrashed, every aura and mode", 0, [](const Tally& t) { return t.thrashed; }, is_aura);
+  list.at_most("thrashed, every aura and mode", 0, thrashed, is_aura);
   list.at_most("late or missed with no violation flagged, every aura and mode", 0, wrong_unwarned, is_aura);
   const Tally naive = tallies.sum(at_15(AuraChoice::kNone, SyncMode::kBounded));
   if (naive.trials > 0) list.at_least("late and missed, none, bounded, 15% loss", double(wrong(naive)), 1);

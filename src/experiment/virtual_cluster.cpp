@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <malloc.h>
+
 namespace aurasim::experiment {
 namespace {
 
@@ -16,6 +18,10 @@ std::vector<std::vector<core::RegionId>> listeners(const core::RegionMap& map) {
   return all;
 }
 
+/// Each cluster makes worlds, a few MB each, and drops them: what the C library gives back to the system, it has to ask
+/// for again, and the kernel to clear. Once for the process.
+bool keep_freed_memory() { return mallopt(M_MMAP_THRESHOLD, 1 << 28) != 0 && mallopt(M_TRIM_THRESHOLD, 1 << 28) != 0; }
+
 }  // namespace
 
 VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
@@ -23,6 +29,7 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
       map_(map),
       network_(listeners(map), rules.network, rules.seed),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
+  [[maybe_unused]] static const bool kept = keep_freed_memory();
   node::NodeSetup setup;
   setup.protocol.sync = rules.sync;
   setup.protocol.aura = rules.aura;

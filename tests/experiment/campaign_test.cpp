@@ -18,9 +18,9 @@ namespace {
 class CampaignTest : public testing::Test {
  protected:
   CampaignTest() {
-    directory_ = std::filesystem::temp_directory_path() /
-                 ("aurasim_campaign_" + std::to_string(::getpid()) + "_" +
-                  testing::UnitTest::GetInstance()->current_test_info()->name());
+    directory_ =
+        std::filesystem::temp_directory_path() / ("aurasim_campaign_" + std::to_string(::getpid()) + "_" +
+                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(directory_);
     plan_.auras = {AuraChoice::kNone, AuraChoice::kSwept};
     plan_.syncs = {core::SyncMode::kBounded};

@@ -71,8 +71,8 @@ TEST(Trial, ASpeedThatIsNotPromisedIsALateCollisionThatWasFlagged) {
 }
 
 TEST(Trial, WhenDatagramsAreLostBoundedNodesWaitAndAreNeverLate) {
-  const Tally free = try_pairs(PairKind::kHeadOn, loss_series(), 0.2, {AuraChoice::kTight, SyncMode::kFreeRunning}, 60)
-                         .tally;
+  const Tally free =
+      try_pairs(PairKind::kHeadOn, loss_series(), 0.2, {AuraChoice::kTight, SyncMode::kFreeRunning}, 60).tally;
   const Tally bounded =
       try_pairs(PairKind::kHeadOn, loss_series(), 0.2, {AuraChoice::kTight, SyncMode::kBounded}, 60).tally;
   EXPECT_GT(free.late, 0u) << "the losses can be felt";
