@@ -15,6 +15,8 @@ packages=(
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+  # figures of the experiments
+  python3-matplotlib
 )
 
 fail() {

@@ -13,6 +13,7 @@ constexpr double kCell_m = 1000;
 constexpr std::uint32_t kSphere = 0, kBox = 1, kCapsule = 2;
 constexpr std::array<std::string_view, 6> kNames = {"head_on", "corner", "grazing", "boxes", "capsules", "random"};
 
+/// Bodies never sleep: in Bullet a slow one that flies freely would stop.
 core::Scene empty_scene() {
   core::Scene scene;
   scene.name = "pair";
@@ -21,15 +22,14 @@ core::Scene empty_scene() {
                   {"box", core::Box{kRadius_m * Vec3(0.48, 0.6, 0.64)}},
                   {"capsule", core::Capsule{0.5 * kRadius_m, kRadius_m}}};
   scene.materials = {core::Material{}};
-  scene.prototypes = {{"sphere", kSphere, 0, 1, true}, {"box", kBox, 0, 1, true}, {"capsule", kCapsule, 0, 1, true}};
+  scene.prototypes = {{"sphere", kSphere, 0, 1, false}, {"box", kBox, 0, 1, false}, {"capsule", kCapsule, 0, 1, false}};
   return scene;
 }
 
-/// How two bodies come together: at `place` their bounding spheres touch, `offset_m` of their centres off the line of
-/// the relative motion.
+/// How two bodies come together. Their bounding spheres touch with their centres `offset_m` off the line of the
+/// relative motion.
 struct Meeting {
   Vec3 v_a, v_b;
-  Vec3 place = Vec3::Zero();
   double offset_m = 0;
 };
 
@@ -38,11 +38,8 @@ double varied(double speed_m_s, Chance& chance) {
   return speed_m_s - chance.between(0, std::min(1.0, 0.5 * speed_m_s));
 }
 
-/// One of two touching spheres is over the border x = 0.
-Vec3 at_border(Chance& chance) { return {chance.between(-2, 2) * kRadius_m, chance.between(-50, 50), 0}; }
-
-Meeting head_on(const Vec3& heading, const Vec3& place, double speed_m_s, Chance& chance) {
-  return {varied(speed_m_s, chance) * heading, -varied(speed_m_s, chance) * heading, place, 0};
+Meeting head_on(const Vec3& heading, double speed_m_s, Chance& chance) {
+  return {varied(speed_m_s, chance) * heading, -varied(speed_m_s, chance) * heading, 0};
 }
 
 Meeting at_random(double speed_m_s, Chance& chance) {
@@ -50,24 +47,30 @@ Meeting at_random(double speed_m_s, Chance& chance) {
     const Vec3 v_a = chance.between(0.2, 1) * speed_m_s * chance.direction();
     const Vec3 v_b = chance.between(0.2, 1) * speed_m_s * chance.direction();
     const double across = std::abs((v_a - v_b).x());
-    if (across < 0.5 * speed_m_s) continue;
-    return {v_a, v_b, at_border(chance), chance.between(0, 1.2) * kRadius_m};
+    if (across >= 0.5 * speed_m_s) return {v_a, v_b, chance.between(0, 1.2) * kRadius_m};
   }
 }
 
 Meeting draw(PairKind kind, double speed_m_s, Chance& chance) {
   if (kind == PairKind::kCorner) {
     const double turn = chance.between(0, 2 * std::numbers::pi);
-    const Vec3 place(chance.between(-2, 2) * kRadius_m, chance.between(-2, 2) * kRadius_m, 0);
-    return head_on({std::cos(turn), std::sin(turn), 0}, place, speed_m_s, chance);
+    return head_on({std::cos(turn), std::sin(turn), 0}, speed_m_s, chance);
   }
   if (kind == PairKind::kRandom) return at_random(speed_m_s, chance);
-  Meeting meeting = head_on(Vec3::UnitX(), at_border(chance), speed_m_s, chance);
+  Meeting meeting = head_on(Vec3::UnitX(), speed_m_s, chance);
   if (kind == PairKind::kGrazing) meeting.offset_m = chance.between(1.4, 1.98) * kRadius_m;
   if (kind == PairKind::kBoxes || kind == PairKind::kCapsules) {
     meeting.offset_m = chance.between(0, 0.8) * kRadius_m;
   }
   return meeting;
+}
+
+/// Where the centre of one of the two is when they touch: over the border x = 0, or over the corner.
+Vec3 over_the_border(PairKind kind, Chance& chance) {
+  if (kind != PairKind::kCorner) return {chance.between(-1, 1) * kRadius_m, chance.between(-50, 50), 0};
+  const double turn = chance.between(0, 2 * std::numbers::pi);
+  const double r = kRadius_m * std::sqrt(chance.between(0, 1));
+  return {r * std::cos(turn), r * std::sin(turn), 0};
 }
 
 std::uint32_t shape_of(PairKind kind, Chance& chance) {
@@ -96,7 +99,7 @@ double notice_s(PairKind kind, const Conditions& conditions, double v_a, double 
        {AuraChoice::kThesis, AuraChoice::kTight, AuraChoice::kTightAtThesisSize, AuraChoice::kSwept}) {
     core::AuraRules rules = rules_for(choice, conditions);
     rules.lookahead *= 4;
-    const double range_m = core::Aura(rules, shapes).link_range(v_a + 0.1, v_b + 0.1, hops) + 0.1;
+    const double range_m = core::Aura(rules, shapes).link_range(v_a + 0.1, v_b + 0.1, hops) + 2 * kRadius_m;
     if (choice == AuraChoice::kSwept) {
       swept_s = ((hops + 1) * rules.lookahead) * kStep_s;
       swept_s += rules.uncertainty * swept_s * (v_a + v_b + 0.2) / closing_m_s;
@@ -166,8 +169,10 @@ Pair make_pair(PairKind kind, const Conditions& conditions, Chance& chance) {
     const Vec3 apart = along_m * line + meeting.offset_m * square_to(line, chance);
     const double t_s =
         notice_s(kind, conditions, meeting.v_a.norm(), meeting.v_b.norm(), closing.norm()) + chance.between(0, kStep_s);
-    const Vec3 p_a = meeting.place - 0.5 * apart;
-    const Vec3 p_b = meeting.place + 0.5 * apart;
+    const Vec3 place = over_the_border(kind, chance);
+    const bool first = chance.below(2) == 0;
+    const Vec3 p_a = first ? place : Vec3(place - apart);
+    const Vec3 p_b = first ? Vec3(place + apart) : place;
     pair.scene.bodies = {body_before(t_s, 0, shape_of(kind, chance), p_a, meeting.v_a, chance),
                          body_before(t_s, 1, shape_of(kind, chance), p_b, meeting.v_b, chance)};
     pair.expected_step = static_cast<core::Step>(std::ceil(t_s / kStep_s));

@@ -15,7 +15,7 @@ namespace aurasim::experiment {
 
 enum class PairKind : std::uint8_t {
   kHeadOn,   ///< thesis figure 5.19: two spheres at the same speed; one is over the border when they touch
-  kCorner,   ///< the same where four regions meet, in any direction
+  kCorner,   ///< the same where four regions meet: one is over the corner, in any direction
   kGrazing,  ///< two spheres that barely touch in passing
   kBoxes,    ///< turned and spinning
   kCapsules,

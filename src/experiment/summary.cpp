@@ -17,7 +17,11 @@ using Key = Tallies::Key;
 
 bool is(const Key& key, AuraChoice aura) { return !key.variant.central && key.variant.aura == aura; }
 bool is(const Key& key, AuraChoice aura, SyncMode sync) { return is(key, aura) && key.variant.sync == sync; }
-bool is_aura(const Key& key) { return !key.variant.central && key.variant.aura != AuraChoice::kNone; }
+/// Auras that promise something: eq. 3.4 has no word on corners, where pulls chain.
+bool is_aura(const Key& key) {
+  if (key.variant.central || key.variant.aura == AuraChoice::kNone) return false;
+  return key.variant.aura != AuraChoice::kThesis || key.pairs != PairKind::kCorner;
+}
 
 double percent(std::uint64_t part, std::uint64_t all) {
   return all > 0 ? 100 * static_cast<double>(part) / static_cast<double>(all) : 0;
@@ -214,6 +218,8 @@ std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::p
   out["within_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && k.within; });
   out["beyond_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && !k.within; });
   out["late_without_violation"] = tallies.sum(is_aura).late_without_violation;
+  out["thesis_aura_at_corners"] =
+      sum([](const Key& k) { return is(k, AuraChoice::kThesis) && k.pairs == PairKind::kCorner; });
   out["naive"] = sum([](const Key& k) { return is(k, AuraChoice::kNone) && (k.within || k.series == "loss"); });
   out["control"] = sum([](const Key& k) { return k.variant.central; });
   out["targets"] = nlohmann::json::array();
