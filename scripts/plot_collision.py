@@ -132,6 +132,7 @@ def plot_times(folder, figure_number, series, variants):
                       linewidth=0.6, markersize=3)
         axes.axhline(STEP_MS, color="blue", linestyle="--", linewidth=1)
         mark_tolerance(axes, series)
+        axes.set_ylim(-20, 6 * STEP_MS)
         axes.set_title(label, fontsize=8)
         axes.grid(alpha=0.3)
     figure.supxlabel(AXIS[series.split("_")[0]], fontsize=9)

@@ -94,7 +94,7 @@ TEST(Summary, SweptIsNeverLateAndNoneIsInASmallGrid) {
   EXPECT_TRUE(target(targets, "late and missed, swept, bounded, within").met());
   EXPECT_TRUE(target(targets, "late and missed without violation, swept, free_running").met());
   EXPECT_TRUE(target(targets, "late or missed with no violation flagged").met());
-  EXPECT_TRUE(target(targets, "thrashed, every aura and mode, two regions").met());
+  EXPECT_TRUE(target(targets, "thrashed, tight and swept, every mode, head-on").met());
   EXPECT_TRUE(target(targets, "penetration time in steps, control").met());
   EXPECT_TRUE(target(targets, "other bits than the control, swept").met());
   EXPECT_TRUE(target(targets, "late and missed, none").met()) << "a check that cannot fail";
