@@ -114,4 +114,10 @@ std::uint64_t VirtualCluster::violations() const {
   return sum;
 }
 
+std::uint64_t VirtualCluster::violations(core::ViolationKind kind) const {
+  std::uint64_t sum = 0;
+  for (const Member& member : members_) sum += member.node->protocol().violations().count(kind);
+  return sum;
+}
+
 }  // namespace aurasim::experiment

@@ -42,6 +42,7 @@ class VirtualCluster {
   core::Step slowest() const;
   /// Broken promises, all nodes together.
   std::uint64_t violations() const;
+  std::uint64_t violations(core::ViolationKind kind) const;
   /// Time taken over time simulated, by the node furthest behind the clock: 1 is real time.
   double slow_down() const;
 
