@@ -1,5 +1,5 @@
-// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence
-// and obeys each one in the state that it names, so a run with orders is as repeatable as one without.
+// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence and
+// obeys each one in the state that it names, so a run with orders is as repeatable as one without.
 #pragma once
 
 #include <cstdint>

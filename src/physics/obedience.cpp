@@ -56,8 +56,7 @@ void Simulation::take_out(core::BodyId id) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] : {std::pair(manifold->getBody0(), manifold->getBody1()),
                                      std::pair(manifold->getBody1(), manifold->getBody0())}) {
-      if (one == gone && other->getUserIndex() >= 0)
-        wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
+      if (one == gone && other->getUserIndex() >= 0) wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
     }
   }
   const std::uint64_t severed = severed_contacts_;
@@ -104,8 +103,8 @@ double Simulation::coming_kick(const HostedBody& body) const {
   double kick = 0;
   for (const core::Order& order : timeline_.coming(step_)) {
     if (core::body_of(order) != body.id || !body.born) continue;
-    const double radius =
-        core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+    const double radius = core::bounding_radius(
+        scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
     const btRigidBody& rigid = *body.rigid;
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);
