@@ -17,6 +17,8 @@ packages=(
   libboost1.74-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+  # figures of the experiments
+  python3-matplotlib
 )
 
 fail() {

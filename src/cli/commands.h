@@ -20,6 +20,7 @@ void add_overseer(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
+void add_experiment(CLI::App& program, Action& action);
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   cli::add_overseer(program, action);
   cli::add_replay(program, action);
   cli::add_compare(program, action);
+  cli::add_experiment(program, action);
   try {
     program.parse(argc, argv);
     return action();

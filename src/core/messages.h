@@ -53,7 +53,8 @@ struct AuraBatch {
   bool full = false;  ///< `updates` is the whole set; forget what was known of this source
   double top_speed_m_s = 0;
   double top_radius_m = 0;
-  std::uint64_t violations = 0;  ///< broken promises counted by the source so far
+  std::uint64_t violations =
+      0;  ///< grows whenever the source breaks a promise, and in every step in which one stays so
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;

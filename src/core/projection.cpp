@@ -183,6 +183,8 @@ void Projection::check_speed(Track& track, const BodyState& body, Step now, Viol
   const bool too_fast = speed > aura_.rules().top_speed_m_s;
   if (too_fast && !track.too_fast) {
     violations.add({ViolationKind::kSpeed, now, vicinity_.self, body.id, speed, aura_.rules().top_speed_m_s});
+  } else if (too_fast) {
+    violations.still_broken(now);
   }
   track.too_fast = too_fast;
 }

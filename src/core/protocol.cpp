@@ -189,7 +189,7 @@ void Protocol::fill_header() {
   batch.full = batch.stamp == settings_.start;
   batch.top_speed_m_s = gathering_.top_speed();
   batch.top_radius_m = gathering_.top_radius();
-  batch.violations = violations_.total();
+  batch.violations = violations_.warnings();
   std::sort(batch.updates.begin(), batch.updates.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);

@@ -37,6 +37,14 @@ class ViolationLog {
     if (recent_.size() < 32) recent_.push_back(violation);
   }
 
+  /// A promise counted before is still broken at `step`: no new violation, but a new warning.
+  void still_broken(Step step) {
+    ++repeated_;
+    last_step_ = step;
+  }
+  /// Grows with every violation, and in every step in which one goes on: who sees it unchanged knows of nothing new.
+  std::uint64_t warnings() const { return total() + repeated_; }
+
   std::uint64_t count(ViolationKind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
   std::uint64_t total() const {
     std::uint64_t sum = 0;
@@ -49,6 +57,7 @@ class ViolationLog {
 
  private:
   std::array<std::uint64_t, kViolationKinds> counts_{};
+  std::uint64_t repeated_ = 0;
   Step last_step_ = -1'000'000;
   std::vector<Violation> recent_;
 };

@@ -1,5 +1,7 @@
 #include "transport/memory_transport.h"
 
+#include <limits>
+
 namespace aurasim::transport {
 
 class MemoryNetwork::Endpoint : public Transport {
@@ -52,6 +54,10 @@ void MemoryNetwork::advance_to(double now_s) {
     endpoints_.at(core::value_of(delivery.to))->arrive(std::move(delivery.message));
     in_flight_.erase(in_flight_.begin());
   }
+}
+
+double MemoryNetwork::next_arrival_s() const {
+  return in_flight_.empty() ? std::numeric_limits<double>::infinity() : in_flight_.begin()->first;
 }
 
 void MemoryNetwork::post(core::RegionId from, core::RegionId to, const Message& message) {

@@ -25,6 +25,8 @@ class MemoryNetwork {
   /// Messages that arrive until `now_s` can be taken from now on.
   void advance_to(double now_s);
   double now_s() const { return now_s_; }
+  /// When the next message arrives; infinite if none is under way.
+  double next_arrival_s() const;
 
   /// What is sent from now on leaves this much later (the sender's frame time).
   void set_send_delay(double delay_s) { send_delay_s_ = delay_s; }

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/node_process.h"
+#include "cli/stop_signal.h"
+#include "experiment/aura_radius.h"
+#include "experiment/collision.h"
+#include "experiment/loss.h"
+#include "experiment/summary.h"
+
+namespace aurasim::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> pairs, auras, syncs;
+  experiment::CollisionPlan plan;
+  std::string out;
+  int threads = 2;
+  bool in_virtual_time = false;
+};
+
+/// A line that is written over on a terminal; elsewhere one line for every tenth.
+class ProgressBar {
+ public:
+  ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+  void show(const experiment::Progress& p) {
+    constexpr int kWidth = 40;
+    const int tenth = static_cast<int>(10 * p.share);
+    if (!is_terminal_ && tenth == last_tenth_) return;
+    last_tenth_ = tenth;
+    const auto filled = static_cast<std::size_t>(kWidth * p.share);
+    fmt::print(stderr, "{}[{:<{}}] {:5.1f}%  {:.0f} s, {:.0f} s left  {}", is_terminal_ ? "\r" : "",
+               std::string(filled, '='), kWidth, 100 * p.share, p.elapsed_s, p.left_s, is_terminal_ ? "" : "\n");
+    std::fflush(stderr);
+  }
+  void end() const {
+    if (is_terminal_) fmt::print(stderr, "\n");
+  }
+
+ private:
+  bool is_terminal_;
+  int last_tenth_ = -1;
+};
+
+void print(const std::vector<experiment::Target>& targets) {
+  for (const experiment::Target& t : targets) {
+    fmt::print("{:<6} {:>10.4g}  {} {:.4g}  {}\n", t.met() ? "met" : "MISSED", t.found,
+               t.at_least ? "at least" : "at most ", t.allowed, t.name);
+  }
+}
+
+template <class Value, class Named>
+void choose(const std::vector<std::string>& names, Named&& named, std::vector<Value>& out) {
+  for (const std::string& name : names) {
+    if (const auto value = named(name)) out.push_back(*value);
+  }
+}
+
+/// The flag follows the signal, which the threads of the laboratory cannot ask for themselves.
+bool run_to_the_end(const experiment::Campaign& campaign, const Arguments& arguments) {
+  catch_stop_signals();
+  std::atomic<bool> stop = false;
+  ProgressBar bar;
+  const bool finished = experiment::run_campaign(
+      campaign, arguments.out, arguments.threads,
+      [&](const experiment::Progress& progress) {
+        bar.show(progress);
+        if (stop_requested()) stop = true;
+      },
+      stop);
+  bar.end();
+  return finished;
+}
+
+int run_trials(Arguments arguments, bool loss) {
+  if (!arguments.in_virtual_time) {
+    spdlog::error("there are trials in virtual time only so far: add --virtual");
+    return static_cast<int>(ExitCode::kBadConfig);
+  }
+  choose(arguments.pairs, experiment::pair_named, arguments.plan.pairs);
+  choose(arguments.auras, experiment::aura_named, arguments.plan.auras);
+  choose(arguments.syncs, experiment::sync_named, arguments.plan.syncs);
+  const experiment::Campaign campaign =
+      loss ? experiment::loss_campaign(arguments.plan) : experiment::collision_campaign(arguments.plan);
+  if (!run_to_the_end(campaign, arguments)) {
+    spdlog::warn("stopped; the same command goes on from here");
+    return static_cast<int>(ExitCode::kFailed);
+  }
+  if (!loss) experiment::write_aura_radius(arguments.out, arguments.plan.substeps);
+  const std::vector<experiment::Target> targets = experiment::summarise(campaign, arguments.out);
+  print(targets);
+  const bool all_met = std::all_of(targets.begin(), targets.end(), [](const auto& t) { return t.met(); });
+  return static_cast<int>(all_met ? ExitCode::kOk : ExitCode::kFailed);
+}
+
+void add_trials(CLI::App& parent, Action& action, const std::string& name, const std::string& about, bool loss) {
+  CLI::App* command = parent.add_subcommand(name, about);
+  const auto a = std::make_shared<Arguments>();
+  a->pairs = loss ? std::vector<std::string>{"head_on"}
+                  : std::vector<std::string>{"head_on", "corner", "grazing", "boxes", "capsules", "random"};
+  a->auras = {"none", "thesis", "tight", "tight_at_thesis_size", "swept"};
+  a->syncs = {"free_running", "bounded"};
+  command->add_option("--out", a->out, "folder for the results; one that holds part of them is completed")->required();
+  command->add_flag("--virtual", a->in_virtual_time, "nodes and network in virtual time, in this process");
+  command->add_option("--pairs", a->pairs, "which pairs fly at each other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"head_on", "corner", "grazing", "boxes", "capsules", "random"}));
+  command->add_option("--aura", a->auras, "auras to try")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"none", "thesis", "tight", "tight_at_thesis_size", "swept"}));
+  command->add_option("--sync", a->syncs, "ways to wait to try")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"free_running", "bounded", "deterministic"}));
+  command->add_option("--repeats", a->plan.repeats, "pairs for each value")->check(CLI::Range(1, 100000));
+  command->add_option("--substeps", a->plan.substeps, "physics substeps in each step")->check(CLI::Range(1, 16));
+  command->add_option("--seed", a->plan.seed, "of all that is random");
+  command->add_option("--threads", a->threads, "threads")->check(CLI::Range(1, 64));
+  if (!loss) {
+    command
+        ->add_option("--values", a->plan.values_of_other_pairs,
+                     "values of each series for pairs that are not head-on (0: all)")
+        ->check(CLI::Range(0, 1000));
+  }
+  command->callback([a, loss, &action] { action = [a, loss] { return run_trials(*a, loss); }; });
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("experiment", "the laboratory: the thesis's experiments");
+  command->require_subcommand(1);
+  add_trials(*command, action, "collision", "pairs that meet across a border: speed, latency, frame time", false);
+  add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,187 @@
+#include "experiment/campaign.h"
+
+#include <chrono>
+#include <exception>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiment/trial.h"
+#include "experiment/trial_file.h"
+
+namespace aurasim::experiment {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// FNV-1a: a job's pairs depend on what it is, not on where it stands in the list.
+std::uint64_t seed_of(const Campaign& campaign, const Job& job, std::uint32_t repeat) {
+  const std::string text = fmt::format("{} {} {} {} {}", campaign.seed, name_of(job.pairs), name_of(job.series),
+                                       shown(job.series.factor, job.value), repeat);
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+/// Steps until the meeting: slow bodies have a long way.
+double work_of(const Campaign& campaign, const Job& job) {
+  Chance chance(1);
+  return 30.0 +
+         static_cast<double>(
+             make_pair(job.pairs, conditions_at(job.series, job.value, campaign.substeps), chance).expected_step);
+}
+
+/// What two runs must agree on to add to the same file.
+std::string described(const Campaign& campaign) {
+  nlohmann::json variants = nlohmann::json::array();
+  for (const Variant& v : campaign.variants) variants.push_back(fmt::format("{} {}", name_of(v.aura), name_of(v.sync)));
+  nlohmann::json jobs = nlohmann::json::array();
+  for (const Job& job : campaign.jobs) {
+    jobs.push_back(
+        fmt::format("{} {} {}", name_of(job.pairs), name_of(job.series), shown(job.series.factor, job.value)));
+  }
+  const nlohmann::json all = {{"experiment", campaign.name},   {"repeats", campaign.repeats}, {"seed", campaign.seed},
+                              {"substeps", campaign.substeps}, {"variants", variants},        {"jobs", jobs}};
+  return all.dump(1) + "\n";
+}
+
+void agree_with(const Campaign& campaign, const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  const std::filesystem::path file = directory / "campaign.json";
+  const std::string wanted = described(campaign);
+  std::ifstream in(file);
+  std::stringstream found;
+  found << in.rdbuf();
+  if (in.is_open() && found.str() != wanted) {
+    throw std::runtime_error(
+        fmt::format("{} holds trials of another experiment (campaign.json differs); choose another --out or remove it",
+                    directory.string()));
+  }
+  std::ofstream(file) << wanted;
+}
+
+/// Gives out jobs, takes their rows, writes them in order.
+class Desk {
+ public:
+  Desk(const Campaign& campaign, const std::filesystem::path& file, std::size_t done,
+       const std::function<void(const Progress&)>& show)
+      : out_(file, std::ios::app), next_(done), written_(done), begin_(Clock::now()), show_(show) {
+    for (const Job& job : campaign.jobs) work_.push_back(work_of(campaign, job));
+    for (std::size_t i = 0; i < work_.size(); ++i) (i < done ? done_before_ : to_do_) += work_[i];
+  }
+
+  std::size_t take() {
+    const std::lock_guard lock(mutex_);
+    return next_++;
+  }
+
+  void give(std::size_t job, std::string rows) {
+    const std::lock_guard lock(mutex_);
+    finished_.emplace(job, std::move(rows));
+    done_now_ += work_[job];
+    for (auto at = finished_.begin(); at != finished_.end() && at->first == written_; at = finished_.erase(at)) {
+      out_ << at->second;
+      ++written_;
+    }
+    out_.flush();
+    if (!out_) throw std::runtime_error("cannot write collisions.csv");
+    const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
+    show_({(done_before_ + done_now_) / (done_before_ + to_do_), elapsed, elapsed * (to_do_ - done_now_) / done_now_});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::ofstream out_;
+  std::size_t next_;
+  std::size_t written_;
+  std::map<std::size_t, std::string> finished_;  ///< rows that wait for those of earlier jobs
+  std::vector<double> work_;
+  double done_before_ = 0, to_do_ = 0, done_now_ = 0;
+  Clock::time_point begin_;
+  const std::function<void(const Progress&)>& show_;
+};
+
+void work(const Campaign& campaign, Desk& desk, const std::atomic<bool>& stop) {
+  while (!stop) {
+    const std::size_t i = desk.take();
+    if (i >= campaign.jobs.size()) return;
+    std::string rows;
+    for (const Trial& trial : run_job(campaign, campaign.jobs[i])) rows += trial_row(trial);
+    desk.give(i, std::move(rows));
+  }
+}
+
+}  // namespace
+
+std::vector<Variant> all_variants(const std::vector<AuraChoice>& auras, const std::vector<core::SyncMode>& syncs) {
+  std::vector<Variant> variants;
+  for (const AuraChoice aura : auras) {
+    for (const core::SyncMode sync : syncs) variants.push_back({aura, sync, false});
+  }
+  return variants;
+}
+
+void add_jobs(Campaign& campaign, PairKind pairs, const Series& series) {
+  for (const double value : series.values) campaign.jobs.push_back({pairs, series, value});
+}
+
+std::vector<Trial> run_job(const Campaign& campaign, const Job& job) {
+  const Conditions conditions = conditions_at(job.series, job.value, campaign.substeps);
+  std::vector<Trial> trials;
+  const auto note = [&](Trial trial, const Variant& variant, std::uint32_t repeat) {
+    trial.pairs = job.pairs;
+    trial.series = name_of(job.series);
+    trial.tolerance = shown(job.series.factor, job.series.tolerance);
+    trial.value = shown(job.series.factor, job.value);
+    trial.within = within_tolerance(job.series, job.value);
+    trial.variant = variant;
+    trial.repeat = repeat;
+    trials.push_back(std::move(trial));
+  };
+  for (std::uint32_t repeat = 0; repeat < campaign.repeats; ++repeat) {
+    Chance chance(seed_of(campaign, job, repeat));
+    const Pair pair = make_pair(job.pairs, conditions, chance);
+    const Disorder disorder = make_disorder(conditions, chance);
+    Trial control;
+    control.contact = run_central(pair, conditions);
+    control.same_bits = true;
+    if (control.contact) control.central_step = control.contact->step;
+    note(control, {AuraChoice::kNone, core::SyncMode::kBounded, true}, repeat);
+    for (const Variant& variant : campaign.variants) {
+      note(run_pair(pair, conditions, variant, disorder, control.contact), variant, repeat);
+    }
+  }
+  return trials;
+}
+
+bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, int threads,
+                  const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop) {
+  agree_with(campaign, directory);
+  const std::filesystem::path file = directory / "collisions.csv";
+  const std::size_t done = keep_whole_blocks(file, campaign.rows_per_job());
+  Desk desk(campaign, file, done, show);
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  std::vector<std::jthread> workers;
+  for (int i = 0; i < threads; ++i) {
+    workers.emplace_back([&] {
+      try {
+        work(campaign, desk, stop);
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        failure = std::current_exception();
+      }
+    });
+  }
+  workers.clear();
+  if (failure) std::rethrow_exception(failure);
+  return !stop;
+}
+
+}  // namespace aurasim::experiment

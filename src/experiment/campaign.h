@@ -1,0 +1,52 @@
+// All trials of an experiment: which there are, running them on a few threads, going on where an earlier run stopped.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiment/metrics.h"
+
+namespace aurasim::experiment {
+
+/// One value of one series and kind of pairs: `repeats` pairs, each under the control and every variant.
+struct Job {
+  PairKind pairs{};
+  Series series;
+  double value = 0;
+};
+
+struct Campaign {
+  std::string name;  ///< "collision" or "loss"
+  std::vector<Job> jobs;
+  std::vector<Variant> variants;
+  std::uint32_t repeats = 50;
+  std::uint64_t seed = 1;
+  int substeps = 1;
+
+  std::size_t rows_per_job() const { return repeats * (variants.size() + 1); }
+};
+
+/// Each aura with each way to wait.
+std::vector<Variant> all_variants(const std::vector<AuraChoice>& auras, const std::vector<core::SyncMode>& syncs);
+
+void add_jobs(Campaign& campaign, PairKind pairs, const Series& series);
+
+/// The same job of the same campaign gives the same trials, in any order and on any thread.
+std::vector<Trial> run_job(const Campaign& campaign, const Job& job);
+
+struct Progress {
+  double share = 0;  ///< of the work, 0 to 1
+  double elapsed_s = 0;
+  double left_s = 0;
+};
+
+/// Runs what DIR/collisions.csv lacks and appends it. Throws std::runtime_error when DIR holds another campaign.
+/// Returns false when `stop` became true before the end.
+bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, int threads,
+                  const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
+
+}  // namespace aurasim::experiment

@@ -1,0 +1,20 @@
+#include "experiment/collision.h"
+
+namespace aurasim::experiment {
+
+Campaign collision_campaign(const CollisionPlan& plan) {
+  Campaign campaign;
+  campaign.name = "collision";
+  campaign.variants = all_variants(plan.auras, plan.syncs);
+  campaign.repeats = plan.repeats;
+  campaign.seed = plan.seed;
+  campaign.substeps = plan.substeps;
+  for (const PairKind pairs : plan.pairs) {
+    for (const Series& series : thesis_series()) {
+      add_jobs(campaign, pairs, pairs == PairKind::kHeadOn ? series : thinned(series, plan.values_of_other_pairs));
+    }
+  }
+  return campaign;
+}
+
+}  // namespace aurasim::experiment

@@ -1,0 +1,24 @@
+// The collision experiments of the thesis (sections 5.2.2 and 5.2.3): do two bodies that fly at each other across a
+// border meet as they would in one world, and does a node know when they may not?
+#pragma once
+
+#include <vector>
+
+#include "experiment/campaign.h"
+
+namespace aurasim::experiment {
+
+struct CollisionPlan {
+  std::vector<PairKind> pairs;
+  std::vector<AuraChoice> auras;
+  std::vector<core::SyncMode> syncs;
+  std::uint32_t repeats = 50;
+  std::uint64_t seed = 1;
+  int substeps = 1;
+  /// Head-on pairs take every value of the thesis; other kinds of pairs this many, evenly spread.
+  std::size_t values_of_other_pairs = 4;
+};
+
+Campaign collision_campaign(const CollisionPlan& plan);
+
+}  // namespace aurasim::experiment

@@ -1,0 +1,16 @@
+#include "experiment/loss.h"
+
+namespace aurasim::experiment {
+
+Campaign loss_campaign(const CollisionPlan& plan) {
+  Campaign campaign;
+  campaign.name = "loss";
+  campaign.variants = all_variants(plan.auras, plan.syncs);
+  campaign.repeats = plan.repeats;
+  campaign.seed = plan.seed;
+  campaign.substeps = plan.substeps;
+  for (const PairKind pairs : plan.pairs) add_jobs(campaign, pairs, loss_series());
+  return campaign;
+}
+
+}  // namespace aurasim::experiment

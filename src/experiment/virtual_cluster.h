@@ -1,0 +1,70 @@
+// A few nodes in virtual time over a network in memory: the protocol and the physics of a real run, with frames and
+// messages as long as they are told to be. Goes from event to event, so a trial takes as long as its arithmetic.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/region_map.h"
+#include "core/scene.h"
+#include "node/node.h"
+#include "transport/memory_transport.h"
+
+namespace aurasim::experiment {
+
+struct ClusterRules {
+  core::AuraRules aura;
+  core::SyncMode sync = core::SyncMode::kBounded;
+  transport::Faults network;
+  double shortest_frame_s = 0;
+  double longest_frame_s = 0;
+  std::vector<double> phase_s;  ///< by region: how much later than the shared epoch its steps are due
+  std::uint64_t seed = 1;
+};
+
+class VirtualCluster {
+ public:
+  /// The scene outlives the cluster.
+  VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules);
+  ~VirtualCluster();
+
+  /// Goes on to the next step that a node computes, and says which and what it did.
+  struct Event {
+    core::RegionId region{};
+    const node::StepReport* report = nullptr;  ///< valid until the next event
+  };
+  Event next();
+
+  std::size_t size() const { return members_.size(); }
+  const node::Node& node(std::size_t region) const { return *members_[region].node; }
+  /// The lowest state that a node is in.
+  core::Step slowest() const;
+  /// Broken promises, all nodes together.
+  std::uint64_t violations() const;
+  std::uint64_t violations(core::ViolationKind kind) const;
+  /// Time taken over time simulated, by the node furthest behind the clock: 1 is real time.
+  double slow_down() const;
+
+ private:
+  struct Member {
+    std::unique_ptr<node::Node> node;
+    double phase_s = 0;
+    double free_s = 0;     ///< end of its last frame
+    double lag_s = 0;      ///< of its last frame's begin behind the clock
+    bool waiting = false;  ///< due, but for its neighbours' messages
+  };
+
+  double due_s(const Member& member) const;
+  void compute(Member& member, double at_s);
+  double chance();
+
+  ClusterRules rules_;
+  core::RegionMap map_;
+  transport::MemoryNetwork network_;
+  std::vector<Member> members_;
+  std::uint64_t random_;
+  const node::StepReport* report_ = nullptr;
+};
+
+}  // namespace aurasim::experiment
