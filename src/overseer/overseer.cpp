@@ -248,6 +248,7 @@ RunStatus Overseer::status() {
   for (const auto& [region, seen] : nodes_) {
     if (!seen.lost && seen.status.generation == view_->generation())
       status.step = std::max(status.step, seen.status.step);
+    if (!seen.lost) status.rate = seen.status.rate;  // all have the same
     status.hand_offs_per_s[region] = hand_offs_[region].per_s;
   }
   return status;
