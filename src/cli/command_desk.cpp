@@ -51,6 +51,7 @@ CommandDesk::CommandDesk(const config::Launch& launch, dds::Participant& partici
 
 void CommandDesk::begin_generation(node::Node& node, core::Generation generation) {
   growth_ = {generation, {}};
+  closed_ = false;
   for (const auto& [request, step] : std::exchange(due_, {})) {
     core::CommandReply done;
     done.request = request;
@@ -61,6 +62,13 @@ void CommandDesk::begin_generation(node::Node& node, core::Generation generation
   own_kinds_.clear();
   shapes_ = prototypes_ = statics_ = 0;
   node.use_meshes([this](const core::MeshRef& mesh) { return make_mesh(mesh); });
+}
+
+void CommandDesk::change_map(core::Generation generation) {
+  door_.use_map(launch_.regions.version());
+  growth_.generation = generation;
+  if (leads_) growth_writer_.send(growth_);
+  closed_ = false;
 }
 
 void CommandDesk::serve(node::Node& node, const RunView& run) {
@@ -128,6 +136,10 @@ void CommandDesk::accept(const core::Command& command, const core::Order& order,
 }
 
 void CommandDesk::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  const bool changes_the_run =
+      std::holds_alternative<core::Repartition>(command.ask) || std::holds_alternative<core::ChangeScene>(command.ask);
+  if (closed_) return refuse(command, "the run is being changed; ask again in a moment");
+  if (changes_the_run && !run.complete) return refuse(command, "a node has died: the run can only go on as it is");
   const core::ClientShape* const own_shape = shape_in(command.ask);
   const CommandContext context{launch_, node.scene(), run.bodies,
                                own_shape != nullptr ? make_shape(*own_shape) : std::nullopt};
@@ -143,6 +155,7 @@ void CommandDesk::decide(const core::Command& command, node::Node& node, const R
         }
       },
       command.ask);
+  closed_ = changes_the_run;
   accept(command, node.order(action, command.request, command.at_step));
 }
 

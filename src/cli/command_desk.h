@@ -20,6 +20,7 @@ namespace aurasim::cli {
 /// What the lead knows of the run when a command comes.
 struct RunView {
   bool leads = false;
+  bool complete = true;                              ///< no node has died
   std::uint64_t bodies = 0;                          ///< in the whole run
   std::function<bool(std::uint64_t hash)> all_have;  ///< has every node that is alive this mesh?
 };
@@ -29,7 +30,8 @@ class CommandDesk {
   /// The launch is that of the run as it is now, also after it has changed.
   CommandDesk(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
-  void use_map(std::uint64_t map_version) { door_.use_map(map_version); }
+  /// The run has got another map; the scene stays as it has grown.
+  void change_map(core::Generation generation);
   /// Serves what has come. Call it between steps.
   void serve(node::Node& node, const RunView& run);
   /// Tells clients what has taken effect.
@@ -66,6 +68,7 @@ class CommandDesk {
   std::map<std::uint64_t, int> rounds_waited_;
   std::map<std::uint64_t, core::Step> due_;  ///< requests to report as done at their step
   // Orders under way are not in the scene yet: the lead counts ahead.
+  bool closed_ = false;  ///< until the run has changed: an order that not all have heard would be forgotten
   std::size_t shapes_ = 0, prototypes_ = 0, statics_ = 0;
   struct OwnShape {
     core::ClientShape shape;

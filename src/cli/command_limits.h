@@ -21,8 +21,4 @@ struct CommandContext {
 /// Empty: it can be done.
 std::string problem_with(const core::Ask& ask, const CommandContext& context);
 
-/// The launch with another map or another scene. Throws config::BadConfig.
-config::Launch with_regions(const config::Launch& launch, const std::vector<core::Rectangle>& boxes);
-config::Launch with_scene(const config::Launch& launch, const std::string& name);
-
 }  // namespace aurasim::cli

@@ -23,18 +23,6 @@ constexpr auto kStatusPeriod = 100ms;
 constexpr auto kLinger = 1500ms;
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
 
-dds::TransportSettings transport_settings(const config::Launch& launch, core::RegionId region) {
-  dds::TransportSettings settings;
-  settings.region = region;
-  settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
-  settings.map_version = launch.regions.version();
-  settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
-  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients);
-  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + kRoomForClients);
-  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size());
-  return settings;
-}
-
 dds::Durations summary_of(std::vector<double>& values) {
   return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
 }
@@ -58,6 +46,18 @@ void log_impairment(const dds::Participant& participant) {
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
+
+dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region) {
+  dds::TransportSettings settings;
+  settings.region = region;
+  settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
+  settings.map_version = launch.regions.version();
+  settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
+  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients);
+  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + kRoomForClients);
+  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + kRoomForClients);
+  return settings;
+}
 
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
@@ -90,7 +90,7 @@ ExitCode NodeProcess::meet_and_run() {
   if (!domain_is_free()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
   control_.publish_map(world_map(launch_));
   publish(dds::NodeState::kStarting);
-  transport_.emplace(participant_, transport_settings(launch_, options_.region));
+  transport_.emplace(participant_, neighbour_transport(launch_, options_.region));
   observers_.emplace(launch_, participant_, options_.region);
   desk_.emplace(launch_, participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
@@ -171,11 +171,13 @@ void NodeProcess::start_when_all_wait() {
   std::size_t waiting = 0;
   for (const auto& [region, seen] : control_.statuses()) {
     waiting += !seen.lost && seen.status.agreement == status_.agreement &&
-               seen.status.state == dds::NodeState::kWaiting && region != options_.region;
+               seen.status.state == dds::NodeState::kWaiting && seen.status.generation == waits_to_start_ &&
+               region != options_.region;
   }
   if (waiting + 1 < launch_.regions.size()) return;
   dds::RunCommand start;
   start.kind = dds::RunCommandKind::kStart;
+  start.generation = waits_to_start_;
   start.epoch_ns = node::wall_clock_ns() + 500'000'000;
   start.request = control_.send(start);
   start_ = start;
@@ -234,6 +236,7 @@ ExitCode NodeProcess::run_steps() {
     obey_commands();
     serve_clients();
     reset_if_due();
+    change_if_due();
     if (!wait_until_due()) continue;
     compute_step();
   }
@@ -304,7 +307,10 @@ void NodeProcess::serve_clients() {
   RunView run;
   run.leads = leads();
   const auto& statuses = control_.statuses();
-  for (const auto& [region, seen] : statuses) run.bodies += is_live(seen) ? seen.status.bodies : 0;
+  for (const auto& [region, seen] : statuses) {
+    run.bodies += is_live(seen) ? seen.status.bodies : 0;
+    run.complete = run.complete && is_live(seen);
+  }
   run.all_have = [&statuses](std::uint64_t mesh) {
     return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
       const std::vector<std::uint64_t>& known = entry.second.status.meshes;
@@ -322,6 +328,9 @@ void NodeProcess::obey_orders() {
     if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
       pacer_.set_rate(order.at_step, rate->rate);
       status_.rate = rate->rate;
+    } else if (std::holds_alternative<core::Repartition>(order.action) ||
+               std::holds_alternative<core::ChangeScene>(order.action)) {
+      change_ = order;
     }
     return true;
   });
@@ -379,7 +388,7 @@ void NodeProcess::obey_commands() {
 void NodeProcess::obey(const dds::RunCommand& command) {
   using Kind = dds::RunCommandKind;
   if (command.kind == Kind::kStart) {
-    if (!start_) start_ = command;
+    if (!start_ && command.generation == waits_to_start_) start_ = command;
     return;
   }
   if (command.generation != generation_ || !node_) return;  // for a run that is over

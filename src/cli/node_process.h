@@ -36,6 +36,9 @@ struct NodeOptions {
   std::chrono::seconds start_time_out{30};
 };
 
+/// Between a region and those that have to hear of it.
+dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
+
 class NodeProcess {
  public:
   NodeProcess(const config::Launch& launch, const NodeOptions& options);
@@ -65,6 +68,12 @@ class NodeProcess {
   void obey_orders();
   void obey(const dds::RunCommand& command);
   void reset_if_due();
+  void change_if_due();
+  void change_scene(const std::string& name);
+  void change_regions(const std::vector<core::Rectangle>& boxes);
+  void settle_all();
+  void wait_until_all_have_exchanged();
+  void connect_anew(const dds::TransportSettings& settings);
   bool finished() const;
   void linger();
   void publish(dds::NodeState state, const std::string& text = {});
@@ -89,6 +98,8 @@ class NodeProcess {
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   std::optional<dds::RunCommand> start_;
+  core::Generation waits_to_start_ = 0;  ///< the generation that a start command has to name
+  std::optional<core::Order> change_;    ///< of the run as a whole, due now
   core::Inbox early_mail_;
   dds::Status status_;
   Window window_;

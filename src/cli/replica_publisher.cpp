@@ -40,6 +40,12 @@ bool ReplicaPublisher::key_frame_is_due() const {
   return feed_->changed_since_key_frame() && Clock::now() - last_key_frame_ >= kKeyFramePeriod;
 }
 
+void ReplicaPublisher::tell_census(node::Node& node, core::Generation generation) {
+  begin_generation(generation);
+  writer_.send(feed_->tell_changes(node.world().snapshot()));  // key frames count from the first tick on
+  writer_.send(feed_->tell_all(node.world().snapshot(), {}));
+}
+
 void ReplicaPublisher::tell(node::Node& node) {
   const core::Snapshot& snapshot = node.world().snapshot();
   told_ = snapshot.step;

@@ -16,6 +16,9 @@ class ReplicaPublisher {
   ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   void begin_generation(core::Generation generation);
+  /// The bodies that are here, whoever listens, as a key frame of `generation`.
+  void tell_census(node::Node& node, core::Generation generation);
+  void use_map(std::uint64_t map_version) { map_version_ = map_version; }
   /// After the first state and after every step.
   void after_step(node::Node& node, const node::StepReport& report);
   /// As often as you like while the run stands still: what was not told yet of the state that it stands in.

@@ -83,6 +83,7 @@ struct Launch {
   std::filesystem::path scene_file;
   core::Scene scene;
   core::RegionMap regions = core::RegionMap::columns(1, 1);
+  bool neighbour_distance_is_given = false;
   double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other; at least the zone
   Time time;
   Tolerances tolerances;

@@ -60,6 +60,7 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
     return;
   }
   const double zone = zone_m(launch);
+  launch.neighbour_distance_is_given = neighbour_distance_m.has_value();
   launch.neighbour_distance_m = neighbour_distance_m.value_or(zone);
   if (neighbour_distance_m && *neighbour_distance_m < zone) {
     regions.complain(

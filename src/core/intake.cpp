@@ -26,7 +26,7 @@ void take_all(std::vector<Message>& messages, Generation generation, Take take) 
 
 Intake::Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures)
     : settings_(settings), vicinity_(vicinity), map_version_(vicinity.map.version()), departures_(departures) {
-  for (const RegionId id : vicinity.neighbours) neighbours_.emplace_back(id, vicinity.self);
+  for (const RegionId id : vicinity.neighbours) neighbours_.emplace_back(id, vicinity.self, settings.start);
 }
 
 Neighbour* Intake::find(RegionId id) {
@@ -105,7 +105,7 @@ void Intake::hear_of_deaths() {
 
 bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
   const Step needed = n - settings_.lookahead;
-  if (!neighbour.alive() || needed < 0) return false;
+  if (!neighbour.alive() || needed < settings_.start) return false;
   return neighbour.received() < needed || !arrivals_.has_all_up_to(neighbour.id(), neighbour.hand_offs_until(needed));
 }
 
@@ -134,7 +134,7 @@ std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations) {
     if (!neighbour.alive()) continue;
     neighbour.apply_until(limit);
     const Step age = n - neighbour.applied();
-    if (age > settings_.lookahead && n > settings_.lookahead) {
+    if (age > settings_.lookahead && n - settings_.start > settings_.lookahead) {
       violations.add({ViolationKind::kLatency, n, neighbour.id(), {}, double(age), double(settings_.lookahead)});
     }
   }

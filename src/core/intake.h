@@ -20,6 +20,7 @@ struct IntakeSettings {
   Generation generation = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
+  Step start = 0;                     ///< the first state that anybody speaks of
   Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
 };
 

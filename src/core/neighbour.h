@@ -11,7 +11,9 @@ namespace aurasim::core {
 
 class Neighbour {
  public:
-  Neighbour(RegionId id, RegionId self) : id_(id), self_(self) {}
+  /// `start`: the first state that it speaks of.
+  Neighbour(RegionId id, RegionId self, Step start = 0)
+      : id_(id), self_(self), received_(start - 1), applied_(start - 1) {}
 
   RegionId id() const { return id_; }
   bool alive() const { return alive_; }
@@ -19,9 +21,9 @@ class Neighbour {
   /// Keeps a batch until its turn. False when it is a copy of one already seen.
   bool accept(AuraBatch batch);
 
-  /// Stamp up to which every batch has come, -1 at first.
+  /// Stamp up to which every batch has come; one before the start at first.
   Step received() const { return received_; }
-  /// Stamp of the newest batch that has taken effect, -1 at first.
+  /// Stamp of the newest batch that has taken effect, likewise.
   Step applied() const { return applied_; }
 
   /// Lets the received batches with stamp <= `last` take effect, in order.
@@ -51,8 +53,8 @@ class Neighbour {
   RegionId id_;
   RegionId self_;
   bool alive_ = true;
-  Step received_ = -1;
-  Step applied_ = -1;
+  Step received_;
+  Step applied_;
   std::map<Step, AuraBatch> waiting_;  ///< received, not yet in effect
   struct Mark {
     Step stamp;

@@ -13,6 +13,8 @@ namespace aurasim::core {
 
 class OrderLog {
  public:
+  explicit OrderLog(std::uint64_t last = 0) : last_(last) {}
+
   /// Our own: gives it the next number.
   const Order& announce(Order order);
   /// From a neighbour's batch. Copies and anything out of sequence are left out.
@@ -27,7 +29,7 @@ class OrderLog {
  private:
   void add(const Order& order);
 
-  std::uint64_t last_ = 0;
+  std::uint64_t last_;
   std::vector<Order> news_;
   std::vector<Order> to_say_;
 };

@@ -9,9 +9,10 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       vicinity_(map, settings.self, settings.neighbour_distance_m),
       map_version_(map.version()),
       aura_(settings.aura, clearance),
-      intake_({settings.generation, settings.sync, settings.aura.lookahead}, vicinity_, departures_),
+      intake_({settings.generation, settings.sync, settings.aura.lookahead, settings.start}, vicinity_, departures_),
       gathering_(aura_, vicinity_),
       projection_(aura_, vicinity_),
+      orders_(settings.last_order),
       hops_across_(hops_across(map, settings.neighbour_distance_m)) {}
 
 const Changes& Protocol::receive(Step n) {
@@ -185,7 +186,7 @@ void Protocol::fill_header() {
   batch.source = vicinity_.self;
   batch.generation = settings_.generation;
   batch.map_version = map_version_;
-  batch.full = batch.stamp == 0;
+  batch.full = batch.stamp == settings_.start;
   batch.top_speed_m_s = gathering_.top_speed();
   batch.top_radius_m = gathering_.top_radius();
   batch.violations = violations_.total();

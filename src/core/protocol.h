@@ -29,6 +29,8 @@ struct ProtocolSettings {
   SyncMode sync = SyncMode::kBounded;
   AuraRules aura;
   double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other
+  Step start = 0;                   ///< the first state that it looks at
+  std::uint64_t last_order = 0;     ///< orders up to this one have been heard
   Step resend_after_steps = 120;    ///< an unacknowledged hand-off is sent again every so often
 };
 

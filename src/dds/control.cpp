@@ -131,6 +131,8 @@ bool ControlBus::publish_map(const WorldMap& map) {
   return impl_->map_writer.write(&impl_->map) != WriteResult::kFailed;
 }
 
+void ControlBus::use_map(std::uint64_t map_version) { impl_->settings.map_version = map_version; }
+
 const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
   impl_->participant.progress();
   while (impl_->map_reader.take(&impl_->map)) {

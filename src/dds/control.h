@@ -114,6 +114,8 @@ class ControlBus {
   const std::map<core::RegionId, SeenStatus>& statuses();
 
   bool publish_map(const WorldMap& map);
+  /// Commands for another map than this one are refused from now on.
+  void use_map(std::uint64_t map_version);
   /// Every map seen so far, by map_version.
   const std::map<std::uint64_t, WorldMap>& maps();
 

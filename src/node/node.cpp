@@ -52,12 +52,13 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
            transport::Transport& transport)
     : setup_(setup),
       scene_(scene),
-      map_(map),
-      transport_(transport),
+      map_(&map),
+      transport_(&transport),
       clearance_(physics::make_clearance_query(scene_)),
-      protocol_(setup.protocol, map, *clearance_),
       world_(scene_, setup.physics),
-      watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_) {}
+      watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_) {
+  protocol_.emplace(setup.protocol, map, *clearance_);
+}
 
 const StepReport& Node::start() {
   report_ = {};
@@ -82,7 +83,7 @@ void Node::host_initial_bodies() {
   core::Snapshot all;
   for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
   all.joints = joint_pairs(scene_, all.bodies);
-  const std::vector<core::RegionId> hosts = core::assign_hosts(map_, setup_.protocol.aura, *clearance_, all);
+  const std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
   std::vector<core::BodyRecord> ours;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (hosts[i] != region()) continue;
@@ -102,7 +103,7 @@ void Node::announce_births(core::Step state) {
     const std::uint64_t count = core::injected_count(injector, birth, setup_.physics.step_s);
     for (; next_injection_[k] < count; ++next_injection_[k]) {
       const auto record = core::injected_body(injector, next_injection_[k], setup_.physics.step_s);
-      if (!record || map_.owner(record->p_WB) != region()) continue;
+      if (!record || map_->owner(record->p_WB) != region()) continue;
       world_.add({&*record, 1});
       watch_.newborn(record->id, record->birth);
       report_.births.push_back({record->id, record->birth});
@@ -113,9 +114,9 @@ void Node::announce_births(core::Step state) {
 const core::Order& Node::order(const core::Action& action, std::uint64_t request, core::Step at_step) {
   core::Order order;
   order.request = request;
-  order.at_step = std::max(at_step, protocol_.earliest_effect());
+  order.at_step = std::max(at_step, protocol_->earliest_effect());
   order.action = action;
-  return protocol_.announce(std::move(order));
+  return protocol_->announce(std::move(order));
 }
 
 /// What an order changes at once; the rest waits for its state.
@@ -134,7 +135,7 @@ void Node::announce_spawns(core::Step birth) {
   std::erase_if(to_spawn_, [&](const core::Order& order) {
     if (order.at_step > birth) return false;
     const auto& spawn = std::get<core::Spawn>(order.action);
-    if (map_.owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
+    if (map_->owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
     const core::InitialBody body{spawn.id, spawn.prototype, spawn.pose, spawn.v_WB, spawn.w_WB};
     const core::BodyRecord record = core::initial_record(body, order.at_step);
     world_.schedule(order);  // its shape may be new
@@ -155,23 +156,39 @@ void Node::note_removals() {
 
 void Node::take_mail() {
   const Timed timed(mail_s_);
-  transport_.take(inbox_);
-  protocol_.accept(inbox_);
+  transport_->take(inbox_);
+  protocol_->accept(inbox_);
 }
 
 bool Node::ready() {
   take_mail();
-  return protocol_.ready(current_step() + 1);
+  return protocol_->ready(current_step() + 1);
 }
 
 bool Node::ready_to_settle() {
   take_mail();
-  return protocol_.ready(current_step() + setup_.protocol.aura.lookahead);
+  return protocol_->ready(current_step() + setup_.protocol.aura.lookahead);
+}
+
+const StepReport& Node::take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
+                                 transport::Transport& transport) {
+  clear_report();
+  setup_.protocol = settings;
+  setup_.protocol.start = current_step();
+  setup_.protocol.last_order = protocol_->last_order();
+  map_ = &map;
+  transport_ = &transport;
+  inbox_.clear();
+  protocol_.emplace(setup_.protocol, map, *clearance_);
+  const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
+  finish_state();
+  setup_.hash_states = hashes;
+  return report_;
 }
 
 const StepReport& Node::settle() {
   clear_report();
-  apply(protocol_.receive(current_step() + setup_.protocol.aura.lookahead));
+  apply(protocol_->receive(current_step() + setup_.protocol.aura.lookahead));
   return report_;
 }
 
@@ -196,7 +213,7 @@ const StepReport& Node::step() {
   const core::Changes* changes = nullptr;
   {
     const Timed timed(report_.durations.protocol_s);
-    changes = &protocol_.receive(n);
+    changes = &protocol_->receive(n);
   }
   {
     const Timed timed(report_.durations.physics_s);
@@ -252,17 +269,17 @@ void Node::finish_state() {
   const std::vector<core::Departure>* departures = nullptr;
   {
     const Timed timed(report_.durations.protocol_s);
-    departures = &protocol_.observe(*snapshot);
+    departures = &protocol_->observe(*snapshot);
   }
-  watch_.judge(world_.collisions(), protocol_.last_violation_step(), report_.collisions);
-  watch_.compare(*snapshot, protocol_.gathering(), protocol_.last_violation_step(), report_.collisions);
+  watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
+  watch_.compare(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
   note_contacts(*snapshot);
-  report_.foreign_auras = protocol_.gathering().foreign_auras();
-  report_.projecting = protocol_.projection().projecting();
-  report_.largest_cluster = protocol_.largest_cluster();
+  report_.foreign_auras = protocol_->gathering().foreign_auras();
+  report_.projecting = protocol_->projection().projecting();
+  report_.largest_cluster = protocol_->largest_cluster();
   for (const core::Departure& departure : *departures) release(departure);
   const Timed timed(report_.durations.transport_s);
-  transport_.send(protocol_.outbox());
+  transport_->send(protocol_->outbox());
 }
 
 void Node::note_contacts(const core::Snapshot& snapshot) {
@@ -289,7 +306,7 @@ void Node::release(const core::Departure& departure) {
     report_.departed.push_back(body);
   }
   const Timed timed(report_.durations.protocol_s);
-  protocol_.hand_over(departure, std::move(cluster));
+  protocol_->hand_over(departure, std::move(cluster));
 }
 
 void Node::count(const core::Snapshot& snapshot) {

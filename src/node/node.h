@@ -108,13 +108,18 @@ class Node {
   /// Takes in the bodies that are still under way to this region, so that every state's hash is whole.
   const StepReport& settle();
 
+  /// Another map, in the state that has been computed. All bodies are where the new map wants them, and every node of
+  /// the run does the same. Map and transport outlive the node.
+  const StepReport& take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
+                             transport::Transport& transport);
+
   core::RegionId region() const { return setup_.protocol.self; }
   /// Of the last step.
   const StepReport& report() const { return report_; }
   core::Step current_step() const { return world_.step_number(); }
-  const core::Protocol& protocol() const { return protocol_; }
+  const core::Protocol& protocol() const { return *protocol_; }
   const physics::RegionWorld& world() const { return world_; }
-  core::Protocol& protocol() { return protocol_; }
+  core::Protocol& protocol() { return *protocol_; }
   physics::RegionWorld& world() { return world_; }
   const CollisionWatch& collision_watch() const { return watch_; }
   /// Messages of a later generation, for the node that takes over after a reset.
@@ -139,10 +144,10 @@ class Node {
   NodeSetup setup_;
   core::Scene scene_;
   MeshSource meshes_;
-  const core::RegionMap& map_;
-  transport::Transport& transport_;
+  const core::RegionMap* map_;
+  transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
-  core::Protocol protocol_;
+  std::optional<core::Protocol> protocol_;  ///< always there; another one with another map
   physics::RegionWorld world_;
   CollisionWatch watch_;
   core::Inbox inbox_;

@@ -38,6 +38,7 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region)
                      "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n");
   violations_ = open("violations.csv", "region,step,kind,of_region,body,value,allowed\n");
   births_ = open("births.csv", "region,body,birth_step\n");
+  removals_ = open("removals.csv", "region,body,removed_step\n");
 }
 
 Recorder::~Recorder() = default;
@@ -66,6 +67,10 @@ void Recorder::write(const StepReport& r, const FrameTimes& times, const Node& n
     fmt::print(births_.get(), "{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
   }
   if (!r.births.empty()) std::fflush(births_.get());  // rare, and nobody else knows of them
+  for (const physics::Removal& removal : r.removals) {
+    fmt::print(removals_.get(), "{},{},{}\n", core::value_of(region_), core::value_of(removal.body), removal.step);
+  }
+  if (!r.removals.empty()) std::fflush(removals_.get());
   for (const HashPart& part : r.hash) hash_[part.step] += part.sum;
   if (r.step >= flushed_ + kFlushEvery) {
     flush();

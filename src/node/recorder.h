@@ -57,7 +57,7 @@ class Recorder {
 
   core::RegionId region_;
   std::filesystem::path folder_;
-  File steps_, collisions_, migrations_, violations_, births_;
+  File steps_, collisions_, migrations_, violations_, births_, removals_;
   std::map<core::Step, std::uint64_t> hash_;
   core::Step flushed_ = 0;
 };

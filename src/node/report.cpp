@@ -99,6 +99,9 @@ class Merge {
       read_csv(of_region(r, "births.csv"), [&](const Cells& c) {
         if (c.size() == 3) first_host_.try_emplace(whole(c[1]), whole(c[0]));
       });
+      read_csv(of_region(r, "removals.csv"), [&](const Cells& c) {
+        if (c.size() == 3) removed_.insert(whole(c[1]));
+      });
       read_csv(of_region(r, "bodies.csv"), [&](const Cells& c) {
         if (c.size() != 12) return;
         const std::uint64_t body = whole(c[1]);
@@ -131,7 +134,7 @@ class Merge {
   void count_bodies() {
     for (const auto& [body, count] : hosts_) accounts_.duplicated += count > 1;
     for (const auto& [body, first] : first_host_) {
-      if (alive_.contains(body)) continue;
+      if (alive_.contains(body) || removed_.contains(body)) continue;
       std::uint64_t host = first;
       std::uint64_t epoch = 0;
       for (const Move& move : moves_[body]) {
@@ -221,7 +224,7 @@ class Merge {
         {"step_s", facts_.step_s},
         {"real_time_factor", accounts_.real_time_factor},
         {"bodies_spawned", first_host_.size()},
-        {"bodies_removed", 0},
+        {"bodies_removed", removed_.size()},
         {"bodies_alive", alive_.size()},
         {"bodies_lost", accounts_.lost},
         {"lost", lost_},
@@ -249,6 +252,7 @@ class Merge {
   std::map<std::uint64_t, std::uint64_t> first_host_;  ///< by body
   std::map<std::uint64_t, int> hosts_;                 ///< by body: how many nodes host it at the end
   std::set<std::uint64_t> alive_;
+  std::set<std::uint64_t> removed_;                                ///< by orders
   std::map<std::uint64_t, std::vector<std::uint64_t>> with_dead_;  ///< by region
   std::vector<std::uint64_t> lost_;
   std::vector<Json> nodes_;

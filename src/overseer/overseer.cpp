@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "config/launch_variants.h"
 #include "config/meshes.h"
 #include "node/scene_growth.h"
 #include "overseer/replay.h"
@@ -127,6 +128,7 @@ double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now
 void Overseer::turn() {
   replicas_->wait(kRound);
   look_at_nodes();
+  look_at_map();
   for (core::Replica& replica : replicas_->take()) view_->accept(std::move(replica), now_s());
   grow();
   compose_frames();
@@ -154,6 +156,32 @@ void Overseer::look_at_nodes() {
   }
   if (run_was_restarted()) view_.emplace(view_settings_);
   for (const auto& [region, seen] : nodes_) view_->set_region(region, region_state(seen));
+}
+
+/// The run may get other regions or another scene while it goes on.
+void Overseer::look_at_map() {
+  const dds::WorldMap* newest = nullptr;
+  for (const auto& [version, map] : control_.maps()) {
+    const bool ours = map.agreement == agreement_ && map.generation > map_generation_;
+    if (ours && (newest == nullptr || map.generation > newest->generation)) newest = &map;
+  }
+  if (newest == nullptr) return;
+  map_generation_ = newest->generation;
+  try {
+    config::Launch changed = launch_;
+    if (newest->scene != launch_.scene.name) changed = config::with_scene(changed, newest->scene);
+    if (newest->map_version != launch_.regions.version()) changed = config::with_regions(changed, newest->regions);
+    launch_ = std::move(changed);
+  } catch (const config::BadConfig& error) {
+    return spdlog::error("the run has changed to what cannot be read here: {}", error.what());
+  }
+  observer_settings_.map_version = launch_.regions.version();
+  observer_settings_.prototype_count = static_cast<std::uint32_t>(launch_.scene.prototypes.size() + kRoomForClients);
+  replicas_.emplace(participant_, observer_settings_);
+  auras_.reset();
+  view_.emplace(view_settings_);
+  web_.tell(Notice::kMap, map_message(launch_.regions));
+  write_down(ChunkKind::kMap, map_message(launch_.regions));
 }
 
 void Overseer::compose_frames() {
@@ -248,7 +276,7 @@ RunStatus Overseer::status() {
   for (const auto& [region, seen] : nodes_) {
     if (!seen.lost && seen.status.generation == view_->generation())
       status.step = std::max(status.step, seen.status.step);
-    if (!seen.lost) status.rate = seen.status.rate;  // all have the same
+    if (!seen.lost) status.rate = seen.status.rate;
     status.hand_offs_per_s[region] = hand_offs_[region].per_s;
   }
   return status;

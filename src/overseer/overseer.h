@@ -49,6 +49,7 @@ class Overseer {
   void keep_recording(Job job);
   bool is_of_this_run(const dds::SeenStatus& seen) const { return seen.status.agreement == agreement_; }
   void look_at_nodes();
+  void look_at_map();
   bool run_was_restarted();
   void compose_frames();
   void show_auras();
@@ -58,7 +59,7 @@ class Overseer {
   std::string state_of_run() const;
   void measure_hand_offs();
 
-  const config::Launch& launch_;
+  config::Launch launch_;  ///< as the run is now
   std::uint64_t agreement_;
   dds::Participant& participant_;
   dds::ControlBus& control_;
@@ -75,6 +76,7 @@ class Overseer {
   std::map<core::BodyId, float> aura_radius_m_;
   ViewSettings view_settings_;
   std::optional<WorldView> view_;
+  core::Generation map_generation_ = 0;
   core::Generation told_generation_ = 0;
   std::optional<RecordingWriter> recording_;
   double recording_began_s_ = 0;

@@ -1,4 +1,6 @@
 // Commands, replies and meshes as wire types and back; what is not sound is refused.
+#include "dds/command_codec.h"
+
 #include <functional>
 #include <limits>
 #include <random>
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "aurasimPubSubTypes.h"
-#include "dds/command_codec.h"
 #include "dds/guarded_type.h"
 #include "messages.h"
 

@@ -102,6 +102,7 @@ test("NoBodyDoublesOrVanishesThroughHandOffs", async () => {
 test("PauseStepResumeAndSpeedAreSent", mockOnly, async () => {
   await open();
   await haveBodies(BODIES);
+  await until(() => window.aurasim.status?.state === "running");
   await page.keyboard.press("Space");
   await commanded("pause");
   await until(() => window.aurasim.status?.state === "paused");
@@ -160,6 +161,7 @@ test("AMeshFileIsSentAndDropped", mockOnly, async () => {
 test("AClickedBodyIsSelectedWatchedPushedAndRemoved", mockOnly, async () => {
   await open();
   await haveBodies(BODIES);
+  await until(() => window.aurasim.status?.state === "running");
   await page.keyboard.press("Space");
   await until(() => window.aurasim.status?.state === "paused");
   await page.waitForTimeout(600);

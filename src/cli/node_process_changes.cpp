@@ -1,0 +1,141 @@
+// Changes of a whole run while it runs: another scene, other regions. All nodes come here after the same state.
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/launch_setup.h"
+#include "cli/node_process.h"
+#include "cli/repartition.h"
+#include "cli/stop_signal.h"
+#include "config/launch_variants.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPatience = 20s;
+
+}  // namespace
+
+void NodeProcess::change_if_due() {
+  if (!change_) return;
+  const core::Order order = *std::exchange(change_, std::nullopt);
+  if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
+  if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
+}
+
+/// Bodies of the old scene are forgotten; the regions stay.
+void NodeProcess::change_scene(const std::string& name) {
+  launch_ = config::with_scene(launch_, name);
+  spdlog::info("scene {} after step {}", name, node_->current_step());
+  waits_to_start_ = generation_ + 1;
+  node_.reset();
+  connect_anew(neighbour_transport(launch_, options_.region));
+  begin_generation(waits_to_start_, start_->epoch_ns);
+  dds::WorldMap map = world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = generation_;
+  control_.publish_map(map);
+}
+
+/// Waits until every body that was on its way to us is here.
+void NodeProcess::settle_all() {
+  const auto deadline = Clock::now() + kPatience;
+  while (!node_->ready_to_settle()) {
+    if (Clock::now() > deadline) throw RepartitionFailed("new regions: a neighbour has not come to this state");
+    transport_->wait_for_arrival(5ms);
+  }
+  const node::StepReport& report = node_->settle();
+  if (recorder_) recorder_->write_settling(report);
+}
+
+/// Another transport; returns when all nodes have theirs and region 0 says when to go on.
+void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
+  transport_.reset();
+  transport_.emplace(participant_, settings);
+  const auto deadline = Clock::now() + kPatience;
+  while (!transport_->all_matched()) {
+    if (Clock::now() > deadline) transport_->wait_until_matched(0ns);  // says who is missing
+    control_.wait(10ms);
+  }
+  generation_ = waits_to_start_;
+  start_.reset();
+  status_.state = dds::NodeState::kRunning;  // so that the next state is told at once
+  while (!start_) {
+    if (Clock::now() > deadline || stop_requested()) throw RepartitionFailed("the run does not go on after a change");
+    publish(dds::NodeState::kWaiting);
+    start_when_all_wait();
+    obey_commands();
+    control_.wait(10ms);
+  }
+}
+
+/// What we have sent may still have to be repeated: nobody leaves before all have what they wait for.
+void NodeProcess::wait_until_all_have_exchanged() {
+  const auto deadline = Clock::now() + kPatience;
+  const auto has_exchanged = [this](const auto& entry) {
+    const dds::Status& status = entry.second.status;
+    const bool says_so = status.generation == generation_ && status.state == dds::NodeState::kPaused;
+    return entry.first == options_.region || says_so || status.generation > generation_;
+  };
+  for (;;) {
+    publish(dds::NodeState::kPaused);
+    const auto& statuses = control_.statuses();
+    if (std::all_of(statuses.begin(), statuses.end(), has_exchanged)) return;
+    if (Clock::now() > deadline) throw RepartitionFailed("new regions: not every region has got its bodies");
+    control_.wait(5ms);
+  }
+}
+
+void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
+  settle_all();
+  RepartitionSettings settings;
+  settings.region = options_.region;
+  settings.census = generation_ + 1;
+  settings.deadline = Clock::now() + kPatience;
+  const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
+  observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
+  observers_->tell_census(*node_, settings.census);
+  const std::vector<core::Departure> departures = find_new_hosts(settings, *changed, participant_, *node_);
+
+  dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
+  to_all.neighbours.clear();
+  for (std::uint32_t r = 0; r < changed->regions.size(); ++r) {
+    if (core::RegionId{r} != options_.region) to_all.neighbours.push_back(core::RegionId{r});
+  }
+  waits_to_start_ = settings.census;
+  connect_anew(to_all);
+  node::StepReport moved;
+  moved.step = node_->current_step();
+  for (const node::HandOffRow& row : exchange(settings, *changed, departures, *transport_, *node_)) {
+    (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
+  }
+  wait_until_all_have_exchanged();
+  if (recorder_) recorder_->write_settling(moved);
+  status_.hand_offs_out += moved.departures.size();
+  status_.hand_offs_in += moved.arrivals.size();
+
+  launch_ = *changed;
+  status_.map_version = launch_.regions.version();
+  status_.footprint = launch_.regions.region(options_.region);
+  waits_to_start_ = settings.census + 1;
+  connect_anew(neighbour_transport(launch_, options_.region));
+  const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
+  observers_->begin_generation(generation_);
+  desk_->change_map(generation_);
+  control_.use_map(launch_.regions.version());
+  const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
+  observers_->after_step(*node_, report);
+  pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns);
+  dds::WorldMap map = world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = generation_;
+  map.from_step = node_->current_step();
+  control_.publish_map(map);
+  spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
+               moved.arrivals.size());
+}
+
+}  // namespace aurasim::cli
