@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what aurasim is built, run and tested with: packages of Debian 12, nothing else.
-# Run it as often as you like; when everything is there it changes nothing and takes no time.
+# Installs what aurasim is built, run and tested with: packages of Debian 12, and by npm those of the viewer's page,
+# which it builds. Run it as often as you like; when everything is there it changes nothing and takes no time.
 set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 packages=(
   # compiler and build; the format check uses clang-format
@@ -19,7 +20,12 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
   # figures of the experiments
   python3-matplotlib
+  # the browser that the page is tested in
+  chromium
 )
+# The page. A node of another origin is as good (and brings an npm that Debian's would be in conflict with).
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 
 fail() {
   printf 'setup.sh: %s\n' "$*" >&2
@@ -36,17 +42,18 @@ missing=()
 for package in "${packages[@]}"; do
   grep -qxF "$package installed" <<<"$installed" || missing+=("$package")
 done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
 
-as_root=()
-if [[ $EUID -ne 0 ]]; then
-  command -v sudo >/dev/null || fail "needs root or sudo, to install: ${missing[*]}"
-  as_root=(sudo)
-fi
-apt() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
+install_missing() {
+  local as_root=()
+  if [[ $EUID -ne 0 ]]; then
+    command -v sudo >/dev/null || fail "needs root or sudo, to install: ${missing[*]}"
+    as_root=(sudo)
+  fi
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300)
+  printf 'setup.sh: installing %s\n' "${missing[*]}"
+  "${apt[@]}" update
+  "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"
 }
 
-printf 'setup.sh: installing %s\n' "${missing[*]}"
-apt update
-apt install --yes --no-install-recommends "${missing[@]}"
+[[ ${#missing[@]} -eq 0 ]] || install_missing
+"$root/scripts/build_web.sh" --tests

@@ -39,7 +39,9 @@ export class Commands {
       this.toast(`${what}: ${reply.text || "refused"}`, "bad");
       if (/token/i.test(reply.text ?? "")) this.#forgetToken();
     } else if (!options.quiet) {
-      this.toast(reply.text ? `${what}: ${reply.text}` : what, "ok");
+      // Some answers begin with the command's name.
+      const text = reply.text?.replace(`${command.kind}: `, "");
+      this.toast(text ? `${what}: ${text}` : what, "ok");
     }
     return reply;
   }

@@ -3,7 +3,7 @@
 import { decode } from "./frames.js";
 
 const FIRST_WAIT_MS = 250;
-const LONGEST_WAIT_MS = 4000;
+const LONGEST_WAIT_MS = 1000; // back soon after an overseer that was restarted
 /** Statuses come four times a second; this long without a word and the connection is taken for dead. */
 const SILENCE_MS = 8000;
 

@@ -274,6 +274,8 @@ window.aurasim = Object.freeze({
   get device() { return picture?.view.device ?? null; },
   get selected() { return selection.body?.id ?? null; },
   get status() { return status; },
+  get scene() { return scene; },
+  get map() { return map; },
   hostColour: (host) => colourOfHost(host),
   colourOf: (id) => (world.slotOfId.has(id) ? picture?.instances.drawnColour(world.slotOfId.get(id)) ?? null : null),
   pixelOf: (id) => (world.slotOfId.has(id) ? picture?.pixelOf(world.slotOfId.get(id)) ?? null : null),

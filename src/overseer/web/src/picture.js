@@ -98,6 +98,7 @@ export class Picture {
   applyFrame(frame, change, now_ms) {
     if (frame.key) {
       this.overlays.clear();
+      this.view.prepare();
       this.#chooseOrigin(frame);
     }
     this.instances.apply(change, now_ms);

@@ -15,6 +15,7 @@ export class SceneView {
     this.software = SOFTWARE.test(this.device);
     // Smooth edges cost a processor that draws by itself four times the work.
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.software, powerPreference: "high-performance" });
+    this.renderer.debug.checkShaderErrors = false; // asking for errors waits for the compiler
     this.renderer.setClearColor(HORIZON);
     this.renderer.toneMappingExposure = 1.05;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -45,9 +46,25 @@ export class SceneView {
     this.scene.add(this.key, this.key.target, rim);
   }
 
+  /** There may be new shaders: they are compiled beside the page, which would otherwise stand still for seconds. */
+  prepare() {
+    this.unprepared = true;
+  }
+
+  #isPrepared(camera) {
+    if (this.unprepared && !this.compiling) {
+      this.unprepared = false;
+      const done = () => { this.compiling = false; };
+      this.compiling = true;
+      this.renderer.compileAsync(this.scene, camera).then(done, done);
+    }
+    return !this.compiling;
+  }
+
   /** @param {{statics: any[], shapes: any[]}} message */
   showScene(message) {
     this.sceneMessage = message;
+    this.prepare();
     for (const group of [this.statics, this.grounds]) dispose(group);
     for (const body of message.statics) this.#addStatic(body, message.shapes[body.shape]);
     if (this.grounds.children.length === 0) this.grounds.add(groundFor(null, this.origin, this.lit));
@@ -127,7 +144,7 @@ export class SceneView {
     this.scene.fog.far = flat ? 1e6 : 320 + distance * 6;
     this.sky.visible = !flat && this.lit;
     this.sky.position.copy(camera.position);
-    this.renderer.render(this.scene, camera);
+    if (this.#isPrepared(camera)) this.renderer.render(this.scene, camera);
   }
 
   /** @returns {THREE.Raycaster} through a point of the picture, -1 to 1 */
