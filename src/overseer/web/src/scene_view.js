@@ -5,6 +5,7 @@ import { HORIZON, groundFor, sky } from "./ground.js";
 import { LEVELS, Quality } from "./quality.js";
 import { partsOf, placeOf } from "./shapes.js";
 
+const LONGEST_PREPARATION_MS = 3000;
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const STATIC_COLOUR = "#69748a";
 
@@ -54,9 +55,11 @@ export class SceneView {
   #isPrepared(camera) {
     if (this.unprepared && !this.compiling) {
       this.unprepared = false;
+      // A material that is taken away meanwhile is never ready: the wait has an end.
+      const longest = new Promise((resolve) => setTimeout(resolve, LONGEST_PREPARATION_MS));
       const done = () => { this.compiling = false; };
       this.compiling = true;
-      this.renderer.compileAsync(this.scene, camera).then(done, done);
+      Promise.race([this.renderer.compileAsync(this.scene, camera), longest]).then(done, done);
     }
     return !this.compiling;
   }
