@@ -23,7 +23,11 @@ install_packages() {
   [[ $folder/node_modules/.package-lock.json -nt $folder/package-lock.json ]] && return
   check_tools
   printf 'build_web.sh: installing the npm packages of %s\n' "$folder"
-  (cd "$folder" && npm ci --no-audit --no-fund --no-progress --loglevel=error) || fail "npm ci failed in $folder"
+  # npm 11 refuses a lock file without the optional packages of other platforms, which a registry need not have: the
+  # second command takes what is locked and fetches the rest by package.json, which names exact versions.
+  local options=(--no-audit --no-fund --no-progress --loglevel=error)
+  (cd "$folder" && { npm ci "${options[@]}" 2>/dev/null || npm install --no-save "${options[@]}"; }) ||
+    fail "npm cannot install the packages of $folder"
   touch "$folder/node_modules/.package-lock.json"
 }
 
