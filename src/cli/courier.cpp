@@ -30,8 +30,7 @@ Courier::Courier(dds::Participant& participant, dds::ControlBus& control, std::u
 std::vector<const dds::Status*> Courier::live_nodes() {
   std::vector<const dds::Status*> live;
   for (const auto& [region, seen] : control_.statuses()) {
-    const bool ended = seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
-    if (!seen.lost && !ended && seen.status.agreement == agreement_) live.push_back(&seen.status);
+    if (seen.is_live() && seen.status.agreement == agreement_) live.push_back(&seen.status);
   }
   return live;
 }

@@ -27,22 +27,6 @@ dds::Durations summary_of(std::vector<double>& values) {
   return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
 }
 
-bool is_live(const dds::SeenStatus& seen) {
-  return !seen.lost && seen.status.state != dds::NodeState::kFinished && seen.status.state != dds::NodeState::kFailed;
-}
-
-void log_impairment(const dds::Participant& participant) {
-  const auto report = participant.impairment();
-  if (!report) return;
-  const auto& [by, datagrams] = *report;
-  spdlog::info(
-      "impaired network: delay {:.3g} ms, jitter {:.3g} ms, loss {:.3g}, bandwidth {}, reorder {}, "
-      "discovery {}, seed {}; datagrams passed {}, delayed {}, lost {}, overflowed {}, still queued {}",
-      1e3 * by.delay_s, 1e3 * by.jitter_s, by.loss,
-      by.bandwidth_B_s > 0 ? fmt::format("{:.4g} B/s", by.bandwidth_B_s) : "unlimited", by.reorder, by.discovery,
-      by.seed, datagrams.passed, datagrams.delayed, datagrams.lost, datagrams.overflowed, datagrams.queued);
-}
-
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
@@ -122,7 +106,7 @@ bool NodeProcess::another_run_is_here() {
 bool NodeProcess::this_region_is_taken() {
   for (const auto& [region, seen] : control_.statuses()) {
     const dds::Status& other = seen.status;
-    if (region != options_.region || other.pid == status_.pid || !is_live(seen)) continue;
+    if (region != options_.region || other.pid == status_.pid || !seen.is_live()) continue;
     if (other.agreement != status_.agreement) continue;  // its map says more
     refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
                        core::value_of(region), launch_.dds.domain, other.pid, other.step));
@@ -137,7 +121,7 @@ bool NodeProcess::domain_is_free() {
   const auto strangers = [this] {
     const auto& statuses = control_.statuses();
     return std::any_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
-      return is_live(entry.second) && entry.second.status.agreement != status_.agreement;
+      return entry.second.is_live() && entry.second.status.agreement != status_.agreement;
     });
   };
   // Whoever has a status has a map, which is on its way.
@@ -293,47 +277,6 @@ void NodeProcess::compute_step() {
   note(report, frame_ms);
   publish_running();
   obey_orders();
-}
-
-/// The live node of the lowest region gives commands their place in time.
-bool NodeProcess::leads() {
-  const auto& statuses = control_.statuses();
-  return std::none_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
-    return entry.first < options_.region && is_live(entry.second) && entry.second.status.agreement == status_.agreement;
-  });
-}
-
-void NodeProcess::serve_clients() {
-  RunView run;
-  run.leads = leads();
-  const auto& statuses = control_.statuses();
-  for (const auto& [region, seen] : statuses) {
-    run.bodies += is_live(seen) ? seen.status.bodies : 0;
-    run.complete = run.complete && is_live(seen);
-  }
-  run.all_have = [&statuses](std::uint64_t mesh) {
-    return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
-      const std::vector<std::uint64_t>& known = entry.second.status.meshes;
-      return !is_live(entry.second) || std::find(known.begin(), known.end(), mesh) != known.end();
-    });
-  };
-  desk_->serve(*node_, run);
-  status_.meshes = desk_->meshes();
-}
-
-/// Orders about the run as a whole whose state has been computed.
-void NodeProcess::obey_orders() {
-  std::erase_if(run_orders_, [this](const core::Order& order) {
-    if (node_->current_step() < order.at_step) return false;
-    if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
-      pacer_.set_rate(order.at_step, rate->rate);
-      status_.rate = rate->rate;
-    } else if (std::holds_alternative<core::Repartition>(order.action) ||
-               std::holds_alternative<core::ChangeScene>(order.action)) {
-      change_ = order;
-    }
-    return true;
-  });
 }
 
 void NodeProcess::note(const node::StepReport& report, double frame_ms) {

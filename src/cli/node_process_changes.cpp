@@ -1,4 +1,5 @@
-// Changes of a whole run while it runs: another scene, other regions. All nodes come here after the same state.
+// What clients ask of a node, and the changes of a whole run while it runs: its rate, another scene, other regions. All
+// nodes come to a change after the same state.
 #include <algorithm>
 
 #include <spdlog/spdlog.h>
@@ -18,6 +19,48 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kPatience = 20s;
 
 }  // namespace
+
+/// The live node of the lowest region gives commands their place in time.
+bool NodeProcess::leads() {
+  const auto& statuses = control_.statuses();
+  return std::none_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
+    return entry.first < options_.region && entry.second.is_live() &&
+           entry.second.status.agreement == status_.agreement;
+  });
+}
+
+void NodeProcess::serve_clients() {
+  RunView run;
+  run.leads = leads();
+  const auto& statuses = control_.statuses();
+  for (const auto& [region, seen] : statuses) {
+    run.bodies += seen.is_live() ? seen.status.bodies : 0;
+    run.complete = run.complete && seen.is_live();
+  }
+  run.all_have = [&statuses](std::uint64_t mesh) {
+    return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
+      const std::vector<std::uint64_t>& known = entry.second.status.meshes;
+      return !entry.second.is_live() || std::find(known.begin(), known.end(), mesh) != known.end();
+    });
+  };
+  desk_->serve(*node_, run);
+  status_.meshes = desk_->meshes();
+}
+
+/// Orders about the run as a whole whose state has been computed.
+void NodeProcess::obey_orders() {
+  std::erase_if(run_orders_, [this](const core::Order& order) {
+    if (node_->current_step() < order.at_step) return false;
+    if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
+      pacer_.set_rate(order.at_step, rate->rate);
+      status_.rate = rate->rate;
+    } else if (std::holds_alternative<core::Repartition>(order.action) ||
+               std::holds_alternative<core::ChangeScene>(order.action)) {
+      change_ = order;
+    }
+    return true;
+  });
+}
 
 void NodeProcess::change_if_due() {
   if (!change_) return;

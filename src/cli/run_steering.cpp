@@ -17,8 +17,7 @@ constexpr double kNoticeS = 0.3;
 }  // namespace
 
 bool RunSteering::belongs(const dds::SeenStatus& seen) const {
-  return !seen.lost && seen.status.agreement == agreement_ && seen.status.state != dds::NodeState::kFinished &&
-         seen.status.state != dds::NodeState::kFailed;
+  return seen.is_live() && seen.status.agreement == agreement_;
 }
 
 bool RunSteering::find_run(std::chrono::milliseconds time_out) {

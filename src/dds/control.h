@@ -70,6 +70,9 @@ struct SeenStatus {
   Status status;
   bool lost = false;  ///< its proof of life has ended; false again when it comes back
   std::chrono::steady_clock::time_point seen;
+
+  /// Neither lost nor at its end.
+  bool is_live() const { return !lost && status.state != NodeState::kFinished && status.state != NodeState::kFailed; }
 };
 
 /// Who owns what, as the launcher or a node announces it.

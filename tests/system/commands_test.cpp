@@ -24,7 +24,8 @@ class Commands : public SystemTest {
   /// What it says, as JSON; null if it fails.
   nlohmann::json send(const Words& words, int code = 0) {
     SCOPED_TRACE(words[0]);
-    Process& process = start(Words{"send", words[0], file_} + Words(words.begin() + 1, words.end()) + set(overrides_ + Words{domain_}));
+    Process& process = start(Words{"send", words[0], file_} + Words(words.begin() + 1, words.end()) +
+                             set(overrides_ + Words{domain_}));
     expect_exit(process, code, 15s);
     last_error_ = process.err();
     return code == 0 ? nlohmann::json::parse(process.out(), nullptr, false) : nlohmann::json();
@@ -83,8 +84,8 @@ TEST_F(Commands, RegionsAreDrawnAnewInMidRun) {
   wait_for(4, 60);
   send({"regions", "--boxes", "-100", "-100", "-10", "100", "-10", "-100", "0", "100", "0", "-100", "10", "100", "10",
         "-100", "100", "100"});
-  send({"regions", "--boxes", "-100", "-100", "100", "-9", "-100", "-9", "100", "0", "-100", "0", "100", "9", "-100", "9",
-        "100", "100"});
+  send({"regions", "--boxes", "-100", "-100", "100", "-9", "-100", "-9", "100", "0", "-100", "0", "100", "9", "-100",
+        "9", "100", "100"});
   send({"regions", "--boxes", "-100", "-100", "0", "100", "0", "-100", "100", "100"}, 1);
   EXPECT_NE(last_error_.find("2 regions for 4 nodes"), std::string::npos) << last_error_;
   expect_end();
