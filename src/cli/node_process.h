@@ -72,7 +72,7 @@ class NodeProcess {
   void change_scene(const std::string& name);
   void change_regions(const std::vector<core::Rectangle>& boxes);
   void settle_all();
-  void wait_until_all_have_exchanged();
+  void wait_until_all_stand();
   void connect_anew(const dds::TransportSettings& settings);
   bool finished() const;
   void linger();

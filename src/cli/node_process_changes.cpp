@@ -2,6 +2,7 @@
 // nodes come to a change after the same state.
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "cli/launch_setup.h"
@@ -73,6 +74,7 @@ void NodeProcess::change_if_due() {
 void NodeProcess::change_scene(const std::string& name) {
   launch_ = config::with_scene(launch_, name);
   spdlog::info("scene {} after step {}", name, node_->current_step());
+  wait_until_all_stand();
   waits_to_start_ = generation_ + 1;
   node_.reset();
   connect_anew(neighbour_transport(launch_, options_.region));
@@ -81,6 +83,26 @@ void NodeProcess::change_scene(const std::string& name) {
   map.agreement = status_.agreement;
   map.generation = generation_;
   control_.publish_map(map);
+}
+
+/// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.
+void NodeProcess::wait_until_all_stand() {
+  const auto deadline = Clock::now() + kPatience;
+  const auto stands = [this](const auto& entry) {
+    const dds::Status& status = entry.second.status;
+    const bool is_here = status.state == dds::NodeState::kPaused && status.generation == generation_ &&
+                         status.step >= node_->current_step();
+    return entry.first == options_.region || is_here || status.generation > generation_;
+  };
+  for (;;) {
+    publish(dds::NodeState::kPaused);
+    const auto& statuses = control_.statuses();
+    if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
+    if (Clock::now() > deadline || stop_requested()) {
+      throw RepartitionFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
+    }
+    control_.wait(5ms);
+  }
 }
 
 /// Waits until every body that was on its way to us is here.
@@ -115,25 +137,9 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
   }
 }
 
-/// What we have sent may still have to be repeated: nobody leaves before all have what they wait for.
-void NodeProcess::wait_until_all_have_exchanged() {
-  const auto deadline = Clock::now() + kPatience;
-  const auto has_exchanged = [this](const auto& entry) {
-    const dds::Status& status = entry.second.status;
-    const bool says_so = status.generation == generation_ && status.state == dds::NodeState::kPaused;
-    return entry.first == options_.region || says_so || status.generation > generation_;
-  };
-  for (;;) {
-    publish(dds::NodeState::kPaused);
-    const auto& statuses = control_.statuses();
-    if (std::all_of(statuses.begin(), statuses.end(), has_exchanged)) return;
-    if (Clock::now() > deadline) throw RepartitionFailed("new regions: not every region has got its bodies");
-    control_.wait(5ms);
-  }
-}
-
 void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   settle_all();
+  wait_until_all_stand();
   RepartitionSettings settings;
   settings.region = options_.region;
   settings.census = generation_ + 1;
@@ -155,7 +161,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   for (const node::HandOffRow& row : exchange(settings, *changed, departures, *transport_, *node_)) {
     (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
   }
-  wait_until_all_have_exchanged();
+  wait_until_all_stand();
   if (recorder_) recorder_->write_settling(moved);
   status_.hand_offs_out += moved.departures.size();
   status_.hand_offs_in += moved.arrivals.size();
