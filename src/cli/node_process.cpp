@@ -27,6 +27,18 @@ dds::Durations summary_of(std::vector<double>& values) {
   return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
 }
 
+void log_impairment(const dds::Participant& participant) {
+  const auto report = participant.impairment();
+  if (!report) return;
+  const auto& [by, datagrams] = *report;
+  spdlog::info(
+      "impaired network: delay {:.3g} ms, jitter {:.3g} ms, loss {:.3g}, bandwidth {}, reorder {}, "
+      "discovery {}, seed {}; datagrams passed {}, delayed {}, lost {}, overflowed {}, still queued {}",
+      1e3 * by.delay_s, 1e3 * by.jitter_s, by.loss,
+      by.bandwidth_B_s > 0 ? fmt::format("{:.4g} B/s", by.bandwidth_B_s) : "unlimited", by.reorder, by.discovery,
+      by.seed, datagrams.passed, datagrams.delayed, datagrams.lost, datagrams.overflowed, datagrams.queued);
+}
+
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
