@@ -1,6 +1,7 @@
 #include "cli/command_desk.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,21 +53,17 @@ CommandDesk::CommandDesk(const config::Launch& launch, dds::Participant& partici
 void CommandDesk::begin_generation(node::Node& node, core::Generation generation) {
   growth_ = {generation, {}};
   closed_ = false;
-  for (const auto& [request, step] : std::exchange(due_, {})) {
-    core::CommandReply done;
-    done.request = request;
-    done.outcome = core::Outcome::kDone;
-    door_.reply(std::move(done));
-  }
+  tell_all_done(0);
   own_shapes_.clear();
   own_kinds_.clear();
   shapes_ = prototypes_ = statics_ = 0;
   node.use_meshes([this](const core::MeshRef& mesh) { return make_mesh(mesh); });
 }
 
-void CommandDesk::change_map(core::Generation generation) {
+void CommandDesk::change_map(core::Generation generation, core::Step step) {
   door_.use_map(launch_.regions.version());
   growth_.generation = generation;
+  tell_all_done(step);
   if (leads_) growth_writer_.send(growth_);
   closed_ = false;
 }
@@ -132,7 +129,9 @@ void CommandDesk::accept(const core::Command& command, const core::Order& order,
   reply.object = object;
   door_.reply(std::move(reply));
   const bool of_a_body = core::body_of(order) || std::holds_alternative<core::Spawn>(order.action);
-  if (!of_a_body) due_[command.request] = order.at_step;  // what bodies obey is told by their hosts
+  if (of_a_body) return;  // what bodies obey is told by their hosts
+  // A change of the run is done when the run goes on after it.
+  due_[command.request] = closed_ ? std::numeric_limits<core::Step>::max() : order.at_step;
 }
 
 void CommandDesk::decide(const core::Command& command, node::Node& node, const RunView& run) {
@@ -230,19 +229,24 @@ void CommandDesk::tell_growth(const node::StepReport& report) {
   if (growth_.orders.size() > before && leads_) growth_writer_.send(growth_);
 }
 
+void CommandDesk::tell_done(std::uint64_t request, core::Step step) {
+  core::CommandReply done;
+  done.request = request;
+  done.outcome = core::Outcome::kDone;
+  done.at_step = step;
+  door_.reply(std::move(done));
+}
+
+void CommandDesk::tell_all_done(core::Step step) {
+  for (const auto& [request, due] : std::exchange(due_, {})) tell_done(request, step);
+}
+
 void CommandDesk::after_step(const node::StepReport& report) {
   tell_growth(report);
-  const auto tell = [this, &report](std::uint64_t request) {
-    core::CommandReply done;
-    done.request = request;
-    done.outcome = core::Outcome::kDone;
-    done.at_step = report.step;
-    door_.reply(std::move(done));
-  };
-  for (const std::uint64_t request : report.obeyed) tell(request);
+  for (const std::uint64_t request : report.obeyed) tell_done(request, report.step);
   std::erase_if(due_, [&](const auto& entry) {
     if (entry.second > report.step) return false;
-    tell(entry.first);
+    tell_done(entry.first, report.step);
     return true;
   });
 }

@@ -31,7 +31,7 @@ class CommandDesk {
   CommandDesk(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   /// The run has got another map; the scene stays as it has grown.
-  void change_map(core::Generation generation);
+  void change_map(core::Generation generation, core::Step step);
   /// Serves what has come. Call it between steps.
   void serve(node::Node& node, const RunView& run);
   /// Tells clients what has taken effect.
@@ -45,6 +45,8 @@ class CommandDesk {
  private:
   void answer(const core::Command& command, const core::Ray& ray, const node::Node& node);
   void decide(const core::Command& command, node::Node& node, const RunView& run);
+  void tell_done(std::uint64_t request, core::Step step);
+  void tell_all_done(core::Step step);
   void refuse(const core::Command& command, std::string why);
   void accept(const core::Command& command, const core::Order& order, std::optional<core::ObjectRef> object = {});
   bool waits_for_mesh(const core::Command& command, const RunView& run);

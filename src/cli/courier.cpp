@@ -13,6 +13,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatience = 6s;
 constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it has obeyed
+constexpr auto kPatienceForChanges = 20s;
 constexpr auto kPatienceForRays = 400ms;
 
 std::optional<core::BodyId> subject_of(const core::Ask& ask) {
@@ -44,12 +45,13 @@ std::uint64_t Courier::send(core::Command command) {
   UnderWay under_way;
   under_way.subject = subject_of(command.ask);
   under_way.has_time = command.at_step > 0;
+  under_way.changes_the_run =
+      std::holds_alternative<core::Repartition>(command.ask) || std::holds_alternative<core::ChangeScene>(command.ask);
   under_way.delivery.is_ray = std::holds_alternative<core::Ray>(command.ask);
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
-  const auto live = live_nodes();
-  const std::uint64_t map_version = live.empty() ? 0 : live.front()->map_version;
-  const std::uint64_t request = client_.send(std::move(command), map_version);
+  // Any map: there is one run in a domain, and its map may be changing just now.
+  const std::uint64_t request = client_.send(std::move(command), 0);
   under_way.delivery.request = request;
   under_way_.emplace(request, std::move(under_way));
   return request;
@@ -60,7 +62,7 @@ void Courier::note(const core::CommandReply& reply, UnderWay& under_way) {
   switch (reply.outcome) {
     case core::Outcome::kAccepted:
       under_way.accepted = true;
-      under_way.deadline = Clock::now() + kPatienceAfterIt;
+      under_way.deadline = Clock::now() + (under_way.changes_the_run ? kPatienceForChanges : kPatienceAfterIt);
       delivery.at_step = reply.at_step;
       delivery.object = reply.object;
       return;

@@ -48,6 +48,7 @@ class Courier {
   struct UnderWay {
     Delivery delivery;
     bool accepted = false;
+    bool changes_the_run = false;
     bool has_time = false;  ///< its state was named: who asked does not wait for it
     std::optional<core::BodyId> subject;
     std::vector<core::RegionId> answered;

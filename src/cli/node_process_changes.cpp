@@ -173,7 +173,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   connect_anew(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
   observers_->begin_generation(generation_);
-  desk_->change_map(generation_);
+  desk_->change_map(generation_, node_->current_step());
   control_.use_map(launch_.regions.version());
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
   observers_->after_step(*node_, report);

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
 using Numbers = std::vector<double>;
 
-constexpr auto kPatience = 10s;
+constexpr auto kPatience = 25s;
 
 const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"resume", Kind::kResume},
