@@ -113,7 +113,7 @@ bool Courier::has_ended(UnderWay& under_way) {
     const bool paused = !live.empty() && std::ranges::all_of(live, [](const dds::Status* node) {
       return node->state == dds::NodeState::kPaused;
     });
-    if (!under_way.accepted || !paused) return false;
+    if (!under_way.accepted || under_way.changes_the_run || !paused) return false;  // nodes also stand to change
     delivery.done = true;
     delivery.text = fmt::format("the run is paused; takes effect in step {}", delivery.at_step);
     return true;
