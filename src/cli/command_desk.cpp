@@ -8,6 +8,7 @@
 
 #include "cli/command_limits.h"
 #include "config/meshes.h"
+#include "node/scene_growth.h"
 
 namespace aurasim::cli {
 namespace {
@@ -73,14 +74,18 @@ void CommandDesk::serve(node::Node& node, const RunView& run) {
   shapes_ = std::max(shapes_, node.scene().shapes.size());
   prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
   statics_ = std::max(statics_, node.scene().statics.size());
-  std::vector<core::Command> commands = std::exchange(waiting_for_mesh_, {});
-  for (core::Command& command : door_.take()) commands.push_back(std::move(command));
-  for (const core::Command& command : commands) {
-    if (const auto* mesh = mesh_in(command.ask)) make_mesh(*mesh);
-    if (const auto* ray = std::get_if<core::Ray>(&command.ask)) {
-      answer(command, *ray, node);
-    } else if (run.leads && !waits_for_mesh(command, run)) {
-      decide(command, node, run);
+  std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
+  for (core::Command& command : door_.take()) asked.push_back({std::move(command), 0});
+  for (Asked& one : asked) {
+    const auto* const mesh = mesh_in(one.command.ask);
+    const bool has_it =
+        mesh == nullptr || has_mesh(mesh->hash);  // also where it is not asked for: the lead wants to know
+    if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
+      answer(one.command, *ray, node);
+    } else if (run.leads && has_it && (mesh == nullptr || run.all_have(mesh->hash))) {
+      decide(one.command, node, run);
+    } else if (run.leads) {
+      wait_for_mesh(std::move(one));
     }
   }
 }
@@ -101,14 +106,18 @@ void CommandDesk::answer(const core::Command& command, const core::Ray& ray, con
 }
 
 /// A mesh is on its way to all nodes; after some seconds it is not.
-bool CommandDesk::waits_for_mesh(const core::Command& command, const RunView& run) {
-  const core::MeshRef* mesh = mesh_in(command.ask);
-  if (mesh == nullptr || (make_mesh(*mesh) && run.all_have(mesh->hash))) return false;
-  if (++rounds_waited_[command.request] > kRoundsForMesh) {
-    refuse(command, "not every node has got the mesh; was it sent to /api/shapes?");
+void CommandDesk::wait_for_mesh(Asked asked) {
+  if (++asked.rounds > kRoundsForMesh) {
+    refuse(asked.command, "not every node has got the mesh; was it sent to /api/shapes?");
   } else {
-    waiting_for_mesh_.push_back(command);
+    waiting_for_mesh_.push_back(std::move(asked));
   }
+}
+
+bool CommandDesk::has_mesh(std::uint64_t hash) {
+  if (std::ranges::find(meshes_, hash) != meshes_.end()) return true;
+  if (mesh_reader_.mesh(hash) == nullptr) return false;
+  meshes_.push_back(hash);
   return true;
 }
 
@@ -128,15 +137,14 @@ void CommandDesk::accept(const core::Command& command, const core::Order& order,
   reply.at_step = order.at_step;
   reply.object = object;
   door_.reply(std::move(reply));
-  const bool of_a_body = core::body_of(order) || std::holds_alternative<core::Spawn>(order.action);
+  const bool of_a_body = core::body_of(order.action) || std::holds_alternative<core::Spawn>(order.action);
   if (of_a_body) return;  // what bodies obey is told by their hosts
   // A change of the run is done when the run goes on after it.
   due_[command.request] = closed_ ? std::numeric_limits<core::Step>::max() : order.at_step;
 }
 
 void CommandDesk::decide(const core::Command& command, node::Node& node, const RunView& run) {
-  const bool changes_the_run =
-      std::holds_alternative<core::Repartition>(command.ask) || std::holds_alternative<core::ChangeScene>(command.ask);
+  const bool changes_the_run = core::changes_the_run(command.ask);
   if (closed_) return refuse(command, "the run is being changed; ask again in a moment");
   if (changes_the_run && !run.complete) return refuse(command, "a node has died: the run can only go on as it is");
   const core::ClientShape* const own_shape = shape_in(command.ask);
@@ -211,20 +219,14 @@ std::optional<core::Shape> CommandDesk::make_shape(const core::ClientShape& shap
 
 std::optional<core::Shape> CommandDesk::make_mesh(const core::MeshRef& ref) {
   const core::TriangleMesh* const mesh = mesh_reader_.mesh(ref.hash);
-  if (mesh == nullptr) return {};
-  if (std::ranges::find(meshes_, ref.hash) == meshes_.end()) meshes_.push_back(ref.hash);
-  return config::shape_for(*mesh, ref.use);
+  return mesh == nullptr ? std::nullopt : std::optional(config::shape_for(*mesh, ref.use));
 }
 
 /// Tells observers what the scene has got, when it has got something.
 void CommandDesk::tell_growth(const node::StepReport& report) {
   const std::size_t before = growth_.orders.size();
   for (const core::Order& order : report.orders) {
-    const bool grows = std::holds_alternative<core::DefineShape>(order.action) ||
-                       std::holds_alternative<core::DefinePrototype>(order.action) ||
-                       std::holds_alternative<core::AddStatic>(order.action) ||
-                       std::holds_alternative<core::RemoveStatic>(order.action);
-    if (grows) growth_.orders.push_back(order);
+    if (node::changes_scene(order.action)) growth_.orders.push_back(order);
   }
   if (growth_.orders.size() > before && leads_) growth_writer_.send(growth_);
 }

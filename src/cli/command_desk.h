@@ -43,13 +43,18 @@ class CommandDesk {
   const std::vector<std::uint64_t>& meshes() const { return meshes_; }
 
  private:
+  struct Asked {
+    core::Command command;
+    int rounds = 0;  ///< that it has waited for its mesh
+  };
   void answer(const core::Command& command, const core::Ray& ray, const node::Node& node);
   void decide(const core::Command& command, node::Node& node, const RunView& run);
   void tell_done(std::uint64_t request, core::Step step);
   void tell_all_done(core::Step step);
   void refuse(const core::Command& command, std::string why);
   void accept(const core::Command& command, const core::Order& order, std::optional<core::ObjectRef> object = {});
-  bool waits_for_mesh(const core::Command& command, const RunView& run);
+  void wait_for_mesh(Asked asked);
+  bool has_mesh(std::uint64_t hash);
   void spawn(const core::Command& command, const core::NewBody& body, node::Node& node);
   void place(const core::Command& command, const core::NewStatic& fixed, node::Node& node);
   std::uint32_t shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node);
@@ -66,11 +71,10 @@ class CommandDesk {
   dds::Growth growth_;
   bool leads_ = false;
   std::vector<std::uint64_t> meshes_;
-  std::vector<core::Command> waiting_for_mesh_;
-  std::map<std::uint64_t, int> rounds_waited_;
+  std::vector<Asked> waiting_for_mesh_;
   std::map<std::uint64_t, core::Step> due_;  ///< requests to report as done at their step
-  // Orders under way are not in the scene yet: the lead counts ahead.
   bool closed_ = false;  ///< until the run has changed: an order that not all have heard would be forgotten
+  // Orders under way are not in the scene yet: the lead counts ahead.
   std::size_t shapes_ = 0, prototypes_ = 0, statics_ = 0;
   struct OwnShape {
     core::ClientShape shape;

@@ -16,13 +16,6 @@ constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
 constexpr auto kPatienceForRays = 400ms;
 
-std::optional<core::BodyId> subject_of(const core::Ask& ask) {
-  if (const auto* a = std::get_if<core::RemoveBody>(&ask)) return a->id;
-  if (const auto* a = std::get_if<core::Impulse>(&ask)) return a->id;
-  if (const auto* a = std::get_if<core::SetVelocity>(&ask)) return a->id;
-  return {};
-}
-
 }  // namespace
 
 Courier::Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
@@ -43,10 +36,9 @@ bool Courier::all_listen() {
 
 std::uint64_t Courier::send(core::Command command) {
   UnderWay under_way;
-  under_way.subject = subject_of(command.ask);
+  under_way.subject = core::body_of(command.ask);
   under_way.has_time = command.at_step > 0;
-  under_way.changes_the_run =
-      std::holds_alternative<core::Repartition>(command.ask) || std::holds_alternative<core::ChangeScene>(command.ask);
+  under_way.changes_the_run = core::changes_the_run(command.ask);
   under_way.delivery.is_ray = std::holds_alternative<core::Ray>(command.ask);
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));

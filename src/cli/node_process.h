@@ -64,7 +64,6 @@ class NodeProcess {
   void compute_step();
   void obey_commands();
   void serve_clients();
-  bool leads();
   void obey_orders();
   void obey(const dds::RunCommand& command);
   void reset_if_due();
@@ -100,7 +99,6 @@ class NodeProcess {
   std::optional<dds::RunCommand> start_;
   core::Generation waits_to_start_ = 0;  ///< the generation that a start command has to name
   std::optional<core::Order> change_;    ///< of the run as a whole, due now
-  core::Inbox early_mail_;
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;

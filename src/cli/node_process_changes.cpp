@@ -22,21 +22,15 @@ constexpr auto kPatience = 20s;
 }  // namespace
 
 /// The live node of the lowest region gives commands their place in time.
-bool NodeProcess::leads() {
-  const auto& statuses = control_.statuses();
-  return std::none_of(statuses.begin(), statuses.end(), [this](const auto& entry) {
-    return entry.first < options_.region && entry.second.is_live() &&
-           entry.second.status.agreement == status_.agreement;
-  });
-}
-
 void NodeProcess::serve_clients() {
-  RunView run;
-  run.leads = leads();
   const auto& statuses = control_.statuses();
+  RunView run;
+  run.leads = true;
   for (const auto& [region, seen] : statuses) {
-    run.bodies += seen.is_live() ? seen.status.bodies : 0;
     run.complete = run.complete && seen.is_live();
+    if (!seen.is_live()) continue;
+    run.bodies += seen.status.bodies;
+    run.leads = run.leads && (region >= options_.region || seen.status.agreement != status_.agreement);
   }
   run.all_have = [&statuses](std::uint64_t mesh) {
     return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
@@ -55,8 +49,7 @@ void NodeProcess::obey_orders() {
     if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
       pacer_.set_rate(order.at_step, rate->rate);
       status_.rate = rate->rate;
-    } else if (std::holds_alternative<core::Repartition>(order.action) ||
-               std::holds_alternative<core::ChangeScene>(order.action)) {
+    } else if (core::changes_the_run(order.action)) {
       change_ = order;
     }
     return true;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,22 +71,6 @@ class Census {
   std::vector<Resident> residents_;
 };
 
-/// Pairs held together by joints whose bodies are both still there.
-std::vector<core::Contact> joint_pairs(const core::Scene& scene, const std::vector<core::BodyState>& bodies) {
-  const auto place_of = [&](core::BodyId id) -> std::optional<std::uint32_t> {
-    const auto place = std::ranges::lower_bound(bodies, id, {}, &core::BodyState::id);
-    if (place == bodies.end() || place->id != id) return {};
-    return static_cast<std::uint32_t>(place - bodies.begin());
-  };
-  std::vector<core::Contact> pairs;
-  for (const core::JointSpec& joint : scene.joints) {
-    if (!joint.b) continue;
-    const auto a = place_of(joint.a), b = place_of(*joint.b);
-    if (a && b) pairs.push_back({std::min(*a, *b), std::max(*a, *b)});
-  }
-  return pairs;
-}
-
 std::vector<Resident> take_census(const RepartitionSettings& settings, const core::RegionMap& map,
                                   dds::Participant& participant, const node::Node& node) {
   dds::ObserverSettings watched;
@@ -114,7 +97,7 @@ std::vector<core::Departure> find_new_hosts(const RepartitionSettings& settings,
   core::Snapshot all;
   all.step = node.current_step();
   for (const Resident& resident : residents) all.bodies.push_back(resident.state);
-  all.joints = joint_pairs(node.scene(), all.bodies);
+  all.joints = core::joint_pairs(node.scene(), all.bodies);
   const auto clearance = physics::make_clearance_query(node.scene());
   const std::vector<RegionId> hosts = core::assign_hosts(launch.regions, aura_rules(launch), *clearance, all);
   std::map<RegionId, core::Departure> leaving;

@@ -60,20 +60,13 @@ core::Pose pose(const Arguments& a) {
   return pose;
 }
 
-/// FNV-1a.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
-}
-
 core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, Courier& courier) {
   auto mesh = config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
   if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
   const auto& triangles = std::get<core::TriangleMesh>(mesh);
   std::string content;
   for (const core::Vec3& p : triangles.points) content += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
-  const std::uint64_t hash = hash_of(content);
+  const std::uint64_t hash = config::content_hash(content);
   courier.bring(hash, triangles);
   return {hash, use};
 }

@@ -167,6 +167,13 @@ Vec3 centre_of_mass(const TriangleMesh& mesh) {
   return mean + moment / volume;
 }
 
+/// FNV-1a.
+std::uint64_t content_hash(std::string_view bytes) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
 core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use) {
   if (use == core::MeshUse::kTriangles) return mesh;
   core::ConvexHull hull{hull_points(mesh)};

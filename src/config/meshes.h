@@ -30,6 +30,9 @@ std::variant<core::TriangleMesh, std::string> load_mesh(const MeshRequest& reque
 /// other files they name.
 std::variant<core::TriangleMesh, std::string> read_mesh(const std::string& name, std::string_view bytes);
 
+/// By which clients and nodes name a mesh of this content.
+std::uint64_t content_hash(std::string_view bytes);
+
 /// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
 std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);
 

@@ -90,7 +90,19 @@ struct Order {
   Action action;
 };
 
-/// The body that an order is about, if it is about one that should exist.
-std::optional<BodyId> body_of(const Order& order);
+/// The body that an action, or what a client asks for, is about, if it is about one that should exist.
+template <class... Kinds>
+std::optional<BodyId> body_of(const std::variant<Kinds...>& what) {
+  if (const auto* removal = std::get_if<RemoveBody>(&what)) return removal->id;
+  if (const auto* impulse = std::get_if<Impulse>(&what)) return impulse->id;
+  if (const auto* velocity = std::get_if<SetVelocity>(&what)) return velocity->id;
+  return {};
+}
+
+/// All nodes stop for it and begin anew, with another map or another scene.
+template <class... Kinds>
+bool changes_the_run(const std::variant<Kinds...>& what) {
+  return std::holds_alternative<Repartition>(what) || std::holds_alternative<ChangeScene>(what);
+}
 
 }  // namespace aurasim::core

@@ -5,13 +5,6 @@
 
 namespace aurasim::core {
 
-std::optional<BodyId> body_of(const Order& order) {
-  if (const auto* a = std::get_if<RemoveBody>(&order.action)) return a->id;
-  if (const auto* a = std::get_if<Impulse>(&order.action)) return a->id;
-  if (const auto* a = std::get_if<SetVelocity>(&order.action)) return a->id;
-  return {};
-}
-
 void OrderLog::add(const Order& order) {
   last_ = order.sequence;
   news_.push_back(order);
@@ -35,6 +28,10 @@ std::vector<Order> OrderLog::take_news() { return std::exchange(news_, {}); }
 std::vector<Order> OrderLog::take_to_say() { return std::exchange(to_say_, {}); }
 
 int hops_across(const RegionMap& map, double neighbour_distance_m) {
+  std::vector<std::vector<RegionId>> neighbours;
+  for (std::uint32_t r = 0; r < map.size(); ++r) {
+    neighbours.push_back(map.neighbours(RegionId{r}, neighbour_distance_m));
+  }
   int most = 0;
   for (std::uint32_t start = 0; start < map.size(); ++start) {
     std::vector<int> hops(map.size(), -1);
@@ -43,7 +40,7 @@ int hops_across(const RegionMap& map, double neighbour_distance_m) {
     for (int hop = 1; !wave.empty(); ++hop) {
       std::vector<RegionId> next;
       for (const RegionId region : wave) {
-        for (const RegionId neighbour : map.neighbours(region, neighbour_distance_m)) {
+        for (const RegionId neighbour : neighbours[value_of(region)]) {
           if (hops[value_of(neighbour)] >= 0) continue;
           hops[value_of(neighbour)] = hop;
           next.push_back(neighbour);

@@ -107,6 +107,21 @@ const InitialBody* find_body(const Scene& scene, BodyId id) {
   return place != scene.bodies.end() && place->id == id ? &*place : nullptr;
 }
 
+std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies) {
+  const auto place_of = [&](BodyId id) -> std::optional<std::uint32_t> {
+    const auto place = std::ranges::lower_bound(bodies, id, {}, &BodyState::id);
+    if (place == bodies.end() || place->id != id) return {};
+    return static_cast<std::uint32_t>(place - bodies.begin());
+  };
+  std::vector<Contact> pairs;
+  for (const JointSpec& joint : scene.joints) {
+    if (!joint.b) continue;
+    const auto a = place_of(joint.a), b = place_of(*joint.b);
+    if (a && b) pairs.push_back({std::min(*a, *b), std::max(*a, *b)});
+  }
+  return pairs;
+}
+
 BodyRecord initial_record(const InitialBody& body, Step birth) {
   BodyRecord record;
   record.id = body.id;

@@ -132,6 +132,9 @@ double bounding_radius(const Shape& shape);
 /// Null if the scene has no such body in state 0.
 const InitialBody* find_body(const Scene& scene, BodyId id);
 
+/// Pairs that joints of the scene hold together, of which both bodies are in `bodies` (ascending by id).
+std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies);
+
 /// The record of a body of state 0, epoch 0.
 BodyRecord initial_record(const InitialBody& body, Step birth = 0);
 

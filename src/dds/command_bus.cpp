@@ -1,7 +1,6 @@
 #include "dds/command_bus.h"
 
 #include <algorithm>
-#include <random>
 #include <set>
 #include <utility>
 #include <variant>
@@ -9,21 +8,9 @@
 #include "aurasim.h"
 #include "dds/command_codec.h"
 #include "dds/endpoints.h"
+#include "dds/random_id.h"
 
 namespace aurasim::dds {
-namespace {
-
-std::uint64_t draw_id() {
-  std::random_device device;  // not physics: only has to differ between processes
-  std::uint64_t id = 0;
-  while (id == 0) id = (std::uint64_t{device()} << 32U) | device();
-  return id;
-}
-
-EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }
-
-}  // namespace
-
 struct CommandDoor::Impl {
   Impl(Participant& participant_in, core::RegionId region_in, std::uint64_t map_version_in)
       : participant(participant_in),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 #include <set>
 #include <utility>
 
@@ -11,24 +10,12 @@
 #include "aurasim.h"
 #include "dds/control_codec.h"
 #include "dds/endpoints.h"
+#include "dds/random_id.h"
 
 namespace aurasim::dds {
 
 using core::RegionId;
 using core::value_of;
-
-namespace {
-
-std::uint64_t draw_id() {
-  std::random_device device;  // not physics: only has to differ between processes
-  std::uint64_t id = 0;
-  while (id == 0) {
-    id = (std::uint64_t{device()} << 32U) | device();
-  }
-  return id;
-}
-
-}  // namespace
 
 const char* name_of(NodeState state) {
   static constexpr std::array kNames = {"starting", "waiting", "running", "paused", "finished", "failed"};
@@ -70,10 +57,10 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
     : participant(participant_in),
       settings(settings_in),
       status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, bell),
-      map_writer(participant.domain(), {TopicId::kRegionMap, {kWorldPartition}, {}}, bell),
-      map_reader(participant.domain(), {TopicId::kRegionMap, {kWorldPartition}, {}}, bell),
-      command_writer(participant.domain(), {TopicId::kRunControl, {kWorldPartition}, {}}, bell),
-      command_reader(participant.domain(), {TopicId::kRunControl, {kWorldPartition}, {}}, bell) {
+      map_writer(participant.domain(), in_world(TopicId::kRegionMap), bell),
+      map_reader(participant.domain(), in_world(TopicId::kRegionMap), bell),
+      command_writer(participant.domain(), in_world(TopicId::kRunControl), bell),
+      command_reader(participant.domain(), in_world(TopicId::kRunControl), bell) {
   if (settings.region) {
     status_writer.emplace(participant.domain(),
                           EndpointSpec{TopicId::kNodeStatus, {partition_of(*settings.region)}, settings.region}, bell);

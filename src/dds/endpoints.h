@@ -23,6 +23,8 @@ struct EndpointSpec {
   std::string profile = {};              ///< of the QoS; empty: the topic's
 };
 
+inline EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }
+
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
 /// QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the

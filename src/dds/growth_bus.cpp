@@ -9,12 +9,6 @@
 #include "dds/endpoints.h"
 
 namespace aurasim::dds {
-namespace {
-
-EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }
-
-}  // namespace
-
 struct GrowthWriter::Impl {
   Impl(Participant& participant, core::RegionId region_in)
       : region(region_in), writer(participant.domain(), in_world(TopicId::kOrders), bell) {}

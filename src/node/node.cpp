@@ -29,23 +29,6 @@ std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
   return sum;
 }
 
-/// `bodies` ascending by id.
-std::vector<core::Contact> joint_pairs(const core::Scene& scene, std::span<const core::BodyState> bodies) {
-  const auto place_of = [&](core::BodyId id) {
-    const auto place =
-        std::lower_bound(bodies.begin(), bodies.end(), id,
-                         [](const core::BodyState& body, core::BodyId wanted) { return body.id < wanted; });
-    return static_cast<std::uint32_t>(place - bodies.begin());
-  };
-  std::vector<core::Contact> pairs;
-  for (const core::JointSpec& joint : scene.joints) {
-    if (!joint.b) continue;
-    const auto [a, b] = std::minmax({place_of(joint.a), place_of(*joint.b)});
-    pairs.push_back({a, b});
-  }
-  return pairs;
-}
-
 }  // namespace
 
 Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map,
@@ -82,7 +65,7 @@ void Node::host_initial_bodies() {
   std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   core::Snapshot all;
   for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
-  all.joints = joint_pairs(scene_, all.bodies);
+  all.joints = core::joint_pairs(scene_, all.bodies);
   const std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
   std::vector<core::BodyRecord> ours;
   for (std::size_t i = 0; i < records.size(); ++i) {

@@ -33,4 +33,9 @@ void extend(core::Scene& scene, const core::Action& action, const Meshes& meshes
   }
 }
 
+bool changes_scene(const core::Action& action) {
+  return std::holds_alternative<core::DefineShape>(action) || std::holds_alternative<core::DefinePrototype>(action) ||
+         std::holds_alternative<core::AddStatic>(action) || std::holds_alternative<core::RemoveStatic>(action);
+}
+
 }  // namespace aurasim::node

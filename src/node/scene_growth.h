@@ -15,4 +15,7 @@ namespace aurasim::node {
 void extend(core::Scene& scene, const core::Action& action,
             const std::function<std::optional<core::Shape>(const core::MeshRef&)>& meshes);
 
+/// Does it add to what observers have to know of the scene, or take from it?
+bool changes_scene(const core::Action& action);
+
 }  // namespace aurasim::node

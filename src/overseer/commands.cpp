@@ -13,8 +13,4 @@ const char* name_of(const Command& command) {
 
 bool changes_the_world(const Command& command) { return !std::holds_alternative<CastRay>(command); }
 
-Reply not_supported(const Request& request) {
-  return {request.client, request.id, false, "not supported by this run", nullptr};
-}
-
 }  // namespace aurasim::overseer

@@ -117,7 +117,4 @@ class CommandSink {
   virtual std::vector<Reply> take_replies() = 0;
 };
 
-/// The reply to what cannot be done in this run.
-Reply not_supported(const Request& request);
-
 }  // namespace aurasim::overseer

@@ -8,13 +8,6 @@ namespace {
 constexpr std::size_t kMostMeshes = 256;
 constexpr std::size_t kMostPoints = 10'000'000;  // of all meshes
 
-/// FNV-1a.
-std::uint64_t hash_of(std::string_view bytes) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
-}
-
 ShapeStore::Stored summary_of(std::uint64_t hash, const core::TriangleMesh& mesh) {
   return {hash, mesh.points.size(), mesh.triangles.size()};
 }
@@ -23,7 +16,7 @@ ShapeStore::Stored summary_of(std::uint64_t hash, const core::TriangleMesh& mesh
 
 std::variant<ShapeStore::Stored, std::string> ShapeStore::add(const std::string& name, std::string_view bytes) {
   if (bytes.size() > kLargestMeshFile) return "it is larger than 16 MiB";
-  const std::uint64_t hash = hash_of(bytes);
+  const std::uint64_t hash = config::content_hash(bytes);
   if (const auto known = find(hash)) return summary_of(hash, *known);
   auto read = config::read_mesh(name, bytes);
   if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);

@@ -44,7 +44,7 @@ btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const Lo
 void Simulation::obey(core::Step n) {
   if (timeline_.statics_change()) show_statics(n);
   for (const core::Order& order : timeline_.due(n)) {
-    HostedBody* const body = table_.find(*core::body_of(order));
+    HostedBody* const body = table_.find(*core::body_of(order.action));
     if (body == nullptr) continue;
     obeyed_.push_back(order.request);
     if (std::holds_alternative<core::RemoveBody>(order.action)) {
@@ -107,14 +107,14 @@ void Simulation::wake_around(const btRigidBody& changing) {
 }
 
 /// How much an order that is still to come will change the velocity of the body's surface, m/s.
-double Simulation::coming_kick(const HostedBody& body) const {
+double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const {
   if (!body.born) return 0;
   double kick = 0;
-  for (const std::uint32_t index : timeline_.statics_coming(step_)) {
-    if (index < statics_.size() && near(*body.rigid, *statics_[index])) kick += kShove_m_s;
+  for (const std::uint32_t index : coming_statics) {
+    if (near(*body.rigid, *statics_[index])) kick += kShove_m_s;
   }
   for (const core::Order& order : timeline_.coming(step_)) {
-    if (core::body_of(order) != body.id) continue;
+    if (core::body_of(order.action) != body.id) continue;
     const double radius =
         core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
     const btRigidBody& rigid = *body.rigid;

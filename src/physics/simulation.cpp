@@ -320,11 +320,12 @@ const core::Snapshot& Simulation::snapshot() {
   if (!snapshot_is_fresh_) {
     snapshot_.step = step_;
     snapshot_.bodies.clear();
-    const bool something_comes = timeline_.anything_coming(step_);
-    if (something_comes) make_statics();
+    const std::vector<std::uint32_t> coming_statics = timeline_.statics_coming(step_);
+    if (!coming_statics.empty()) make_statics();
+    const bool something_comes = !coming_statics.empty() || !timeline_.coming(step_).empty();
     for (const HostedBody& body : table_.bodies()) {
       core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
-      if (something_comes) state.coming_kick_m_s = coming_kick(body);
+      if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
       state.awake = state.awake || state.coming_kick_m_s > 0;
     }
     list_contacts();

@@ -63,7 +63,7 @@ class Simulation {
   void take_out(core::BodyId id);
   void show_statics(core::Step n);
   void wake_around(const btRigidBody& changing);
-  double coming_kick(const HostedBody& body) const;
+  double coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const;
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
   int rank_of(core::BodyId id) const;

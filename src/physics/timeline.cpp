@@ -27,7 +27,7 @@ void Timeline::add(const core::Order& order) {
   } else if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) {
     Life& life = life_of(core::value_of(removed->id));
     life.until = std::min(life.until, order.at_step);
-  } else if (core::body_of(order)) {
+  } else if (core::body_of(order.action)) {
     orders_.insert(std::upper_bound(orders_.begin(), orders_.end(), order, earlier), order);
   }
 }
@@ -61,8 +61,6 @@ std::vector<std::uint32_t> Timeline::statics_coming(core::Step step) const {
   }
   return changing;
 }
-
-bool Timeline::anything_coming(core::Step step) const { return !coming(step).empty() || !statics_coming(step).empty(); }
 
 void Timeline::forget_before(core::Step step) {
   std::erase_if(orders_, [step](const core::Order& order) { return order.at_step < step; });

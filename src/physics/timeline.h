@@ -26,8 +26,6 @@ class Timeline {
   /// Those due later than `step`.
   std::span<const core::Order> coming(core::Step step) const;
 
-  /// Is there an order about a body or a static that is due later than `step`?
-  bool anything_coming(core::Step step) const;
   /// Statics that come or go later than `step`.
   std::vector<std::uint32_t> statics_coming(core::Step step) const;
 
