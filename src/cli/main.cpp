@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   cli::add_send(program, action);
   cli::add_overseer(program, action);
   cli::add_replay(program, action);
+  cli::add_report(program, action);
   cli::add_compare(program, action);
   cli::add_experiment(program, action);
   try {
