@@ -56,7 +56,7 @@ add_host() {
 up() {
   [[ ${1:-} =~ ^[1-9][0-9]?$ ]] || usage
   [[ ! -e /run/netns/$switch ]] || fail "the laboratory '$lab' is up already"
-  trap 'down; fail "up: could not make the namespaces"' ERR
+  trap 'down; echo "netns_lab.sh: up: could not make the namespaces" >&2' EXIT
   ip netns add "$switch"
   ip -n "$switch" link set lo up
   # Without snooping multicast goes to all, as on a plain switch.
@@ -66,7 +66,7 @@ up() {
   ip -n "$switch" route add default dev bridge
   local host
   for ((host = 0; host < $1; ++host)); do add_host "$host"; done
-  trap - ERR
+  trap - EXIT
 }
 
 end_processes_in() {
