@@ -8,9 +8,10 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
+#include "cli/accuracy_command.h"
 #include "cli/commands.h"
+#include "cli/experiment_output.h"
 #include "cli/node_process.h"
 #include "cli/stop_signal.h"
 #include "experiment/aura_radius.h"
@@ -28,37 +29,6 @@ struct Arguments {
   int threads = 2;
   bool in_virtual_time = false;
 };
-
-/// A line that is written over on a terminal; elsewhere one line for every tenth.
-class ProgressBar {
- public:
-  ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) != 0) {}
-
-  void show(const experiment::Progress& p) {
-    constexpr int kWidth = 40;
-    const int tenth = static_cast<int>(10 * p.share);
-    if (!is_terminal_ && tenth == last_tenth_) return;
-    last_tenth_ = tenth;
-    const auto filled = static_cast<std::size_t>(kWidth * p.share);
-    fmt::print(stderr, "{}[{:<{}}] {:5.1f}%  {:.0f} s, {:.0f} s left  {}", is_terminal_ ? "\r" : "",
-               std::string(filled, '='), kWidth, 100 * p.share, p.elapsed_s, p.left_s, is_terminal_ ? "" : "\n");
-    std::fflush(stderr);
-  }
-  void end() const {
-    if (is_terminal_) fmt::print(stderr, "\n");
-  }
-
- private:
-  bool is_terminal_;
-  int last_tenth_ = -1;
-};
-
-void print(const std::vector<experiment::Target>& targets) {
-  for (const experiment::Target& t : targets) {
-    fmt::print("{:<6} {:>10.4g}  {} {:.4g}  {}\n", t.met() ? "met" : "MISSED", t.found,
-               t.at_least ? "at least" : "at most ", t.allowed, t.name);
-  }
-}
 
 template <class Value, class Named>
 void choose(const std::vector<std::string>& names, Named&& named, std::vector<Value>& out) {
@@ -100,8 +70,7 @@ int run_trials(Arguments arguments, bool loss) {
   if (!loss) experiment::write_aura_radius(arguments.out, arguments.plan.substeps);
   const std::vector<experiment::Target> targets = experiment::summarise(campaign, arguments.out);
   print(targets);
-  const bool all_met = std::all_of(targets.begin(), targets.end(), [](const auto& t) { return t.met(); });
-  return static_cast<int>(all_met ? ExitCode::kOk : ExitCode::kFailed);
+  return static_cast<int>(all_met(targets) ? ExitCode::kOk : ExitCode::kFailed);
 }
 
 void add_trials(CLI::App& parent, Action& action, const std::string& name, const std::string& about, bool loss) {
@@ -142,6 +111,8 @@ void add_experiment(CLI::App& program, Action& action) {
   command->require_subcommand(1);
   add_trials(*command, action, "collision", "pairs that meet across a border: speed, latency, frame time", false);
   add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
+  add_stability(*command, action);
+  add_pareto(*command, action);
 }
 
 }  // namespace aurasim::cli

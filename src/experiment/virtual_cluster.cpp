@@ -34,9 +34,10 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
   setup.protocol.sync = rules.sync;
   setup.protocol.aura = rules.aura;
   setup.protocol.neighbour_distance_m = kEverywhere_m;
+  setup.physics = rules.physics;
   setup.physics.step_s = rules.aura.step_s;
   setup.physics.substeps = rules.aura.substeps;
-  setup.hash_states = false;
+  setup.hash_states = rules.hash_states;
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};
     Member& member = members_.emplace_back();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/region_map.h"
@@ -16,6 +17,8 @@ namespace aurasim::experiment {
 struct ClusterRules {
   core::AuraRules aura;
   core::SyncMode sync = core::SyncMode::kBounded;
+  physics::Settings physics;  ///< but for steps and substeps, which are the aura's
+  bool hash_states = false;
   transport::Faults network;
   double shortest_frame_s = 0;
   double longest_frame_s = 0;
@@ -38,6 +41,8 @@ class VirtualCluster {
 
   std::size_t size() const { return members_.size(); }
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
+  /// Bodies of a region in the state that it is in. Valid until its next step.
+  std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
   /// The lowest state that a node is in.
   core::Step slowest() const;
   /// Broken promises, all nodes together.

@@ -1,0 +1,26 @@
+// Named choices between speed and accuracy: points on the front of `aurasim experiment pareto` (docs/accuracy.md says
+// how they were chosen).
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace aurasim::config {
+
+struct Preset {
+  const char* name;
+  const char* solver;
+  int iterations;
+  int substeps;  ///< time.substeps
+};
+
+inline constexpr std::array<Preset, 3> kPresets = {{
+    {"fast", "sequential_impulse", 10, 2},
+    {"balanced", "sequential_impulse", 10, 8},
+    {"exact", "sequential_impulse", 30, 16},
+}};
+
+/// Throws std::invalid_argument if there is none of this name.
+const Preset& preset_named(const std::string& name);
+
+}  // namespace aurasim::config
