@@ -1,14 +1,15 @@
-#include "cli/accuracy_command.h"
-
+// `aurasim experiment stability` and `pareto`.
 #include <chrono>
 #include <memory>
 #include <string>
 
 #include <spdlog/spdlog.h>
 
-#include "cli/experiment_output.h"
+#include "cli/commands.h"
 #include "cli/node_process.h"
+#include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
+#include "cli/target_list.h"
 #include "experiment/pareto.h"
 #include "experiment/stability/stability.h"
 
@@ -57,13 +58,15 @@ void add_stability(CLI::App& experiments, Action& action) {
   command->add_option("--out", *out, "folder for the results")->required();
   command->add_option("--cases", plan->cases, "only these")->delimiter(',');
   command->add_option("--step-hz", plan->step_hz, "steps per second")->delimiter(',')->check(CLI::Range(1, 10000));
+  command->add_flag("--presets,!--no-presets", plan->presets, "also with every preset");
   command->add_option("--longest", plan->longest_s, "cut every case to this many simulated seconds");
   command->add_option("--standing", plan->standing_s, "seconds that piles have to stand with the preset balanced");
   command->callback([plan, out, &action] { action = [plan, out] { return run_stability(*plan, *out); }; });
 }
 
 void add_pareto(CLI::App& experiments, Action& action) {
-  CLI::App* command = experiments.add_subcommand("pareto", "error against CPU time: solver, iterations, substeps, nodes");
+  CLI::App* command =
+      experiments.add_subcommand("pareto", "error against CPU time: solver, iterations, substeps, nodes");
   const auto plan = std::make_shared<experiment::ParetoPlan>();
   const auto out = std::make_shared<std::string>();
   command->add_option("--out", *out, "folder for the results")->required();

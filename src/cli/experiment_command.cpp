@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,11 +8,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/accuracy_command.h"
 #include "cli/commands.h"
-#include "cli/experiment_output.h"
 #include "cli/node_process.h"
+#include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
+#include "cli/target_list.h"
 #include "experiment/aura_radius.h"
 #include "experiment/collision.h"
 #include "experiment/loss.h"

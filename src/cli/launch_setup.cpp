@@ -99,6 +99,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.substeps = launch.time.substeps;
   setup.physics.solver = physics::solver_named(launch.physics.solver);
   setup.physics.solver_iterations = launch.physics.iterations;
+  setup.physics.friction_directions = launch.physics.friction_directions;
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.continuous;
   if (launch.physics.origin == config::Origin::kRegion) {

@@ -79,6 +79,7 @@ void apply_preset(const Field& field, bool substeps_are_given, Launch& launch) {
   if (!choice) return;
   launch.physics.solver = (*choice)->solver;
   launch.physics.iterations = (*choice)->iterations;
+  launch.physics.friction_directions = (*choice)->friction_directions;
   if (!substeps_are_given) launch.time.substeps = (*choice)->substeps;
 }
 
@@ -97,6 +98,9 @@ void read_physics(const Field& field, bool substeps_are_given, Launch& launch) {
   }
   if (const Field f = fields.optional("iterations"); f.given()) {
     physics.iterations = static_cast<int>(f.integer(1, 1000).value_or(physics.iterations));
+  }
+  if (const Field f = fields.optional("friction_directions"); f.given()) {
+    physics.friction_directions = static_cast<int>(f.integer(1, 2).value_or(physics.friction_directions));
   }
   if (const Field f = fields.optional("erp"); f.given()) {
     physics.contact_erp = f.number(Range::from_to(0, 1)).value_or(physics.contact_erp);

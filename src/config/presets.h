@@ -12,12 +12,13 @@ struct Preset {
   const char* solver;
   int iterations;
   int substeps;  ///< time.substeps
+  int friction_directions;
 };
 
 inline constexpr std::array<Preset, 3> kPresets = {{
-    {"fast", "sequential_impulse", 10, 2},
-    {"balanced", "sequential_impulse", 10, 8},
-    {"exact", "sequential_impulse", 30, 16},
+    {"fast", "sequential_impulse", 10, 2, 1},
+    {"balanced", "sequential_impulse", 10, 8, 2},
+    {"exact", "sequential_impulse", 50, 8, 2},
 }};
 
 /// Throws std::invalid_argument if there is none of this name.

@@ -28,6 +28,7 @@ ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
   cluster.sync = rules.sync;
   cluster.physics.solver = rules.solver;
   cluster.physics.solver_iterations = rules.iterations;
+  cluster.physics.friction_directions = rules.friction_directions;
   cluster.physics.contact_erp = c.contact_erp;
   cluster.physics.continuous = c.continuous;
   cluster.hash_states = true;

@@ -17,16 +17,17 @@ struct RunRules {
   int substeps = 1;
   physics::Solver solver = physics::Solver::kSequentialImpulse;
   int iterations = 10;
+  int friction_directions = 1;
   core::SyncMode sync = core::SyncMode::kDeterministic;
   int lookahead = 1;
   core::AuraKind aura = core::AuraKind::kSwept;
 };
 
 struct MeasuredRun {
-  std::vector<double> errors;        ///< as Case::metrics
-  std::vector<std::uint64_t> hash;   ///< of every state
-  double cpu_us_per_step = 0;        ///< of the busiest node, with its protocol
-  std::uint64_t hand_offs = 0;       ///< bodies
+  std::vector<double> errors;       ///< as Case::metrics
+  std::vector<std::uint64_t> hash;  ///< of every state
+  double cpu_us_per_step = 0;       ///< of the busiest node, with its protocol
+  std::uint64_t hand_offs = 0;      ///< bodies
   std::uint64_t violations = 0;
   core::Step steps = 0;
 };

@@ -108,6 +108,9 @@ DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings
   bullet_->broadphase.m_cupdates = 100;  // per cent of the pairs checked in each substep: stale ones cost time
   bullet_->world.setGravity(to_bullet(gravity));
   bullet_->world.getSolverInfo().m_numIterations = settings.solver_iterations;
+  if (settings.friction_directions > 1) {
+    bullet_->world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  }
   bullet_->world.getSolverInfo().m_erp2 = static_cast<btScalar>(settings.contact_erp);
 }
 

@@ -32,6 +32,9 @@ struct Settings {
   int solver_iterations = 10;
   /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).
   double contact_erp = 0.2;
+  /// Rows of friction at each contact point: 1 along the sliding velocity, 2 across each other. Bullet's own 1 turns
+  /// away from the load where nothing slides yet: piles creep, and a card house falls.
+  int friction_directions = 1;
   /// Continuous collision detection: a body that moves farther in a substep than it is thick stops at what is in its
   /// way. It loses the rest of the substep, not its speed.
   bool continuous = false;

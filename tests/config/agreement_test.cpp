@@ -68,6 +68,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "physics.iterations=11",
                                             "physics.origin=region",
                                             "physics.solver=nncg",
+                                            "physics.friction_directions=2",
                                             "physics.erp=0.1",
                                             "physics.continuous=true",
                                             "scene.name=other",

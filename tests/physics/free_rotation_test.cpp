@@ -1,10 +1,11 @@
 // A body that nothing acts on keeps its angular momentum and its energy.
+#include "physics/free_rotation.h"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "physics/free_rotation.h"
 #include "physics/scenes.h"
 
 namespace aurasim::physics::testing {

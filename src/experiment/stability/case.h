@@ -30,15 +30,15 @@ struct Metric {
 
 struct Case {
   std::string name;
-  std::string reference;  ///< what it is compared with, and where that is from
+  std::string reference;   ///< what it is compared with, and where that is from
   std::uint64_t seed = 0;  ///< 0: nothing is random
   double duration_s = 1;
   core::Scene scene = {};
   std::vector<Metric> metrics = {};
-  double border_x_m = 0;      ///< where two nodes meet
-  double uncertainty = 0.5;   ///< U of DESIGN section 3; 1 where contacts throw resting bodies
+  double border_x_m = 0;     ///< where two nodes meet
+  double uncertainty = 0.5;  ///< U of DESIGN section 3; 1 where contacts throw resting bodies
   double contact_erp = 0.2;
-  bool continuous = false;    ///< continuous collision detection
+  bool continuous = false;  ///< continuous collision detection
 };
 
 /// Every case.

@@ -31,8 +31,8 @@ Case newtons_cradle() {
   for (int i = 0; i < 5; ++i) {
     const double x = 1.1 * (i - 2);
     const double angle = i == 0 ? lift : 0;
-    const core::BodyId ball = scene.body(core::Sphere{kRadius}, kMass,
-                                         {x - kString * std::sin(angle), 0, 4 - kString * std::cos(angle)});
+    const core::BodyId ball =
+        scene.body(core::Sphere{kRadius}, kMass, {x - kString * std::sin(angle), 0, 4 - kString * std::cos(angle)});
     for (const double y : {-1.5, 1.5}) scene.joint(core::BallJoint{}, ball, std::nullopt, at({x, y, 4}));
   }
   c.scene = scene.scene();
@@ -81,8 +81,8 @@ Vec3 tip_of(const Eigen::Vector2d& angles, const Vec3& pivot) {
 }
 
 Case double_pendulum() {
-  Case c{"double_pendulum", "Lagrange's equations, Runge-Kutta of order 4, step 10 us; two rods of 1 m, 1 kg, from level",
-         0, 2};
+  Case c{"double_pendulum",
+         "Lagrange's equations, Runge-Kutta of order 4, step 10 us; two rods of 1 m, 1 kg, from level", 0, 2};
   const Vec3 pivot(-0.3, 0, 5);
   const core::Quat level(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY()));
   const core::Quat hinge_y(Eigen::AngleAxisd(-std::numbers::pi / 2, Vec3::UnitX()));
@@ -117,8 +117,7 @@ Case chain() {
   std::optional<core::BodyId> before;
   for (int i = 0; i < kLinks; ++i) {
     const double x = -5 + kPitch * (i + 0.5);
-    const core::BodyId link =
-        scene.body(core::Capsule{0.05, 0.1}, 1, {x, 0, 12}, Vec3::Zero(), Vec3::Zero(), level);
+    const core::BodyId link = scene.body(core::Capsule{0.05, 0.1}, 1, {x, 0, 12}, Vec3::Zero(), Vec3::Zero(), level);
     scene.joint(core::BallJoint{}, link, before, at({x - kPitch / 2, 0, 12}));
     before = link;
   }

@@ -51,28 +51,28 @@ Case pyramid() {
   return standing("pyramid", "15 rows of cubes of 1 m", scene, 0.5);
 }
 
-/// Three storeys of cards of 1.0 x 0.7 x 0.03 m that lean by 17 degrees, friction 0.8.
+/// Three storeys of cards of 1.0 x 0.7 x 0.03 m that lean by 17 degrees, friction 0.8. Cards that lie end above the
+/// ridge between two pairs, and overhang outside.
 Case card_house() {
-  constexpr double kThick = 0.03, kSpan = 0.681;
+  constexpr double kThick = 0.03, kSpan = 0.681, kHalfFoot = 0.161, kOverhang = 0.15, kGap = 0.0005;
   const double lean = 17 * std::numbers::pi / 180;
   const double up = std::cos(lean) + kThick * std::sin(lean);  // height of a leaning card
-  const double storey = up + kThick;
-  const core::Box card{{kThick / 2, 0.35, 0.5}};
-  const double half_foot = 0.161;  // between a card's middle and that of its pair
+  const double storey = up + kThick + 2 * kGap;
   SceneBuilder scene("card_house");
   scene.material(0.81).ground();
-  const auto turned = [](double angle) { return core::Quat(Eigen::AngleAxisd(angle, Vec3::UnitY())); };
   for (int level = 0; level < 3; ++level) {
     const int pairs = 3 - level;
+    const auto ridge_x = [&](int i) { return kSpan * (i - (pairs - 1) / 2.0); };
     for (int i = 0; i < pairs; ++i) {
-      const double x = kSpan * (i - (pairs - 1) / 2.0);
       for (const double side : {-1.0, 1.0}) {
-        scene.body(card, 0.2, {x + side * half_foot, 0, level * storey + up / 2}, Vec3::Zero(), Vec3::Zero(),
-                   turned(-side * lean));
+        scene.body(core::Box{{kThick / 2, 0.35, 0.5}}, 0.2, {ridge_x(i) + side * kHalfFoot, 0, level * storey + up / 2},
+                   Vec3::Zero(), Vec3::Zero(), core::Quat(Eigen::AngleAxisd(-side * lean, Vec3::UnitY())));
       }
       if (i == 0) continue;
-      scene.body(card, 0.2, {x - kSpan / 2, 0, level * storey + up + kThick / 2}, Vec3::Zero(), Vec3::Zero(),
-                 turned(std::numbers::pi / 2));
+      const double left = ridge_x(i - 1) + (i == 1 ? -kOverhang : 2 * kGap);
+      const double right = ridge_x(i) + (i == pairs - 1 ? kOverhang : -2 * kGap);
+      scene.body(core::Box{{(right - left) / 2, 0.35, kThick / 2}}, 0.2,
+                 {(left + right) / 2, 0, level * storey + up + kGap + kThick / 2});
     }
   }
   return standing("card_house", "three storeys, 15 cards", scene, 0.2);

@@ -14,6 +14,7 @@ namespace aurasim::experiment {
 struct StabilityPlan {
   std::vector<std::string> cases;  ///< none: every case
   std::vector<int> step_hz = {60, 120, 240, 1000};
+  bool presets = true;     ///< each case also with every preset, at 60 steps per second
   double longest_s = 1e9;  ///< cases are cut to this
   double standing_s = 60;  ///< how long piles have to stand with the preset `balanced`; 0: left out
 };
@@ -24,7 +25,8 @@ struct StabilityRow {
   RunRules rules;
   MeasuredRun one;
   MeasuredRun two;
-  std::string preset;  ///< or empty
+  std::string preset;        ///< or empty
+  bool is_standing = false;  ///< the long run in which piles have to stand
 
   bool same_bits() const { return one.hash == two.hash; }
   /// -1 if there is none.

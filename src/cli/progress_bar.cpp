@@ -1,6 +1,5 @@
-#include "cli/experiment_output.h"
+#include "cli/progress_bar.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -24,17 +23,6 @@ void ProgressBar::show(const experiment::Progress& p) {
 
 void ProgressBar::end() const {
   if (is_terminal_) fmt::print(stderr, "\n");
-}
-
-void print(const std::vector<experiment::Target>& targets) {
-  for (const experiment::Target& t : targets) {
-    fmt::print("{:<6} {:>10.4g}  {} {:.4g}  {}\n", t.met() ? "met" : "MISSED", t.found,
-               t.at_least ? "at least" : "at most ", t.allowed, t.name);
-  }
-}
-
-bool all_met(const std::vector<experiment::Target>& targets) {
-  return std::all_of(targets.begin(), targets.end(), [](const auto& t) { return t.met(); });
 }
 
 }  // namespace aurasim::cli
