@@ -53,8 +53,8 @@ TriangleMesh part_of(HACD::HACD& hacd, std::size_t part, const Scaling& scaling)
   TriangleMesh mesh;
   for (const auto& p : points) mesh.points.push_back(Vec3(p.X(), p.Y(), p.Z()) / scaling.factor + scaling.middle);
   for (const auto& t : triangles) {
-    mesh.triangles.push_back({static_cast<std::uint32_t>(t.X()), static_cast<std::uint32_t>(t.Y()),
-                              static_cast<std::uint32_t>(t.Z())});
+    mesh.triangles.push_back(
+        {static_cast<std::uint32_t>(t.X()), static_cast<std::uint32_t>(t.Y()), static_cast<std::uint32_t>(t.Z())});
   }
   return mesh;
 }

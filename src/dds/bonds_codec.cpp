@@ -52,9 +52,12 @@ void encode(const Bonds& bonds, wire::Bonds& out) {
 
 Decoded<Bonds> decode(const wire::Bonds& in, const Expected& expected) {
   if (const auto error = check(in, expected)) return *error;
-  return Bonds{static_cast<core::RegionId>(in.source()),    in.generation(),
-               in.stamp(),                                  in.map_version(),
-               pairs_of(in.link_a(), in.link_b()),          pairs_of(in.contact_a(), in.contact_b())};
+  return Bonds{static_cast<core::RegionId>(in.source()),
+               in.generation(),
+               in.stamp(),
+               in.map_version(),
+               pairs_of(in.link_a(), in.link_b()),
+               pairs_of(in.contact_a(), in.contact_b())};
 }
 
 }  // namespace aurasim::dds

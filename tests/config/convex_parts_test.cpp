@@ -21,7 +21,8 @@ void add(TriangleMesh& mesh, const Quad& q) {
 
 /// Along y, 2 m long; 3 m wide, 2 m high, walls of 1 m and 0.5 m, open to the top: 3 x 0.5 + 2 x 1 x 1.5 = 4.5 m^2.
 TriangleMesh channel() {
-  const std::vector<std::pair<double, double>> outline = {{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 0.5}, {1, 0.5}, {1, 2}, {0, 2}};
+  const std::vector<std::pair<double, double>> outline = {{0, 0},   {3, 0},   {3, 2}, {2, 2},
+                                                          {2, 0.5}, {1, 0.5}, {1, 2}, {0, 2}};
   TriangleMesh mesh;
   for (const double y : {0.0, 2.0}) {
     for (const auto& [x, z] : outline) mesh.points.emplace_back(x, y, z);
@@ -72,14 +73,16 @@ TEST(ConvexParts, AHollowIsNotFilled) {
   EXPECT_GE(convex_parts(pieces).parts.size(), 2U);
   EXPECT_NEAR(std::abs(volume(pieces)), 9.0, 1.0);
   EXPECT_FALSE(inside_a_part(pieces, {1.5, 1, 1.2}));
-  for (const Vec3& p : {Vec3(0.5, 1, 1.5), Vec3(2.5, 1, 1.5), Vec3(1.5, 1, 0.25)}) EXPECT_TRUE(inside_a_part(pieces, p));
+  for (const Vec3& p : {Vec3(0.5, 1, 1.5), Vec3(2.5, 1, 1.5), Vec3(1.5, 1, 0.25)})
+    EXPECT_TRUE(inside_a_part(pieces, p));
 }
 
 TEST(ConvexParts, WhatIsConvexStaysWhole) {
   TriangleMesh box = channel();
   box.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   box.triangles.clear();
-  for (const Quad& q : {Quad{3, 2, 1, 0}, Quad{4, 5, 6, 7}, Quad{0, 1, 5, 4}, Quad{1, 2, 6, 5}, Quad{2, 3, 7, 6}, Quad{3, 0, 4, 7}}) {
+  for (const Quad& q :
+       {Quad{3, 2, 1, 0}, Quad{4, 5, 6, 7}, Quad{0, 1, 5, 4}, Quad{1, 2, 6, 5}, Quad{2, 3, 7, 6}, Quad{3, 0, 4, 7}}) {
     add(box, q);
   }
   const core::Compound compound = convex_parts(parts_of(box));
