@@ -11,7 +11,7 @@ packages=(
   # whose package does not ask for Java
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   # physics in both precisions, mathematics
-  libbullet-dev libeigen3-dev
+  libbullet-dev libbullet-extras-dev libeigen3-dev
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   # HTTP and WebSocket of the overseer

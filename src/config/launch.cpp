@@ -128,7 +128,7 @@ std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   std::filesystem::path beside = (folder / "../qos/aurasim.xml").lexically_normal();
   std::error_code error;
   if (std::filesystem::is_regular_file(beside, error)) return beside;
-  return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml";
+  return shipped_profiles();
 }
 
 void read_impair(const Field& field, Impair& impair) {
@@ -261,6 +261,8 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 }
 
 }  // namespace
+
+std::filesystem::path shipped_profiles() { return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml"; }
 
 int Launch::lookahead() const {
   if (time.lookahead) return *time.lookahead;

@@ -29,6 +29,7 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std:
   most_hops_ = 1;
   for (const std::uint64_t bits : regions) note_hops(bits);
   complete_.assign(n, 0);
+  links_.clear();
   asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
   if (aura_.rules().kind != AuraKind::kNone) {
@@ -60,9 +61,11 @@ bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
 }
 
 std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
+  const Contact link{a, b};
   a = of(a);
   b = of(b);
   if (a == b) return a;
+  links_.push_back(link);
   if (size_[a] < size_[b]) std::swap(a, b);
   parent_[b] = a;
   size_[a] += size_[b];

@@ -42,6 +42,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"command_reply", "aurasim::wire::CommandReply"},
     {"shape", "aurasim::wire::MeshShape"},
     {"orders", "aurasim::wire::AuraBatch"},
+    {"bonds", "aurasim::wire::Bonds"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -113,6 +114,7 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::CommandPubSubType>()),
       TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
       TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
+      TypeSupport(new GuardedType<wire::BondsPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -33,9 +33,10 @@ enum class TopicId : std::uint8_t {
   kCommand,
   kCommandReply,
   kShape,
-  kOrders
+  kOrders,
+  kBonds
 };
-inline constexpr std::size_t kTopicCount = 12;
+inline constexpr std::size_t kTopicCount = 13;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 

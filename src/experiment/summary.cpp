@@ -222,8 +222,9 @@ std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::p
   const bool loss = campaign.name == "loss";
   const std::vector<Target> targets = loss ? loss_targets(tallies) : collision_targets(tallies);
   const auto sum = [&](auto&& wanted) { return json_of(tallies.sum(wanted)); };
-  nlohmann::json out = {{"experiment", campaign.name},   {"virtual", true},       {"step_ms", 1e3 * kStep_s},
-                        {"substeps", campaign.substeps}, {"seed", campaign.seed}, {"repeats", campaign.repeats}};
+  nlohmann::json out = {{"experiment", campaign.name}, {"virtual", !campaign.over_dds},
+                        {"step_ms", 1e3 * kStep_s},    {"substeps", campaign.substeps},
+                        {"seed", campaign.seed},       {"repeats", campaign.repeats}};
   out["within_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && k.within; });
   out["beyond_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && !k.within; });
   out["late_without_violation"] = tallies.sum(is_aura).late_without_violation;

@@ -9,9 +9,6 @@
 namespace aurasim::experiment {
 namespace {
 
-/// All regions listen to each other: there are at most four.
-constexpr double kEverywhere_m = 1e9;
-
 std::vector<std::vector<core::RegionId>> listeners(const core::RegionMap& map) {
   std::vector<std::vector<core::RegionId>> all;
   for (std::uint32_t r = 0; r < map.size(); ++r) all.push_back(map.neighbours(core::RegionId{r}, kEverywhere_m));
@@ -24,12 +21,7 @@ bool keep_freed_memory() { return mallopt(M_MMAP_THRESHOLD, 1 << 28) != 0 && mal
 
 }  // namespace
 
-VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
-    : rules_(rules),
-      map_(map),
-      network_(listeners(map), rules.network, rules.seed),
-      random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
-  [[maybe_unused]] static const bool kept = keep_freed_memory();
+node::NodeSetup node_setup(const ClusterRules& rules) {
   node::NodeSetup setup;
   setup.protocol.sync = rules.sync;
   setup.protocol.aura = rules.aura;
@@ -38,6 +30,16 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
   setup.physics.step_s = rules.aura.step_s;
   setup.physics.substeps = rules.aura.substeps;
   setup.hash_states = rules.hash_states;
+  return setup;
+}
+
+VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
+    : rules_(rules),
+      map_(map),
+      network_(listeners(map), rules.network, rules.seed),
+      random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
+  [[maybe_unused]] static const bool kept = keep_freed_memory();
+  node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};
     Member& member = members_.emplace_back();

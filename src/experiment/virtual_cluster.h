@@ -26,6 +26,12 @@ struct ClusterRules {
   std::uint64_t seed = 1;
 };
 
+/// All regions of a trial listen to each other: there are at most four.
+inline constexpr double kEverywhere_m = 1e9;
+
+/// But for the region and the generation.
+node::NodeSetup node_setup(const ClusterRules& rules);
+
 class VirtualCluster {
  public:
   /// The scene outlives the cluster.
