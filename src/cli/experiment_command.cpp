@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/node_process.h"
+#include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
 #include "experiment/aura_radius.h"
 #include "experiment/collision.h"
@@ -27,30 +26,6 @@ struct Arguments {
   std::string out;
   int threads = 2;
   bool in_virtual_time = false;
-};
-
-/// A line that is written over on a terminal; elsewhere one line for every tenth.
-class ProgressBar {
- public:
-  ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) != 0) {}
-
-  void show(const experiment::Progress& p) {
-    constexpr int kWidth = 40;
-    const int tenth = static_cast<int>(10 * p.share);
-    if (!is_terminal_ && tenth == last_tenth_) return;
-    last_tenth_ = tenth;
-    const auto filled = static_cast<std::size_t>(kWidth * p.share);
-    fmt::print(stderr, "{}[{:<{}}] {:5.1f}%  {:.0f} s, {:.0f} s left  {}", is_terminal_ ? "\r" : "",
-               std::string(filled, '='), kWidth, 100 * p.share, p.elapsed_s, p.left_s, is_terminal_ ? "" : "\n");
-    std::fflush(stderr);
-  }
-  void end() const {
-    if (is_terminal_) fmt::print(stderr, "\n");
-  }
-
- private:
-  bool is_terminal_;
-  int last_tenth_ = -1;
 };
 
 void print(const std::vector<experiment::Target>& targets) {
@@ -142,6 +117,7 @@ void add_experiment(CLI::App& program, Action& action) {
   command->require_subcommand(1);
   add_trials(*command, action, "collision", "pairs that meet across a border: speed, latency, frame time", false);
   add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
+  add_scalability(*command, action);
 }
 
 }  // namespace aurasim::cli

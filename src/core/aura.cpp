@@ -80,7 +80,7 @@ Pose Aura::ahead(const Path& path, double steps) const {
 }
 
 bool Aura::spheres_within(const Path& a, const Path& b, double distance_m) const {
-  const double d = a.radius_m + b.radius_m + rules_.contact_margin_m + distance_m;
+  const double d = a.radius_m + b.radius_m + rules_.contact_margin_m + a.blur_m + b.blur_m + distance_m;
   return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= d * d;
 }
 
@@ -157,7 +157,8 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
     const Pose bt = ahead(b, k);
     const double allowed =
         rules_.reach_scale *
-        (rules_.contact_margin_m + spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
+        (rules_.contact_margin_m + a.blur_m + b.blur_m +
+         spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
     double clearance = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
     if (clearance <= allowed) {
       const double limit = allowed + closing * (last - k);

@@ -40,6 +40,7 @@ struct Path {
   double age_steps = 0;     ///< how long ago the state was known, seen from now
   double unborn_steps = 0;  ///< the body appears this many steps from now
   double speed_m_s = 0;     ///< top speed in its cluster, for the uncertainty
+  double blur_m = 0;        ///< its surface may be this far from where it seems: it was said in few bytes
 };
 
 /// The path of one of our own bodies from its state now.

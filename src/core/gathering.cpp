@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/aura_precision.h"
+
 namespace aurasim::core {
 
 namespace {
@@ -83,6 +85,7 @@ void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
       static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
+  f.path.blur_m = said_within_m(f.path.radius_m);
 }
 
 double Gathering::band(double speed_m_s, int hops) const {
