@@ -118,6 +118,7 @@ void add_experiment(CLI::App& program, Action& action) {
   add_trials(*command, action, "collision", "pairs that meet across a border: speed, latency, frame time", false);
   add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
   add_scalability(*command, action);
+  add_bandwidth(*command, action);
 }
 
 }  // namespace aurasim::cli

@@ -23,8 +23,8 @@ MaybeError check_shape(const wire::AuraBatch& in) {
       kMaxRows) {
     return WireError::kTooLarge;
   }
-  const bool fits = in.hand_off_destination().size() == in.hand_off_last().size() &&
-                    in.claim_id().size() == in.claim_epoch().size();
+  const bool fits =
+      in.hand_off_destination().size() == in.hand_off_last().size() && in.claim_id().size() == in.claim_epoch().size();
   return fits ? MaybeError{} : WireError::kLength;
 }
 

@@ -44,7 +44,8 @@ void encode_positions(const std::vector<AuraRecord>& updates, wire::AuraBatch& o
   const auto fits = [](const AuraRecord& a) { return fits_into_grains(a.pose.p_WB); };
   if (std::ranges::all_of(updates, fits)) {
     fill_wide<3>(out.grains_WB(), updates, [](const AuraRecord& a, std::int32_t* to) {
-      for (int i = 0; i < 3; ++i) to[i] = static_cast<std::int32_t>(std::lround(a.pose.p_WB[i] / core::kPositionGrain_m));
+      for (int i = 0; i < 3; ++i)
+        to[i] = static_cast<std::int32_t>(std::lround(a.pose.p_WB[i] / core::kPositionGrain_m));
     });
   } else {
     fill_wide<3>(out.p_WB(), updates, [](const AuraRecord& a, double* to) { put_vector(a.pose.p_WB, to); });
@@ -93,15 +94,16 @@ bool is_empty_or(std::size_t size, std::size_t rows) { return size == 0 || size 
 MaybeError check_shape(const wire::AuraBatch& in) {
   const std::size_t rows = in.id().size();
   if (std::max({rows, in.elsewhere_row().size(), in.unborn_row().size()}) > kMaxRows) return WireError::kTooLarge;
-  const bool fits = same_rows(rows, {{in.epoch().size()},
-                                     {in.prototype().size()},
-                                     {in.flags().size()},
-                                     {in.p_WB().size() + in.grains_WB().size(), 3},
-                                     {in.rotation_WB().size()}}) &&
-                    is_empty_or(in.p_WB().size(), 3 * rows) && is_empty_or(in.v_WB().size(), 3 * rows) &&
-                    in.w_WB().size() == in.v_WB().size() && is_empty_or(in.speed_m_s().size(), rows) &&
-                    same_rows(in.elsewhere_row().size(), {{in.elsewhere_host().size()}, {in.elsewhere_stamp().size()}}) &&
-                    in.unborn_row().size() == in.unborn_birth().size();
+  const bool fits =
+      same_rows(rows, {{in.epoch().size()},
+                       {in.prototype().size()},
+                       {in.flags().size()},
+                       {in.p_WB().size() + in.grains_WB().size(), 3},
+                       {in.rotation_WB().size()}}) &&
+      is_empty_or(in.p_WB().size(), 3 * rows) && is_empty_or(in.v_WB().size(), 3 * rows) &&
+      in.w_WB().size() == in.v_WB().size() && is_empty_or(in.speed_m_s().size(), rows) &&
+      same_rows(in.elsewhere_row().size(), {{in.elsewhere_host().size()}, {in.elsewhere_stamp().size()}}) &&
+      in.unborn_row().size() == in.unborn_birth().size();
   return fits ? MaybeError{} : WireError::kLength;
 }
 

@@ -1,8 +1,7 @@
 #include "node/node.h"
 
-#include <ctime>
-
 #include <algorithm>
+#include <ctime>
 #include <utility>
 
 #include "node/scene_growth.h"

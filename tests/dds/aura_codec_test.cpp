@@ -1,6 +1,6 @@
 // Aura batches and acks as wire types and back: exact, and whatever is not sound is refused for the right reason.
-#include <functional>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <string>

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "experiment/scale/fit.h"
+#include "experiment/scale/message_sizes.h"
 #include "experiment/scale/rain.h"
 #include "experiment/scale/rain_summary.h"
 #include "experiment/scale/round_trips.h"
@@ -113,6 +114,13 @@ TEST(RainFigures, AddUpAndCompare) {
   EXPECT_DOUBLE_EQ(f.physics_ms, 12) << "of both nodes";
   EXPECT_DOUBLE_EQ(f.overhead_share, 2.0 / 12);
   EXPECT_DOUBLE_EQ(f.most_hosted_share, 2 * 20.0 / 30);
+}
+
+TEST(MessageSizes, AurasKeepToTheirBounds) {
+  const nlohmann::json sizes = message_sizes();
+  EXPECT_LE(sizes["aura_update"]["tight"], 40);
+  EXPECT_LE(sizes["aura_update"]["swept"], 80);
+  EXPECT_GT(sizes["aura_update"]["tight"], 8) << "an id alone";
 }
 
 TEST(Rain, EveryRunHasANameOfItsOwn) {

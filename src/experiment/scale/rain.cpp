@@ -16,9 +16,9 @@ constexpr int kInTheMiddle = 1;
 core::Step Rain::steps(double step_s) const { return std::llround(run_s / step_s); }
 
 std::string Rain::name() const {
-  return fmt::format("{}-{}-in-{}-{}-U{:g}-K{}-S{}-{:g}per_s-{:g}of{:g}s-border{:g}-{:g}m_s-{}", series,
+  return fmt::format("{}-{}-in-{}-{}-U{:g}-K{}-S{}-{:g}per_s-{:g}of{:g}s-border{:g}-{:g}m_s-{:g}B_s-{}", series,
                      regions.name(), world.name(), aura, uncertainty, lookahead, substeps, rate_per_s, rain_s, run_s,
-                     border_share, fall_m_s, repeat);
+                     border_share, fall_m_s, bandwidth_B_s, repeat);
 }
 
 std::vector<std::string> Rain::overrides() const {

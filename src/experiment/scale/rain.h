@@ -26,6 +26,7 @@ struct Rain {
   double run_s = 60;          ///< so long it is watched
   double border_share = 0.5;  ///< of the bodies that fall near boundaries, the others in the middle of regions
   double fall_m_s = 10;       ///< top speed along each axis at birth
+  double bandwidth_B_s = 0;   ///< of each node's link; 0: unlimited
   std::uint32_t repeat = 0;   ///< another one has other bodies
 
   std::uint64_t bodies() const { return static_cast<std::uint64_t>(rate_per_s * rain_s); }

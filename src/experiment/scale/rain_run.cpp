@@ -55,25 +55,25 @@ StepLoad load_of(const node::StepReport& report, const Counts& before, const Cou
   return load;
 }
 
-ClusterRules rules_of(const config::Launch& launch, const RainPlace& place) {
+ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const RainPlace& place) {
   ClusterRules rules;
   rules.node = place.setup_of(launch, core::RegionId{0});
   rules.node.hash_states = false;
   rules.node.clock = node::PhaseClock::kThreadCpu;
   rules.network.latency_s = kLatency_s;
   rules.shortest_frame_s = rules.longest_frame_s = kFrame_s;
-  rules.bandwidth_B_s = place.bandwidth_B_s > 0 ? place.bandwidth_B_s : std::numeric_limits<double>::infinity();
+  rules.bandwidth_B_s = rain.bandwidth_B_s > 0 ? rain.bandwidth_B_s : std::numeric_limits<double>::infinity();
   return rules;
 }
 
 }  // namespace
 
-std::optional<RainResult> run_rain(const Rain& rain, const RainPlace& place, const std::function<void(double)>& stepped,
-                                   const std::atomic<bool>& stop) {
+std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
+                                            const std::function<void(double)>& stepped, const std::atomic<bool>& stop) {
   const config::Launch launch = config::read_launch(place.launch_file, rain.overrides());
   const double step_s = launch.step_s();
   const core::Step steps = rain.steps(step_s);
-  VirtualCluster cluster(launch.scene, launch.regions, rules_of(launch, place));
+  VirtualCluster cluster(launch.scene, launch.regions, rules_of(rain, launch, place));
   WindowSums sums(cluster.size(), std::llround(kWindow_s / step_s), step_s);
   std::vector<Counts> counts(cluster.size());
   RoundTrips trips(std::llround(1 / step_s));
@@ -88,7 +88,9 @@ std::optional<RainResult> run_rain(const Rain& rain, const RainPlace& place, con
     stepped(static_cast<double>(shown) / static_cast<double>(steps));
     if (stop) return std::nullopt;
   }
-  return RainResult{sums.windows(), cluster.slow_down()};
+  std::vector<Window> windows = sums.windows();
+  for (Window& window : windows) window.slow_down = cluster.slow_down();
+  return windows;
 }
 
 }  // namespace aurasim::experiment

@@ -22,16 +22,10 @@ inline constexpr double kWindow_s = 5;  ///< as the thesis
 struct RainPlace {
   std::filesystem::path launch_file;  ///< launch_configs/columns_rain.yaml, or one with injectors like its
   SetupOf setup_of;
-  double bandwidth_B_s = 0;  ///< of each node's link; 0: unlimited
-};
-
-struct RainResult {
-  std::vector<Window> windows;
-  double slow_down = 1;  ///< time taken over time simulated, by the clock of the cluster
 };
 
 /// Nothing when `stop` became true. `stepped(share)` is called now and then, with the share of the run that is done.
-std::optional<RainResult> run_rain(const Rain& rain, const RainPlace& place, const std::function<void(double)>& stepped,
-                                   const std::atomic<bool>& stop);
+std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
+                                            const std::function<void(double)>& stepped, const std::atomic<bool>& stop);
 
 }  // namespace aurasim::experiment

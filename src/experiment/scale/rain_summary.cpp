@@ -39,7 +39,15 @@ json json_of(const Rain& rain, const RainFigures& f) {
           {"overhead_share", f.overhead_share},
           {"hand_offs", f.hand_offs},
           {"returns", f.returns},
+          {"fall_m_s", rain.fall_m_s},
+          {"bandwidth_B_s", rain.bandwidth_B_s},
+          {"steps", rain.steps(1.0 / 60)},
           {"aura_updates", f.aura_updates},
+          {"aura_bytes", f.aura_bytes},
+          {"hand_off_bytes", f.hand_off_bytes},
+          {"link_bytes", f.link_bytes},
+          {"datagrams", f.datagrams},
+          {"slow_down", f.slow_down},
           {"bodies", f.bodies},
           {"awake", f.awake},
           {"projecting", f.projecting},
@@ -111,12 +119,16 @@ RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes) {
     f.hand_offs += w.mean.departures;
     f.returns += w.mean.returns;
     f.aura_updates += w.mean.aura_updates;
+    f.aura_bytes += w.mean.aura_bytes;
+    f.hand_off_bytes += w.mean.hand_off_bytes;
+    f.link_bytes += w.mean.link_bytes;
+    f.datagrams += w.mean.datagrams;
     f.largest_cluster = std::max(f.largest_cluster, w.mean.largest_cluster);
     f.violations += w.mean.violations;
     f.late += w.mean.late;
     if (in_all > 0) {
-      f.most_hosted_share = std::max(f.most_hosted_share, static_cast<double>(most_hosted * nodes) /
-                                                              static_cast<double>(in_all));
+      f.most_hosted_share =
+          std::max(f.most_hosted_share, static_cast<double>(most_hosted * nodes) / static_cast<double>(in_all));
     }
     most_hosted = 0;
   }
@@ -124,6 +136,7 @@ RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes) {
   const Window& last = *std::find_if(windows.rbegin(), windows.rend(), [](const Window& w) { return w.region < 0; });
   const auto n = static_cast<double>(nodes);
   f.last_frame_ms = last.frame_mean_ms;
+  f.slow_down = last.slow_down;
   f.growth_per_body = fitted_growth(bodies, frames).slope;
   f.physics_ms = n * last.mean.physics_ms;
   f.protocol_ms = n * last.mean.protocol_ms;

@@ -37,7 +37,8 @@ void add_series(const ScalabilityPlan& plan, const std::string& series, std::vec
     for (const std::size_t n : plan.columns) add_with_auras(plan, begin(plan, series, columns(n), columns(n)), out);
   } else if (series == "corners") {
     using Kind = Layout::Kind;
-    for (const Layout& layout : {Layout{Kind::kCorner, 3, 80}, Layout{Kind::kGrid, 4, 80}, Layout{Kind::kGrid, 9, 80}}) {
+    for (const Layout& layout :
+         {Layout{Kind::kCorner, 3, 80}, Layout{Kind::kGrid, 4, 80}, Layout{Kind::kGrid, 9, 80}}) {
       out.push_back(begin(plan, series, layout, layout));
     }
   } else if (series == "cuts") {
@@ -61,6 +62,20 @@ void add_series(const ScalabilityPlan& plan, const std::string& series, std::vec
     for (const double u : {0.0, 0.25, 0.5, 1.0, 2.0}) {
       out.push_back(begin(plan, series, columns(4), columns(4)));
       out.back().uncertainty = u;
+    }
+  } else if (series == "speed") {
+    for (const double fall_m_s : {2.5, 5.0, 10.0, 15.0}) {
+      Rain rain = begin(plan, series, columns(2), columns(2));
+      rain.fall_m_s = fall_m_s;
+      rain.border_share = 1;
+      add_with_auras(plan, rain, out);
+    }
+  } else if (series == "link") {
+    for (const double bandwidth_B_s : {12.5e6, 2e6, 1e6, 5e5, 2.5e5, 1e5, 5e4}) {
+      Rain rain = begin(plan, series, columns(2), columns(2));
+      rain.bandwidth_B_s = bandwidth_B_s;
+      rain.border_share = 1;
+      add_with_auras(plan, rain, out);
     }
   } else if (series == "lookahead") {
     for (const int k : {1, 2}) {
@@ -111,8 +126,9 @@ class Queue {
 void work(Queue& queue, const RainPlace& place, const std::filesystem::path& directory, const std::atomic<bool>& stop) {
   std::size_t index = 0;
   while (const Rain* rain = stop ? nullptr : queue.take(index)) {
-    const auto result = run_rain(*rain, place, [&](double share) { queue.done(index, share); }, stop);
-    if (result) write_windows(windows_file(directory, *rain), result->windows);
+    const auto result = run_rain(
+        *rain, place, [&](double share) { queue.done(index, share); }, stop);
+    if (result) write_windows(windows_file(directory, *rain), *result);
   }
 }
 
@@ -121,6 +137,8 @@ void work(Queue& queue, const RainPlace& place, const std::filesystem::path& dir
 std::vector<std::string> scalability_series() {
   return {"columns", "corners", "cuts", "weak", "border", "asleep", "uncertainty", "lookahead"};
 }
+
+std::vector<std::string> bandwidth_series() { return {"speed", "link"}; }
 
 std::vector<Rain> rains_of(const ScalabilityPlan& plan) {
   std::vector<Rain> rains;

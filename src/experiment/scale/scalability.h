@@ -24,6 +24,10 @@ namespace aurasim::experiment {
 ///   uncertainty  U from 0 to 2
 ///   lookahead    K of 1 and 2
 std::vector<std::string> scalability_series();
+/// Likewise, of the bandwidth experiment; every body falls near the border of two columns:
+///   speed  top speed at birth from 2.5 to 15 m/s along each axis
+///   link   each node's link from 12.5 MB/s (100 Mbit/s) down to 50 kB/s
+std::vector<std::string> bandwidth_series();
 
 struct ScalabilityPlan {
   std::vector<std::string> series = scalability_series();

@@ -14,10 +14,11 @@ namespace aurasim::experiment {
 namespace {
 
 constexpr const char* kHeader =
-    "region,begin_s,frame_max_ms,frame_p95_ms,frame_mean_ms,physics_ms,protocol_ms,transport_ms,watch_ms,bodies,awake,"
+    "region,begin_s,slow_down,frame_max_ms,frame_p95_ms,frame_mean_ms,physics_ms,protocol_ms,transport_ms,watch_ms,"
+    "bodies,awake,"
     "projecting,foreign,largest_cluster,departures,returns,aura_updates,aura_bytes,hand_off_bytes,link_bytes,datagrams,"
     "violations,late";
-constexpr std::size_t kColumns = 23;
+constexpr std::size_t kColumns = 24;
 
 void add_times(StepLoad& sum, const StepLoad& load, double weight) {
   sum.physics_ms += weight * load.physics_ms;
@@ -114,8 +115,9 @@ void write_windows(const std::filesystem::path& file, const std::vector<Window>&
   out << kHeader << '\n';
   for (const Window& w : windows) {
     const StepLoad& m = w.mean;
-    out << fmt::format("{},{:g},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", w.region, w.begin_s, w.frame_max_ms,
-                       w.frame_p95_ms, w.frame_mean_ms, m.physics_ms, m.protocol_ms, m.transport_ms, m.watch_ms)
+    out << fmt::format("{},{:g},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", w.region, w.begin_s,
+                       w.slow_down, w.frame_max_ms, w.frame_p95_ms, w.frame_mean_ms, m.physics_ms, m.protocol_ms,
+                       m.transport_ms, m.watch_ms)
         << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", m.bodies, m.awake, m.projecting, m.foreign,
                        m.largest_cluster, m.departures, m.returns, m.aura_updates, m.aura_bytes, m.hand_off_bytes,
                        m.link_bytes, m.datagrams, m.violations, m.late);
@@ -133,8 +135,8 @@ std::vector<Window> read_windows(const std::filesystem::path& file) {
     StepLoad& m = w.mean;
     std::size_t i = 0;
     w.region = static_cast<int>(node::number(cells[i++]));
-    for (double* to : {&w.begin_s, &w.frame_max_ms, &w.frame_p95_ms, &w.frame_mean_ms, &m.physics_ms, &m.protocol_ms,
-                       &m.transport_ms, &m.watch_ms}) {
+    for (double* to : {&w.begin_s, &w.slow_down, &w.frame_max_ms, &w.frame_p95_ms, &w.frame_mean_ms, &m.physics_ms,
+                       &m.protocol_ms, &m.transport_ms, &m.watch_ms}) {
       *to = node::number(cells[i++]);
     }
     for (std::size_t* to : {&m.bodies, &m.awake, &m.projecting, &m.foreign, &m.largest_cluster}) {

@@ -41,7 +41,8 @@ struct Window {
   int region = -1;
   double begin_s = 0;
   double frame_max_ms = 0, frame_p95_ms = 0, frame_mean_ms = 0;
-  StepLoad mean;  ///< of the times; counts are sums over the window, numbers of bodies those of its last step
+  double slow_down = 1;  ///< time taken over time simulated, of the whole run
+  StepLoad mean;         ///< of the times; counts are sums over the window, numbers of bodies those of its last step
 };
 
 /// Gathers the steps of all nodes, in any order.
