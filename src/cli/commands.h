@@ -26,6 +26,8 @@ void add_experiment(CLI::App& program, Action& action);
 /// Below `experiment`.
 void add_stability(CLI::App& experiment, Action& action);
 void add_pareto(CLI::App& experiment, Action& action);
+void add_scalability(CLI::App& experiment, Action& action);
+void add_bandwidth(CLI::App& experiment, Action& action);
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {
