@@ -17,6 +17,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
+from report_parts import save  # noqa: E402
+
 STEP_MS = 1000 / 60
 # Thesis figure numbers: ratio of late and missed, mean penetration time, by series.
 RATIO_FIGURE = {"speed_16m_s": "5.22", "speed_32m_s": "5.23", "speed_48m_s": "5.24",
@@ -84,13 +86,6 @@ def tolerance_of(series):
     text = series.split("_")[1] if "_" in series else ""
     digits = "".join(c for c in text if c.isdigit() or c == ".")
     return float(digits) if digits else None
-
-
-def save(figure, folder, name):
-    figure.tight_layout()
-    figure.savefig(folder / f"{name}.png", dpi=110)
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-    plt.close(figure)
 
 
 def mark_tolerance(axes, series):

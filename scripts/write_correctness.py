@@ -9,6 +9,8 @@ import json
 import pathlib
 import shutil
 
+from report_parts import table
+
 SERIES = {"speed_16m_s": "speed, 16 m/s", "speed_32m_s": "speed, 32 m/s", "speed_48m_s": "speed, 48 m/s",
           "latency_2ms": "latency, 2 ms", "latency_8ms": "latency, 8 ms", "latency_16ms": "latency, 16 ms",
           "frame_8.33ms": "frame, 8.33 ms", "frame_15ms": "frame, 15 ms", "frame_33.33ms": "frame, 33.33 ms"}
@@ -60,12 +62,6 @@ thesis, section 5.2: two bodies of different regions fly at each other and meet 
 | machines | AWS, `tc` | virtual time |
 
 """
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    lines += ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n\n"
 
 
 def cell(tally):

@@ -23,6 +23,11 @@ void add_report(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
+/// Below `experiment`.
+void add_stability(CLI::App& experiment, Action& action);
+void add_pareto(CLI::App& experiment, Action& action);
+void add_scalability(CLI::App& experiment, Action& action);
+void add_bandwidth(CLI::App& experiment, Action& action);
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {
