@@ -1,6 +1,6 @@
 // May a node go on without those that have fallen silent? A host that is cut off sees the same as one whose neighbours
 // have all died; if it went on, there would be two worlds. So whoever has lost others goes on only with the majority
-// (docs/decisions/0011). Time is passed in.
+// (docs/decisions/0012). Time is passed in.
 #pragma once
 
 #include <chrono>
