@@ -9,9 +9,9 @@ out=${1:-build/scalability}
 aurasim=build/release/aurasim
 [[ -x $aurasim ]] || scripts/build.sh release
 
-# One node alone takes half of all the time of the long runs: what compares auras and settings is half as long.
+# One node alone takes half of all the time of the long runs: what compares auras and settings is a third as long.
 "$aurasim" experiment scalability --out "$out/long" --series columns,cuts --aura swept
-"$aurasim" experiment scalability --out "$out/short" --seconds 30
+"$aurasim" experiment scalability --out "$out/short" --seconds 20
 "$aurasim" experiment bandwidth --out "$out/bandwidth"
 if [[ ${AURASIM_WALL:-0} == 1 ]]; then
   "$aurasim" experiment scalability --processes --series columns,cuts --columns 1,2 --aura swept --out "$out/wall"

@@ -11,13 +11,15 @@ packages=(
   # whose package does not ask for Java
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   # physics in both precisions, mathematics
-  libbullet-dev libeigen3-dev
+  libbullet-dev libbullet-extras-dev libeigen3-dev
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   # HTTP and WebSocket of the overseer
   libboost1.74-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+  # separate hosts on one machine; other people's DDS and a dissector, as witnesses
+  nftables jq cyclonedds-dev cyclonedds-tools tshark
   # figures of the experiments
   python3-matplotlib
   # the browser that the page is tested in

@@ -23,7 +23,7 @@ INTRODUCTION = """# How much faster are several nodes?
 
 Written by `scripts/scalability.sh`; do not edit. Machine: {machine}. Every number is of this machine and these seeds
 (1 and 2, plus 10 for each repeat), with {repeats} run(s) of each kind. The sections after *Cuts*, and whatever compares
-auras, watch the first 30 s and 4,800 bodies only.
+auras, watch the first 20 s and 3,200 bodies only.
 
 ## What is measured
 
@@ -163,7 +163,7 @@ def bandwidth(directory):
     summary = json.loads((directory / "summary.json").read_text())
     sizes = json.loads((directory / "sizes.json").read_text())
     text = "## Bandwidth\n\nPayloads of RTPS DATA, as Fast CDR writes them; RTPS, UDP and IP add about 100 bytes for each "
-    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 20 s.\n\n"
+    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 10 s.\n\n"
     text += sizes_table(sizes)
     text += "### By speed\n\n"
     text += traffic_table(sorted(of(summary["runs"], "speed"), key=lambda r: (r["fall_m_s"], r["aura"])),
@@ -192,7 +192,7 @@ def main():
     text += "## What has to hold, and what was found\n\n" + requirements(summary, sizes, wall)
     text += "## Speed-up\n\nOne node's frame over the slowest node's. The thesis's numbers are ratios of fitted "
     text += "coefficients (log10 of the frame time over bodies).\n\n" + speed_up_table(summary)
-    text += "Half as long, 4,800 bodies, with every aura:\n\n" + speed_up_table(short)
+    text += "The first 20 s, 3,200 bodies, with every aura:\n\n" + speed_up_table(short)
     text += "## Columns: the rain follows the regions\n\nTimes other than frames are sums over the nodes, means of the last "
     text += "5 s; late collisions of one node are those that one world has, too.\n\n"
     for all_runs in (summary["runs"], runs):

@@ -94,10 +94,6 @@ struct Problem {
           std::ranges::find(c.scene.prototypes, ask.prototype, &core::Prototype::name) != c.scene.prototypes.end();
       return known ? std::string() : fmt::format("the scene has no prototype \"{}\"", ask.prototype);
     }
-    if (const auto* mesh = std::get_if<core::MeshRef>(&*ask.shape);
-        mesh && mesh->use == core::MeshUse::kDecomposition) {
-      return "bodies are not decomposed into convex parts; use the hull of the mesh";
-    }
     if (!(ask.mass_kg >= kLightest_kg && ask.mass_kg <= kHeaviest_kg)) {
       return fmt::format("its mass is {:.4g} kg, allowed: {} to {} kg", ask.mass_kg, kLightest_kg, kHeaviest_kg);
     }

@@ -39,7 +39,9 @@ std::uint64_t Courier::send(core::Command command) {
   under_way.subject = core::body_of(command.ask);
   under_way.has_time = command.at_step > 0;
   under_way.changes_the_run = core::changes_the_run(command.ask);
-  under_way.delivery.is_ray = std::holds_alternative<core::Ray>(command.ask);
+  const auto* const ray = std::get_if<core::Ray>(&command.ask);
+  under_way.delivery.is_ray = ray != nullptr;
+  if (ray != nullptr) under_way.asked = ray->regions;
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
   // Any map: there is one run in a domain, and its map may be changing just now.
@@ -85,10 +87,12 @@ bool Courier::has_ended(UnderWay& under_way) {
   const bool late = Clock::now() >= under_way.deadline;
   if (delivery.is_ray) {
     delivery.silent.clear();
+    const auto is_in = [](const auto& regions, core::RegionId region) {
+      return std::ranges::find(regions, region) != regions.end();
+    };
     for (const dds::Status* node : live_nodes()) {
-      if (std::ranges::find(under_way.answered, node->region) == under_way.answered.end()) {
-        delivery.silent.push_back(node->region);
-      }
+      const bool asked = under_way.asked.empty() || is_in(under_way.asked, node->region);
+      if (asked && !is_in(under_way.answered, node->region)) delivery.silent.push_back(node->region);
     }
     if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
     delivery.done = !under_way.answered.empty();

@@ -51,6 +51,7 @@ class Courier {
     bool changes_the_run = false;
     bool has_time = false;  ///< its state was named: who asked does not wait for it
     std::optional<core::BodyId> subject;
+    std::vector<core::RegionId> asked;  ///< by a ray; none: all
     std::vector<core::RegionId> answered;
     Clock::time_point deadline;
   };

@@ -4,6 +4,7 @@
 
 #include "core/aura.h"
 #include "node/local_origin.h"
+#include "physics/solver_names.h"
 
 namespace aurasim::cli {
 namespace {
@@ -96,7 +97,11 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.protocol.neighbour_distance_m = listening_distance_m(launch);
   setup.physics.step_s = launch.step_s();
   setup.physics.substeps = launch.time.substeps;
+  setup.physics.solver = physics::solver_named(launch.physics.solver);
   setup.physics.solver_iterations = launch.physics.iterations;
+  setup.physics.friction_directions = launch.physics.friction_directions;
+  setup.physics.contact_erp = launch.physics.contact_erp;
+  setup.physics.continuous = launch.physics.continuous;
   if (launch.physics.origin == config::Origin::kRegion) {
     setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
   }

@@ -69,13 +69,13 @@ void NodeProcess::change_scene(const std::string& name) {
   spdlog::info("scene {} after step {}", name, node_->current_step());
   wait_until_all_stand();
   waits_to_start_ = generation_ + 1;
+  dds::WorldMap map = world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = waits_to_start_;
+  control_.publish_map(map);  // first: observers read the new scene before its bodies come
   node_.reset();
   connect_anew(neighbour_transport(launch_, options_.region));
   begin_generation(waits_to_start_, start_->epoch_ns);
-  dds::WorldMap map = world_map(launch_);
-  map.agreement = status_.agreement;
-  map.generation = generation_;
-  control_.publish_map(map);
 }
 
 /// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.

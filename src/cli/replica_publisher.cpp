@@ -1,5 +1,7 @@
 #include "cli/replica_publisher.h"
 
+#include "node/bonds.h"
+
 namespace aurasim::cli {
 namespace {
 
@@ -13,11 +15,13 @@ ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participan
     : region_(region),
       map_version_(launch.regions.version()),
       tick_steps_(node::tick_steps(launch.time.step_hz, launch.observe.tick_hz)),
-      writer_(participant, region) {}
+      writer_(participant, region),
+      bonds_(participant, region) {}
 
 void ReplicaPublisher::begin_generation(core::Generation generation) {
   feed_.emplace(region_, generation, map_version_);
-  told_ = -1;
+  generation_ = generation;
+  told_ = bonds_told_ = -1;
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
@@ -31,6 +35,7 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
 
 void ReplicaPublisher::while_paused(node::Node& node) {
   if (!writer_.anybody_listens()) return;
+  if (bonds_told_ != node.current_step()) tell_bonds(node);
   if (told_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) tell(node);
 }
 
@@ -50,10 +55,17 @@ void ReplicaPublisher::tell(node::Node& node) {
   const core::Snapshot& snapshot = node.world().snapshot();
   told_ = snapshot.step;
   writer_.send(feed_->tell_changes(snapshot));
+  tell_bonds(node);
   if (!key_frame_is_due()) return;
   arrivals_ = writer_.arrivals();
   last_key_frame_ = Clock::now();
   writer_.send(feed_->tell_all(snapshot, node.protocol().departures().open()));
+}
+
+void ReplicaPublisher::tell_bonds(node::Node& node) {
+  if (!bonds_.anybody_listens()) return;
+  bonds_told_ = node.current_step();
+  bonds_.send(node::bonds_of(node, generation_, map_version_));
 }
 
 }  // namespace aurasim::cli

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "config/launch.h"
+#include "dds/overlay_bus.h"
 #include "dds/replica_bus.h"
 #include "node/node.h"
 #include "node/replica_feed.h"
@@ -26,14 +27,18 @@ class ReplicaPublisher {
 
  private:
   void tell(node::Node& node);
+  void tell_bonds(node::Node& node);
   bool key_frame_is_due() const;
 
   core::RegionId region_;
   std::uint64_t map_version_;
   core::Step tick_steps_;
   dds::ReplicaWriter writer_;
+  dds::BondsWriter bonds_;
   std::optional<node::ReplicaFeed> feed_;
+  core::Generation generation_ = 0;
   core::Step told_ = -1;
+  core::Step bonds_told_ = -1;
   std::uint64_t arrivals_ = 0;  ///< observers that have got a key frame of their own
   std::chrono::steady_clock::time_point last_key_frame_;
 };

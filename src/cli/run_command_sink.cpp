@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "config/meshes.h"
+
 namespace aurasim::cli {
 namespace {
 
@@ -14,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 using Kind = dds::RunCommandKind;
 
 constexpr auto kPatience = 10s;
+constexpr auto kPatienceForListeners = 3s;
 
 class BadAsk : public std::runtime_error {
  public:
@@ -54,8 +57,40 @@ void RunCommandSink::submit(overseer::Request request) {
   } else if (const auto* step = std::get_if<overseer::StepOn>(&request.command)) {
     steer(request, Kind::kStep, step->count);
   } else {
-    carry(request);
+    held_.push_back({std::move(request), Clock::now() + kPatienceForListeners});
+    carry_held();
   }
+}
+
+void RunCommandSink::carry_held() {
+  if (held_.empty() || (!courier_.all_listen() && Clock::now() < held_.front().deadline)) return;
+  for (Held& held : std::exchange(held_, {})) {
+    if (waits_for_parts(held.request)) {
+      held_.push_back(std::move(held));
+    } else {
+      carry(held.request);
+    }
+  }
+}
+
+bool RunCommandSink::waits_for_parts(const overseer::Request& request) {
+  const auto* const spawn = std::get_if<overseer::Spawn>(&request.command);
+  const auto* const kind = spawn == nullptr ? nullptr : std::get_if<overseer::NewKind>(&spawn->kind);
+  const auto* const stored = kind == nullptr ? nullptr : std::get_if<overseer::StoredShape>(&kind->shape);
+  if (stored == nullptr || stored->as != overseer::StoredShape::As::kDecomposition) return false;
+  const auto mesh = shapes_.find(stored->hash);
+  return mesh != nullptr && part_finder_.parts_of(stored->hash, mesh) == nullptr;
+}
+
+/// Once they have been found. Throws BadAsk.
+core::MeshRef RunCommandSink::parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh) {
+  if (mesh == nullptr) throw BadAsk("the mesh has to be sent to this overseer's /api/shapes first");
+  const PartFinder::Parts& parts = *part_finder_.parts_of(hash, mesh);
+  if (const auto* why = std::get_if<std::string>(&parts)) throw BadAsk(*why);
+  const auto& pieces = std::get<core::TriangleMesh>(parts);
+  const std::uint64_t hash_of_parts = config::content_hash(pieces);
+  courier_.bring(hash_of_parts, pieces);
+  return {hash_of_parts, core::MeshUse::kDecomposition};
 }
 
 void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int64_t count) {
@@ -75,12 +110,10 @@ void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int
 core::ClientShape RunCommandSink::client_shape(const overseer::ShapeChoice& choice) {
   if (const auto* stored = std::get_if<overseer::StoredShape>(&choice)) {
     const auto mesh = shapes_.find(stored->hash);
-    if (mesh) courier_.bring(stored->hash, *mesh);  // or some other overseer has brought it
     using As = overseer::StoredShape::As;
-    const core::MeshUse use = stored->as == As::kMesh   ? core::MeshUse::kTriangles
-                              : stored->as == As::kHull ? core::MeshUse::kHull
-                                                        : core::MeshUse::kDecomposition;
-    return core::MeshRef{stored->hash, use};
+    if (stored->as == As::kDecomposition) return parts_of(stored->hash, mesh);
+    if (mesh) courier_.bring(stored->hash, *mesh);  // or some other overseer has brought it
+    return core::MeshRef{stored->hash, stored->as == As::kMesh ? core::MeshUse::kTriangles : core::MeshUse::kHull};
   }
   return std::visit(
       [](const auto& shape) -> core::ClientShape {
@@ -122,7 +155,7 @@ core::Ask RunCommandSink::ask_for(const overseer::Command& command) {
   if (const auto* c = std::get_if<overseer::SetRate>(&command)) return core::SetRate{c->value};
   if (const auto* c = std::get_if<overseer::SetRegions>(&command)) return core::Repartition{c->boxes};
   if (const auto* c = std::get_if<overseer::LoadScene>(&command)) return core::ChangeScene{c->name};
-  if (const auto* c = std::get_if<overseer::CastRay>(&command)) return core::Ray{c->from, c->to, {}};
+  if (const auto* c = std::get_if<overseer::CastRay>(&command)) return core::Ray{c->from, c->to, c->regions};
   throw BadAsk("not supported by this run");
 }
 
@@ -138,6 +171,7 @@ void RunCommandSink::carry(const overseer::Request& request) {
 }
 
 std::vector<overseer::Reply> RunCommandSink::take_replies() {
+  carry_held();
   for (const Delivery& delivery : courier_.take()) {
     const auto found = sent_.find(delivery.request);
     if (found == sent_.end()) continue;

@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/courier.h"
+#include "cli/part_finder.h"
 #include "cli/run_steering.h"
 #include "overseer/commands.h"
 #include "overseer/shape_store.h"
@@ -37,6 +39,13 @@ class RunCommandSink final : public overseer::CommandSink {
     overseer::ClientId client{};
     std::string request;
   };
+  struct Held {
+    overseer::Request request;
+    std::chrono::steady_clock::time_point deadline;
+  };
+  void carry_held();
+  bool waits_for_parts(const overseer::Request& request);
+  core::MeshRef parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh);
   void carry(const overseer::Request& request);
   core::ClientShape client_shape(const overseer::ShapeChoice& choice);
   core::Ask ask_for(const overseer::Command& command);
@@ -44,6 +53,9 @@ class RunCommandSink final : public overseer::CommandSink {
   RunSteering steering_;
   Courier courier_;
   const overseer::ShapeStore& shapes_;
+  PartFinder part_finder_;
+  /// Until all nodes listen (an overseer that has just begun is not heard by all), or a mesh has been taken apart.
+  std::vector<Held> held_;
   std::map<std::uint64_t, Sent> sent_;
   std::vector<UnderWay> under_way_;
   std::vector<overseer::Reply> replies_;

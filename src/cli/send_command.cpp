@@ -12,6 +12,7 @@
 #include "cli/leave.h"
 #include "cli/node_process.h"
 #include "cli/run_steering.h"
+#include "config/convex_parts.h"
 #include "config/meshes.h"
 
 namespace aurasim::cli {
@@ -36,6 +37,7 @@ struct Arguments {
   core::Step at_step = 0;
   std::string prototype;
   std::string mesh_file;
+  bool in_parts = false;
   std::string scene;
   std::uint64_t body = 0;
   std::uint32_t fixed = 0;
@@ -61,12 +63,13 @@ core::Pose pose(const Arguments& a) {
 }
 
 core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, Courier& courier) {
-  auto mesh = config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
+  std::variant<core::TriangleMesh, std::string> mesh =
+      config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
+  if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
+  if (use == core::MeshUse::kDecomposition) mesh = config::decompose(std::get<core::TriangleMesh>(mesh));
   if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
   const auto& triangles = std::get<core::TriangleMesh>(mesh);
-  std::string content;
-  for (const core::Vec3& p : triangles.points) content += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
-  const std::uint64_t hash = config::content_hash(content);
+  const std::uint64_t hash = config::content_hash(triangles);
   courier.bring(hash, triangles);
   return {hash, use};
 }
@@ -83,7 +86,8 @@ core::Ask ask_for(const Arguments& a, Courier& courier) {
   if (a.what == "spawn") {
     core::NewBody body;
     body.prototype = a.prototype;
-    if (a.prototype.empty()) body.shape = shape(a, core::MeshUse::kHull, courier);
+    const core::MeshUse use = a.in_parts ? core::MeshUse::kDecomposition : core::MeshUse::kHull;
+    if (a.prototype.empty()) body.shape = shape(a, use, courier);
     body.mass_kg = a.mass_kg;
     body.pose = pose(a);
     body.v_WB = vector(a.v);
@@ -189,6 +193,7 @@ void place_options(CLI::App& command, Arguments& a) {
 void spawn_options(CLI::App& command, Arguments& a) {
   command.add_option("--prototype", a.prototype, "name of one of the scene's, instead of a shape");
   shape_options(command, a);
+  command.add_flag("--parts", a.in_parts, "with --mesh: convex parts that it is taken apart into, instead of its hull");
   place_options(command, a);
   vector_option(command, "--v", a.v, "velocity, m/s");
   vector_option(command, "--w", a.w, "angular velocity, rad/s");

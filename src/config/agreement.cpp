@@ -195,6 +195,9 @@ void add_settings(const Launch& launch, Digest& d) {
   d.add(std::string_view(launch.physics.precision));
   d.add(std::string_view(launch.physics.solver));
   d.bytes(static_cast<std::uint64_t>(launch.physics.iterations));
+  d.bytes(static_cast<std::uint64_t>(launch.physics.friction_directions));
+  d.add(launch.physics.contact_erp);
+  d.bytes(launch.physics.continuous);
   d.bytes(static_cast<std::uint64_t>(launch.physics.origin));
 }
 

@@ -9,6 +9,7 @@
 #include "config/fields.h"
 #include "config/launch_checks.h"
 #include "config/overrides.h"
+#include "config/presets.h"
 #include "config/region_layout.h"
 #include "config/scene_file.h"
 
@@ -71,17 +72,41 @@ void read_aura(const Field& field, Aura& aura) {
   fields.close();
 }
 
-void read_physics(const Field& field, Physics& physics) {
+/// What is given beside a preset, here or under `time`, goes before it.
+void apply_preset(const Field& field, bool substeps_are_given, Launch& launch) {
+  const auto choice = field.choice<const Preset*>(
+      {{kPresets[0].name, &kPresets[0]}, {kPresets[1].name, &kPresets[1]}, {kPresets[2].name, &kPresets[2]}});
+  if (!choice) return;
+  launch.physics.solver = (*choice)->solver;
+  launch.physics.iterations = (*choice)->iterations;
+  launch.physics.friction_directions = (*choice)->friction_directions;
+  if (!substeps_are_given) launch.time.substeps = (*choice)->substeps;
+}
+
+void read_physics(const Field& field, bool substeps_are_given, Launch& launch) {
   if (!field.given()) return;
+  Physics& physics = launch.physics;
   Fields fields(field);
+  if (const Field f = fields.optional("preset"); f.given()) apply_preset(f, substeps_are_given, launch);
   if (const Field f = fields.optional("precision"); f.given()) {
     physics.precision = f.choice<std::string>({{"double", "double"}, {"single", "single"}}).value_or(physics.precision);
   }
   if (const Field f = fields.optional("solver"); f.given()) {
-    physics.solver = f.choice<std::string>({{"sequential_impulse", "sequential_impulse"}}).value_or(physics.solver);
+    physics.solver =
+        f.choice<std::string>({{"sequential_impulse", "sequential_impulse"}, {"nncg", "nncg"}, {"dantzig", "dantzig"}})
+            .value_or(physics.solver);
   }
   if (const Field f = fields.optional("iterations"); f.given()) {
     physics.iterations = static_cast<int>(f.integer(1, 1000).value_or(physics.iterations));
+  }
+  if (const Field f = fields.optional("friction_directions"); f.given()) {
+    physics.friction_directions = static_cast<int>(f.integer(1, 2).value_or(physics.friction_directions));
+  }
+  if (const Field f = fields.optional("erp"); f.given()) {
+    physics.contact_erp = f.number(Range::from_to(0, 1)).value_or(physics.contact_erp);
+  }
+  if (const Field f = fields.optional("continuous"); f.given()) {
+    physics.continuous = f.flag().value_or(physics.continuous);
   }
   if (const Field f = fields.optional("origin"); f.given()) {
     physics.origin =
@@ -103,7 +128,7 @@ std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   std::filesystem::path beside = (folder / "../qos/aurasim.xml").lexically_normal();
   std::error_code error;
   if (std::filesystem::is_regular_file(beside, error)) return beside;
-  return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml";
+  return shipped_profiles();
 }
 
 void read_impair(const Field& field, Impair& impair) {
@@ -219,10 +244,12 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
     regions_field.refuse("a map such as {layout: columns, count: 2, width: 40}");
   Regions regions;
   if (regions_field.given()) regions = read_regions(regions_field);
-  read_time(fields.optional("time"), launch.time);
+  const Field time = fields.optional("time");
+  read_time(time, launch.time);
   read_tolerances(fields.optional("tolerances"), launch.tolerances);
   read_aura(fields.optional("aura"), launch.aura);
-  read_physics(fields.optional("physics"), launch.physics);
+  const bool substeps_are_given = time.is_map() && time.node()->find("substeps") != nullptr;
+  read_physics(fields.optional("physics"), substeps_are_given, launch);
   read_dds(fields.optional("dds"), launch.file.parent_path(), launch.dds);
   read_observe(fields.optional("observe"), launch.observe);
   read_overseer(fields.optional("overseer"), launch.overseer);
@@ -234,6 +261,8 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 }
 
 }  // namespace
+
+std::filesystem::path shipped_profiles() { return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml"; }
 
 int Launch::lookahead() const {
   if (time.lookahead) return *time.lookahead;

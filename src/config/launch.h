@@ -43,6 +43,9 @@ struct Physics {
   std::string precision = "double";  ///< or "single"
   std::string solver = "sequential_impulse";
   int iterations = 10;
+  int friction_directions = 1;  ///< rows of friction at each contact point, 1 or 2
+  double contact_erp = 0.2;     ///< share of an overlap undone in each substep, by a speed that stays
+  bool continuous = false;      ///< fast bodies stop at what is in their way
   /// Where Bullet's coordinates begin: kWorld keeps equal bits on any number of nodes, kRegion accuracy far out.
   Origin origin = Origin::kWorld;
 };
@@ -116,5 +119,8 @@ Launch read_launch(const std::filesystem::path& file, const std::vector<std::str
 
 /// Reads and validates a scene file alone.
 core::Scene read_scene(const std::filesystem::path& file);
+
+/// The QoS profiles of this project, where it was built.
+std::filesystem::path shipped_profiles();
 
 }  // namespace aurasim::config

@@ -16,6 +16,8 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "config/convex_parts.h"
+
 namespace aurasim::config {
 namespace {
 
@@ -174,8 +176,16 @@ std::uint64_t content_hash(std::string_view bytes) {
   return hash;
 }
 
+std::uint64_t content_hash(const core::TriangleMesh& mesh) {
+  std::string content;
+  for (const Vec3& p : mesh.points) content += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+  for (const auto& t : mesh.triangles) content += fmt::format("{} {} {} ", t[0], t[1], t[2]);
+  return content_hash(content);
+}
+
 core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use) {
   if (use == core::MeshUse::kTriangles) return mesh;
+  if (use == core::MeshUse::kDecomposition) return convex_parts(mesh);
   core::ConvexHull hull{hull_points(mesh)};
   const core::Vec3 centre = centre_of_mass(mesh);
   for (core::Vec3& p : hull.points) p -= centre;

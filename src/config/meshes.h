@@ -32,11 +32,12 @@ std::variant<core::TriangleMesh, std::string> read_mesh(const std::string& name,
 
 /// By which clients and nodes name a mesh of this content.
 std::uint64_t content_hash(std::string_view bytes);
+std::uint64_t content_hash(const core::TriangleMesh& mesh);
 
 /// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
 std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);
 
-/// A client's mesh for the use that it is meant for. A hull's points are about their centre of mass.
+/// A client's mesh for the use that it is meant for. Hulls and parts are about their centre of mass.
 core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use);
 
 /// Centre of mass of the volume inside a closed mesh; the mean of its points if it encloses nothing.

@@ -35,6 +35,7 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std:
   link_ranges_.clear();
   for (int hops = 0; hops <= kMostHops; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
+  links_.clear();
   asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
   if (aura_.rules().kind != AuraKind::kNone) {
@@ -68,9 +69,11 @@ bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
 
 /// The smaller one takes the label of the larger: each body's label changes at most log2(n) times.
 std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
+  const Contact link{a, b};
   a = of(a);
   b = of(b);
   if (a == b) return a;
+  links_.push_back(link);
   if (size_[a] < size_[b]) std::swap(a, b);
   for_each_member(b, [&](std::uint32_t j) { label_[j] = a; });
   size_[a] += size_[b];

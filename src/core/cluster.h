@@ -40,6 +40,8 @@ class Clusters {
   std::uint64_t growth() const { return growth_; }
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
+  /// The pairs by which clusters came to be one: a tree of each cluster.
+  std::span<const Contact> links() const { return links_; }
   const NearIndex& near() const { return near_; }
 
   /// Calls `visit(index)` for each member of body i's cluster.
@@ -72,6 +74,7 @@ class Clusters {
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
+  std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around
   std::vector<int> asked_hops_;
   std::vector<std::uint32_t> to_ask_;

@@ -31,10 +31,12 @@ void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighb
 
 void Gathering::measure(const Snapshot& snapshot) {
   const auto n = snapshot.bodies.size();
+  ids_.resize(n);
   paths_.resize(n);
   speeds_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const BodyState& body = snapshot.bodies[i];
+    ids_[i] = body.id;
     speeds_[i] = aura_.speed_of(body);
     paths_[i] = path_of(body, snapshot.step, aura_.clearance());
   }

@@ -36,6 +36,7 @@ class Gathering {
 
   const Clusters& clusters() const { return clusters_; }
   const Path& path(std::uint32_t i) const { return paths_[i]; }
+  BodyId id(std::uint32_t i) const { return ids_[i]; }
 
   /// Is body i near enough to another region, or to a foreign body, that others have to know of it?
   bool must_be_announced(std::uint32_t i) const;
@@ -76,6 +77,7 @@ class Gathering {
   const Aura& aura_;
   const Vicinity& vicinity_;
   Clusters clusters_;
+  std::vector<BodyId> ids_;
   std::vector<Path> paths_;
   std::vector<double> speeds_;
   std::vector<std::uint64_t> regions_;

@@ -18,6 +18,7 @@ namespace aurasim::core {
 /// Client bodies get ids from here on; scenes stay below.
 inline constexpr std::uint64_t kFirstClientBody = 1'000'000'000;
 
+/// kDecomposition: each connected piece of the mesh is one convex part.
 enum class MeshUse : std::uint8_t { kHull, kDecomposition, kTriangles };
 
 /// A mesh that every node has by its content.

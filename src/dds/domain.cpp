@@ -42,6 +42,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"command_reply", "aurasim::wire::CommandReply"},
     {"shape", "aurasim::wire::MeshShape"},
     {"orders", "aurasim::wire::AuraBatch"},
+    {"bonds", "aurasim::wire::Bonds"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -72,6 +73,7 @@ std::string partition_of(core::RegionId source, core::RegionId destination) {
 
 Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
+  loopback_only_ = on_loopback_only(qos);
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
   if (impairment.any()) delay_line_ = impair(qos, impairment, settings.domain, settings.impairment_stream);
   switch_intraprocess_delivery_off();
@@ -113,6 +115,7 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::CommandPubSubType>()),
       TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
       TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
+      TypeSupport(new GuardedType<wire::BondsPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -1,38 +1,10 @@
 #include "dds/replica_bus.h"
 
-#include <utility>
-#include <variant>
-
 #include "aurasim.h"
-#include "dds/endpoints.h"
+#include "dds/observing.h"
 #include "dds/replica_codec.h"
 
 namespace aurasim::dds {
-namespace {
-
-Expected expected_of(const ObserverSettings& settings) {
-  Expected expected;
-  expected.map_version = settings.map_version;
-  expected.region_count = settings.region_count;
-  expected.prototype_count = settings.prototype_count;
-  return expected;
-}
-
-template <class WireMessage, class Message>
-void drain(Reader& reader, WireMessage& sample, const Expected& expected, std::vector<Message>& out,
-           WireErrors& refused) {
-  while (reader.take(&sample)) {
-    auto decoded = decode(sample, expected);
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
-      refused.add(*error);
-    } else {
-      out.push_back(std::move(std::get<Message>(decoded)));
-    }
-  }
-}
-
-}  // namespace
-
 struct ReplicaWriter::Impl {
   Impl(Participant& participant, core::RegionId region)
       : deltas(participant.domain(), {TopicId::kReplica, {partition_of(region)}, region, {}}, bell),
@@ -101,28 +73,5 @@ void ReplicaReader::wait(std::chrono::nanoseconds time_out) {
 const WireErrors& ReplicaReader::refused() const { return impl_->refused; }
 
 std::uint64_t ReplicaReader::received() const { return impl_->received; }
-
-struct AuraWatch::Impl {
-  Impl(Participant& participant, const ObserverSettings& settings)
-      : expected(expected_of(settings)),
-        reader(participant.domain(), {TopicId::kAura, {kEveryRegionPartition}, {}, "aura_observer_reader"}, bell) {}
-
-  Expected expected;
-  Bell bell;
-  Reader reader;
-  wire::AuraBatch sample;  // reused
-  WireErrors refused;
-};
-
-AuraWatch::AuraWatch(Participant& participant, const ObserverSettings& settings)
-    : impl_(std::make_unique<Impl>(participant, settings)) {}
-
-AuraWatch::~AuraWatch() = default;
-
-std::vector<core::AuraBatch> AuraWatch::take() {
-  std::vector<core::AuraBatch> batches;
-  drain(impl_->reader, impl_->sample, impl_->expected, batches, impl_->refused);
-  return batches;
-}
 
 }  // namespace aurasim::dds

@@ -57,17 +57,4 @@ class ReplicaReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The auras of all regions, for drawing them: some may be missed. The participant must outlive it.
-class AuraWatch {
- public:
-  AuraWatch(Participant& participant, const ObserverSettings& settings);
-  ~AuraWatch();
-
-  std::vector<core::AuraBatch> take();
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
 }  // namespace aurasim::dds

@@ -46,8 +46,13 @@ std::string described(const Campaign& campaign) {
     jobs.push_back(
         fmt::format("{} {} {}", name_of(job.pairs), name_of(job.series), shown(job.series.factor, job.value)));
   }
-  const nlohmann::json all = {{"experiment", campaign.name},   {"repeats", campaign.repeats}, {"seed", campaign.seed},
-                              {"substeps", campaign.substeps}, {"variants", variants},        {"jobs", jobs}};
+  const nlohmann::json all = {{"experiment", campaign.name},
+                              {"over_dds", campaign.over_dds},
+                              {"repeats", campaign.repeats},
+                              {"seed", campaign.seed},
+                              {"substeps", campaign.substeps},
+                              {"variants", variants},
+                              {"jobs", jobs}};
   return all.dump(1) + "\n";
 }
 
@@ -107,12 +112,12 @@ class Desk {
   const std::function<void(const Progress&)>& show_;
 };
 
-void work(const Campaign& campaign, Desk& desk, const std::atomic<bool>& stop) {
+void work(const Campaign& campaign, const JobRunner& run, Desk& desk, const std::atomic<bool>& stop) {
   while (!stop) {
     const std::size_t i = desk.take();
     if (i >= campaign.jobs.size()) return;
     std::string rows;
-    for (const Trial& trial : run_job(campaign, campaign.jobs[i])) rows += trial_row(trial);
+    for (const Trial& trial : run(campaign, campaign.jobs[i])) rows += trial_row(trial);
     desk.give(i, std::move(rows));
   }
 }
@@ -131,36 +136,51 @@ void add_jobs(Campaign& campaign, PairKind pairs, const Series& series) {
   for (const double value : series.values) campaign.jobs.push_back({pairs, series, value});
 }
 
+Draw draw_pair(const Campaign& campaign, const Job& job, std::uint32_t repeat, double aside_m) {
+  const Conditions conditions = conditions_at(job.series, job.value, campaign.substeps);
+  Chance chance(seed_of(campaign, job, repeat));
+  Draw draw;
+  draw.pair = make_pair(job.pairs, conditions, chance);
+  draw.disorder = make_disorder(conditions, chance);
+  for (core::InitialBody& body : draw.pair.scene.bodies) body.pose.p_WB.y() += aside_m;
+  return draw;
+}
+
+Trial control_of(const Draw& draw, const Conditions& conditions) {
+  Trial control;
+  control.contact = run_central(draw.pair, conditions);
+  control.same_bits = true;
+  if (control.contact) control.central_step = control.contact->step;
+  return control;
+}
+
+Trial labelled(Trial trial, const Job& job, const Variant& variant, std::uint32_t repeat) {
+  trial.pairs = job.pairs;
+  trial.series = name_of(job.series);
+  trial.tolerance = shown(job.series.factor, job.series.tolerance);
+  trial.value = shown(job.series.factor, job.value);
+  trial.within = within_tolerance(job.series, job.value);
+  trial.variant = variant;
+  trial.repeat = repeat;
+  return trial;
+}
+
 std::vector<Trial> run_job(const Campaign& campaign, const Job& job) {
   const Conditions conditions = conditions_at(job.series, job.value, campaign.substeps);
   std::vector<Trial> trials;
-  const auto note = [&](Trial trial, const Variant& variant, std::uint32_t repeat) {
-    trial.pairs = job.pairs;
-    trial.series = name_of(job.series);
-    trial.tolerance = shown(job.series.factor, job.series.tolerance);
-    trial.value = shown(job.series.factor, job.value);
-    trial.within = within_tolerance(job.series, job.value);
-    trial.variant = variant;
-    trial.repeat = repeat;
-    trials.push_back(std::move(trial));
-  };
   for (std::uint32_t repeat = 0; repeat < campaign.repeats; ++repeat) {
-    Chance chance(seed_of(campaign, job, repeat));
-    const Pair pair = make_pair(job.pairs, conditions, chance);
-    const Disorder disorder = make_disorder(conditions, chance);
-    Trial control;
-    control.contact = run_central(pair, conditions);
-    control.same_bits = true;
-    if (control.contact) control.central_step = control.contact->step;
-    note(control, {AuraChoice::kNone, core::SyncMode::kBounded, true}, repeat);
+    const Draw draw = draw_pair(campaign, job, repeat);
+    const Trial control = control_of(draw, conditions);
+    trials.push_back(labelled(control, job, kControl, repeat));
     for (const Variant& variant : campaign.variants) {
-      note(run_pair(pair, conditions, variant, disorder, control.contact), variant, repeat);
+      const Trial trial = run_pair(draw.pair, conditions, variant, draw.disorder, control.contact);
+      trials.push_back(labelled(trial, job, variant, repeat));
     }
   }
   return trials;
 }
 
-bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, int threads,
+bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, const JobRunner& run, int threads,
                   const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop) {
   agree_with(campaign, directory);
   const std::filesystem::path file = directory / "collisions.csv";
@@ -172,7 +192,7 @@ bool run_campaign(const Campaign& campaign, const std::filesystem::path& directo
   for (int i = 0; i < threads; ++i) {
     workers.emplace_back([&] {
       try {
-        work(campaign, desk, stop);
+        work(campaign, run, desk, stop);
       } catch (...) {
         const std::lock_guard lock(failure_mutex);
         failure = std::current_exception();

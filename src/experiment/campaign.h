@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiment/metrics.h"
+#include "experiment/trial.h"
 
 namespace aurasim::experiment {
 
@@ -20,7 +21,8 @@ struct Job {
 };
 
 struct Campaign {
-  std::string name;  ///< "collision" or "loss"
+  std::string name;       ///< "collision" or "loss"
+  bool over_dds = false;  ///< in real time; otherwise in virtual time
   std::vector<Job> jobs;
   std::vector<Variant> variants;
   std::uint32_t repeats = 50;
@@ -35,8 +37,22 @@ std::vector<Variant> all_variants(const std::vector<AuraChoice>& auras, const st
 
 void add_jobs(Campaign& campaign, PairKind pairs, const Series& series);
 
-/// The same job of the same campaign gives the same trials, in any order and on any thread.
+/// One pair of a job and what else is random in its trials.
+struct Draw {
+  Pair pair;
+  Disorder disorder;
+};
+/// The same for the same campaign, job and repeat. `aside_m`: by so much the pair is moved along y.
+Draw draw_pair(const Campaign& campaign, const Job& job, std::uint32_t repeat, double aside_m = 0);
+/// The pair in one world.
+Trial control_of(const Draw& draw, const Conditions& conditions);
+inline constexpr Variant kControl = {AuraChoice::kNone, core::SyncMode::kBounded, true};
+/// With what it is a trial of.
+Trial labelled(Trial trial, const Job& job, const Variant& variant, std::uint32_t repeat);
+
+/// In virtual time. The same job of the same campaign gives the same trials, in any order and on any thread.
 std::vector<Trial> run_job(const Campaign& campaign, const Job& job);
+using JobRunner = std::function<std::vector<Trial>(const Campaign&, const Job&)>;
 
 struct Progress {
   double share = 0;  ///< of the work, 0 to 1
@@ -45,8 +61,8 @@ struct Progress {
 };
 
 /// Runs what DIR/collisions.csv lacks and appends it. Throws std::runtime_error when DIR holds another campaign.
-/// Returns false when `stop` became true before the end.
-bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, int threads,
+/// Returns false when `stop` became true before the end. `run` is called on `threads` threads.
+bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, const JobRunner& run, int threads,
                   const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
 
 }  // namespace aurasim::experiment

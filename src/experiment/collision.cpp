@@ -11,7 +11,8 @@ Campaign collision_campaign(const CollisionPlan& plan) {
   campaign.substeps = plan.substeps;
   for (const PairKind pairs : plan.pairs) {
     for (const Series& series : thesis_series()) {
-      add_jobs(campaign, pairs, pairs == PairKind::kHeadOn ? series : thinned(series, plan.values_of_other_pairs));
+      const bool head_on = pairs == PairKind::kHeadOn;
+      add_jobs(campaign, pairs, thinned(series, head_on ? plan.values_of_head_on_pairs : plan.values_of_other_pairs));
     }
   }
   return campaign;

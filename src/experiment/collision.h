@@ -15,7 +15,8 @@ struct CollisionPlan {
   std::uint32_t repeats = 50;
   std::uint64_t seed = 1;
   int substeps = 1;
-  /// Head-on pairs take every value of the thesis; other kinds of pairs this many, evenly spread.
+  std::size_t values_of_head_on_pairs = 0;  ///< of each series, evenly spread; 0: every value of the thesis
+  /// Likewise, of other kinds of pairs.
   std::size_t values_of_other_pairs = 4;
 };
 

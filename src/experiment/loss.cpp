@@ -9,7 +9,8 @@ Campaign loss_campaign(const CollisionPlan& plan) {
   campaign.repeats = plan.repeats;
   campaign.seed = plan.seed;
   campaign.substeps = plan.substeps;
-  for (const PairKind pairs : plan.pairs) add_jobs(campaign, pairs, loss_series());
+  for (const PairKind pairs : plan.pairs)
+    add_jobs(campaign, pairs, thinned(loss_series(), plan.values_of_head_on_pairs));
   return campaign;
 }
 

@@ -150,6 +150,15 @@ nlohmann::json json_of(const Tally& t) {
           {"most_penetration_time_ms", 1e3 * t.penetration_time_most_s}};
 }
 
+nlohmann::json json_of(const std::vector<Target>& targets) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const Target& t : targets) {
+    out.push_back(
+        {{"name", t.name}, {"found", t.found}, {t.at_least ? "at_least" : "at_most", t.allowed}, {"met", t.met()}});
+  }
+  return out;
+}
+
 std::vector<Target> collision_targets(const Tallies& tallies) {
   TargetList list(tallies);
   const auto swept = [](SyncMode sync) {
@@ -213,19 +222,16 @@ std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::p
   const bool loss = campaign.name == "loss";
   const std::vector<Target> targets = loss ? loss_targets(tallies) : collision_targets(tallies);
   const auto sum = [&](auto&& wanted) { return json_of(tallies.sum(wanted)); };
-  nlohmann::json out = {{"experiment", campaign.name},   {"virtual", true},       {"step_ms", 1e3 * kStep_s},
-                        {"substeps", campaign.substeps}, {"seed", campaign.seed}, {"repeats", campaign.repeats}};
+  nlohmann::json out = {{"experiment", campaign.name}, {"virtual", !campaign.over_dds},
+                        {"step_ms", 1e3 * kStep_s},    {"substeps", campaign.substeps},
+                        {"seed", campaign.seed},       {"repeats", campaign.repeats}};
   out["within_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && k.within; });
   out["beyond_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && !k.within; });
   out["late_without_violation"] = tallies.sum(is_aura).late_without_violation;
   out["thesis_aura"] = sum([](const Key& k) { return is(k, AuraChoice::kThesis); });
   out["naive"] = sum([](const Key& k) { return is(k, AuraChoice::kNone) && (k.within || k.series == "loss"); });
   out["control"] = sum([](const Key& k) { return k.variant.central; });
-  out["targets"] = nlohmann::json::array();
-  for (const Target& t : targets) {
-    out["targets"].push_back(
-        {{"name", t.name}, {"found", t.found}, {t.at_least ? "at_least" : "at_most", t.allowed}, {"met", t.met()}});
-  }
+  out["targets"] = json_of(targets);
   if (!loss) {
     out["table_5_1"] = tables(tallies, kThesisWithin, true);
     out["table_5_2"] = tables(tallies, kThesisBeyond, false);

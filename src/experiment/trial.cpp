@@ -2,23 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <tuple>
-
-#include "experiment/virtual_cluster.h"
+#include <utility>
 
 namespace aurasim::experiment {
 namespace {
 
-/// Steps that a late hand-off may take beyond the pair's passing each other.
-core::Step last_step(const Pair& pair, const Conditions& conditions, const std::optional<Contact>& central) {
-  const core::Step passed = central ? central->step - pair.expected_step + pair.passed_step : pair.passed_step;
-  return passed + 6 * lookahead(conditions.promised) + 6;
+const node::SeenCollision* first_contact(const node::StepReport& report) {
+  const auto touches = [](const node::SeenCollision& seen) { return !seen.missed; };
+  const auto found = std::find_if(report.collisions.begin(), report.collisions.end(), touches);
+  return found != report.collisions.end() ? &*found : nullptr;
 }
+
+}  // namespace
 
 ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder) {
   ClusterRules rules;
-  rules.node = small_cluster_setup(rules_for(variant.aura, conditions), variant.sync);
+  rules.aura = rules_for(variant.aura, conditions);
+  rules.sync = variant.sync;
   rules.network.latency_s = conditions.latency_s;
   rules.network.loss = conditions.loss;
   rules.network.resend_after_s = resend_after_s(conditions);
@@ -29,20 +29,22 @@ ClusterRules rules_of(const Conditions& conditions, const Variant& variant, cons
   return rules;
 }
 
-/// One for each cluster that left: when, from where, to where, why.
-using HandOffs = std::set<std::tuple<core::Step, core::RegionId, core::RegionId, core::HandOffReason>>;
+core::Step last_step(const Pair& pair, const Conditions& conditions, const std::optional<Contact>& central) {
+  const core::Step passed = central ? central->step - pair.expected_step + pair.passed_step : pair.passed_step;
+  return passed + 6 * lookahead(conditions.promised) + 6;
+}
 
 Contact contact_of(const node::SeenCollision& seen) {
   return {seen.collision.step, seen.collision.penetration_m, seen.collision.relative_speed_m_s};
 }
 
-const node::SeenCollision* first_contact(const node::StepReport& report) {
-  const auto touches = [](const node::SeenCollision& seen) { return !seen.missed; };
-  const auto found = std::find_if(report.collisions.begin(), report.collisions.end(), touches);
-  return found != report.collisions.end() ? &*found : nullptr;
+void count_hand_offs(Trial& trial, HandOffs hand_offs, core::Step met) {
+  std::erase_if(hand_offs, [&](const auto& h) { return std::get<0>(h) >= met; });
+  trial.hand_offs = hand_offs.size();
+  trial.pulls = static_cast<std::uint64_t>(std::count_if(hand_offs.begin(), hand_offs.end(), [](const auto& h) {
+    return std::get<core::HandOffReason>(h) == core::HandOffReason::kAuraCollision;
+  }));
 }
-
-}  // namespace
 
 Disorder make_disorder(const Conditions& conditions, Chance& chance) {
   Disorder disorder;
@@ -55,7 +57,7 @@ double resend_after_s(const Conditions& conditions) { return kHeartbeat_s + 2 * 
 
 std::optional<Contact> run_central(const Pair& pair, const Conditions& conditions) {
   ClusterRules rules;
-  rules.node = small_cluster_setup(rules_for(AuraChoice::kTight, conditions), core::SyncMode::kBounded);
+  rules.aura = rules_for(AuraChoice::kTight, conditions);
   VirtualCluster cluster(pair.scene, core::RegionMap::columns(1, 1), rules);
   const core::Step last = last_step(pair, conditions, std::nullopt);
   while (cluster.slowest() < last) {
@@ -87,11 +89,7 @@ Trial run_pair(const Pair& pair, const Conditions& conditions, const Variant& va
     }
   }
   const core::Step met = trial.contact ? trial.contact->step : trial.central_step.value_or(last);
-  std::erase_if(hand_offs, [&](const auto& h) { return std::get<0>(h) >= met; });
-  trial.hand_offs = hand_offs.size();
-  trial.pulls = static_cast<std::uint64_t>(std::count_if(hand_offs.begin(), hand_offs.end(), [](const auto& h) {
-    return std::get<core::HandOffReason>(h) == core::HandOffReason::kAuraCollision;
-  }));
+  count_hand_offs(trial, std::move(hand_offs), met);
   trial.same_bits = trial.contact == central;
   trial.slow_down = cluster.slow_down();
   return trial;

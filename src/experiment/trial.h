@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <vector>
 
 #include "experiment/metrics.h"
 #include "experiment/pair.h"
+#include "experiment/virtual_cluster.h"
 
 namespace aurasim::experiment {
 
@@ -17,6 +20,20 @@ struct Disorder {
 };
 
 Disorder make_disorder(const Conditions& conditions, Chance& chance);
+
+/// How nodes are to compute a variant.
+ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder);
+
+/// Up to which a trial goes: so much that a late hand-off can still be seen after the pair has passed each other.
+core::Step last_step(const Pair& pair, const Conditions& conditions, const std::optional<Contact>& central);
+
+Contact contact_of(const node::SeenCollision& seen);
+
+/// One for each cluster that left: when, from where, to where, why.
+using HandOffs = std::set<std::tuple<core::Step, core::RegionId, core::RegionId, core::HandOffReason>>;
+
+/// Those before state `met` count.
+void count_hand_offs(Trial& trial, HandOffs hand_offs, core::Step met);
 
 /// Lost datagrams are sent again by the reliable writer (RTPS): it says every heartbeat period what it has, the reader
 /// asks for what it lacks, the writer repeats it. So one loss costs a heartbeat period and a round trip, and whatever

@@ -76,6 +76,7 @@ struct SetVelocity {
 struct CastRay {
   core::Vec3 from = core::Vec3::Zero();
   core::Vec3 to = core::Vec3::Zero();
+  std::vector<core::RegionId> regions;  ///< that are to answer; none: all
 };
 
 using Command = std::variant<Pause, Resume, Reset, StepOn, SetRate, LoadScene, SetRegions, Spawn, PlaceStatic, Remove,

@@ -9,6 +9,7 @@
 #include "config/launch_variants.h"
 #include "config/meshes.h"
 #include "node/scene_growth.h"
+#include "overseer/ray_regions.h"
 #include "overseer/replay.h"
 
 namespace aurasim::overseer {
@@ -22,6 +23,7 @@ constexpr std::size_t kRoomForClients = 20'000;  // prototypes that clients may 
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kLookPeriod = 20ms;
+constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
 
 /// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
 WorldView::RegionState region_state(const dds::SeenStatus& seen) {
@@ -178,8 +180,9 @@ void Overseer::look_at_map() {
   observer_settings_.map_version = launch_.regions.version();
   observer_settings_.prototype_count = static_cast<std::uint32_t>(launch_.scene.prototypes.size() + kRoomForClients);
   replicas_.emplace(participant_, observer_settings_);
-  auras_.reset();
+  overlays_.forget();
   view_.emplace(view_settings_);
+  scene_is_told_ = false;  // also when bodies of this generation have come before the map
   web_.tell(Notice::kMap, map_message(launch_.regions));
   write_down(ChunkKind::kMap, map_message(launch_.regions));
 }
@@ -188,8 +191,9 @@ void Overseer::compose_frames() {
   bool any = false;
   while (const WorldFrame* frame = view_->compose(now_s())) {
     any = true;
-    if (frame->generation != told_generation_) {
+    if (!scene_is_told_ || frame->generation != told_generation_) {
       told_generation_ = frame->generation;
+      scene_is_told_ = true;
       scene_ = launch_.scene;
       removed_statics_.clear();
       tell_scene();
@@ -198,45 +202,26 @@ void Overseer::compose_frames() {
     web_.show(*frame);
     write_down(*frame);
   }
-  if (any) show_auras();
+  if (any) show_overlays();
 }
 
-/// How far from its centre a body may be met before its neighbours hear of it next.
-void Overseer::show_auras() {
-  if (web_.counters().aura_watchers == 0) {
-    auras_.reset();
-    aura_radius_m_.clear();
-    return;
-  }
-  if (!auras_) auras_ = std::make_unique<dds::AuraWatch>(participant_, observer_settings_);
+void Overseer::show_overlays() {
+  const Show wanted = web_.wanted();
+  overlays_.look(participant_, observer_settings_, wanted, scene_, *view_);
+  if (!wanted.auras && !wanted.links && !wanted.contacts) return;
   const double ahead_s = (1 + launch_.aura.uncertainty) * launch_.lookahead() * launch_.step_s();
-  for (const core::AuraBatch& batch : auras_->take()) {
-    if (batch.full) {
-      std::erase_if(aura_radius_m_, [&](const auto& entry) {
-        const ViewBody* body = view_->find(entry.first);
-        return body == nullptr || body->host == batch.source;
-      });
-    }
-    for (const core::AuraRecord& aura : batch.updates) {
-      if (core::value_of(aura.prototype) >= scene_.prototypes.size()) continue;
-      const core::Prototype& prototype = scene_.prototypes[core::value_of(aura.prototype)];
-      const double radius_m = core::bounding_radius(scene_.shapes[prototype.shape].shape);
-      aura_radius_m_[aura.id] = static_cast<float>(radius_m + aura.speed_m_s * ahead_s);
-    }
-    for (const core::BodyId id : batch.deletes) aura_radius_m_.erase(id);
-  }
-  std::vector<AuraDisc> discs;
-  std::erase_if(aura_radius_m_, [&](const auto& entry) {
-    const ViewBody* body = view_->find(entry.first);
-    if (body != nullptr) discs.push_back({body->slot, entry.second});
-    return body == nullptr;
-  });
-  web_.show_overlays(encode_overlays(discs, {}, {}));
+  web_.show_overlays(overlays_.encode(*view_, ahead_s));
 }
 
 void Overseer::serve_commands() {
   for (PageRequest& page_request : web_.take_requests()) {
-    if (auto* request = std::get_if<Request>(&page_request)) sink_.submit(std::move(*request));
+    auto* const request = std::get_if<Request>(&page_request);
+    if (request == nullptr) continue;
+    if (auto* ray = std::get_if<CastRay>(&request->command)) {
+      const double margin_m = launch_.tolerances.speed_m_s * kOldestView_s;
+      ray->regions = regions_for_ray({ray->from, ray->to}, launch_.regions, *view_, scene_, margin_m);
+    }
+    sink_.submit(std::move(*request));
   }
   for (const Reply& reply : sink_.take_replies()) web_.answer(reply);
 }

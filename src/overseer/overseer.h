@@ -16,6 +16,7 @@
 #include "dds/growth_bus.h"
 #include "dds/replica_bus.h"
 #include "overseer/commands.h"
+#include "overseer/overlay_view.h"
 #include "overseer/page_messages.h"
 #include "overseer/recording.h"
 #include "overseer/web_server.h"
@@ -52,7 +53,7 @@ class Overseer {
   void look_at_map();
   bool run_was_restarted();
   void compose_frames();
-  void show_auras();
+  void show_overlays();
   void serve_commands();
   void tell_status();
   RunStatus status();
@@ -71,13 +72,13 @@ class Overseer {
   dds::MeshReader meshes_;
   core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
-  std::optional<dds::Growth> growth_;      ///< waits until its generation is shown
-  std::unique_ptr<dds::AuraWatch> auras_;  ///< while a page wants them
-  std::map<core::BodyId, float> aura_radius_m_;
+  std::optional<dds::Growth> growth_;  ///< waits until its generation is shown
+  OverlayView overlays_;
   ViewSettings view_settings_;
   std::optional<WorldView> view_;
   core::Generation map_generation_ = 0;
   core::Generation told_generation_ = 0;
+  bool scene_is_told_ = true;  ///< that of told_generation_ and the newest map
   std::optional<RecordingWriter> recording_;
   double recording_began_s_ = 0;
   std::map<core::RegionId, dds::SeenStatus> nodes_;

@@ -128,7 +128,7 @@ SetVelocity read_velocity(const Json& json) {
 }
 
 CastRay read_ray(const Json& json) {
-  return {vector_of(field(json, "from"), "from"), vector_of(field(json, "to"), "to")};
+  return {vector_of(field(json, "from"), "from"), vector_of(field(json, "to"), "to"), {}};
 }
 
 struct Reading {

@@ -54,13 +54,19 @@ void WebHub::leave(ClientId id) {
   frames_skipped_ += found->second->outbox.frames_merged();
   pages_.erase(found);
   clients_ = pages_.size();
-  count_aura_watchers();
+  note_wanted();
 }
 
-void WebHub::count_aura_watchers() {
-  std::uint64_t watchers = 0;
-  for (const auto& [id, page] : pages_) watchers += page->show.auras;
-  aura_watchers_ = watchers;
+void WebHub::note_wanted() {
+  Show wanted;
+  for (const auto& [id, page] : pages_) {
+    wanted.auras |= page->show.auras;
+    wanted.links |= page->show.links;
+    wanted.contacts |= page->show.contacts;
+  }
+  auras_wanted_ = wanted.auras;
+  links_wanted_ = wanted.links;
+  contacts_wanted_ = wanted.contacts;
 }
 
 void WebHub::read(PageConnection& page, std::string_view text) {
@@ -76,7 +82,7 @@ void WebHub::read(PageConnection& page, std::string_view text) {
 void WebHub::obey(PageConnection& page, PageMessage& message) {
   std::visit(Overloaded{[&](const Show& show) {
                           page.show = show;
-                          count_aura_watchers();
+                          note_wanted();
                         },
                         [&](const Watch& wanted) { watch(page, wanted); },
                         [&](CommandMessage& command) { take_command(page, command); },
@@ -191,7 +197,7 @@ void WebHub::count_sent(const Message& message, std::size_t bytes) {
 }
 
 WebCounters WebHub::counters() const {
-  return {clients_, aura_watchers_, connections_, frames_sent_, frames_skipped_, bytes_sent_, refused_, dropped_};
+  return {clients_, connections_, frames_sent_, frames_skipped_, bytes_sent_, refused_, dropped_};
 }
 
 std::string WebHub::why_not(std::string_view host, std::string_view origin) const {

@@ -69,6 +69,8 @@ class WebHub {
   // -- any thread
   std::vector<PageRequest> take_requests();
   WebCounters counters() const;
+  /// What any page wants to have drawn.
+  Show wanted() const { return {auras_wanted_, links_wanted_, contacts_wanted_}; }
   /// False: there are so many that this one has to go.
   bool open_connection();
   void close_connection() { --open_; }
@@ -80,7 +82,7 @@ class WebHub {
   void reply(PageConnection& page, const Reply& reply);
   void watch(PageConnection& page, const Watch& watch);
   void tell_watched(PageConnection& page);
-  void count_aura_watchers();
+  void note_wanted();
   bool enqueue(PageRequest request);
   std::string metrics() const;
   HttpAnswer get_file(std::string_view target) const;
@@ -96,8 +98,9 @@ class WebHub {
   std::mutex requests_mutex_;
   std::vector<PageRequest> requests_;
   std::atomic<std::uint64_t> open_{0};
-  std::atomic<std::uint64_t> clients_{0}, aura_watchers_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0},
-      bytes_sent_{0}, refused_{0}, dropped_{0};
+  std::atomic<bool> auras_wanted_ = false, links_wanted_ = false, contacts_wanted_ = false;
+  std::atomic<std::uint64_t> clients_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0}, bytes_sent_{0},
+      refused_{0}, dropped_{0};
 };
 
 std::string reply_text(const Reply& reply);

@@ -126,6 +126,8 @@ void WebServer::answer(const Reply& reply) {
   impl_->post([this, reply] { impl_->hub.answer(reply); });
 }
 
+Show WebServer::wanted() const { return impl_->hub.wanted(); }
+
 std::vector<PageRequest> WebServer::take_requests() { return impl_->hub.take_requests(); }
 
 WebCounters WebServer::counters() const { return impl_->hub.counters(); }

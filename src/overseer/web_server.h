@@ -29,10 +29,9 @@ struct WebSettings {
   std::chrono::milliseconds stall_limit{10'000};
 };
 
-/// Since the start, but for `clients` and `watchers_of_auras`.
+/// Since the start, but for `clients`.
 struct WebCounters {
   std::uint64_t clients = 0;
-  std::uint64_t aura_watchers = 0;
   std::uint64_t connections = 0;
   std::uint64_t frames_sent = 0;
   std::uint64_t frames_skipped = 0;  ///< merged into later ones
@@ -74,6 +73,8 @@ class WebServer {
   /// What pages have asked for since the last call.
   std::vector<PageRequest> take_requests();
   WebCounters counters() const;
+  /// What any page wants to have drawn.
+  Show wanted() const;
 
  private:
   struct Impl;

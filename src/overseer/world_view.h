@@ -51,6 +51,12 @@ class WorldView {
   core::Generation generation() const { return generation_; }
   core::Step stamp() const { return stamp_; }
   std::size_t body_count() const { return slots_.size(); }
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const Body& body : bodies_) {
+      if (body.alive) visit(static_cast<const ViewBody&>(body));
+    }
+  }
   /// Null if there is none.
   const ViewBody* find(core::BodyId id) const;
   const ViewCounters& counters() const { return counters_; }

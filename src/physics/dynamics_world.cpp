@@ -2,7 +2,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -11,6 +11,8 @@
 #include "physics/contact_islands.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
+#include "physics/free_rotation.h"
+#include "physics/solvers.h"
 
 namespace aurasim::physics {
 namespace {
@@ -36,11 +38,41 @@ class Stepper final : public btDiscreteDynamicsWorld {
     m_constraintSolver->allSolved(info, nullptr);
   }
 
+  /// Bullet's contacts ahead of time live in no pair's cache, so no hand-off could carry them. Fast bodies are stopped
+  /// at what is in their way all the same.
+  void createPredictiveContacts(btScalar) override {}
+
+  /// Bullet moves all bodies; those that do not turn evenly are then turned as they should.
+  void integrateTransforms(btScalar dt) override {
+    tumbling_.clear();
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+      btRigidBody& body = *m_nonStaticRigidBodies[i];
+      if (!body.isActive() || body.getAngularVelocity().length2() < btScalar(kSlowSpin * kSlowSpin)) continue;
+      const btVector3& inverse_inertia = body.getInvInertiaDiagLocal();
+      if (inverse_inertia[inverse_inertia.minAxis()] <= 0) continue;
+      const core::Vec3 inertia = from_bullet(inverse_inertia).cwiseInverse();
+      if (turns_evenly(inertia)) continue;
+      const Rotation now{from_bullet(body.getWorldTransform().getBasis()), from_bullet(body.getAngularVelocity())};
+      tumbling_.push_back({&body, rotate_freely(now, inertia, static_cast<double>(dt))});
+    }
+    btDiscreteDynamicsWorld::integrateTransforms(dt);
+    for (const Tumbling& t : tumbling_) {
+      t.body->setAngularVelocity(to_bullet(t.after.w_WB));
+      t.body->setCenterOfMassTransform(btTransform(to_bullet(t.after.R_WB), t.body->getWorldTransform().getOrigin()));
+    }
+  }
+
   FirstContacts& first_contacts() { return first_contacts_; }
 
  private:
+  struct Tumbling {
+    btRigidBody* body;
+    Rotation after;
+  };
+
   ContactIslands* islands_ = nullptr;
   FirstContacts first_contacts_;
+  std::vector<Tumbling> tumbling_;
 };
 
 /// Makes a body awake for as long as this lives: Bullet does not look at pairs of sleepers.
@@ -61,18 +93,25 @@ class Awake {
 }  // namespace
 
 struct DynamicsWorld::Bullet {
+  explicit Bullet(Solver kind) : solver(make_solver(kind)) {}
+
   btDefaultCollisionConfiguration configuration;
   Dispatcher dispatcher{configuration};
   ContactPairs pairs;
   btDbvtBroadphase broadphase{&pairs};
-  btSequentialImpulseConstraintSolver solver;
-  Stepper world{dispatcher, broadphase, solver, configuration};
+  std::unique_ptr<btConstraintSolver> solver;
+  Stepper world{dispatcher, broadphase, *solver, configuration};
 };
 
-DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, int solver_iterations) : bullet_(std::make_unique<Bullet>()) {
+DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings)
+    : bullet_(std::make_unique<Bullet>(settings.solver)) {
   bullet_->broadphase.m_cupdates = 100;  // per cent of the pairs checked in each substep: stale ones cost time
   bullet_->world.setGravity(to_bullet(gravity));
-  bullet_->world.getSolverInfo().m_numIterations = solver_iterations;
+  bullet_->world.getSolverInfo().m_numIterations = settings.solver_iterations;
+  if (settings.friction_directions > 1) {
+    bullet_->world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  }
+  bullet_->world.getSolverInfo().m_erp2 = static_cast<btScalar>(settings.contact_erp);
 }
 
 DynamicsWorld::~DynamicsWorld() {

@@ -10,6 +10,7 @@
 #include "core/body_state.h"
 #include "physics/contact_cache.h"
 #include "physics/first_contacts.h"
+#include "physics/region_world.h"
 
 class btRigidBody;
 class btTypedConstraint;
@@ -18,7 +19,7 @@ namespace aurasim::physics {
 
 class DynamicsWorld {
  public:
-  DynamicsWorld(const core::Vec3& gravity, int solver_iterations);
+  DynamicsWorld(const core::Vec3& gravity, const Settings& settings);
   ~DynamicsWorld();
 
   /// `rank` > 0 is the same in every world and fixes which one of a pair is body0. Nothing else may depend on the

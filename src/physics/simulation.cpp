@@ -36,6 +36,14 @@ core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const 
   return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
 }
 
+/// Half of the shortest side of the box around the shape, m: Bullet sweeps a ball that fits into it.
+btScalar half_thickness(const btCollisionShape& shape) {
+  btVector3 low, high;
+  shape.getAabb(btTransform::getIdentity(), low, high);
+  const btVector3 sides = high - low;
+  return sides[sides.minAxis()] / 2;
+}
+
 constexpr std::uint64_t kRoomForStatics = 1U << 20U;
 
 bool is_static(int user_index) { return user_index < 0; }
@@ -62,7 +70,7 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
       shapes_(std::move(shapes)),
       timeline_(timeline),
       joints_(scene, settings.p_WO),
-      world_(scene.gravity, settings.solver_iterations) {
+      world_(scene.gravity, settings) {
   show_statics(step_);
 }
 
@@ -108,6 +116,12 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), frame_.to_local(record.p_WB));
 
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
+  body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
+  if (settings_.continuous) {
+    const btScalar thin = half_thickness(*body.rigid->getCollisionShape());
+    body.rigid->setCcdMotionThreshold(thin);
+    body.rigid->setCcdSweptSphereRadius(btScalar(0.9) * thin);
+  }
   body.rigid->setLinearVelocity(to_bullet(record.v_WB));
   body.rigid->setAngularVelocity(to_bullet(record.w_WB));
   const bool keeps_state = prototype.can_sleep || record.activation_state == DISABLE_SIMULATION;

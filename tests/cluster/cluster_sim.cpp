@@ -25,6 +25,8 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.protocol.neighbour_distance_m = options_.neighbour_distance_m;
     setup.physics.step_s = options_.aura.step_s;
     setup.physics.substeps = options_.aura.substeps;
+    setup.physics.solver = options_.solver;
+    setup.physics.friction_directions = options_.friction_directions;
     setup.physics.solver_iterations = options_.solver_iterations;
     members_.push_back({std::make_unique<node::Node>(setup, scene_, options_.map, network_->endpoint(RegionId{r}))});
   }

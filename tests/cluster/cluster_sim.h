@@ -25,6 +25,8 @@ struct Crash {
 struct ClusterOptions {
   core::RegionMap map = core::RegionMap::columns(1, 1);
   core::AuraRules aura;
+  int friction_directions = 1;
+  physics::Solver solver = physics::Solver::kSequentialImpulse;
   int solver_iterations = 10;
   core::SyncMode sync = core::SyncMode::kBounded;
   transport::Faults faults;

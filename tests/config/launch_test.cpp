@@ -1,3 +1,4 @@
+#include "config/presets.h"
 #include "config/workspace.h"
 
 namespace aurasim::config {
@@ -27,6 +28,21 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.observe.tick_hz, 20);
 }
 
+TEST(LaunchFile, APresetSetsThePhysicsAndWhatStandsBesideItGoesBefore) {
+  const Workspace workspace;
+  const std::string start = kSmallLaunch;
+  const Launch exact = workspace.launch(start + "physics: {preset: exact}\n");
+  EXPECT_EQ(exact.physics.solver, preset_named("exact").solver);
+  EXPECT_EQ(exact.physics.iterations, preset_named("exact").iterations);
+  EXPECT_EQ(exact.physics.friction_directions, preset_named("exact").friction_directions);
+  EXPECT_EQ(exact.time.substeps, preset_named("exact").substeps);
+  const Launch changed =
+      workspace.launch(start + "time: {substeps: 3}\nphysics: {iterations: 7, preset: exact, solver: nncg}\n");
+  EXPECT_EQ(changed.time.substeps, 3);
+  EXPECT_EQ(changed.physics.iterations, 7);
+  EXPECT_EQ(changed.physics.solver, "nncg");
+}
+
 TEST(LaunchFile, EveryKeyIsRead) {
   const Workspace workspace;
   workspace.write("qos.xml", "<dds/>");
@@ -35,7 +51,7 @@ regions: {layout: grid, rows: 1, columns: 3, cell: [50, 60], neighbour_distance:
 time: {step_hz: 120, substeps: 2, sync: deterministic, lookahead: 3, pace: none}
 tolerances: {speed: 20, latency: 0.001, frame: 0.005}
 aura: {radius: tight, uncertainty: 1}
-physics: {precision: single, solver: sequential_impulse, iterations: 30}
+physics: {precision: single, solver: dantzig, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
 dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"]}
 observe: {tick_hz: 30}
 )");
@@ -50,7 +66,11 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.aura.radius, AuraRadius::kTight);
   EXPECT_EQ(launch.aura.uncertainty, 1);
   EXPECT_EQ(launch.physics.precision, "single");
+  EXPECT_EQ(launch.physics.solver, "dantzig");
   EXPECT_EQ(launch.physics.iterations, 30);
+  EXPECT_EQ(launch.physics.friction_directions, 2);
+  EXPECT_EQ(launch.physics.contact_erp, 0.1);
+  EXPECT_TRUE(launch.physics.continuous);
   EXPECT_EQ(launch.dds.domain, 7);
   EXPECT_EQ(launch.dds.profiles, workspace.folder() / "qos.xml");
   EXPECT_EQ(launch.dds.discovery, Discovery::kPeers);

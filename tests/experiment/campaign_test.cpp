@@ -34,7 +34,7 @@ class CampaignTest : public testing::Test {
     std::atomic<bool> stop = false;
     std::size_t jobs = 0;
     const bool finished = run_campaign(
-        collision_campaign(plan_), directory_, threads,
+        collision_campaign(plan_), directory_, run_job, threads,
         [&](const Progress& progress) {
           last_ = progress;
           if (++jobs >= stop_after_jobs) stop = true;

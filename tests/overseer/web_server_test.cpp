@@ -293,7 +293,7 @@ TEST_F(Web, OverlaysGoToThePagesThatWantThem) {
   serve();
   Page page(port()), other(port());
   page.send(Json{{"type", "show"}, {"auras", true}});
-  ASSERT_TRUE(holds_in_time([&] { return server_->counters().aura_watchers == 1; }));
+  ASSERT_TRUE(holds_in_time([&] { return server_->wanted().auras; }));
   const std::vector<AuraDisc> auras = {{1, 2}};
   server_->show_overlays(encode_overlays(auras, {}, {}));
   EXPECT_TRUE(page.wait_until([&] { return !page.overlays.empty(); }));

@@ -119,7 +119,8 @@ export class Witness {
       return;
     }
     const message = decode(data);
-    if (message.kind !== "overlay") this.world.apply(message);
+    if (message.kind === "overlay") this.overlay = message;
+    else this.world.apply(message);
   }
 
   get ids() { return [...this.world.slots()].map((slot) => this.world.id[slot]); }
@@ -132,6 +133,12 @@ export class Witness {
     delete this.latest.body;
     this.socket.send(JSON.stringify({ type: "watch", slot: this.world.slotOfId.get(id) }));
     return until(() => this.latest.body?.id === id && this.latest.body, `a word about body ${id}`, 4000);
+  }
+
+  /** What is drawn over the bodies: {auras, links, contacts}, each wanted or not. */
+  show(what) {
+    delete this.overlay;
+    this.socket.send(JSON.stringify({ type: "show", auras: false, links: false, contacts: false, ...what }));
   }
 
   /** By name, the numbers of all regions. */

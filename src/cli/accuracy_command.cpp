@@ -1,0 +1,80 @@
+// `aurasim experiment stability` and `pareto`.
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/commands.h"
+#include "cli/node_process.h"
+#include "cli/progress_bar.h"
+#include "cli/stop_signal.h"
+#include "cli/target_list.h"
+#include "experiment/pareto.h"
+#include "experiment/stability/stability.h"
+
+namespace aurasim::cli {
+namespace {
+
+/// Shows how far an experiment is; says false when the user wants it to stop.
+class Watch {
+ public:
+  bool operator()(double share) {
+    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    bar_.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
+    return !stop_requested();
+  }
+  int end(const std::vector<experiment::Target>& targets) const {
+    bar_.end();
+    print(targets);
+    return static_cast<int>(all_met(targets) && !stop_requested() ? ExitCode::kOk : ExitCode::kFailed);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  ProgressBar bar_;
+};
+
+int run_stability(const experiment::StabilityPlan& plan, const std::string& out) {
+  catch_stop_signals();
+  Watch watch;
+  const auto rows = experiment::run_stability(plan, [&](double share, const std::string&) { return watch(share); });
+  return watch.end(experiment::write_stability(rows, out));
+}
+
+int run_pareto(const experiment::ParetoPlan& plan, const std::string& out) {
+  catch_stop_signals();
+  Watch watch;
+  const auto points = experiment::run_pareto(plan, [&](double share) { return watch(share); });
+  return watch.end(experiment::write_pareto(points, plan, out));
+}
+
+}  // namespace
+
+void add_stability(CLI::App& experiments, Action& action) {
+  CLI::App* command = experiments.add_subcommand("stability", "hard cases against closed forms, also on a border");
+  const auto plan = std::make_shared<experiment::StabilityPlan>();
+  const auto out = std::make_shared<std::string>();
+  command->add_option("--out", *out, "folder for the results")->required();
+  command->add_option("--cases", plan->cases, "only these")->delimiter(',');
+  command->add_option("--step-hz", plan->step_hz, "steps per second")->delimiter(',')->check(CLI::Range(1, 10000));
+  command->add_flag("--presets,!--no-presets", plan->presets, "also with every preset");
+  command->add_option("--longest", plan->longest_s, "cut every case to this many simulated seconds");
+  command->add_option("--standing", plan->standing_s, "seconds that piles have to stand with the preset balanced");
+  command->callback([plan, out, &action] { action = [plan, out] { return run_stability(*plan, *out); }; });
+}
+
+void add_pareto(CLI::App& experiments, Action& action) {
+  CLI::App* command =
+      experiments.add_subcommand("pareto", "error against CPU time: solver, iterations, substeps, nodes");
+  const auto plan = std::make_shared<experiment::ParetoPlan>();
+  const auto out = std::make_shared<std::string>();
+  command->add_option("--out", *out, "folder for the results")->required();
+  command->add_option("--simulated", plan->simulated_s, "seconds of each case")->check(CLI::Range(0.1, 1000.0));
+  command->add_option("--iterations", plan->iterations, "of the solver")->delimiter(',')->check(CLI::Range(1, 1000));
+  command->add_option("--substeps", plan->substeps, "of a step")->delimiter(',')->check(CLI::Range(1, 64));
+  command->add_flag("--nodes,!--no-nodes", plan->nodes, "also vary the number of nodes, sync mode, lookahead and aura");
+  command->callback([plan, out, &action] { action = [plan, out] { return run_pareto(*plan, *out); }; });
+}
+
+}  // namespace aurasim::cli

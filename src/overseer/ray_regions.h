@@ -1,0 +1,26 @@
+// Which regions have to be asked what a ray meets.
+#pragma once
+
+#include <vector>
+
+#include "core/region_map.h"
+#include "core/scene.h"
+#include "overseer/world_view.h"
+
+namespace aurasim::overseer {
+
+/// A piece of a straight line, world frame, metres.
+struct Segment {
+  core::Vec3 from = core::Vec3::Zero();
+  core::Vec3 to = core::Vec3::Zero();
+};
+
+/// Distance of a point from the nearest point of the segment, metres.
+double distance_to(const Segment& segment, const core::Vec3& p);
+
+/// Those that the segment crosses, or passes within `margin_m`, and the hosts of bodies that it may meet, wherever they
+/// are. Ascending. `margin_m`: as far as a body may have moved since the view was told.
+std::vector<core::RegionId> regions_for_ray(const Segment& ray, const core::RegionMap& map, const WorldView& view,
+                                            const core::Scene& scene, double margin_m);
+
+}  // namespace aurasim::overseer

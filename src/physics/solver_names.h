@@ -1,0 +1,27 @@
+// The solvers as launch files and results call them.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "physics/region_world.h"
+
+namespace aurasim::physics {
+
+inline constexpr std::array<std::pair<Solver, std::string_view>, 3> kSolverNames = {
+    {{Solver::kSequentialImpulse, "sequential_impulse"}, {Solver::kNncg, "nncg"}, {Solver::kDantzig, "dantzig"}}};
+
+inline std::string_view name_of(Solver solver) { return kSolverNames[static_cast<std::size_t>(solver)].second; }
+
+/// Throws std::invalid_argument if there is none of this name.
+inline Solver solver_named(std::string_view name) {
+  for (const auto& [solver, its_name] : kSolverNames) {
+    if (its_name == name) return solver;
+  }
+  throw std::invalid_argument("there is no solver \"" + std::string(name) + "\"");
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,88 @@
+#include "physics/solvers.h"
+
+#include <algorithm>
+
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
+
+namespace aurasim::physics {
+namespace {
+
+/// How fast the gap of a contact opens, m/s: as the bodies are, and with the substep's forces.
+struct Opening {
+  btScalar now = 0;
+  btScalar with_forces = 0;
+};
+
+Opening opening_of(const btSolverConstraint& row, const btSolverBody& a, const btSolverBody& b) {
+  const auto of = [](const btSolverBody& body, const btVector3& linear, const btVector3& angular) -> Opening {
+    if (body.m_originalBody == nullptr) return {};
+    const btScalar now = linear.dot(body.m_linearVelocity) + angular.dot(body.m_angularVelocity);
+    return {now, now + linear.dot(body.m_externalForceImpulse) + angular.dot(body.m_externalTorqueImpulse)};
+  };
+  const Opening of_a = of(a, row.m_contactNormal1, row.m_relpos1CrossNormal);
+  const Opening of_b = of(b, row.m_contactNormal2, row.m_relpos2CrossNormal);
+  return {of_a.now + of_b.now, of_a.with_forces + of_b.with_forces};
+}
+
+/// Of contacts slower than Bullet's threshold nothing is changed: bodies come to rest as ever.
+void let_bounce(btSolverConstraint& row, const btSolverBody& a, const btSolverBody& b,
+                const btContactSolverInfo& info) {
+  const auto& point = *static_cast<const btManifoldPoint*>(row.m_originalContactPoint);
+  if (!(point.m_combinedRestitution > 0)) return;
+  const Opening opening = opening_of(row, a, b);
+  if (opening.now > -info.m_restitutionVelocityThreshold) return;
+  const btScalar gap = point.getDistance() + info.m_linearSlop;
+  btScalar wanted = -gap / info.m_timeStep;
+  if (gap + opening.with_forces * info.m_timeStep <= 0) {  // they would touch
+    const btScalar push = std::max(btScalar(0), -gap * info.m_erp2 / info.m_timeStep);
+    wanted = std::max(-point.m_combinedRestitution * opening.now, push);
+  }
+  row.m_rhs = (wanted - opening.with_forces) * row.m_jacDiagABInv;
+  row.m_rhsPenetration = 0;
+}
+
+template <class BulletSolver>
+class Bouncing : public BulletSolver {
+ public:
+  using BulletSolver::BulletSolver;
+
+ protected:
+  void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override {
+    BulletSolver::convertContacts(manifolds, count, info);
+    for (int i = 0; i < this->m_tmpSolverContactConstraintPool.size(); ++i) {
+      btSolverConstraint& row = this->m_tmpSolverContactConstraintPool[i];
+      let_bounce(row, this->m_tmpSolverBodyPool[row.m_solverBodyIdA], this->m_tmpSolverBodyPool[row.m_solverBodyIdB],
+                 info);
+    }
+  }
+};
+
+/// A base, so that it outlives the solver that points at it.
+struct Dantzig {
+  btDantzigSolver dantzig;
+};
+class DantzigSolver final : private Dantzig, public Bouncing<btMLCPSolver> {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+  DantzigSolver() : Bouncing(&dantzig) {}
+};
+
+}  // namespace
+
+std::unique_ptr<btConstraintSolver> make_solver(Solver kind) {
+  switch (kind) {
+    case Solver::kNncg:
+      return std::make_unique<Bouncing<btNNCGConstraintSolver>>();
+    case Solver::kDantzig:
+      return std::make_unique<DantzigSolver>();
+    case Solver::kSequentialImpulse:
+      break;
+  }
+  return std::make_unique<Bouncing<btSequentialImpulseConstraintSolver>>();
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,111 @@
+// Bounces neither make nor lose energy but what restitution takes.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "physics/scenes.h"
+
+namespace aurasim::physics::testing {
+namespace {
+
+using core::Vec3;
+
+constexpr double kGravity = 9.81;
+
+core::Scene scene_of_bouncing(const core::Shape& shape, double restitution) {
+  core::Scene scene = scene_of(shape);
+  scene.materials[0] = {};
+  scene.materials[0].friction = 0;
+  scene.materials[0].restitution = std::sqrt(restitution);  // Bullet multiplies the two
+  scene.prototypes[0].can_sleep = false;
+  return scene;
+}
+
+Settings settings_of(int step_hz, Solver solver = Solver::kSequentialImpulse) {
+  Settings settings;
+  settings.step_s = 1.0 / step_hz;
+  settings.substeps = 1;
+  settings.solver = solver;
+  return settings;
+}
+
+/// Of a body of 1 kg above z = 0. What a semi-implicit Euler step keeps: its velocity is half a step ahead.
+double energy(const core::BodyRecord& body, double step_s) {
+  const double v = body.v_WB.z() - 0.5 * kGravity * step_s;
+  return 0.5 * v * v + kGravity * body.p_WB.z();
+}
+
+class Bouncing : public ::testing::TestWithParam<Solver> {};
+
+TEST_P(Bouncing, ABallWithRestitutionOneKeepsItsEnergyFor20Seconds) {
+  const core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 1);
+  for (const int step_hz : {60, 240, 1000}) {
+    RegionWorld world(scene, settings_of(step_hz, GetParam()));
+    world.add(std::vector{body(1, 0, {0, 0, 1.5})});
+    const double step_s = 1.0 / step_hz;
+    const double before = energy(world.records().front(), step_s) - kGravity * 0.5;
+    double largest = 0;
+    for (int i = 0; i < 20 * step_hz; ++i) {
+      world.step();
+      const double now = energy(world.records().front(), step_s) - kGravity * 0.5;
+      largest = std::max(largest, std::abs(now - before) / before);
+    }
+    EXPECT_LT(largest, 0.01) << step_hz << " Hz";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Bouncing,
+                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig),
+                         [](const auto& param) {
+                           return param.param == Solver::kNncg      ? "Nncg"
+                                  : param.param == Solver::kDantzig ? "Dantzig"
+                                                                    : "SequentialImpulse";
+                         });
+
+TEST(BouncingBodies, EachBounceReachesTheSquareOfItsRestitution) {
+  const core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 0.5);
+  RegionWorld world(scene, settings_of(240));
+  world.add(std::vector{body(1, 0, {0, 0, 1.5})});
+  std::vector<double> tops;
+  double before = 0;
+  for (int i = 0; i < 300; ++i) {
+    world.step();
+    const core::BodyRecord& ball = world.records().front();
+    if (before > 0 && ball.v_WB.z() <= 0) tops.push_back(ball.p_WB.z() - 0.5);
+    before = ball.v_WB.z();
+  }
+  ASSERT_GE(tops.size(), 2u);
+  EXPECT_NEAR(tops[0], 0.25, 0.02);
+  EXPECT_NEAR(tops[1], 0.0625, 0.02);
+}
+
+TEST(BouncingBodies, TwoBallsThatMeetExchangeTheirVelocities) {
+  core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 1);
+  scene.gravity = Vec3::Zero();
+  RegionWorld world(scene, settings_of(60));
+  world.add(std::vector{body(1, 0, {-3, 0, 5}, {7, 0, 0}), body(2, 0, {3, 0, 5}, {-2, 0, 0})});
+  run(world, 90);
+  EXPECT_NEAR(world.records()[0].v_WB.x(), -2, 1e-5);
+  EXPECT_NEAR(world.records()[1].v_WB.x(), 7, 1e-5);
+}
+
+/// Bullet finds the corners of a box one after the other, so the box is set spinning; where all its energy stays is
+/// not tested, but that none is made is.
+TEST(BouncingBodies, ABoxThatBouncesMakesNoEnergy) {
+  const core::Scene scene = scene_of_bouncing(core::Box{{0.5, 0.5, 0.25}}, 1);
+  RegionWorld world(scene, settings_of(240));
+  world.add(std::vector{body(1, 0, {0, 0, 1.25})});
+  const double before = energy(world.records().front(), 1.0 / 240);
+  const Vec3 inertia(0.3125 / 3, 0.3125 / 3, 0.5 / 3);
+  double most = 0;
+  for (int i = 0; i < 5 * 240; ++i) {
+    world.step();
+    const core::BodyRecord& box = world.records().front();
+    const Vec3 w_B = box.R_WB.transpose() * box.w_WB;
+    most = std::max(most, energy(box, 1.0 / 240) + 0.5 * w_B.dot(inertia.cwiseProduct(w_B)));
+  }
+  EXPECT_LT(most, 1.02 * before);
+}
+
+}  // namespace
+}  // namespace aurasim::physics::testing
