@@ -18,6 +18,8 @@ packages=(
   libboost1.74-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+  # separate hosts on one machine; other people's DDS and a dissector, as witnesses
+  nftables jq cyclonedds-dev cyclonedds-tools tshark
   # figures of the experiments
   python3-matplotlib
   # the browser that the page is tested in

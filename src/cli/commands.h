@@ -16,14 +16,18 @@ void add_check(CLI::App& program, Action& action);
 void add_node(CLI::App& program, Action& action);
 void add_launch(CLI::App& program, Action& action);
 void add_top(CLI::App& program, Action& action);
+void add_echo(CLI::App& program, Action& action);
 void add_overseer(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 /// Below `experiment`.
 void add_stability(CLI::App& experiment, Action& action);
 void add_pareto(CLI::App& experiment, Action& action);
+void add_scalability(CLI::App& experiment, Action& action);
+void add_bandwidth(CLI::App& experiment, Action& action);
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {

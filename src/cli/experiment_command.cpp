@@ -123,6 +123,8 @@ void add_experiment(CLI::App& program, Action& action) {
   add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
   add_stability(*command, action);
   add_pareto(*command, action);
+  add_scalability(*command, action);
+  add_bandwidth(*command, action);
 }
 
 }  // namespace aurasim::cli

@@ -4,14 +4,13 @@
 #include <csignal>
 #include <stdexcept>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "cli/launch_setup.h"
+#include "cli/merged_report.h"
 #include "cli/stop_signal.h"
 #include "node/report.h"
 
@@ -166,16 +165,7 @@ ExitCode Launcher::report_and_count(ExitCode so_far) {
   for (const Child& child : children_) {
     if (child.died) facts.died.push_back(child.region);
   }
-  const node::Accounts accounts = node::merge_report(*options_.report, facts);
-  fmt::print("report: {}\n", (*options_.report / "summary.json").string());
-  fmt::print(
-      "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
-      accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
-      accounts.real_time_factor);
-  for (const node::DeadRegion& dead : accounts.dead) {
-    fmt::print("region {} died and took {} bodies with it\n", core::value_of(dead.region), dead.bodies);
-  }
-  return accounts.lost + accounts.duplicated == 0 ? so_far : ExitCode::kFailed;
+  return merge_and_tell(*options_.report, facts, so_far);
 }
 
 }  // namespace aurasim::cli

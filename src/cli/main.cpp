@@ -22,9 +22,11 @@ int main(int argc, char** argv) {
   cli::add_node(program, action);
   cli::add_launch(program, action);
   cli::add_top(program, action);
+  cli::add_echo(program, action);
   cli::add_send(program, action);
   cli::add_overseer(program, action);
   cli::add_replay(program, action);
+  cli::add_report(program, action);
   cli::add_compare(program, action);
   cli::add_experiment(program, action);
   try {

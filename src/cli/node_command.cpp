@@ -10,6 +10,7 @@
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
+#include "cli/run_length.h"
 #include "cli/stop_signal.h"
 #include "physics/region_world.h"
 
@@ -19,7 +20,7 @@ namespace {
 struct Arguments {
   FileArguments files;
   std::uint32_t region = 0;
-  core::Step steps = -1;
+  RunLength length;
   std::string report;
   int start_time_out_s = 30;
 };
@@ -55,7 +56,7 @@ int run_node(const Arguments& arguments) {
   NodeOptions options;
   options.region = core::RegionId{arguments.region};
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
-  if (arguments.steps >= 0) options.steps = arguments.steps;
+  options.steps = arguments.length.last_step(launch);
   if (!arguments.report.empty()) options.report = arguments.report;
   NodeProcess process(launch, options);
   leave(static_cast<int>(process.run()));
@@ -68,7 +69,7 @@ void add_node(CLI::App& program, Action& action) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->files.add_to(*command);
   command->add_option("--region", arguments->region, "which region of the map")->required();
-  command->add_option("--steps", arguments->steps, "stop after this state");
+  arguments->length.add_to(*command);
   command->add_option("--report", arguments->report, "folder for what the node records");
   command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
       ->check(CLI::Range(1, 3600));

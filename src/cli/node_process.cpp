@@ -60,6 +60,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       options_(options),
       participant_(dds_settings(launch, options.region)),
       control_(participant_, {launch.regions.version(), options.region}),
+      fence_(launch, participant_, control_, options.region),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
   status_.region = options.region;
   status_.pid = static_cast<std::uint32_t>(::getpid());
@@ -224,7 +225,7 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
 }
 
 bool NodeProcess::finished() const {
-  return stop_requested() || (stop_at_ && node_->current_step() >= *stop_at_) || node_->protocol().fenced();
+  return stop_requested() || (stop_at_ && node_->current_step() >= *stop_at_) || fence_.closed();
 }
 
 ExitCode NodeProcess::run_steps() {
@@ -237,11 +238,9 @@ ExitCode NodeProcess::run_steps() {
     compute_step();
   }
   const double factor = real_time_factor();
-  const bool fenced = node_->protocol().fenced();
-  if (fenced)
-    spdlog::error("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(options_.region));
-  publish(fenced ? dds::NodeState::kFailed : dds::NodeState::kFinished,
-          fenced ? "a neighbour holds this region for dead" : "");
+  const bool fenced = fence_.closed();
+  if (fenced) spdlog::error("{}", fence_.reason());
+  publish(fenced ? dds::NodeState::kFailed : dds::NodeState::kFinished, fence_.reason());
   observers_->while_paused(*node_);
   // Whoever leaves from now on has finished, too: that is no death.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
@@ -260,6 +259,7 @@ bool NodeProcess::wait_until_due() {
     observers_->while_paused(*node_);
     control_.wait(20ms);
     node_->ready();
+    fence_.open(node_->protocol());
     paused_ += Clock::now() - begin;
     return false;
   }
@@ -269,7 +269,8 @@ bool NodeProcess::wait_until_due() {
     node_->ready();
     return false;
   }
-  if (node_->ready()) return true;
+  const bool complete = node_->ready();
+  if (fence_.open(node_->protocol()) && complete) return true;
   transport_->wait_for_arrival(20ms);
   wait_ms_ += milliseconds(Clock::now() - begin);
   publish_running();

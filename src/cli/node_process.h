@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command_desk.h"
+#include "cli/fence.h"
 #include "cli/replica_publisher.h"
 #include "config/launch.h"
 #include "dds/control.h"
@@ -26,7 +27,7 @@ enum class ExitCode : int {
   kFailed = 1,     ///< something broke, a node died or a body was lost
   kBadConfig = 2,  ///< the files or the command line are wrong
   kRefused = 3,    ///< another run is in the same domain, or a neighbour did not come in time
-  kFenced = 4,     ///< the others hold this node for dead
+  kFenced = 4,     ///< the others hold this node for dead, or may (fence.h)
 };
 
 struct NodeOptions {
@@ -85,6 +86,7 @@ class NodeProcess {
   NodeOptions options_;
   dds::Participant participant_;
   dds::ControlBus control_;
+  Fence fence_;
   std::optional<dds::DdsTransport> transport_;  ///< once the domain is known to be free
   std::optional<ReplicaPublisher> observers_;   ///< likewise
   std::optional<CommandDesk> desk_;             ///< likewise

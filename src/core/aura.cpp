@@ -80,7 +80,7 @@ Pose Aura::ahead(const Path& path, double steps) const {
 }
 
 bool Aura::spheres_within(const Path& a, const Path& b, double distance_m) const {
-  const double d = a.radius_m + b.radius_m + rules_.contact_margin_m + distance_m;
+  const double d = a.radius_m + b.radius_m + rules_.contact_margin_m + a.blur_m + b.blur_m + distance_m;
   return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= d * d;
 }
 
@@ -122,20 +122,31 @@ double Aura::zone(double speed_m_s, int hops, double other_speed_m_s, double oth
   return way + drop_m(own_steps) + drop_m(other_steps) + other_radius_m + rules_.contact_margin_m;
 }
 
-double Aura::notice(double foreign_speed_m_s, double foreign_age_steps, double own_speed_m_s, int hops) const {
-  if (rules_.kind != AuraKind::kSwept) return foreign_reach(hops) + rules_.contact_margin_m;
+Aura::Range Aura::notice(double foreign_speed_m_s, double foreign_age_steps, int hops) const {
+  if (rules_.kind != AuraKind::kSwept) return {foreign_reach(hops) + rules_.contact_margin_m, 0};
   const double own_steps = (1 + hops) * rules_.lookahead;
   const double foreign_steps = foreign_age_steps + own_steps;
-  const double way =
-      (1 + rules_.uncertainty) * rules_.step_s * (own_speed_m_s * own_steps + foreign_speed_m_s * foreign_steps);
-  return way + rules_.contact_margin_m;  // both speeds already hold what gravity adds
+  const double way_per_speed = (1 + rules_.uncertainty) * rules_.step_s;
+  // Both speeds already hold what gravity adds.
+  return {way_per_speed * foreign_speed_m_s * foreign_steps + rules_.contact_margin_m, way_per_speed * own_steps};
 }
 
-double Aura::link_range(double speed_a_m_s, double speed_b_m_s, int hops) const {
-  if (rules_.kind != AuraKind::kSwept) return cluster_reach(hops) + rules_.contact_margin_m;
+double Aura::drift_m_s(const Path& path) const { return path.v_WB.norm() + rules_.uncertainty * path.speed_m_s; }
+
+Aura::Range Aura::meet_range(const Path& foreign, int hops) const {
+  const double margin = rules_.contact_margin_m + foreign.blur_m;
+  if (rules_.kind != AuraKind::kSwept) return {std::max(reach(hops), cluster_reach(hops)) + margin, 0};
+  const double own_steps = hops * rules_.lookahead;
+  const double foreign_steps = foreign.age_steps + own_steps;
+  const double way = rules_.step_s * foreign_steps * drift_m_s(foreign) + drop_m(foreign_steps) + drop_m(own_steps);
+  return {std::max(1.0, rules_.reach_scale) * (margin + way),
+          std::max(1.0, rules_.reach_scale) * rules_.step_s * own_steps};
+}
+
+Aura::Range Aura::link_range(int hops) const {
+  if (rules_.kind != AuraKind::kSwept) return {cluster_reach(hops) + rules_.contact_margin_m, 0};
   const double steps = (hops + 1) * rules_.lookahead - 1;
-  return (1 + rules_.uncertainty) * rules_.step_s * steps * (speed_a_m_s + speed_b_m_s) + 2 * drop_m(steps) +
-         rules_.contact_margin_m;
+  return {2 * drop_m(steps) + rules_.contact_margin_m, (1 + rules_.uncertainty) * rules_.step_s * steps};
 }
 
 bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
@@ -156,8 +167,8 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
     const Pose at = ahead(a, k);
     const Pose bt = ahead(b, k);
     const double allowed =
-        rules_.reach_scale *
-        (rules_.contact_margin_m + spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
+        rules_.reach_scale * (rules_.contact_margin_m + a.blur_m + b.blur_m +
+                              spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
     double clearance = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
     if (clearance <= allowed) {
       const double limit = allowed + closing * (last - k);

@@ -40,6 +40,7 @@ struct Path {
   double age_steps = 0;     ///< how long ago the state was known, seen from now
   double unborn_steps = 0;  ///< the body appears this many steps from now
   double speed_m_s = 0;     ///< top speed in its cluster, for the uncertainty
+  double blur_m = 0;        ///< its surface may be this far from where it seems: it was said in few bytes
 };
 
 /// The path of one of our own bodies from its state now.
@@ -76,11 +77,25 @@ class Aura {
   /// `other_speed_m_s`, `other_radius_m`: the largest over there.
   double zone(double speed_m_s, int hops, double other_speed_m_s, double other_radius_m) const;
 
-  /// A body projects to the host of a foreign one when their bounding spheres are this near (metres), wherever it is.
-  double notice(double foreign_speed_m_s, double foreign_age_steps, double own_speed_m_s, int hops) const;
+  /// A distance that grows with a speed.
+  struct Range {
+    double fixed_m = 0;
+    double per_speed_s = 0;
+    double at(double speed_m_s) const { return fixed_m + per_speed_s * speed_m_s; }
+  };
 
-  /// Largest distance between bounding spheres at which linked() can be true (metres).
-  double link_range(double speed_a_m_s, double speed_b_m_s, int hops) const;
+  /// A body projects to the host of a foreign one when their bounding spheres are this near, wherever it is. For the
+  /// body's own speed.
+  Range notice(double foreign_speed_m_s, double foreign_age_steps, int hops) const;
+
+  /// Beyond this distance between bounding spheres neither meets() nor meets_ghost() is true for a foreign body. For
+  /// drift_m_s() of the own one.
+  Range meet_range(const Path& foreign, int hops) const;
+  /// How fast a body may leave the place where it is: on its path, and off it.
+  double drift_m_s(const Path& path) const;
+
+  /// Largest distance between bounding spheres at which linked() can be true. For the sum of both speeds.
+  Range link_range(int hops) const;
 
  private:
   bool spheres_within(const Path& a, const Path& b, double distance_m) const;

@@ -29,13 +29,15 @@ class Clusters {
   void complete(std::uint32_t i);
 
   /// The cluster of a body, as the index of one of its members.
-  std::uint32_t of(std::uint32_t i) const;
+  std::uint32_t of(std::uint32_t i) const { return label_[i]; }
   double speed(std::uint32_t i) const { return speed_[of(i)]; }
   /// Number of other regions through which a pull on this cluster can chain (DESIGN section 4, corners): those in
   /// reach, by their territory or by a body of theirs; at least 1.
-  int hops(std::uint32_t i) const;
+  int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }
+  /// Grows whenever a cluster turns out faster, or has more hops, than it seemed.
+  std::uint64_t growth() const { return growth_; }
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
   /// The pairs by which clusters came to be one: a tree of each cluster.
@@ -54,18 +56,23 @@ class Clusters {
 
  private:
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
+  bool owns(std::uint32_t mine, std::uint32_t group);
   void look_around(std::uint32_t i);
   void push_members(std::uint32_t i);
-  void note_hops(std::uint64_t regions);
+  void set_regions(std::uint32_t cluster, std::uint64_t regions);
   void spread_speed(std::uint32_t cluster);
 
   const Aura& aura_;
   std::span<Path> paths_;
   int most_hops_ = 1;
+  std::uint64_t growth_ = 0;
+  std::vector<Aura::Range> link_ranges_;  ///< by hops
   NearIndex near_;
-  std::vector<std::uint32_t> parent_, next_, size_;
+  std::vector<std::uint32_t> group_owner_;  ///< by group of near_: one of its bodies, once all are of one cluster
+  std::vector<std::uint32_t> label_, next_, size_;
   std::vector<double> speed_;
   std::vector<std::uint64_t> regions_;
+  std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
   std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/aura_precision.h"
+
 namespace aurasim::core {
 
 namespace {
@@ -85,6 +87,7 @@ void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
       static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
+  f.path.blur_m = said_within_m(f.path.radius_m);
 }
 
 double Gathering::band(double speed_m_s, int hops) const {
@@ -124,28 +127,77 @@ void Gathering::complete_near_boundaries() {
 /// further: repeated until nothing changes.
 void Gathering::pair_up() {
   noticed_.assign(paths_.size(), 0);
-  for (bool changed = true; changed;) {
-    changed = false;
-    pairs_.clear();
-    const int most_hops = clusters_.most_hops() + kHomewardHops;
-    for (std::uint32_t f = 0; f < foreign_.size(); ++f) {
-      const Path& path = foreign_[f].path;
-      const double slow = aura_.notice(path.speed_m_s, path.age_steps, NearIndex::kSlow, most_hops);
-      const double fast = aura_.notice(path.speed_m_s, path.age_steps, top_speed(), most_hops);
-      clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, slow, fast, [&](std::uint32_t i) {
-        const int hops = clusters_.hops(i) + kHomewardHops;
-        const double reach =
-            path.radius_m + paths_[i].radius_m + aura_.notice(path.speed_m_s, path.age_steps, clusters_.speed(i), hops);
-        if ((path.pose.p_WB - paths_[i].pose.p_WB).squaredNorm() <= reach * reach) pairs_.push_back({f, i});
-      });
+  noticed_by_.assign(paths_.size(), 0);
+  group_noticed_.assign(clusters_.near().group_count(), 0);
+  group_noticed_by_.assign(clusters_.near().group_count(), 0);
+  std::uint64_t growth = 0;
+  do {
+    growth = clusters_.growth();
+    news_.clear();
+    for (const Foreign& foreign : foreign_) notice(foreign);
+    for (const News& news : news_) {
+      clusters_.add_regions(news.own, news.region);
+      clusters_.complete(news.own);
     }
-    for (const Pair& pair : pairs_) {
-      noticed_[pair.own] = 1;
-      changed = clusters_.add_regions(pair.own, vicinity_.bit_of(foreign_[pair.foreign].host)) || changed;
-      if (clusters_.is_complete(pair.own)) continue;
-      clusters_.complete(pair.own);
-      changed = true;
+  } while (growth != clusters_.growth());
+  find_pairs();
+}
+
+/// Which of our bodies have to be announced because of a foreign one? In a heap most of them are already.
+void Gathering::notice(const Foreign& foreign) {
+  const Path& path = foreign.path;
+  const std::uint64_t region = vicinity_.bit_of(foreign.host);
+  const NearIndex& near = clusters_.near();
+  ranges_.clear();
+  for (int hops = 0; hops <= clusters_.most_hops() + kHomewardHops; ++hops) {
+    ranges_.push_back(aura_.notice(path.speed_m_s, path.age_steps, hops));
+  }
+  const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
+  const auto all_know = [&](std::uint32_t group) {
+    const bool known = group_noticed_[group] && (group_noticed_by_[group] & region) == region;
+    if (known || !knows(near.any_of(group)) || !near.all_of(group, knows)) return known;
+    group_noticed_[group] = 1;
+    group_noticed_by_[group] |= region;
+    return true;
+  };
+  near.for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(NearIndex::kSlow), ranges_.back().at(top_speed()),
+                     all_know, [&](std::uint32_t i) {
+                       if (knows(i)) return;
+                       const Path& own = paths_[i];
+                       const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
+                       const double reach = path.radius_m + own.radius_m + ranges_[hops].at(own.speed_m_s);
+                       if ((path.pose.p_WB - own.pose.p_WB).squaredNorm() > reach * reach) return;
+                       noticed_[i] = 1;
+                       noticed_by_[i] |= region;
+                       news_.push_back({i, region});
+                     });
+}
+
+/// Who may meet whom. Whoever does has been noticed: meeting looks less far.
+void Gathering::find_pairs() {
+  pairs_.clear();
+  double slow_drift = 0;
+  double fast_drift = 0;
+  drifts_.clear();
+  for (const Path& own : paths_) {
+    drifts_.push_back(aura_.drift_m_s(own));
+    double& most = own.speed_m_s <= NearIndex::kSlow ? slow_drift : fast_drift;
+    most = std::max(most, drifts_.back());
+  }
+  for (std::uint32_t f = 0; f < foreign_.size(); ++f) {
+    const Path& path = foreign_[f].path;
+    ranges_.clear();
+    for (int hops = 0; hops <= clusters_.most_hops() + kHomewardHops; ++hops) {
+      ranges_.push_back(aura_.meet_range(path, hops));
     }
+    clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(slow_drift),
+                                   ranges_.back().at(fast_drift), [&](std::uint32_t i) {
+                                     const Path& own = paths_[i];
+                                     const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
+                                     const double reach = path.radius_m + own.radius_m + ranges_[hops].at(drifts_[i]);
+                                     if ((path.pose.p_WB - own.pose.p_WB).squaredNorm() <= reach * reach)
+                                       pairs_.push_back({f, i});
+                                   });
   }
 }
 

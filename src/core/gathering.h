@@ -23,7 +23,7 @@ class Gathering {
     bool ghost;
     bool born;  ///< in the state that its aura describes
   };
-  /// A foreign body and one of ours that are near enough to be told of each other: indices of foreign() and path().
+  /// A foreign body and one of ours that may meet: indices of foreign() and path().
   struct Pair {
     std::uint32_t foreign;
     std::uint32_t own;
@@ -67,6 +67,8 @@ class Gathering {
   void mark_regions();
   void complete_near_boundaries();
   void pair_up();
+  void find_pairs();
+  void notice(const Foreign& foreign);
   void judge();
   void judge(const Pair& pair);
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
@@ -82,11 +84,21 @@ class Gathering {
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   std::vector<Foreign> foreign_;
   std::vector<Pair> pairs_;
+  std::vector<Aura::Range> ranges_;  ///< of one foreign body, by hops
+  struct News {
+    std::uint32_t own;
+    std::uint64_t region;
+  };
+  std::vector<News> news_;  ///< our bodies that have been noticed by a region, and did not know
   std::vector<std::uint32_t> near_;
+  std::vector<double> drifts_;  ///< Aura::drift_m_s
   std::vector<std::uint8_t> noticed_;
-  std::vector<std::uint8_t> touched_;   ///< by cluster
-  std::vector<std::uint8_t> expected_;  ///< by cluster
-  std::vector<RegionId> pulled_to_;     ///< by cluster
+  std::vector<std::uint64_t> noticed_by_;        ///< bits of regions
+  std::vector<std::uint8_t> group_noticed_;      ///< by group of bodies near each other: all of them are
+  std::vector<std::uint64_t> group_noticed_by_;  ///< regions that all of them are noticed by
+  std::vector<std::uint8_t> touched_;            ///< by cluster
+  std::vector<std::uint8_t> expected_;           ///< by cluster
+  std::vector<RegionId> pulled_to_;              ///< by cluster
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

@@ -26,9 +26,9 @@ struct AuraRecord {
   PrototypeId prototype{};
   std::uint8_t flags = 0;
   Step stamp = 0;  ///< the state this describes; equals the batch's stamp except for ghosts
-  Step birth = 0;  ///< later than stamp: the body appears in that state
+  Step birth = 0;  ///< later than stamp: the body appears in that state; otherwise any earlier number
   Pose pose;
-  Vec3 v_WB = Vec3::Zero();
+  Vec3 v_WB = Vec3::Zero();  ///< these two for AuraKind::kSwept only
   Vec3 w_WB = Vec3::Zero();
   double speed_m_s = 0;  ///< no body of its cluster is faster (core/aura.h)
 };

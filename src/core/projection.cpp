@@ -72,8 +72,10 @@ AuraRecord Projection::describe(const BodyState& body, double speed_m_s, Step st
   aura.stamp = stamp;
   aura.birth = body.birth;
   aura.pose = body.pose;
-  aura.v_WB = body.v_WB;
-  aura.w_WB = body.w_WB;
+  if (aura_.rules().kind == AuraKind::kSwept) {  // the others ask for places and sizes only
+    aura.v_WB = body.v_WB;
+    aura.w_WB = body.w_WB;
+  }
   aura.speed_m_s = speed_m_s;
   return aura;
 }

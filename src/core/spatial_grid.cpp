@@ -11,7 +11,7 @@ void SpatialGrid::clear(double cell_m) {
   points_.clear();
 }
 
-void SpatialGrid::add(std::uint32_t index, const Vec3& p) { points_.push_back({cell_of(p), index, 0}); }
+void SpatialGrid::add(std::uint32_t index, const Vec3& p) { points_.push_back({cell_of(p), p.z(), index, 0}); }
 
 void SpatialGrid::build() {
   const auto buckets = std::bit_ceil(std::max<std::uint32_t>(16, 2 * static_cast<std::uint32_t>(points_.size())));
@@ -36,13 +36,12 @@ SpatialGrid::Cell SpatialGrid::cell_of(const Vec3& p) const {
     const double c = std::floor(x / cell_m_);
     return static_cast<std::int64_t>(std::clamp(std::isfinite(c) ? c : 0.0, -1e9, 1e9));
   };
-  return {along(p.x()), along(p.y()), along(p.z())};
+  return {along(p.x()), along(p.y())};
 }
 
 std::uint32_t SpatialGrid::bucket_of(const Cell& cell) const {
   std::uint64_t h = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15ull;
   h ^= static_cast<std::uint64_t>(cell.y) * 0xC2B2AE3D27D4EB4Full;
-  h ^= static_cast<std::uint64_t>(cell.z) * 0x165667B19E3779F9ull;
   return static_cast<std::uint32_t>(h ^ (h >> 29)) & mask_;
 }
 

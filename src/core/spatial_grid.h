@@ -1,5 +1,6 @@
-// Points in hashed cubic cells: which bodies may be within a distance of a box. Rebuilt each step, without
-// allocation once warm.
+// Points in hashed square columns: which bodies may be within a distance of a box. Worlds are wider than they are high,
+// so a column holds few points, and going through it costs less than looking up each cube in it. Rebuilt each step,
+// without allocation once warm.
 #pragma once
 
 #include <cstdint>
@@ -12,41 +13,64 @@ namespace aurasim::core {
 
 class SpatialGrid {
  public:
-  /// Forgets everything; cells of `cell_m`.
+  /// Forgets everything; columns of `cell_m`.
   void clear(double cell_m);
 
   void add(std::uint32_t index, const Vec3& p);
 
-  /// Sorts what was added into cells. Call once before any query.
+  /// Sorts what was added into columns. Call once before any query.
   void build();
 
-  /// Calls `visit(index)` for every point within the box [lo, hi] grown to whole cells (a superset).
+  /// Calls `visit(index)` for every point within the box [lo, hi], grown to whole columns (a superset).
   template <class Visit>
   void for_each_in(const Vec3& lo, const Vec3& hi, Visit&& visit) const {
+    for_each_in(
+        lo, hi, [](std::uint32_t) { return false; }, visit);
+  }
+
+  /// The same without the groups for which `skip(group)` is true. A group is less than group_count() and holds some
+  /// columns; where the box is larger than the world, nobody is asked.
+  template <class Skip, class Visit>
+  void for_each_in(const Vec3& lo, const Vec3& hi, Skip&& skip, Visit&& visit) const {
     if (points_.empty()) return;
     const Cell a = cell_of(lo);
     const Cell b = cell_of(hi);
-    const double cells = double(b.x - a.x + 1) * double(b.y - a.y + 1) * double(b.z - a.z + 1);
+    const double cells = double(b.x - a.x + 1) * double(b.y - a.y + 1);
     if (cells > 4.0 * static_cast<double>(points_.size()) + 64) {  // a box larger than the world: look at every point
       for (const Point& point : points_) visit(point.index);
       return;
     }
     for (std::int64_t x = a.x; x <= b.x; ++x) {
       for (std::int64_t y = a.y; y <= b.y; ++y) {
-        for (std::int64_t z = a.z; z <= b.z; ++z) visit_cell({x, y, z}, visit);
+        const std::uint32_t bucket = bucket_of({x, y});
+        if (starts_[bucket] == starts_[bucket + 1] || skip(bucket)) continue;
+        visit_column(bucket, {x, y}, lo.z(), hi.z(), visit);
       }
     }
   }
+
+  std::uint32_t group_count() const { return mask_ + 1; }
+  /// Does `holds(index)` for every point of the group?
+  template <class Holds>
+  bool all_of(std::uint32_t group, Holds&& holds) const {
+    for (std::uint32_t i = starts_[group]; i < starts_[group + 1]; ++i) {
+      if (!holds(sorted_[i].index)) return false;
+    }
+    return true;
+  }
+  /// Some point of a group that has any.
+  std::uint32_t any_of(std::uint32_t group) const { return sorted_[starts_[group]].index; }
 
   bool empty() const { return points_.empty(); }
 
  private:
   struct Cell {
-    std::int64_t x, y, z;
+    std::int64_t x, y;
     bool operator==(const Cell&) const = default;
   };
   struct Point {
     Cell cell;
+    double z;
     std::uint32_t index;
     std::uint32_t bucket;
   };
@@ -55,10 +79,11 @@ class SpatialGrid {
   std::uint32_t bucket_of(const Cell& cell) const;
 
   template <class Visit>
-  void visit_cell(const Cell& cell, Visit& visit) const {
-    const std::uint32_t bucket = bucket_of(cell);
+  void visit_column(std::uint32_t bucket, const Cell& cell, double low, double high, Visit& visit) const {
     for (std::uint32_t i = starts_[bucket]; i < starts_[bucket + 1]; ++i) {
-      if (sorted_[i].cell == cell) visit(sorted_[i].index);
+      const Point& point = sorted_[i];
+      // Written so that a height that is not a number is visited: slower, never wrong.
+      if (point.cell == cell && !(point.z < low) && !(point.z > high)) visit(point.index);
     }
   }
 

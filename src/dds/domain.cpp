@@ -73,6 +73,7 @@ std::string partition_of(core::RegionId source, core::RegionId destination) {
 
 Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
+  loopback_only_ = on_loopback_only(qos);
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
   if (impairment.any()) delay_line_ = impair(qos, impairment, settings.domain, settings.impairment_stream);
   switch_intraprocess_delivery_off();

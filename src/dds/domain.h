@@ -61,6 +61,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Directory& directory() { return directory_; }
   /// After which peers forget a silent participant.
   std::chrono::nanoseconds lease() const;
+  /// Nothing leaves this host.
+  bool loopback_only() const { return loopback_only_; }
   Pulse& pulse() { return *pulse_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
@@ -74,6 +76,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
 
   Profiles profiles_;
   Directory directory_;
+  bool loopback_only_ = false;
   std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};

@@ -98,6 +98,9 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(d
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
+  if (spec.best_effort_if_volatile && qos.durability().kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS) {
+    qos.reliability().kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
+  }
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
     watch_.set_grace(std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()) / 2);
   }

@@ -21,6 +21,8 @@ struct EndpointSpec {
   std::vector<std::string> partitions;
   std::optional<core::RegionId> region;  ///< whose endpoint this is; peers are told (user data)
   std::string profile = {};              ///< of the QoS; empty: the topic's
+  /// A reader that asks for no history gets no repeats either, whatever its profile says.
+  bool best_effort_if_volatile = false;
 };
 
 inline EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }

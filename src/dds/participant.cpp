@@ -13,6 +13,8 @@ void Participant::progress() { domain_->pulse().progress(); }
 
 bool Participant::outlived_its_lease() const { return domain_->pulse().longest_stall() > domain_->lease(); }
 
+bool Participant::stays_on_this_host() const { return domain_->loopback_only(); }
+
 std::optional<Participant::ImpairmentReport> Participant::impairment() const {
   const DelayLine* line = domain_->delay_line();
   if (line == nullptr) return std::nullopt;

@@ -28,6 +28,9 @@ class Participant {
   /// better end. Any thread.
   bool outlived_its_lease() const;
 
+  /// True when all traffic is on loopback, which cannot be cut: whoever is silent there is dead.
+  bool stays_on_this_host() const;
+
   struct ImpairmentReport {
     Impairment impairment;  ///< as the profile and the settings make it
     ImpairmentCounters datagrams;

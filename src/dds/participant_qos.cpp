@@ -121,4 +121,15 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   return qos;
 }
 
+bool on_loopback_only(const DomainParticipantQos& qos) {
+  const auto is_loopback = [](const std::string& address) { return address.starts_with("127."); };
+  const auto stays = [&](const auto& transport) {
+    const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport);
+    return udp != nullptr && !udp->interfaceWhiteList.empty() &&
+           std::ranges::all_of(udp->interfaceWhiteList, is_loopback);
+  };
+  const auto& transports = qos.transport().user_transports;
+  return !qos.transport().use_builtin_transports && !transports.empty() && std::ranges::all_of(transports, stays);
+}
+
 }  // namespace aurasim::dds

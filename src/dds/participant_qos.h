@@ -12,4 +12,7 @@ namespace aurasim::dds {
 /// when a value cannot be used.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
 
+/// True when every transport may use loopback addresses only.
+bool on_loopback_only(const eprosima::fastdds::dds::DomainParticipantQos& qos);
+
 }  // namespace aurasim::dds

@@ -99,7 +99,7 @@ double notice_s(PairKind kind, const Conditions& conditions, double v_a, double 
        {AuraChoice::kThesis, AuraChoice::kTight, AuraChoice::kTightAtThesisSize, AuraChoice::kSwept}) {
     core::AuraRules rules = rules_for(choice, conditions);
     rules.lookahead *= 4;
-    const double range_m = core::Aura(rules, shapes).link_range(v_a + 0.1, v_b + 0.1, hops) + 2 * kRadius_m;
+    const double range_m = core::Aura(rules, shapes).link_range(hops).at(v_a + v_b + 0.2) + 2 * kRadius_m;
     if (choice == AuraChoice::kSwept) {
       swept_s = ((hops + 1) * rules.lookahead) * kStep_s;
       swept_s += rules.uncertainty * swept_s * (v_a + v_b + 0.2) / closing_m_s;

@@ -1,36 +1,37 @@
-// A few nodes in virtual time over a network in memory: the protocol and the physics of a real run, with frames and
+// Nodes in virtual time over a network in memory: the protocol and the physics of a real run, with frames and
 // messages as long as they are told to be. Goes from event to event, so a trial takes as long as its arithmetic.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/region_map.h"
 #include "core/scene.h"
+#include "experiment/scale/wire_post.h"
 #include "node/node.h"
 #include "transport/memory_transport.h"
 
 namespace aurasim::experiment {
 
 struct ClusterRules {
-  core::AuraRules aura;
-  core::SyncMode sync = core::SyncMode::kBounded;
-  physics::Settings physics;  ///< but for steps and substeps, which are the aura's
-  bool hash_states = false;
+  node::NodeSetup node;  ///< of every node, but for its region
   transport::Faults network;
+  /// Messages are coded as for DDS (experiment/scale/wire_post.h), and each node's link takes so many bytes a second.
+  std::optional<double> bandwidth_B_s;
   double shortest_frame_s = 0;
   double longest_frame_s = 0;
   std::vector<double> phase_s;  ///< by region: how much later than the shared epoch its steps are due
   std::uint64_t seed = 1;
 };
 
-/// All regions of a trial listen to each other: there are at most four.
+/// All regions of a small cluster listen to each other.
 inline constexpr double kEverywhere_m = 1e9;
 
-/// But for the region and the generation.
-node::NodeSetup node_setup(const ClusterRules& rules);
+/// All regions listen to each other, nobody hashes states.
+node::NodeSetup small_cluster_setup(const core::AuraRules& aura, core::SyncMode sync);
 
 class VirtualCluster {
  public:
@@ -49,6 +50,8 @@ class VirtualCluster {
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
   /// Bodies of a region in the state that it is in. Valid until its next step.
   std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
+  /// Only where messages are coded.
+  const WirePost& post() const { return *post_; }
   /// The lowest state that a node is in.
   core::Step slowest() const;
   /// Broken promises, all nodes together.
@@ -72,7 +75,9 @@ class VirtualCluster {
 
   ClusterRules rules_;
   core::RegionMap map_;
+  std::vector<std::vector<core::RegionId>> listeners_;
   transport::MemoryNetwork network_;
+  std::optional<WirePost> post_;
   std::vector<Member> members_;
   std::uint64_t random_;
   const node::StepReport* report_ = nullptr;

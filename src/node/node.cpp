@@ -1,6 +1,7 @@
 #include "node/node.h"
 
 #include <algorithm>
+#include <ctime>
 #include <utility>
 
 #include "node/scene_growth.h"
@@ -8,19 +9,24 @@
 namespace aurasim::node {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+double now_s(PhaseClock clock) {
+  timespec t{};
+  clock_gettime(clock == PhaseClock::kWall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 /// Adds the time between its construction and its end to a duration.
 class Timed {
  public:
-  explicit Timed(double& seconds) : seconds_(seconds), begin_(Clock::now()) {}
-  ~Timed() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  Timed(double& seconds, PhaseClock clock) : seconds_(seconds), clock_(clock), begin_s_(now_s(clock)) {}
+  ~Timed() { seconds_ += now_s(clock_) - begin_s_; }
   Timed(const Timed&) = delete;
   Timed& operator=(const Timed&) = delete;
 
  private:
   double& seconds_;
-  Clock::time_point begin_;
+  PhaseClock clock_;
+  double begin_s_;
 };
 
 std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
@@ -138,7 +144,7 @@ void Node::note_removals() {
 }
 
 void Node::take_mail() {
-  const Timed timed(mail_s_);
+  const Timed timed(mail_s_, setup_.clock);
   transport_->take(inbox_);
   protocol_->accept(inbox_);
 }
@@ -195,11 +201,11 @@ const StepReport& Node::step() {
   report_.durations.transport_s = std::exchange(mail_s_, 0);
   const core::Changes* changes = nullptr;
   {
-    const Timed timed(report_.durations.protocol_s);
+    const Timed timed(report_.durations.protocol_s, setup_.clock);
     changes = &protocol_->receive(n);
   }
   {
-    const Timed timed(report_.durations.physics_s);
+    const Timed timed(report_.durations.physics_s, setup_.clock);
     for (const core::Order& order : changes->orders) heed(order);
     apply(*changes);
     announce_births(n);
@@ -244,24 +250,27 @@ void Node::note_arrivals(const core::Adoption& adoption) {
 void Node::finish_state() {
   const core::Snapshot* snapshot = nullptr;
   {
-    const Timed timed(report_.durations.physics_s);
+    const Timed timed(report_.durations.physics_s, setup_.clock);
     snapshot = &world_.snapshot();
   }
   if (setup_.hash_states) report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
   count(*snapshot);
   const std::vector<core::Departure>* departures = nullptr;
   {
-    const Timed timed(report_.durations.protocol_s);
+    const Timed timed(report_.durations.protocol_s, setup_.clock);
     departures = &protocol_->observe(*snapshot);
   }
-  watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
-  watch_.compare(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
-  note_contacts(*snapshot);
+  {
+    const Timed timed(report_.durations.watch_s, setup_.clock);
+    watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
+    watch_.compare(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
+    note_contacts(*snapshot);
+  }
   report_.foreign_auras = protocol_->gathering().foreign_auras();
   report_.projecting = protocol_->projection().projecting();
   report_.largest_cluster = protocol_->largest_cluster();
   for (const core::Departure& departure : *departures) release(departure);
-  const Timed timed(report_.durations.transport_s);
+  const Timed timed(report_.durations.transport_s, setup_.clock);
   transport_->send(protocol_->outbox());
 }
 
@@ -274,7 +283,7 @@ void Node::note_contacts(const core::Snapshot& snapshot) {
 void Node::release(const core::Departure& departure) {
   core::ClusterState cluster;
   {
-    const Timed timed(report_.durations.physics_s);
+    const Timed timed(report_.durations.physics_s, setup_.clock);
     cluster = world_.release(departure.bodies);
   }
   for (const core::BodyRecord& body : cluster.bodies) {
@@ -288,7 +297,7 @@ void Node::release(const core::Departure& departure) {
     row.touched = touched_.erase(body.id) > 0;
     report_.departed.push_back(body);
   }
-  const Timed timed(report_.durations.protocol_s);
+  const Timed timed(report_.durations.protocol_s, setup_.clock);
   protocol_->hand_over(departure, std::move(cluster));
 }
 

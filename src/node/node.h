@@ -21,10 +21,17 @@
 
 namespace aurasim::node {
 
+/// What the durations of a step count.
+enum class PhaseClock : std::uint8_t {
+  kWall,       ///< what a frame takes
+  kThreadCpu,  ///< what the node's thread does, however busy the machine is
+};
+
 struct NodeSetup {
   core::ProtocolSettings protocol;
   physics::Settings physics;
   bool hash_states = true;
+  PhaseClock clock = PhaseClock::kWall;
 };
 
 /// One body's change of host, as the receiver or (on reclaim) the sender saw it.
@@ -51,11 +58,12 @@ struct HashPart {
   std::uint64_t sum = 0;
 };
 
-/// Seconds spent in the phases of one step.
+/// Seconds spent in the phases of one step, by NodeSetup::clock.
 struct Durations {
   double physics_s = 0;    ///< apply, step, snapshot, release
   double protocol_s = 0;   ///< receive, observe
   double transport_s = 0;  ///< take, decode, encode, send
+  double watch_s = 0;      ///< late and missed collisions, counts: for the report alone
 };
 
 /// The mesh of this content, for this use, if the process has it.

@@ -32,6 +32,17 @@ struct Move {
   bool adopted = false;  ///< the destination has said so
 };
 
+std::filesystem::path of_region(const std::filesystem::path& folder, std::size_t region, const char* name) {
+  return Recorder::region_folder(folder, core::RegionId{static_cast<std::uint32_t>(region)}) / name;
+}
+
+/// What a node wrote when it ended.
+Json last_word_of(const std::filesystem::path& folder, std::size_t region) {
+  std::ifstream in(of_region(folder, region, "node.json"));
+  Json node = in ? Json::parse(in, nullptr, false) : Json();
+  return node.is_object() ? node : Json{{"region", region}, {"outcome", "died"}};
+}
+
 class Merge {
  public:
   Merge(const std::filesystem::path& folder, const RunFacts& facts) : folder_(folder), facts_(facts) {}
@@ -49,10 +60,6 @@ class Merge {
   }
 
  private:
-  std::filesystem::path of_region(std::size_t region, const char* name) const {
-    return Recorder::region_folder(folder_, core::RegionId{static_cast<std::uint32_t>(region)}) / name;
-  }
-
   bool died(std::uint64_t region) const {
     return std::any_of(facts_.died.begin(), facts_.died.end(),
                        [&](core::RegionId id) { return core::value_of(id) == region; });
@@ -63,7 +70,7 @@ class Merge {
     if (!out) throw std::runtime_error(fmt::format("cannot write {}", (folder_ / name).string()));
     bool header = false;
     for (std::size_t r = 0; r < facts_.regions; ++r) {
-      std::ifstream in(of_region(r, name));
+      std::ifstream in(of_region(folder_, r, name));
       std::string line;
       if (!std::getline(in, line)) continue;
       if (!header) out << line << '\n';
@@ -96,14 +103,15 @@ class Merge {
 
   void read_bodies() {
     for (std::size_t r = 0; r < facts_.regions; ++r) {
-      read_csv(of_region(r, "births.csv"), [&](const Cells& c) {
+      read_csv(of_region(folder_, r, "births.csv"), [&](const Cells& c) {
         if (c.size() == 3) first_host_.try_emplace(whole(c[1]), whole(c[0]));
       });
-      read_csv(of_region(r, "removals.csv"), [&](const Cells& c) {
+      read_csv(of_region(folder_, r, "removals.csv"), [&](const Cells& c) {
         if (c.size() == 3) removed_.insert(whole(c[1]));
       });
-      read_csv(of_region(r, "bodies.csv"), [&](const Cells& c) {
-        if (c.size() != 12) return;
+      // What a fenced node believes to host has other hosts by now, or is written off.
+      read_csv(of_region(folder_, r, "bodies.csv"), [&](const Cells& c) {
+        if (c.size() != 12 || died(r)) return;
         const std::uint64_t body = whole(c[1]);
         if (c[4] == "here") ++hosts_[body];
         alive_.insert(body);
@@ -113,18 +121,13 @@ class Merge {
   }
 
   void read_nodes() {
-    for (std::size_t r = 0; r < facts_.regions; ++r) {
-      std::ifstream in(of_region(r, "node.json"));
-      Json node = in ? Json::parse(in, nullptr, false) : Json();
-      if (!node.is_object()) node = Json{{"region", r}, {"outcome", "died"}};
-      nodes_.push_back(std::move(node));
-    }
+    for (std::size_t r = 0; r < facts_.regions; ++r) nodes_.push_back(last_word_of(folder_, r));
   }
 
   void add_hashes() const {
     std::map<std::uint64_t, std::uint64_t> sums;
     for (std::size_t r = 0; r < facts_.regions; ++r) {
-      read_csv(of_region(r, "state_hash.csv"), [&](const Cells& c) { sums[whole(c[0])] += whole(c[1], 16); });
+      read_csv(of_region(folder_, r, "state_hash.csv"), [&](const Cells& c) { sums[whole(c[0])] += whole(c[1], 16); });
     }
     std::ofstream out(folder_ / "state_hash.csv");
     out << "step,hash\n";
@@ -270,6 +273,16 @@ void clear_report(const std::filesystem::path& folder) {
                         name == "migrations.csv" || name == "violations.csv" || name == "state_hash.csv";
     if (region || merged) std::filesystem::remove_all(entry.path());
   }
+}
+
+std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions) {
+  std::vector<core::RegionId> without;
+  for (std::size_t r = 0; r < regions; ++r) {
+    if (last_word_of(folder, r).value("outcome", "") != "finished") {
+      without.push_back(core::RegionId{static_cast<std::uint32_t>(r)});
+    }
+  }
+  return without;
 }
 
 Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts) { return Merge(folder, facts).run(); }

@@ -36,6 +36,9 @@ struct Accounts {
 /// Removes what an earlier run has left in `folder` (region_* and the merged files). Leaves everything else alone.
 void clear_report(const std::filesystem::path& folder);
 
+/// Regions 0 to `regions` - 1 whose records in `folder` do not say that they came to the run's end.
+std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions);
+
 /// Reads `folder`/region_*; writes summary.json, steps.csv, collisions.csv, migrations.csv, violations.csv and
 /// state_hash.csv into `folder`. Throws std::runtime_error when it cannot write.
 Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts);

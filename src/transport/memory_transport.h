@@ -30,6 +30,7 @@ class MemoryNetwork {
 
   /// What is sent from now on leaves this much later (the sender's frame time).
   void set_send_delay(double delay_s) { send_delay_s_ = delay_s; }
+  double send_delay_s() const { return send_delay_s_; }
 
   /// The region's process is gone: it sends and takes nothing more. What it sent before still arrives, but for the
   /// messages not yet on the link; the others hear of its death `lease_s` later.

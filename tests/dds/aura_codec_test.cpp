@@ -1,12 +1,16 @@
 // Aura batches and acks as wire types and back: exact, and whatever is not sound is refused for the right reason.
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "aurasim.h"
 #include "dds/codec.h"
+#include "dds/packed_rotation.h"
+#include "dds/wire_bytes.h"
 #include "messages.h"
 
 namespace aurasim::dds {
@@ -35,7 +39,7 @@ wire::AuraBatch encoded(const core::AuraBatch& batch) {
   return out;
 }
 
-TEST(AuraCodec, RoundTripKeepsEveryBit) {
+TEST(AuraCodec, RoundTripKeepsAllButWhatRoundingTakes) {
   for (const std::size_t auras : {0U, 1U, 1000U}) {
     const core::AuraBatch batch = batch_of(auras);
     const auto decoded = decode(encoded(batch), expected());
@@ -59,6 +63,68 @@ TEST(AuraCodec, OrdersOfEveryKindComeBack) {
     EXPECT_EQ(got.orders[i].at_step, batch.orders[i].at_step);
   }
   EXPECT_EQ(encoded(got), sent) << "every number of every order";
+}
+
+/// Whoever is further out than grains reach takes doubles for its whole batch, and loses nothing.
+TEST(AuraCodec, PlacesFarOutAreKeptToTheBit) {
+  core::AuraBatch batch = batch_of(3);
+  batch.updates[1].pose.p_WB = core::Vec3(0.1, -6e5 / 7, 1e6 / 3);
+  EXPECT_TRUE(encoded(batch).p_WB().empty());
+  batch.updates[1].pose.p_WB.x() = -1e7 / 3;
+  const auto decoded = decode(encoded(batch), expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(std::get<core::AuraBatch>(decoded).updates[i].pose.p_WB, batch.updates[i].pose.p_WB);
+  }
+}
+
+/// A receiver may think a body faster than it is, never slower.
+TEST(AuraCodec, SpeedsAreRoundedUp) {
+  core::AuraBatch batch = batch_of(1000);
+  const auto decoded = decode(encoded(batch), expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  for (std::size_t i = 0; i < batch.updates.size(); ++i) {
+    EXPECT_GE(std::get<core::AuraBatch>(decoded).updates[i].speed_m_s, batch.updates[i].speed_m_s);
+  }
+}
+
+std::size_t bytes_per_update(bool moving, bool one_speed) {
+  const auto size = [&](std::size_t updates) {
+    core::AuraBatch batch;
+    batch.top_speed_m_s = 32;
+    for (std::size_t i = 0; i < updates; ++i) {
+      core::AuraRecord& aura = batch.updates.emplace_back(testing::aura_of(i));
+      aura.host = batch.source;
+      aura.stamp = batch.stamp;
+      aura.birth = 0;
+      if (!moving) aura.v_WB = aura.w_WB = core::Vec3::Zero();
+      if (one_speed) aura.speed_m_s = 32;
+    }
+    return WireBytes().of(batch).size();
+  };
+  EXPECT_EQ((size(2001) - size(1001)) % 1000, 0U);
+  return (size(2001) - size(1001)) / 1000;
+}
+
+TEST(AuraCodec, AnUpdateTakesFewBytes) {
+  EXPECT_EQ(bytes_per_update(false, true), 37U) << "as with tight and thesis auras; 40 are allowed";
+  EXPECT_EQ(bytes_per_update(true, false), 65U) << "as with swept auras; 80 are allowed";
+}
+
+TEST(PackedRotation, IsWithinItsErrorForEveryRotation) {
+  std::mt19937_64 random(3);
+  const auto u = [&] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1; };
+  for (int i = 0; i < 100'000; ++i) {
+    const core::Quat q = core::Quat(u(), u(), u(), u()).normalized();
+    const auto back = unpacked_rotation(packed(q));
+    ASSERT_TRUE(back) << i;
+    ASSERT_LE(q.angularDistance(*back), core::kRotationError_rad) << i;
+    ASSERT_NEAR(back->norm(), 1, 1e-12);
+  }
+  for (const core::Quat& q : {core::Quat(1, 0, 0, 0), core::Quat(0, 0, -1, 0), core::Quat(0.5, -0.5, 0.5, -0.5),
+                              core::Quat(0, std::sqrt(0.5), 0, -std::sqrt(0.5))}) {
+    ASSERT_LE(q.angularDistance(*unpacked_rotation(packed(q))), core::kRotationError_rad);
+  }
 }
 
 TEST(AuraCodec, AReusedTargetKeepsNothingOfTheLastMessage) {
@@ -110,7 +176,7 @@ TEST_P(SpoiltAuraBatch, IsRefusedForTheRightReason) {
 using Wire = wire::AuraBatch;
 const Spoilt kSpoilt[] = {
     {"BytesThatAreNotTheType", [](Wire& w) { w.version(0); }, WireError::kMalformed},
-    {"OtherVersion", [](Wire& w) { w.version(2); }, WireError::kVersion},
+    {"OtherVersion", [](Wire& w) { w.version(kProtocolVersion + 1); }, WireError::kVersion},
     {"OtherGeneration", [](Wire& w) { w.generation(8); }, WireError::kGeneration},
     {"OtherMap", [](Wire& w) { w.map_version(1); }, WireError::kMapVersion},
     {"OtherSource", [](Wire& w) { w.source(2); }, WireError::kSource},
@@ -119,49 +185,56 @@ const Spoilt kSpoilt[] = {
     {"TooManyDeletes", [](Wire& w) { w.deleted().resize(kMaxRows + 1); }, WireError::kTooLarge},
     {"IdShort", [](Wire& w) { w.id().pop_back(); }, WireError::kLength},
     {"EpochShort", [](Wire& w) { w.epoch().pop_back(); }, WireError::kLength},
-    {"HostLong", [](Wire& w) { w.host().push_back(0); }, WireError::kLength},
+    {"HostLong", [](Wire& w) { w.elsewhere_host().push_back(0); }, WireError::kLength},
     {"PrototypeShort", [](Wire& w) { w.prototype().clear(); }, WireError::kLength},
     {"FlagsShort", [](Wire& w) { w.flags().pop_back(); }, WireError::kLength},
-    {"StampShort", [](Wire& w) { w.state_stamp().pop_back(); }, WireError::kLength},
-    {"BirthShort", [](Wire& w) { w.birth().pop_back(); }, WireError::kLength},
-    {"PositionShortByOneNumber", [](Wire& w) { w.p_WB().pop_back(); }, WireError::kLength},
-    {"QuaternionShort", [](Wire& w) { w.q_WB().resize(7 * 4); }, WireError::kLength},
+    {"StampShort", [](Wire& w) { w.elsewhere_stamp().pop_back(); }, WireError::kLength},
+    {"BirthShort", [](Wire& w) { w.unborn_birth().pop_back(); }, WireError::kLength},
+    {"PositionShortByOneNumber", [](Wire& w) { w.grains_WB().pop_back(); }, WireError::kLength},
+    {"PositionsMissing", [](Wire& w) { w.grains_WB().clear(); }, WireError::kLength},
+    {"PositionsTwice", [](Wire& w) { w.p_WB().resize(8 * 3); }, WireError::kLength},
+    {"PositionsOfBothKinds",
+     [](Wire& w) {
+       w.grains_WB().resize(7 * 3);
+       w.p_WB().resize(3);
+     },
+     WireError::kLength},
+    {"RotationShort", [](Wire& w) { w.rotation_WB().pop_back(); }, WireError::kLength},
     {"VelocityShort", [](Wire& w) { w.v_WB().pop_back(); }, WireError::kLength},
+    {"VelocityWithoutSpin", [](Wire& w) { w.w_WB().clear(); }, WireError::kLength},
     {"SpinLong", [](Wire& w) { w.w_WB().push_back(0); }, WireError::kLength},
     {"SpeedShort", [](Wire& w) { w.speed_m_s().pop_back(); }, WireError::kLength},
     {"MarksDiffer", [](Wire& w) { w.hand_off_last().pop_back(); }, WireError::kLength},
     {"ClaimsDiffer", [](Wire& w) { w.claim_epoch().push_back(1); }, WireError::kLength},
-    {"PositionNan", [](Wire& w) { w.p_WB()[23] = kNan; }, WireError::kNotFinite},
-    {"QuaternionNan", [](Wire& w) { w.q_WB()[0] = kNan; }, WireError::kNotFinite},
-    {"VelocityInfinite", [](Wire& w) { w.v_WB()[5] = -kInfinity; }, WireError::kNotFinite},
-    {"SpinInfinite", [](Wire& w) { w.w_WB()[5] = kInfinity; }, WireError::kNotFinite},
-    {"SpeedNan", [](Wire& w) { w.speed_m_s()[1] = kNan; }, WireError::kNotFinite},
+    {"PositionNan",
+     [](Wire& w) {
+       w.grains_WB().clear();
+       w.p_WB().assign(8 * 3, 0);
+       w.p_WB()[23] = kNan;
+     },
+     WireError::kNotFinite},
+    {"VelocityInfinite", [](Wire& w) { w.v_WB()[5] = -std::numeric_limits<float>::infinity(); }, WireError::kNotFinite},
+    {"SpinInfinite", [](Wire& w) { w.w_WB()[5] = std::numeric_limits<float>::infinity(); }, WireError::kNotFinite},
+    {"SpeedNan", [](Wire& w) { w.speed_m_s()[1] = std::numeric_limits<float>::quiet_NaN(); }, WireError::kNotFinite},
     {"TopSpeedInfinite", [](Wire& w) { w.top_speed_m_s(kInfinity); }, WireError::kNotFinite},
     {"TopRadiusNan", [](Wire& w) { w.top_radius_m(kNan); }, WireError::kNotFinite},
     {"UnknownFlag", [](Wire& w) { w.flags()[3] = 4; }, WireError::kEnum},
-    {"QuaternionTooLong",
+    {"RotationWithABitTooMany", [](Wire& w) { w.rotation_WB()[1] |= 1ULL << 62U; }, WireError::kRotation},
+    {"RotationLongerThanOne",
      [](Wire& w) {
-       w.q_WB()[4] += 0.01;
-       w.q_WB()[5] *= 1.01;
-       w.q_WB()[6] *= 1.01;
-       w.q_WB()[7] *= 1.01;
+       const std::uint64_t most = 0x7'ffffU;  // 0.7 in each of the three components
+       w.rotation_WB()[1] = most | most << 20U | most << 40U;
      },
      WireError::kRotation},
-    {"QuaternionZero",
-     [](Wire& w) {
-       for (int i = 0; i < 4; ++i) {
-         w.q_WB()[i] = 0;
-       }
-     },
-     WireError::kRotation},
-    {"QuaternionWhoseSquareOverflows", [](Wire& w) { w.q_WB()[0] = 1e300; }, WireError::kRotation},
     {"NegativeStamp", [](Wire& w) { w.stamp(-1); }, WireError::kRange},
-    {"NegativeStateStamp", [](Wire& w) { w.state_stamp()[0] = -1; }, WireError::kRange},
-    {"NegativeBirth", [](Wire& w) { w.birth()[0] = -5; }, WireError::kRange},
+    {"NegativeStateStamp", [](Wire& w) { w.elsewhere_stamp()[0] = -1; }, WireError::kRange},
+    {"NegativeBirth", [](Wire& w) { w.unborn_birth()[0] = -5; }, WireError::kRange},
+    {"ElsewhereOfNoRow", [](Wire& w) { w.elsewhere_row()[0] = 8; }, WireError::kRange},
+    {"UnbornOfNoRow", [](Wire& w) { w.unborn_row()[0] = 8; }, WireError::kRange},
     {"NegativeSpeed", [](Wire& w) { w.speed_m_s()[0] = -1; }, WireError::kRange},
     {"NegativeTopSpeed", [](Wire& w) { w.top_speed_m_s(-1); }, WireError::kRange},
     {"NegativeTopRadius", [](Wire& w) { w.top_radius_m(-1); }, WireError::kRange},
-    {"HostNotInTheMap", [](Wire& w) { w.host()[2] = 4; }, WireError::kRange},
+    {"HostNotInTheMap", [](Wire& w) { w.elsewhere_host()[2] = 4; }, WireError::kRange},
     {"PrototypeNotInTheScene", [](Wire& w) { w.prototype()[2] = 7; }, WireError::kRange},
     {"DeadNotInTheMap", [](Wire& w) { w.dead()[0] = 9; }, WireError::kRange},
     {"MarkNotInTheMap", [](Wire& w) { w.hand_off_destination()[0] = 9; }, WireError::kRange},

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "core/aura_precision.h"
 #include "core/messages.h"
 
 namespace aurasim::dds::testing {
@@ -21,7 +23,7 @@ inline core::AuraRecord aura_of(std::uint64_t id) {
   aura.prototype = static_cast<core::PrototypeId>(id % 7);
   aura.flags = static_cast<std::uint8_t>(id % 4);
   aura.stamp = static_cast<core::Step>(id) + 3;
-  aura.birth = static_cast<core::Step>(id % 11);
+  aura.birth = static_cast<core::Step>(2 * (id % 11));
   const auto x = static_cast<double>(id);
   aura.pose = {.p_WB = core::Vec3(0.1 * x, -x / 3, 1e-300), .q_WB = turn(x)};
   aura.v_WB = core::Vec3(1 / 3.0, -0.0, x);
@@ -155,11 +157,19 @@ bool same_rows(const std::vector<Row>& a, const std::vector<Row>& b, Same same_r
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same_row);
 }
 
+inline bool same_as_float(const core::Vec3& a, const core::Vec3& b) {
+  return same_bits(core::Vec3(a.cast<float>().cast<double>()), core::Vec3(b.cast<float>().cast<double>()));
+}
+
+/// But for what the wire takes from places, rotations and speeds (core/aura_precision.h).
 inline bool same(const core::AuraRecord& a, const core::AuraRecord& b) {
+  const auto birth_of = [](const core::AuraRecord& r) { return r.birth > r.stamp ? r.birth : 0; };
+  const core::Vec3 off = a.pose.p_WB - b.pose.p_WB;
+  const double speed_off = std::abs(a.speed_m_s - b.speed_m_s);
   return a.id == b.id && a.epoch == b.epoch && a.host == b.host && a.prototype == b.prototype && a.flags == b.flags &&
-         a.stamp == b.stamp && a.birth == b.birth && same_bits(a.pose.p_WB, b.pose.p_WB) &&
-         same_bits(a.pose.q_WB.coeffs(), b.pose.q_WB.coeffs()) && same_bits(a.v_WB, b.v_WB) &&
-         same_bits(a.w_WB, b.w_WB) && same(a.speed_m_s, b.speed_m_s);
+         a.stamp == b.stamp && birth_of(a) == birth_of(b) && off.cwiseAbs().maxCoeff() <= core::kPositionGrain_m / 2 &&
+         a.pose.q_WB.angularDistance(b.pose.q_WB) <= core::kRotationError_rad && same_as_float(a.v_WB, b.v_WB) &&
+         same_as_float(a.w_WB, b.w_WB) && speed_off <= 2e-7 * a.speed_m_s;
 }
 
 inline bool same(const core::AuraBatch& a, const core::AuraBatch& b) {

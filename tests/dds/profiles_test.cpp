@@ -52,6 +52,19 @@ TEST(Interfaces, AreLoopbackAloneByDefault) {
   EXPECT_THAT(white_list(qos_for(settings_for(0))), ElementsAre("127.0.0.1"));
 }
 
+/// Nothing can be cut there; elsewhere whoever is silent may be cut off.
+TEST(Interfaces, OfWhichAllAreLoopbackKeepTheRunOnThisHost) {
+  EXPECT_TRUE(on_loopback_only(qos_for(settings_for(0))));
+  EXPECT_FALSE(on_loopback_only(qos_for(settings_for(0, "hosts.xml"))));
+  Settings settings = settings_for(0, "hosts.xml");
+  settings.interfaces = {"127.0.0.1"};
+  EXPECT_TRUE(on_loopback_only(qos_for(settings)));
+  settings.interfaces = {"127.0.0.1", "10.1.2.3"};
+  EXPECT_FALSE(on_loopback_only(qos_for(settings)));
+  settings.interfaces = {"*"};
+  EXPECT_FALSE(on_loopback_only(qos_for(settings)));
+}
+
 TEST(Interfaces, OfTheSettingsReplaceThoseOfTheFile) {
   for (const char* file : {"aurasim.xml", "hosts.xml", "peers.xml"}) {
     Settings settings = settings_for(0, file);

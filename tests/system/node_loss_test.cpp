@@ -1,4 +1,4 @@
-// Nodes and launchers that are killed. Domains 133 to 136. The liveliness lease of qos/aurasim.xml is 1 s.
+// Nodes and launchers that are killed. Domains 133 to 136 and 186. The liveliness lease of qos/aurasim.xml is 1 s.
 #include <algorithm>
 #include <csignal>
 #include <map>
@@ -143,6 +143,23 @@ TEST_F(NodeLoss, NoBodyOfADeadNodeIsForgotten) {
   std::set<std::int64_t> forgotten = bodies_born(136, dies_at);
   std::erase_if(forgotten, [&](std::int64_t body) { return known.contains(body); });
   EXPECT_THAT(forgotten, ::testing::IsEmpty());
+}
+
+// Its participant's lease is 5 s: the others have given it up, and it must not go on as if nothing had been.
+TEST_F(NodeLoss, ANodeThatWasHeldUpForLongerThanItsLeaseStops) {
+  const Report report = report_of("run");
+  Process& run = launch("run", launch_file("demo"), 186, {"--duration", "10"});
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
+  const pid_t node = node_of(run, 2);
+  ASSERT_GT(node, 0);
+  ::kill(node, SIGSTOP);
+  const auto until = Clock::now() + 7s;
+  EXPECT_FALSE(wait_until([&] { return Clock::now() > until && !run.running(); }, 7s));
+  ::kill(node, SIGCONT);
+  expect_exit(run, 1);
+  EXPECT_THAT(run.err(), ::testing::HasSubstr("region 2 died (exit code 4)"));
+  expect_all_bodies_accounted_for(report);
+  expect_survivors_finish(report, 2, 600);
 }
 
 TEST_F(NodeLoss, AKilledLauncherTakesItsNodesAlong) {

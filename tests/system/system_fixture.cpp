@@ -55,11 +55,13 @@ std::filesystem::path SystemTest::write(const std::string& name, const std::stri
   return folder_ / name;
 }
 
-Process& SystemTest::start(const Words& words) {
+Process& SystemTest::start_program(const Words& words) {
   const std::filesystem::path prefix = folder_ / ("process_" + std::to_string(processes_.size()));
-  processes_.push_back(std::make_unique<Process>(Words{AURASIM_BINARY_DIR "/aurasim"} + words, prefix));
+  processes_.push_back(std::make_unique<Process>(words, prefix));
   return *processes_.back();
 }
+
+Process& SystemTest::start(const Words& words) { return start_program(Words{AURASIM_BINARY_DIR "/aurasim"} + words); }
 
 Process& SystemTest::launch(const std::string& name, const std::string& file, int domain, const Words& more) {
   return start(Words{"launch", file, "--headless", "--report", (folder_ / name).string()} +

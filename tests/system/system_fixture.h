@@ -38,6 +38,8 @@ class SystemTest : public ::testing::Test {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path write(const std::string& name, const std::string& text) const;
 
+  /// Starts a program; `words[0]` is its path.
+  Process& start_program(const Words& words);
   /// Starts `aurasim` with these words.
   Process& start(const Words& words);
   /// Starts `aurasim launch FILE --headless --report ... --set dds.domain=... ` and more. Its report is

@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+"""Writes docs/scalability.md from the results of the scalability and bandwidth experiments.
+
+    scripts/write_scalability.py DIR [--out docs]
+
+Reads DIR/scalability, DIR/bandwidth and, if it is there, DIR/wall.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+
+from report_parts import machine_line, table
+
+FIGURES = ["fig_5.2_frame_columns", "fig_5.5_frame_corners", "fig_5.6_hand_offs_columns", "fig_5.8_updates_columns",
+           "fig_5.11_cost_over_bodies_log", "fig_5.14_cost_per_body", "fig_5.17_speed_up",
+           "percolation_largest_cluster", "percolation_frame"]
+THESIS = {2: 1.74, 4: 3.40, 8: 4.22}
+WANTED = {2: 3, 4: 7, 8: 14}
+
+INTRODUCTION = """# How much faster are several nodes?
+
+Written by `scripts/scalability.sh`; do not edit. Machine: {machine}. Every number is of this machine and these seeds
+(1 and 2, plus 10 for each repeat), with {repeats} run(s) of each kind.
+
+## What is measured
+
+- **The rain** of A. Brown's thesis, section 5.1 (`launch_configs/columns_rain.yaml`): 160 bodies a second for 60 s,
+  9,600 in all, half of them near the boundaries between regions of 80 m and half in the regions' middles; one substep,
+  tolerances of 32 m/s, 2 ms and 15 ms, so a lookahead of K = 2 steps.
+- **ms CPU**: all nodes of a run compute in virtual time in one thread, and each step of each node is measured by the
+  thread's CPU clock. So the numbers are *work*, not waiting, and more nodes than cores can be compared. A frame is
+  physics, protocol (auras, clusters, hand-offs), transport, and the watch for late collisions, which is for the report.
+- **Transport**: messages are really encoded, serialised as CDR, deserialised, checked and decoded
+  (`src/experiment/scale/wire_post.h`); sockets and RTPS are not in it.
+- **Frame** of a run with several nodes: the slowest node in each step. *max*: of all steps. *p95*: the largest 95th
+  percentile of any window of 5 s. *last*: mean of the last 5 s.
+- Two worlds. **columns**: the rain follows the regions of the run, as in the thesis, so more nodes have a larger and
+  thinner world; one node gets everything into one heap. **cuts**: one world of 8 columns, cut into 1, 2, 4 and 8; the
+  bodies are the same and only the cuts differ.
+- **back**: share of the handed over bodies that return to where they came from within a second. **hosted**: bodies on
+  the fullest node over the mean, at the worst end of a window.
+
+"""
+
+
+def of(runs, series, **wanted):
+    chosen = [r for r in runs if r["series"] == series and all(r[k] == v for k, v in wanted.items())]
+    return sorted(chosen, key=lambda r: (r["nodes"], r["aura"], r["repeat"]))
+
+
+def share(part, whole):
+    return f"{100 * part / whole:.1f}%" if whole else "-"
+
+
+def run_row(r, *first):
+    return list(first) + [f"{r['frame_max_ms']:.1f}", f"{r['frame_p95_ms']:.1f}", f"{r['last_frame_ms']:.1f}",
+                          f"{r['physics_ms']:.1f}", f"{r['protocol_ms']:.2f}", f"{r['transport_ms']:.2f}",
+                          f"{100 * r['overhead_share']:.1f}%", r["projecting"], r["hand_offs"],
+                          share(r["returns"], r["hand_offs"]), r["largest_cluster"], f"{r['most_hosted_share']:.2f}",
+                          r["late"], r["violations"]]
+
+
+RUN_HEADER = ["frame max, ms CPU", "p95", "last", "physics, all nodes", "protocol", "transport",
+              "protocol + transport / physics", "projecting", "handed over", "back", "largest cluster", "hosted",
+              "late", "violations"]
+
+
+def runs_table(runs, first_header, first_cells):
+    return table(first_header + RUN_HEADER, [run_row(r, *first_cells(r)) for r in runs]) if runs else "Not run.\n\n"
+
+
+def requirement(name, found, bound, met):
+    return [name, found, bound, "met" if met else "**not met**"]
+
+
+def speed_up_of(summary, series, aura, nodes):
+    found = [r for r in summary["speed_up"] if (r["series"], r["aura"], r["nodes"]) == (series, aura, nodes)]
+    return found[0] if found else None
+
+
+def requirements(summary, sizes, wall):
+    rows = []
+    for series in ("columns", "cuts"):
+        for nodes, wanted in WANTED.items():
+            r = speed_up_of(summary, series, "swept", nodes)
+            if r:
+                found = r["frame_max"]["median"]
+                rows.append(requirement(f"max frame, {nodes} nodes against 1, by CPU time, {series}, swept "
+                                        f"(thesis {THESIS[nodes]})", f"{found:.2f}", f"at least {wanted}", found >= wanted))
+    if wall:
+        for series in ("columns", "cuts"):
+            r = speed_up_of(wall, series, "swept", 2)
+            if r:
+                found = r["frame_max"]["median"]
+                rows.append(requirement(f"max frame, 2 nodes against 1, wall clock over DDS, {series}", f"{found:.2f}",
+                                        "at least 3", found >= 3))
+    for r in of(summary["runs"], "columns", nodes=2, aura="swept")[:1]:
+        found = 100 * r["overhead_share"]
+        rows.append(requirement(f"protocol + transport / physics, 2 nodes of {r['bodies'] // 2} bodies, half of them "
+                                f"near the border ({r['projecting']} project)", f"{found:.1f}%", "below 10%", found < 10))
+    for aura, most in (("tight", 40), ("swept", 80)):
+        found = sizes["aura_update"][aura]
+        rows.append(requirement(f"bytes of an aura update, {aura}", f"{found:.0f}", f"at most {most}", found <= most))
+    return table(["requirement", "found", "wanted", ""], rows)
+
+
+def speed_up_table(summary):
+    rows = []
+    for r in sorted(summary["speed_up"], key=lambda r: (r["series"], r["nodes"], r["aura"])):
+        spread = f" ({r['frame_max']['least']:.2f} to {r['frame_max']['most']:.2f})" if r["repeats"] > 1 else ""
+        rows.append([r["series"], r["nodes"], r["aura"], f"{r['frame_max']['median']:.2f}{spread}",
+                     f"{r['frame_p95']['median']:.2f}", f"{r['last_frame']['median']:.2f}",
+                     f"{r['fitted']['median']:.2f}", r.get("thesis", "")])
+    return table(["series", "nodes", "aura", "max frame", "p95", "last 5 s", "fitted coefficients", "thesis (fitted)"], rows)
+
+
+def overhead_table(summary):
+    """Thesis 5.1.3: what a boundary body costs more than one in the middle."""
+    rows = []
+    for series in ("cuts",):
+        central = of(summary["runs"], series, nodes=1)
+        for r in of(summary["runs"], series, aura="swept"):
+            if r["nodes"] == 1 or not central or not r["projecting"]:
+                continue
+            sum_ms = r["physics_ms"] + r["protocol_ms"] + r["transport_ms"] + r["watch_ms"]
+            c = central[0]
+            central_ms = c["physics_ms"] + c["protocol_ms"] + c["transport_ms"] + c["watch_ms"]
+            rows.append([r["nodes"], f"{sum_ms:.1f}", f"{central_ms:.1f}", r["projecting"],
+                         f"{1e3 * (r['protocol_ms'] + r['transport_ms']) / r['projecting']:.1f}",
+                         f"{1e3 * sum_ms / r['bodies']:.1f}"])
+    return table(["nodes", "all nodes, ms CPU per step", "one node", "projecting",
+                  "protocol and transport per projecting body, us", "cost per body, us"], rows)
+
+
+def sizes_table(sizes):
+    return table(["message", "bytes"],
+                 [["aura batch with nothing in it", sizes["aura_batch"]]]
+                 + [[f"each aura update, {k}", f"{v:.0f}"] for k, v in sizes["aura_update"].items()]
+                 + [["each aura deleted", f"{sizes['aura_delete']:.0f}"], ["hand-off with nothing in it", sizes["hand_off"]],
+                    ["each body handed over", f"{sizes['hand_off_body']:.0f}"],
+                    ["each contact point handed over", f"{sizes['hand_off_contact_point']:.0f}"],
+                    ["acknowledgement", sizes["ack"]]])
+
+
+def traffic_row(r, *first):
+    node_steps = r["nodes"] * r["steps"]
+    return list(first) + [f"{r['link_bytes'] / node_steps:.0f}", f"{r['datagrams'] / node_steps:.2f}",
+                          f"{r['aura_bytes'] / max(1, r['aura_updates']):.1f}",
+                          f"{r['hand_off_bytes'] / max(1, r['hand_offs']):.0f}", r["hand_offs"],
+                          f"{r['slow_down']:.2f}", r["late"], r["violations"]]
+
+
+def traffic_table(runs, first_header, first_cells):
+    header = first_header + ["bytes per node and step", "datagrams of 1,300 bytes", "bytes per aura message, batch and all",
+                             "bytes per body handed over", "handed over", "time taken / simulated", "late", "violations"]
+    return table(header, [traffic_row(r, *first_cells(r)) for r in runs])
+
+
+def bandwidth(directory):
+    summary = json.loads((directory / "summary.json").read_text())
+    sizes = json.loads((directory / "sizes.json").read_text())
+    text = "## Bandwidth\n\nPayloads of RTPS DATA, as Fast CDR writes them; RTPS, UDP and IP add about 100 bytes for each "
+    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 20 s.\n\n"
+    text += sizes_table(sizes)
+    text += "### By speed\n\n"
+    text += traffic_table(sorted(of(summary["runs"], "speed"), key=lambda r: (r["fall_m_s"], r["aura"])),
+                          ["speed at birth, m/s per axis", "aura"], lambda r: (f"{r['fall_m_s']:g}", r["aura"]))
+    text += "### As the link shrinks\n\nVirtual time, `bounded`: nodes wait for what a narrow link has not brought yet, "
+    text += "so the world slows down and nothing is late.\n\n"
+    text += traffic_table(sorted(of(summary["runs"], "link"), key=lambda r: (-r["bandwidth_B_s"], r["aura"])),
+                          ["link of each node, kB/s", "aura"], lambda r: (f"{r['bandwidth_B_s'] / 1e3:g}", r["aura"]))
+    return sizes, text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs"))
+    arguments = parser.parse_args()
+    directory = arguments.directory
+    summary = json.loads((directory / "scalability" / "summary.json").read_text())
+    runs = summary["runs"]
+    wall_file = directory / "wall" / "summary.json"
+    wall = json.loads(wall_file.read_text()) if wall_file.exists() else None
+    sizes, bandwidth_text = bandwidth(directory / "bandwidth")
+
+    text = INTRODUCTION.format(machine=machine_line(), repeats=1 + max(r["repeat"] for r in runs))
+    text += "## What has to hold, and what was found\n\n" + requirements(summary, sizes, wall)
+    text += "## Speed-up\n\nOne node's frame over the slowest node's. The thesis's numbers are ratios of fitted "
+    text += "coefficients (log10 of the frame time over bodies).\n\n" + speed_up_table(summary)
+    text += "## Columns: the rain follows the regions\n\nTimes other than frames are sums over the nodes, means of the last "
+    text += "5 s; late collisions of one node are those that one world has, too.\n\n"
+    text += runs_table(of(runs, "columns"), ["nodes", "aura"], lambda r: (r["nodes"], r["aura"]))
+    text += "## Cuts: one world of 8 columns\n\n"
+    text += runs_table(of(runs, "cuts"), ["nodes", "aura"], lambda r: (r["nodes"], r["aura"]))
+    text += "### What a boundary costs (thesis 5.1.3)\n\n" + overhead_table(summary)
+    text += "## Corners\n\n" + runs_table(of(runs, "corners"), ["regions"], lambda r: (r["regions"],))
+    text += "## Weak scaling: 20 bodies a second and node\n\n"
+    text += runs_table(of(runs, "weak"), ["nodes", "bodies"], lambda r: (r["nodes"], r["bodies"]))
+    text += "## Share of the bodies that fall near the border, 2 nodes\n\n"
+    text += runs_table(sorted(of(runs, "border"), key=lambda r: r["border_share"]), ["share"],
+                       lambda r: (f"{100 * r['border_share']:g}%",))
+    text += "## Asleep\n\nThe rain stops half way; in the last 5 s some sleep.\n\n"
+    text += runs_table(of(runs, "asleep"), ["bodies", "awake"], lambda r: (r["bodies"], r["awake"]))
+    text += "## U: how far a body may leave its path, 4 nodes\n\n"
+    text += runs_table(sorted(of(runs, "uncertainty"), key=lambda r: r["uncertainty"]), ["U"],
+                       lambda r: (f"{r['uncertainty']:g}",))
+    text += "## K: how far nodes may be apart, 4 nodes\n\n"
+    text += runs_table(sorted(of(runs, "lookahead"), key=lambda r: r["lookahead"]), ["K"], lambda r: (r["lookahead"],))
+    if wall:
+        text += "## Real nodes over DDS, wall clock\n\nms are of the wall clock here.\n\n"
+        text += runs_table(of(wall["runs"], "columns") + of(wall["runs"], "cuts"),
+                           ["series", "nodes", "time taken / simulated"],
+                           lambda r: (r["series"], r["nodes"], f"{r['slow_down']:.2f}"))
+    text += bandwidth_text
+    text += "## Figures\n\n"
+    figures = directory / "scalability" / "figures"
+    (arguments.out / "scalability").mkdir(parents=True, exist_ok=True)
+    for name in FIGURES:
+        if (figures / f"{name}.png").exists():
+            shutil.copy(figures / f"{name}.png", arguments.out / "scalability" / f"{name}.png")
+            text += f"![{name}](scalability/{name}.png)\n\n"
+    (arguments.out / "scalability.md").write_text(text.rstrip("\n") + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,14 @@
+// The report of a whole run, merged from what its nodes have recorded, and told in a few lines.
+#pragma once
+
+#include <filesystem>
+
+#include "cli/node_process.h"
+#include "node/report.h"
+
+namespace aurasim::cli {
+
+/// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice.
+ExitCode merge_and_tell(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far);
+
+}  // namespace aurasim::cli

@@ -1,0 +1,95 @@
+#include "cli/rain_processes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/launch_setup.h"
+#include "experiment/scale/rain_run.h"
+#include "node/csv.h"
+
+namespace aurasim::cli {
+namespace {
+
+using Cells = std::vector<std::string_view>;
+
+/// Waits for it. True if it ended well.
+bool run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t pid = ::fork();
+  if (pid < 0) throw std::runtime_error("cannot start a process");
+  if (pid == 0) {
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  while (::waitpid(pid, &status, 0) != pid) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Columns as in node::Recorder.
+experiment::StepLoad load_of(const Cells& cells) {
+  experiment::StepLoad load;
+  load.physics_ms = node::number(cells[4]);
+  load.protocol_ms = node::number(cells[5]);
+  load.transport_ms = node::number(cells[6]);
+  load.watch_ms = std::max(0.0, node::number(cells[2]) - load.physics_ms - load.protocol_ms - load.transport_ms);
+  load.bodies = node::whole(cells[7]);
+  load.awake = node::whole(cells[8]);
+  load.foreign = node::whole(cells[9]);
+  load.projecting = node::whole(cells[10]);
+  load.largest_cluster = node::whole(cells[11]);
+  load.departures = node::whole(cells[12]);
+  load.violations = node::whole(cells[14]);
+  return load;
+}
+
+}  // namespace
+
+std::vector<experiment::Window> windows_of_report(const std::filesystem::path& report, std::size_t regions,
+                                                  double step_s) {
+  experiment::WindowSums sums(regions, std::llround(experiment::kWindow_s / step_s), step_s);
+  std::vector<std::uint64_t> violations(regions, 0);
+  node::read_csv(report / "steps.csv", [&](const Cells& cells) {
+    const std::size_t region = node::whole(cells.at(0));
+    const auto step = static_cast<core::Step>(node::whole(cells.at(1)));
+    if (step == 0) return;
+    experiment::StepLoad load = load_of(cells);
+    const std::uint64_t so_far = load.violations;  // since the start
+    load.violations -= violations.at(region);
+    violations[region] = so_far;
+    sums.add(region, step, load);
+  });
+  std::vector<experiment::Window> windows = sums.windows();
+  std::ifstream in(report / "summary.json");
+  const double real_time_factor = nlohmann::json::parse(in).value("real_time_factor", 0.0);
+  for (experiment::Window& window : windows) window.slow_down = real_time_factor > 0 ? 1 / real_time_factor : 0;
+  return windows;
+}
+
+std::optional<std::vector<experiment::Window>> run_processes(const experiment::Rain& rain,
+                                                             const std::filesystem::path& launch_file,
+                                                             const std::vector<std::string>& more,
+                                                             const std::filesystem::path& report) {
+  std::vector<std::string> overrides = rain.overrides();
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  const config::Launch launch = config::read_launch(launch_file, overrides);
+  std::filesystem::create_directories(report);
+  std::vector<std::string> words = {
+      executable_for(launch.physics.precision).string(), "launch",   launch_file.string(), "--headless", "--steps",
+      std::to_string(rain.steps(launch.step_s())),       "--report", report.string()};
+  for (const std::string& change : overrides) words.insert(words.end(), {"--set", change});
+  if (!run_program(std::move(words))) return std::nullopt;
+  return windows_of_report(report, launch.regions.size(), launch.step_s());
+}
+
+}  // namespace aurasim::cli

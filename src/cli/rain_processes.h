@@ -1,0 +1,25 @@
+// The rain on real nodes: one process per region over DDS on this host, by the wall clock.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/scale/rain.h"
+#include "experiment/scale/window.h"
+
+namespace aurasim::cli {
+
+/// Runs `aurasim launch` on the launch file with the rain's overrides and `more`, and reads its report. Nothing when
+/// the run fails. In these windows times are of the wall clock; `aura_bytes` and the like are 0.
+std::optional<std::vector<experiment::Window>> run_processes(const experiment::Rain& rain,
+                                                             const std::filesystem::path& launch_file,
+                                                             const std::vector<std::string>& more,
+                                                             const std::filesystem::path& report);
+
+/// The steps of a report.
+std::vector<experiment::Window> windows_of_report(const std::filesystem::path& report, std::size_t regions,
+                                                  double step_s);
+
+}  // namespace aurasim::cli

@@ -1,0 +1,142 @@
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "cli/node_process.h"
+#include "cli/progress_bar.h"
+#include "cli/rain_processes.h"
+#include "cli/stop_signal.h"
+#include "experiment/scale/message_sizes.h"
+#include "experiment/scale/rain_summary.h"
+#include "experiment/scale/scalability.h"
+
+namespace aurasim::cli {
+namespace {
+
+struct Arguments {
+  experiment::ScalabilityPlan plan;
+  std::filesystem::path launch_file = AURASIM_SOURCE_DIR "/launch_configs/columns_rain.yaml";
+  std::filesystem::path out;
+  int threads = 2;
+  bool processes = false;
+  std::vector<std::string> overrides;
+};
+
+experiment::RainPlace place_of(const Arguments& arguments) {
+  experiment::RainPlace place;
+  place.launch_file = arguments.launch_file;
+  place.setup_of = [](const config::Launch& launch, core::RegionId region) { return node_setup(launch, region, 0); };
+  return place;
+}
+
+void print(const nlohmann::json& speed_ups) {
+  fmt::print("{:<9} {:<7} {:>5}  {:>9} {:>9} {:>9} {:>9} {:>7}\n", "series", "aura", "nodes", "max frame", "p95",
+             "last", "fitted", "thesis");
+  for (const auto& row : speed_ups) {
+    const auto median_of = [&](const char* key) { return row[key]["median"].get<double>(); };
+    fmt::print("{:<9} {:<7} {:>5}  {:>9.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}\n", row["series"].get<std::string>(),
+               row["aura"].get<std::string>(), row["nodes"].get<int>(), median_of("frame_max"), median_of("frame_p95"),
+               median_of("last_frame"), median_of("fitted"),
+               row.contains("thesis") ? fmt::format("{:.2f}", row["thesis"].get<double>()) : "");
+  }
+}
+
+/// False when it was told to stop.
+bool run(const std::vector<experiment::Rain>& rains, const Arguments& arguments) {
+  catch_stop_signals();
+  std::atomic<bool> stop = false;
+  ProgressBar bar;
+  const bool finished = experiment::run_rains(
+      rains, place_of(arguments), arguments.out, arguments.threads,
+      [&](const experiment::Progress& progress) {
+        bar.show(progress);
+        if (stop_requested()) stop = true;
+      },
+      stop);
+  bar.end();
+  if (!finished) spdlog::warn("stopped; the same command goes on from here");
+  return finished;
+}
+
+/// One after the other, since they measure the wall clock. False when one of them has failed.
+bool run_as_processes(const std::vector<experiment::Rain>& rains, const Arguments& arguments) {
+  std::filesystem::create_directories(arguments.out / "runs");
+  for (const experiment::Rain& rain : rains) {
+    const std::filesystem::path file = experiment::windows_file(arguments.out, rain);
+    if (std::filesystem::exists(file)) continue;
+    const auto windows =
+        run_processes(rain, arguments.launch_file, arguments.overrides, arguments.out / "reports" / rain.name());
+    if (!windows) return false;
+    experiment::write_windows(file, *windows);
+  }
+  return true;
+}
+
+int exit_code(bool finished) { return static_cast<int>(finished ? ExitCode::kOk : ExitCode::kFailed); }
+
+int run_scalability(const Arguments& arguments) {
+  const std::vector<experiment::Rain> rains = experiment::rains_of(arguments.plan);
+  const bool finished = arguments.processes ? run_as_processes(rains, arguments) : run(rains, arguments);
+  print(experiment::summarise_rains(rains, arguments.out)["speed_up"]);
+  return exit_code(finished);
+}
+
+int run_bandwidth(const Arguments& arguments) {
+  const std::vector<experiment::Rain> rains = experiment::rains_of(arguments.plan);
+  const bool finished = run(rains, arguments);
+  experiment::summarise_rains(rains, arguments.out);
+  const nlohmann::json sizes = experiment::message_sizes();
+  std::ofstream(arguments.out / "sizes.json") << sizes.dump(1) << '\n';
+  const double tight = sizes["aura_update"]["tight"];
+  const double swept = sizes["aura_update"]["swept"];
+  fmt::print("{} bytes for each tight aura (at most 40), {} for each swept one (at most 80), {} for a batch of none\n",
+             tight, swept, sizes["aura_batch"].get<int>());
+  return exit_code(finished && tight <= 40 && swept <= 80);
+}
+
+void add_options(CLI::App& command, const std::shared_ptr<Arguments>& a, const std::vector<std::string>& series) {
+  a->plan.series = series;
+  command.add_option("--out", a->out, "folder for the results; runs that it holds are not repeated")->required();
+  command.add_option("--launch", a->launch_file, "launch file whose rain it is");
+  command.add_option("--series", a->plan.series, "what to vary")->delimiter(',')->check(CLI::IsMember(series));
+  command.add_option("--aura", a->plan.auras, "auras to try in the series columns, cuts, speed and link")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"thesis", "tight", "swept"}));
+  command.add_option("--rate", a->plan.rate_per_s, "bodies per second")->check(CLI::Range(1.0, 1e4));
+  command.add_option("--seconds", a->plan.run_s, "simulated time of each run")->check(CLI::Range(5.0, 3600.0));
+  command.add_option("--substeps", a->plan.substeps, "physics substeps in each step")->check(CLI::Range(1, 16));
+  command.add_option("--repeats", a->plan.repeats, "runs of each kind, each with other bodies")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--threads", a->threads, "runs at the same time")->check(CLI::Range(1, 64));
+}
+
+}  // namespace
+
+void add_scalability(CLI::App& experiment, Action& action) {
+  CLI::App* command = experiment.add_subcommand(
+      "scalability", "rain on 1 to 10 nodes: CPU time of each node and step, in virtual time (thesis 5.1)");
+  const auto a = std::make_shared<Arguments>();
+  add_options(*command, a, experiment::scalability_series());
+  command->add_flag("--processes", a->processes, "real nodes over DDS on this host, by the wall clock");
+  command->add_option("--set", a->overrides, "key.path=value, as for launch; with --processes");
+  command->add_option("--columns", a->plan.columns, "numbers of columns")->delimiter(',')->check(CLI::Range(1, 64));
+  command->callback([a, &action] { action = [a] { return run_scalability(*a); }; });
+}
+
+void add_bandwidth(CLI::App& experiment, Action& action) {
+  CLI::App* command = experiment.add_subcommand(
+      "bandwidth", "bytes of auras and hand-offs by speed and aura, and what narrow links do, in virtual time");
+  const auto a = std::make_shared<Arguments>();
+  a->plan.run_s = 20;
+  add_options(*command, a, experiment::bandwidth_series());
+  command->callback([a, &action] { action = [a] { return run_bandwidth(*a); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,26 @@
+// Auras as columns of a wire::AuraBatch, in as few bytes as their use allows (docs/protocol.md): 37 each where only
+// places matter, 65 with motion. Positions, rotations and velocities are rounded (core/aura_precision.h).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/messages.h"
+#include "dds/wire_error.h"
+
+namespace aurasim::wire {
+class AuraBatch;
+}
+
+namespace aurasim::dds {
+
+/// Writes the updates of `batch` into the columns of `out`, whose header is already there.
+void encode_auras(const core::AuraBatch& batch, wire::AuraBatch& out);
+
+/// What is wrong with the columns; nothing if they can be decoded.
+std::optional<WireError> check_auras(const wire::AuraBatch& in, const Expected& expected);
+
+/// Columns that check_auras has found good.
+std::vector<core::AuraRecord> decode_auras(const wire::AuraBatch& in);
+
+}  // namespace aurasim::dds

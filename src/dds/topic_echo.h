@@ -1,0 +1,38 @@
+// Samples of any topic of a run as JSON, for people and scripts. Knows no topic by itself: names and kinds of members
+// come from the TypeObjects that every process publishes, through Fast DDS's dynamic types.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "dds/participant.h"
+
+namespace aurasim::dds {
+
+/// Names of all topics, in the order of DESIGN section 7.
+std::vector<std::string> topic_names();
+
+/// Used by one thread. The participant must outlive it.
+class TopicEcho {
+ public:
+  /// Reads `topic` in partitions that match `partition` ("region/*", "world", "*"). Throws std::invalid_argument when
+  /// there is no such topic, DdsError when there can be no reader.
+  TopicEcho(Participant& participant, const std::string& topic, const std::string& partition);
+  ~TopicEcho();
+
+  /// The next sample; members in the order of the IDL. Infinite numbers are null. Nothing: none has come.
+  std::optional<nlohmann::ordered_json> take();
+  /// Returns when something has come, or at the time-out.
+  void wait(std::chrono::nanoseconds time_out);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aurasim::dds

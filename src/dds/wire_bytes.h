@@ -1,0 +1,33 @@
+// Messages as the bytes that Fast DDS puts into a sample, and back: for measuring them, and for runs without DDS that
+// are to pay for coding.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dds/codec.h"
+
+namespace aurasim::dds {
+
+/// CDR with its four bytes of encapsulation, as in the payload of an RTPS DATA submessage. Keep one per thread: it
+/// reuses its memory.
+class WireBytes {
+ public:
+  WireBytes();
+  ~WireBytes();
+
+  std::vector<std::uint8_t> of(const core::AuraBatch& batch);
+  std::vector<std::uint8_t> of(const core::HandOff& hand_off);
+  std::vector<std::uint8_t> of(const core::HandOffAck& ack, std::uint64_t map_version);
+
+  Decoded<core::AuraBatch> aura(std::span<const std::uint8_t> bytes, const Expected& expected);
+  Decoded<core::HandOff> hand_off(std::span<const std::uint8_t> bytes, const Expected& expected);
+
+ private:
+  struct Samples;
+  std::unique_ptr<Samples> samples_;
+};
+
+}  // namespace aurasim::dds

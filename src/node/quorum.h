@@ -1,0 +1,48 @@
+// May a node go on without those that have fallen silent? A host that is cut off sees the same as one whose neighbours
+// have all died; if it went on, there would be two worlds. So whoever has lost others goes on only with the majority
+// (docs/decisions/0011). Time is passed in.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <set>
+
+#include "core/ids.h"
+
+namespace aurasim::node {
+
+/// What is known of another region's node.
+struct PeerSign {
+  bool lost = false;  ///< its proof of life has ended
+  bool left = false;  ///< it has said that it ends
+  std::chrono::steady_clock::time_point heard;
+};
+
+enum class Standing : std::uint8_t {
+  kGoOn,
+  kWait,    ///< others were lost just now; not yet enough of the rest have been heard since
+  kCutOff,  ///< not the majority: this node has to stop
+};
+
+class Quorum {
+ public:
+  /// Regions 0 to `regions` - 1 are members, until they leave or the rest goes on without them.
+  Quorum(core::RegionId self, std::uint32_t regions);
+
+  /// Half of the members are enough for those among whom is the lowest member. A region without a sign counts as not
+  /// heard of. `now` never goes back.
+  Standing judge(const std::map<core::RegionId, PeerSign>& signs, std::chrono::steady_clock::time_point now);
+
+  const std::set<core::RegionId>& members() const { return members_; }
+  /// Members lost since the rest last agreed to go on; after kCutOff, those that were missed.
+  const std::set<core::RegionId>& lost() const { return lost_; }
+
+ private:
+  core::RegionId self_;
+  std::set<core::RegionId> members_;
+  std::set<core::RegionId> lost_;
+  std::chrono::steady_clock::time_point lost_since_;  ///< when the latest of them was lost
+};
+
+}  // namespace aurasim::node
