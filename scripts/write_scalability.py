@@ -3,7 +3,7 @@
 
     scripts/write_scalability.py DIR [--out docs]
 
-Reads DIR/scalability, DIR/bandwidth and, if it is there, DIR/wall.
+Reads DIR/long, DIR/short, DIR/bandwidth and, if it is there, DIR/wall.
 """
 import argparse
 import json
@@ -12,16 +12,18 @@ import shutil
 
 from report_parts import machine_line, table
 
-FIGURES = ["fig_5.2_frame_columns", "fig_5.5_frame_corners", "fig_5.6_hand_offs_columns", "fig_5.8_updates_columns",
-           "fig_5.11_cost_over_bodies_log", "fig_5.14_cost_per_body", "fig_5.17_speed_up",
-           "percolation_largest_cluster", "percolation_frame"]
+FIGURES = [("long", "fig_5.2_frame_columns"), ("short", "fig_5.5_frame_corners"), ("long", "fig_5.6_hand_offs_columns"),
+           ("long", "fig_5.8_updates_columns"), ("long", "fig_5.11_cost_over_bodies_log"),
+           ("long", "fig_5.14_cost_per_body"), ("long", "fig_5.17_speed_up"), ("short", "percolation_largest_cluster"),
+           ("short", "percolation_frame")]
 THESIS = {2: 1.74, 4: 3.40, 8: 4.22}
 WANTED = {2: 3, 4: 7, 8: 14}
 
 INTRODUCTION = """# How much faster are several nodes?
 
 Written by `scripts/scalability.sh`; do not edit. Machine: {machine}. Every number is of this machine and these seeds
-(1 and 2, plus 10 for each repeat), with {repeats} run(s) of each kind.
+(1 and 2, plus 10 for each repeat), with {repeats} run(s) of each kind. The sections after *Cuts*, and whatever compares
+auras, watch the first 20 s and 3,200 bodies only.
 
 ## What is measured
 
@@ -161,7 +163,7 @@ def bandwidth(directory):
     summary = json.loads((directory / "summary.json").read_text())
     sizes = json.loads((directory / "sizes.json").read_text())
     text = "## Bandwidth\n\nPayloads of RTPS DATA, as Fast CDR writes them; RTPS, UDP and IP add about 100 bytes for each "
-    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 20 s.\n\n"
+    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 10 s.\n\n"
     text += sizes_table(sizes)
     text += "### By speed\n\n"
     text += traffic_table(sorted(of(summary["runs"], "speed"), key=lambda r: (r["fall_m_s"], r["aura"])),
@@ -179,8 +181,9 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs"))
     arguments = parser.parse_args()
     directory = arguments.directory
-    summary = json.loads((directory / "scalability" / "summary.json").read_text())
-    runs = summary["runs"]
+    summary = json.loads((directory / "long" / "summary.json").read_text())
+    short = json.loads((directory / "short" / "summary.json").read_text())
+    runs = short["runs"]
     wall_file = directory / "wall" / "summary.json"
     wall = json.loads(wall_file.read_text()) if wall_file.exists() else None
     sizes, bandwidth_text = bandwidth(directory / "bandwidth")
@@ -189,11 +192,16 @@ def main():
     text += "## What has to hold, and what was found\n\n" + requirements(summary, sizes, wall)
     text += "## Speed-up\n\nOne node's frame over the slowest node's. The thesis's numbers are ratios of fitted "
     text += "coefficients (log10 of the frame time over bodies).\n\n" + speed_up_table(summary)
+    text += "The first 20 s, 3,200 bodies, with every aura:\n\n" + speed_up_table(short)
     text += "## Columns: the rain follows the regions\n\nTimes other than frames are sums over the nodes, means of the last "
     text += "5 s; late collisions of one node are those that one world has, too.\n\n"
-    text += runs_table(of(runs, "columns"), ["nodes", "aura"], lambda r: (r["nodes"], r["aura"]))
+    for all_runs in (summary["runs"], runs):
+        text += runs_table(of(all_runs, "columns"), ["bodies", "nodes", "aura"],
+                           lambda r: (r["bodies"], r["nodes"], r["aura"]))
     text += "## Cuts: one world of 8 columns\n\n"
-    text += runs_table(of(runs, "cuts"), ["nodes", "aura"], lambda r: (r["nodes"], r["aura"]))
+    for all_runs in (summary["runs"], runs):
+        text += runs_table(of(all_runs, "cuts"), ["bodies", "nodes", "aura"],
+                           lambda r: (r["bodies"], r["nodes"], r["aura"]))
     text += "### What a boundary costs (thesis 5.1.3)\n\n" + overhead_table(summary)
     text += "## Corners\n\n" + runs_table(of(runs, "corners"), ["regions"], lambda r: (r["regions"],))
     text += "## Weak scaling: 20 bodies a second and node\n\n"
@@ -215,11 +223,11 @@ def main():
                            lambda r: (r["series"], r["nodes"], f"{r['slow_down']:.2f}"))
     text += bandwidth_text
     text += "## Figures\n\n"
-    figures = directory / "scalability" / "figures"
     (arguments.out / "scalability").mkdir(parents=True, exist_ok=True)
-    for name in FIGURES:
-        if (figures / f"{name}.png").exists():
-            shutil.copy(figures / f"{name}.png", arguments.out / "scalability" / f"{name}.png")
+    for length, name in FIGURES:
+        figure = directory / length / "figures" / f"{name}.png"
+        if figure.exists():
+            shutil.copy(figure, arguments.out / "scalability" / f"{name}.png")
             text += f"![{name}](scalability/{name}.png)\n\n"
     (arguments.out / "scalability.md").write_text(text.rstrip("\n") + "\n")
 

@@ -37,9 +37,12 @@ std::string Fence::why_stop(const core::Protocol& protocol) {
   if (protocol.fenced()) {
     return fmt::format("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(region_));
   }
-  if (participant_.outlived_its_lease()) {
-    return fmt::format("region {} was held up for longer than its participant's lease: the others have given it up",
-                       core::value_of(region_));
+  // A host that stands still as a whole holds all nodes up alike: then nobody is lost.
+  if (participant_.outlived_its_lease() && !protocol.intake().dead_regions().empty()) {
+    return fmt::format(
+        "region {} was held up for longer than its participant's lease, and has lost neighbours since: they have given "
+        "it up",
+        core::value_of(region_));
   }
   if (can_be_cut_) look(protocol);
   if (standing_ != node::Standing::kCutOff) return {};

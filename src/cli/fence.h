@@ -1,5 +1,5 @@
-// When a node has to stop because the rest of the run may go on without it: the others hold it for dead, it was held
-// up for so long that they must, or it has lost touch with the majority. Two hosts of one body are worse than none.
+// When a node has to stop because the rest of the run may go on without it: the others hold it for dead, it was held up
+// for so long that they may, or it has lost touch with the majority. Two hosts of one body are worse than none.
 #pragma once
 
 #include <chrono>

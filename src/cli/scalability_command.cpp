@@ -134,7 +134,7 @@ void add_bandwidth(CLI::App& experiment, Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "bandwidth", "bytes of auras and hand-offs by speed and aura, and what narrow links do, in virtual time");
   const auto a = std::make_shared<Arguments>();
-  a->plan.run_s = 20;
+  a->plan.run_s = 10;
   add_options(*command, a, experiment::bandwidth_series());
   command->callback([a, &action] { action = [a] { return run_bandwidth(*a); }; });
 }

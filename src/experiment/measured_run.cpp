@@ -18,22 +18,20 @@ double thread_cpu_s() {
 }
 
 ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
-  core::AuraRules aura;
-  aura.kind = rules.aura;
-  aura.step_s = 1.0 / rules.step_hz;
-  aura.substeps = rules.substeps;
-  aura.lookahead = rules.lookahead;
-  aura.uncertainty = c.uncertainty;
-  aura.gravity = c.scene.gravity;
   ClusterRules cluster;
-  cluster.node = small_cluster_setup(aura, rules.sync);
-  physics::Settings& physics = cluster.node.physics;
-  physics.solver = rules.solver;
-  physics.solver_iterations = rules.iterations;
-  physics.friction_directions = rules.friction_directions;
-  physics.contact_erp = c.contact_erp;
-  physics.continuous = c.continuous;
-  cluster.node.hash_states = true;
+  cluster.aura.kind = rules.aura;
+  cluster.aura.step_s = 1.0 / rules.step_hz;
+  cluster.aura.substeps = rules.substeps;
+  cluster.aura.lookahead = rules.lookahead;
+  cluster.aura.uncertainty = c.uncertainty;
+  cluster.aura.gravity = c.scene.gravity;
+  cluster.sync = rules.sync;
+  cluster.physics.solver = rules.solver;
+  cluster.physics.solver_iterations = rules.iterations;
+  cluster.physics.friction_directions = rules.friction_directions;
+  cluster.physics.contact_erp = c.contact_erp;
+  cluster.physics.continuous = c.continuous;
+  cluster.hash_states = true;
   return cluster;
 }
 

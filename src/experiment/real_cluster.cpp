@@ -118,7 +118,7 @@ void RealCluster::Member::drive(node::Node& node, const ClusterRules& rules, Clo
   Clock::time_point free = epoch;
   Seconds lag{0};
   while (node.current_step() < last) {
-    const double due_s = static_cast<double>(node.current_step() + 1) * rules.node.physics.step_s + phase_s;
+    const double due_s = static_cast<double>(node.current_step() + 1) * rules.aura.step_s + phase_s;
     const auto due = epoch + std::chrono::duration_cast<Clock::duration>(Seconds(due_s));
     wait_until_due(node, std::max(due, free));
     const auto begin = Clock::now();
@@ -130,7 +130,7 @@ void RealCluster::Member::drive(node::Node& node, const ClusterRules& rules, Clo
     node.protocol().report_frame(node.current_step(), Seconds(free - begin).count());
     held.leave();
   }
-  course.slow_down = 1 + std::max(0.0, lag.count()) / (static_cast<double>(last) * rules.node.physics.step_s);
+  course.slow_down = 1 + std::max(0.0, lag.count()) / (static_cast<double>(last) * rules.aura.step_s);
 }
 
 RealCluster::RealCluster(const core::RegionMap& map, const RealNetwork& network) : map_(map) {
@@ -143,7 +143,7 @@ RealCluster::RealCluster(const core::RegionMap& map, const RealNetwork& network)
 RealCluster::~RealCluster() = default;
 
 std::vector<Course> RealCluster::run(const core::Scene& scene, const ClusterRules& rules, core::Step last) {
-  node::NodeSetup setup = rules.node;
+  node::NodeSetup setup = node_setup(rules);
   setup.protocol.generation = ++generation_;
   Start start;
   std::barrier all_there(static_cast<std::ptrdiff_t>(members_.size()),

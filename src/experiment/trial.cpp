@@ -17,7 +17,8 @@ const node::SeenCollision* first_contact(const node::StepReport& report) {
 
 ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder) {
   ClusterRules rules;
-  rules.node = small_cluster_setup(rules_for(variant.aura, conditions), variant.sync);
+  rules.aura = rules_for(variant.aura, conditions);
+  rules.sync = variant.sync;
   rules.network.latency_s = conditions.latency_s;
   rules.network.loss = conditions.loss;
   rules.network.resend_after_s = resend_after_s(conditions);
@@ -56,7 +57,7 @@ double resend_after_s(const Conditions& conditions) { return kHeartbeat_s + 2 * 
 
 std::optional<Contact> run_central(const Pair& pair, const Conditions& conditions) {
   ClusterRules rules;
-  rules.node = small_cluster_setup(rules_for(AuraChoice::kTight, conditions), core::SyncMode::kBounded);
+  rules.aura = rules_for(AuraChoice::kTight, conditions);
   VirtualCluster cluster(pair.scene, core::RegionMap::columns(1, 1), rules);
   const core::Step last = last_step(pair, conditions, std::nullopt);
   while (cluster.slowest() < last) {

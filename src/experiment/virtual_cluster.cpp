@@ -21,26 +21,28 @@ bool keep_freed_memory() { return mallopt(M_MMAP_THRESHOLD, 1 << 28) != 0 && mal
 
 }  // namespace
 
-node::NodeSetup small_cluster_setup(const core::AuraRules& aura, core::SyncMode sync) {
+node::NodeSetup node_setup(const ClusterRules& rules) {
   node::NodeSetup setup;
-  setup.protocol.sync = sync;
-  setup.protocol.aura = aura;
-  setup.protocol.neighbour_distance_m = kEverywhere_m;
-  setup.physics.step_s = aura.step_s;
-  setup.physics.substeps = aura.substeps;
-  setup.hash_states = false;
+  setup.protocol.sync = rules.sync;
+  setup.protocol.aura = rules.aura;
+  setup.protocol.neighbour_distance_m = rules.neighbour_distance_m;
+  setup.physics = rules.physics;
+  setup.physics.step_s = rules.aura.step_s;
+  setup.physics.substeps = rules.aura.substeps;
+  setup.hash_states = rules.hash_states;
+  setup.clock = rules.clock;
   return setup;
 }
 
 VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
     : rules_(rules),
       map_(map),
-      listeners_(listeners(map, rules.node.protocol.neighbour_distance_m)),
+      listeners_(listeners(map, rules.neighbour_distance_m)),
       network_(listeners_, rules.network, rules.seed),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
   [[maybe_unused]] static const bool kept = keep_freed_memory();
   if (rules.bandwidth_B_s) post_.emplace(network_, listeners_, *rules.bandwidth_B_s);
-  node::NodeSetup setup = rules.node;
+  node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};
     Member& member = members_.emplace_back();
@@ -61,7 +63,7 @@ double VirtualCluster::chance() {
 /// On the clock that all nodes share; whoever is behind it does not pause between frames.
 double VirtualCluster::due_s(const Member& member) const {
   const auto next = static_cast<double>(member.node->current_step() + 1);
-  return std::max(next * rules_.node.physics.step_s + member.phase_s, member.free_s);
+  return std::max(next * rules_.aura.step_s + member.phase_s, member.free_s);
 }
 
 VirtualCluster::Event VirtualCluster::next() {
@@ -93,7 +95,7 @@ void VirtualCluster::compute(Member& member, double at_s) {
   const double frame_s = rules_.shortest_frame_s + (rules_.longest_frame_s - rules_.shortest_frame_s) * chance();
   network_.set_send_delay(frame_s);
   report_ = &member.node->step();
-  member.lag_s = at_s - static_cast<double>(report_->step) * rules_.node.physics.step_s - member.phase_s;
+  member.lag_s = at_s - static_cast<double>(report_->step) * rules_.aura.step_s - member.phase_s;
   member.node->protocol().report_frame(report_->step, frame_s);
   member.free_s = at_s + frame_s;
 }
@@ -108,7 +110,7 @@ double VirtualCluster::slow_down() const {
   double most = 1;
   for (const Member& member : members_) {
     const auto steps = static_cast<double>(std::max<core::Step>(1, member.node->current_step()));
-    most = std::max(most, 1 + member.lag_s / (steps * rules_.node.physics.step_s));
+    most = std::max(most, 1 + member.lag_s / (steps * rules_.aura.step_s));
   }
   return most;
 }

@@ -16,8 +16,16 @@
 
 namespace aurasim::experiment {
 
+/// All regions of a trial listen to each other: there are at most four.
+inline constexpr double kEverywhere_m = 1e9;
+
 struct ClusterRules {
-  node::NodeSetup node;  ///< of every node, but for its region
+  core::AuraRules aura;
+  core::SyncMode sync = core::SyncMode::kBounded;
+  physics::Settings physics;  ///< but for steps and substeps, which are the aura's
+  double neighbour_distance_m = kEverywhere_m;
+  bool hash_states = false;
+  node::PhaseClock clock = node::PhaseClock::kWall;
   transport::Faults network;
   /// Messages are coded as for DDS (experiment/scale/wire_post.h), and each node's link takes so many bytes a second.
   std::optional<double> bandwidth_B_s;
@@ -27,11 +35,8 @@ struct ClusterRules {
   std::uint64_t seed = 1;
 };
 
-/// All regions of a small cluster listen to each other.
-inline constexpr double kEverywhere_m = 1e9;
-
-/// All regions listen to each other, nobody hashes states.
-node::NodeSetup small_cluster_setup(const core::AuraRules& aura, core::SyncMode sync);
+/// But for the region and the generation.
+node::NodeSetup node_setup(const ClusterRules& rules);
 
 class VirtualCluster {
  public:

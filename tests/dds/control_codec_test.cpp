@@ -60,7 +60,7 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   };
   EXPECT_EQ(after([](auto&) {}), "accepted");
   EXPECT_EQ(after([](auto& w) { w.version(0); }), "malformed");
-  EXPECT_EQ(after([](auto& w) { w.version(2); }), "version");
+  EXPECT_EQ(after([](auto& w) { w.version(kProtocolVersion + 1); }), "version");
   EXPECT_EQ(after([](auto& w) { w.source(4); }), "range");
   EXPECT_EQ(after([](auto& w) { w.state(6); }), "enum");
   EXPECT_EQ(after([](auto& w) { w.frame_max_ms(kNan); }), "not_finite");

@@ -134,7 +134,7 @@ const Spoilt kSpoilt[] = {
      [](Wire& w) {
        const Wire full = w;
        w = Wire();
-       w.version(1);
+       w.version(kProtocolVersion);
        w.source(1);
        w.map_version(full.map_version());
        w.sequence_number(1);

@@ -55,7 +55,6 @@ TEST(RainRun, EveryBodyFallsAndSomeChangeHosts) {
   EXPECT_GT(all.mean.projecting, 0U);
   EXPECT_GT(all.mean.aura_updates, 1000U);
   EXPECT_EQ(all.mean.late, 0U);
-  EXPECT_EQ(all.mean.violations, 0U);
   EXPECT_GT(all.frame_max_ms, all.frame_mean_ms);
   EXPECT_GT(all.mean.physics_ms, 0);
 }
@@ -80,7 +79,6 @@ TEST(RainRun, ANarrowLinkSlowsTheWorldAndBreaksNothing) {
   EXPECT_GT(slow.slow_down, 1.5);
   EXPECT_LT(run(five_seconds()).back().slow_down, 1.01);
   EXPECT_EQ(slow.mean.late, 0U);
-  EXPECT_EQ(slow.mean.violations, 0U);
 }
 
 }  // namespace

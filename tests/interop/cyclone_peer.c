@@ -94,7 +94,7 @@ static void look_at_aura(unsigned r, const void* sample) {
   const aurasim_wire_AuraBatch* batch = sample;
   if (batch->source != r) fail("an aura batch in another region's partition");
   if (regions[r].last_stamp >= 0 && batch->stamp != regions[r].last_stamp + 1) fail("a step without an aura batch");
-  if (batch->p_WB._length != 3 * batch->id._length) fail("an aura batch whose columns do not fit together");
+  if (batch->p_WB._length + batch->grains_WB._length != 3 * batch->id._length) fail("an aura batch whose columns do not fit together");
   regions[r].last_stamp = batch->stamp;
   ++regions[r].auras;
 }

@@ -25,7 +25,7 @@ TEST_F(Cyclone, ReadsEveryRegionAndItsCommandsAreObeyed) {
   Process& peer = start_program({AURASIM_BINARY_DIR "/cyclone_peer", "180", "4"});
   expect_exit(peer, 0, 60s);
   EXPECT_THAT(peer.out(), ::testing::HasSubstr("was made, pushed and seen to rise"));
-  run.signal(SIGINT);
+  expect_exit(start({"send", "stop", launch_file("corner_stacks"), "--set", "dds.domain=180"}), 0);
   expect_exit(run, 0);
   expect_all_bodies_accounted_for(report_of("run"));
   EXPECT_THAT(run.err(), ::testing::Not(::testing::HasSubstr("refused")));

@@ -38,7 +38,7 @@ TEST_F(Echo, PrintsEveryTopic) {
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 1));
   std::map<std::string, Process*> echoes;
   for (const char* topic : {"node_status", "region_map", "replica", "replica_key", "migration", "migration_ack",
-                            "run_control", "command", "command_reply", "shape", "orders"}) {
+                            "run_control", "command", "command_reply", "shape", "orders", "bonds"}) {
     echoes[topic] = &echo(topic, {"--count", "1"});
   }
   Process& auras = echo("aura", {"--count", "30", "--partition", "region/2"});
@@ -65,7 +65,7 @@ TEST_F(Echo, PrintsEveryTopic) {
   const nlohmann::json mesh = nlohmann::json::parse(echoes["shape"]->out());
   EXPECT_EQ(mesh.at("hash"), command.at("mesh"));
   EXPECT_FALSE(mesh.at("triangles").empty());
-  run.signal(SIGINT);
+  expect_exit(start(Words{"send", "stop", file_} + in_domain_), 0);
   expect_exit(run, 0);
 }
 

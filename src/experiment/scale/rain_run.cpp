@@ -57,9 +57,12 @@ StepLoad load_of(const node::StepReport& report, const Counts& before, const Cou
 
 ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const RainPlace& place) {
   ClusterRules rules;
-  rules.node = place.setup_of(launch, core::RegionId{0});
-  rules.node.hash_states = false;
-  rules.node.clock = node::PhaseClock::kThreadCpu;
+  const node::NodeSetup setup = place.setup_of(launch, core::RegionId{0});
+  rules.aura = setup.protocol.aura;
+  rules.sync = setup.protocol.sync;
+  rules.neighbour_distance_m = setup.protocol.neighbour_distance_m;
+  rules.physics = setup.physics;
+  rules.clock = node::PhaseClock::kThreadCpu;
   rules.network.latency_s = kLatency_s;
   rules.shortest_frame_s = rules.longest_frame_s = kFrame_s;
   rules.bandwidth_B_s = rain.bandwidth_B_s > 0 ? rain.bandwidth_B_s : std::numeric_limits<double>::infinity();
