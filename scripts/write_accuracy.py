@@ -19,7 +19,7 @@ FIGURES = ["pareto_double", "convergence_double", "pareto_single", "convergence_
 
 INTRODUCTION = """# How exact, and what each digit costs
 
-Written by `scripts/accuracy.sh`; do not edit. {machine}.
+Written by `scripts/accuracy.sh`; do not edit. {machine}. Where cells are empty it was a short run (`AURASIM_QUICK=1`).
 
 ## What is measured
 
@@ -41,6 +41,10 @@ programs ran beside it.
 """
 
 
+def cell(text):
+    return text.replace("|", "\\|")
+
+
 def number(text):
     return f"{float(text):.3g}"
 
@@ -53,7 +57,7 @@ def targets_table(summaries):
     rows = []
     for summary in summaries:
         for t in summary["targets"]:
-            rows.append([t["name"], summary["precision"], f"{t['found']:.3g}", bound_of(t),
+            rows.append([cell(t["name"]), summary["precision"], f"{t['found']:.3g}", bound_of(t),
                          "met" if t["met"] else "**not met**"])
     return table(["requirement", "precision", "found", "allowed", ""], rows)
 
@@ -76,7 +80,7 @@ def errors_table(rows):
         cells += [number(by_preset[p]["error_one_node"]) if p in by_preset else "" for p in PRESETS]
         most = max(int(r["hand_offs"]) for r in some)
         same = all(r["same_bits"] == "1" and r["error_one_node"] == r["error_two_nodes"] for r in some)
-        out.append([case, f"{measured}, {some[0]['unit']}"] + cells + [most, "yes" if same else "**no**"])
+        out.append([case, cell(f"{measured}, {some[0]['unit']}")] + cells + [most, "yes" if same else "**no**"])
     return table(header, out)
 
 
@@ -86,7 +90,7 @@ def is_standing(row):
 
 def standing_table(rows):
     return table(["pile", "simulated, s", "measured", "one node", "two nodes", "CPU us per step"],
-                 [[r["case"], r["simulated_s"], f"{r['measured']}, {r['unit']}", number(r["error_one_node"]),
+                 [[r["case"], r["simulated_s"], cell(f"{r['measured']}, {r['unit']}"), number(r["error_one_node"]),
                    number(r["error_two_nodes"]), number(r["cpu_us_per_step"])] for r in rows if is_standing(r)])
 
 
@@ -111,7 +115,7 @@ def cost_table(double, single):
 def references_table(rows):
     first = {r["case"]: r for r in reversed(rows)}
     return table(["case", "compared with", "seed", "simulated, s"],
-                 [[name, r["reference"], r["seed"] if r["seed"] != "0" else "nothing is random", r["simulated_s"]]
+                 [[name, cell(r["reference"]), r["seed"] if r["seed"] != "0" else "nothing is random", r["simulated_s"]]
                   for name, r in reversed(first.items())])
 
 
@@ -137,7 +141,7 @@ def front_table(rows):
 def nodes_table(rows):
     return table(["nodes", "sync", "K", "aura", "CPU us, busiest node", "error", "same bits as one node"],
                  [[r["nodes"], r["sync"], r["lookahead"], r["aura"], number(r["cpu_us_per_step"]), number(r["error"]),
-                   "yes" if r["same_bits"] == "1" else "no"] for r in rows if is_about_nodes(r)])
+                   "yes" if r["same_bits"] == "1" else "no"] for r in rows if is_about_nodes(r) or r["preset"] == "balanced"])
 
 
 def pareto_part(directory):
@@ -159,7 +163,7 @@ Chosen by hand from these points, not computed: a preset also has to keep piles 
 front's cheapest points do not. `fast`: Bullet's settings with 2 substeps. `balanced`: small substeps before iterations,
 friction in two directions, without which a card house falls. `exact`: as many iterations as a rolling plate needs to be
 exact in the last digits. Where the table says that a preset is not on the front, another point is cheaper and better on
-these five cases. `physics.solver`, `iterations`, `friction_directions` and `time.substeps` go before a preset.
+these cases. `physics.solver`, `iterations`, `friction_directions` and `time.substeps` go before a preset.
 
 ### Nodes
 

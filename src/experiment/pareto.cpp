@@ -64,7 +64,9 @@ std::vector<Planned> node_points() {
           rules.sync = sync;
           rules.lookahead = lookahead;
           rules.aura = aura;
-          points.push_back({rules, nodes});
+          const bool is_the_preset =
+              nodes == 1 && sync == RunRules{}.sync && lookahead == RunRules{}.lookahead && aura == RunRules{}.aura;
+          if (!is_the_preset) points.push_back({rules, nodes});
         }
       }
     }

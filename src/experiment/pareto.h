@@ -12,9 +12,9 @@
 namespace aurasim::experiment {
 
 struct ParetoPlan {
-  double simulated_s = 5;
+  double simulated_s = 3;
   std::vector<int> iterations = {5, 10, 20, 50};
-  std::vector<int> substeps = {1, 2, 4, 8, 16};
+  std::vector<int> substeps = {1, 2, 4, 8};
   std::vector<int> friction_directions = {1, 2};
   bool nodes = true;  ///< also vary what is about the nodes: their number, sync mode, lookahead, aura
 };

@@ -1,4 +1,5 @@
-// Bullet's constraint solvers, with one change: a contact that bounces neither gains nor loses energy by it.
+// Bullet's constraint solvers, with one change: a contact at one point that bounces neither gains nor loses energy by
+// it.
 //
 // Bullet gives such a contact the sum of three speeds: that of the bounce, that which pushes overlapping bodies apart
 // (a fifth of the overlap per substep, and it stays), and, before they touch, that which brings them together by the
