@@ -163,7 +163,8 @@ def bandwidth(directory):
     summary = json.loads((directory / "summary.json").read_text())
     sizes = json.loads((directory / "sizes.json").read_text())
     text = "## Bandwidth\n\nPayloads of RTPS DATA, as Fast CDR writes them; RTPS, UDP and IP add about 100 bytes for each "
-    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for 10 s.\n\n"
+    text += "datagram. Two columns, everything falls near their border, 160 bodies a second for "
+    text += f"{summary['runs'][0]['steps'] / 60:g} s.\n\n"
     text += sizes_table(sizes)
     text += "### By speed\n\n"
     text += traffic_table(sorted(of(summary["runs"], "speed"), key=lambda r: (r["fall_m_s"], r["aura"])),
@@ -179,6 +180,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs"))
+    parser.add_argument("--note", default="", help="what a reader has to know of these runs")
     arguments = parser.parse_args()
     directory = arguments.directory
     summary = json.loads((directory / "long" / "summary.json").read_text())
@@ -189,6 +191,7 @@ def main():
     sizes, bandwidth_text = bandwidth(directory / "bandwidth")
 
     text = INTRODUCTION.format(machine=machine_line(), repeats=1 + max(r["repeat"] for r in runs))
+    text += f"**{arguments.note}**\n\n" if arguments.note else ""
     text += "## What has to hold, and what was found\n\n" + requirements(summary, sizes, wall)
     text += "## Speed-up\n\nOne node's frame over the slowest node's. The thesis's numbers are ratios of fitted "
     text += "coefficients (log10 of the frame time over bodies).\n\n" + speed_up_table(summary)

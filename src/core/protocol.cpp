@@ -1,17 +1,8 @@
 #include "core/protocol.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace aurasim::core {
-namespace {
-
-/// A cluster goes home only after so long alone. The rules ask for 2K+1 steps, but what was pulled away once is often
-/// pulled again: in rain on a border, a third of the bodies handed over came back within a second.
-constexpr double kPatience_s = 0.5;
-
-}  // namespace
-
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)
     : settings_(settings),
       vicinity_(map, settings.self, settings.neighbour_distance_m),
@@ -132,7 +123,7 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Has the cluster of body i been an island for 2K+1 states in a row, and for a while?
+/// Has the cluster of body i been an island for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
   bool island = !gathering_.touched(i) && !gathering_.expected(i);
   if (island) {
@@ -148,8 +139,7 @@ bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
     }
     since = std::max(since, track.island_since);
   });
-  const auto patience_steps = static_cast<Step>(std::ceil(kPatience_s / aura_.rules().step_s));
-  return island && now - since >= std::max<Step>(2 * aura_.rules().lookahead + 1, patience_steps);
+  return island && now - since >= 2 * aura_.rules().lookahead + 1;
 }
 
 RegionId Protocol::lowest_owner(std::uint32_t i) const {

@@ -157,8 +157,9 @@ bool same_rows(const std::vector<Row>& a, const std::vector<Row>& b, Same same_r
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same_row);
 }
 
+/// As near as single precision is.
 inline bool same_as_float(const core::Vec3& a, const core::Vec3& b) {
-  return same_bits(core::Vec3(a.cast<float>().cast<double>()), core::Vec3(b.cast<float>().cast<double>()));
+  return ((a - b).cwiseAbs().array() <= 1e-7 * b.cwiseAbs().array() + 1e-30).all();
 }
 
 /// But for what the wire takes from places, rotations and speeds (core/aura_precision.h).
