@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# A part of the collision and loss experiments in real time, over DDS on loopback, and docs/correctness_over_dds.md.
+# About 15 minutes, nearly all of it waiting.
+#   scripts/correctness_over_dds.sh [DIR]   DIR: results (build/correctness_over_dds). An interrupted run goes on.
+# Fails, after writing everything, when a requirement is not met.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out=${1:-build/correctness_over_dds}
+aurasim=build/release/aurasim
+[[ -x $aurasim ]] || scripts/build.sh release
+
+met=yes
+# 1: done, but not every requirement is met
+run() {
+  local name=$1
+  shift
+  "$aurasim" experiment "$name" --aura none,tight,swept --repeats 20 --domain 61 --out "$out/$name" "$@" ||
+    { [[ $? == 1 && -s $out/$name/summary.json ]] && met=no; }
+}
+rm -f "$out"/{collision,loss}/summary.json
+run collision --pairs head_on --head-on-values 4
+run loss --head-on-values 5
+/usr/bin/python3 scripts/write_over_dds.py "$out/collision" "$out/loss"
+echo "written: docs/correctness_over_dds.md"
+[[ $met == yes ]]

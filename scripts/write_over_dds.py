@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Writes docs/correctness_over_dds.md from the results of the collision and loss experiments over DDS.
+
+    scripts/write_over_dds.py COLLISION_DIR LOSS_DIR [--out DIR]
+"""
+import argparse
+import json
+import pathlib
+
+from report_parts import table
+from write_correctness import SERIES, pairs_table, targets_table
+
+INTRODUCTION = """# Do bodies collide across borders as they do in one world? Over DDS, in real time
+
+Written by `scripts/correctness_over_dds.sh`; do not edit. A part of the experiments of `correctness.md` ({repeats} pairs
+for each of 4 values of every series), with real nodes that stay up between trials: each has a thread and a DDS
+participant of its own, and talks over UDP on loopback.
+
+- Each node paces its steps by the wall clock, with a phase of its own. A frame lasts as long as it is told to (a thread
+  sleeps), and its messages leave at its end. Latency and loss are made by the impaired transport (`dds/impairment.h`);
+  what is lost is repeated by DDS itself.
+- Ten pairs fly side by side, 2 km apart: as many worlds in one. A broken promise counts for all ten, so "flagged" says
+  less here than in virtual time.
+- The control is the same pair on one node, in virtual time.
+
+"""
+
+
+def series_table(summary):
+    wanted = [("none", "bounded"), ("tight", "free_running"), ("swept", "free_running"), ("swept", "bounded")]
+    out = []
+    for series in dict.fromkeys(r["series"] for r in summary["by"]):
+        for kept in (True, False):
+            row = [SERIES[series], "within" if kept else "beyond"]
+            for aura, sync in wanted:
+                found = [r for r in summary["by"] if (r["series"], r["aura"], r["sync"], r["tolerance_kept"])
+                         == (series, aura, sync, kept)]
+                row.append(f"{found[0]['late']} / {found[0]['missed']} of {found[0]['trials']}" if found else "")
+            out.append(row)
+    return table(["tolerance", ""] + [f"{a}, {s}: late / missed" for a, s in wanted], out)
+
+
+def loss_table(summary):
+    out = []
+    for r in summary["by"]:
+        if r["aura"] != "central":
+            out.append([f"{r['value']:g}%", r["aura"], r["sync"], r["trials"], r["late"], r["missed"], r["thrashed"],
+                        r["late_without_violation"] + r["missed_without_violation"],
+                        f"{r['mean_slow_down']:.3f} / {r['most_slow_down']:.3f}"])
+    return table(["lost", "aura", "sync", "N", "late", "missed", "thrashed", "wrong, no violation",
+                  "time taken over simulated: mean / most"], sorted(out, key=lambda row: (row[1], row[2], float(row[0][:-1]))))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("collision", type=pathlib.Path)
+    parser.add_argument("loss", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs")
+    arguments = parser.parse_args()
+    collision = json.loads((arguments.collision / "summary.json").read_text())
+    loss = json.loads((arguments.loss / "summary.json").read_text())
+    text = INTRODUCTION.format(repeats=collision["repeats"])
+    text += "## What has to hold, and what was found\n\n" + targets_table(collision)
+    text += "Packet loss:\n\n" + targets_table(loss)
+    text += "## By series\n\n" + series_table(collision)
+    text += "## By aura and sync\n\n" + pairs_table(collision)
+    text += "## Packet loss\n\n" + loss_table(loss)
+    (arguments.out / "correctness_over_dds.md").write_text(text.rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()
