@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "dds/wire_error.h"
 #include "system_fixture.h"
 
 namespace aurasim::system_test {
@@ -27,7 +28,7 @@ class Echo : public SystemTest {
     for (std::string line; std::getline(lines, line);) {
       samples.push_back(nlohmann::json::parse(line, nullptr, false));
       EXPECT_TRUE(samples.back().is_object()) << line;
-      EXPECT_EQ(samples.back().value("version", 0), 1) << line;
+      EXPECT_EQ(samples.back().value("version", 0), dds::kProtocolVersion) << line;
     }
     return samples;
   }
@@ -46,7 +47,7 @@ TEST_F(Echo, PrintsEveryTopic) {
   ASSERT_EQ(of_region_2.size(), 30U);
   for (std::size_t i = 0; i < of_region_2.size(); ++i) {
     EXPECT_EQ(of_region_2[i].at("source"), 2);
-    EXPECT_EQ(of_region_2[i].at("p_WB").size(), 3 * of_region_2[i].at("id").size());
+    EXPECT_EQ(of_region_2[i].at("v_WB").size(), 3 * of_region_2[i].at("id").size());
     if (i > 0) {
       EXPECT_GT(of_region_2[i].at("stamp"), of_region_2[i - 1].at("stamp"));
     }

@@ -6,6 +6,23 @@ const CHROMIUM = process.env.AURASIM_CHROMIUM ?? "/usr/bin/chromium";
 export const launchBrowser = () => chromium.launch({ executablePath: CHROMIUM, headless: true,
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 
+/** Drags from here to there, again if the page was too busy to notice, until the selector is visible. */
+export async function dragUntil(page, from, to, selector) {
+  for (let tries = 0; tries < 10; ++tries) {
+    await page.mouse.move(...from);
+    await page.waitForTimeout(100 * tries);
+    await page.mouse.down();
+    await page.waitForTimeout(100 * tries);
+    await page.mouse.move(...to, { steps: 4 });
+    await page.mouse.up();
+    try {
+      return await page.waitForSelector(selector, { timeout: 2000 });
+    } catch (error) {
+      if (tries === 9) throw error;
+    }
+  }
+}
+
 /** A page that has failed loudly if anything in it threw. */
 export async function openPage(browser, url, size = { width: 1440, height: 860 }) {
   const page = await browser.newPage({ viewport: size });

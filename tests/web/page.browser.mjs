@@ -2,7 +2,7 @@
 // mock is then left out). Waits are for conditions with a deadline.
 import assert from "node:assert/strict";
 import { after, afterEach, before, test } from "node:test";
-import { launchBrowser, openPage } from "./browser.mjs";
+import { dragUntil, launchBrowser, openPage } from "./browser.mjs";
 import { MockOverseer } from "./mock_overseer.mjs";
 
 const REAL = process.env.AURASIM_URL;
@@ -217,10 +217,7 @@ test("ABorderIsMovedAndTheRegionsAreSent", mockOnly, async () => {
   await haveBodies(BODIES);
   await page.keyboard.press("r");
   await page.waitForSelector("#plan:not([hidden])");
-  await page.mouse.move(600, 600);
-  await page.mouse.down();
-  await page.mouse.move(700, 600, { steps: 4 });
-  await page.mouse.up();
+  await dragUntil(page, [600, 600], [700, 600], "#regions-apply");
   await page.click("#regions-apply");
   const { boxes } = await commanded("regions");
   assert.equal(boxes.length, 4);
@@ -249,7 +246,7 @@ test("ARefusedCommandIsSaid", mockOnly, async () => {
   await haveBodies(BODIES);
   await page.keyboard.press("t");
   await page.fill('dialog input[type="password"]', "wrong");
-  await page.click("text=Use it");
+  await page.keyboard.press("Enter");
   await page.waitForSelector('.toast[data-kind="bad"]');
   assert.match(await page.textContent('.toast[data-kind="bad"]'), /token/);
   noErrors();

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { mkdir } from "node:fs/promises";
 import { after, before, beforeEach, test } from "node:test";
-import { launchBrowser, openPage } from "./browser.mjs";
+import { dragUntil, launchBrowser, openPage } from "./browser.mjs";
 import { UNDER_WAY } from "../../src/overseer/web/src/frames.js";
 import { endAfter, pause, RealRun, ROOT, seconds, until } from "./real_run.mjs";
 import { Crowd } from "./crowd.mjs";
@@ -342,10 +342,7 @@ test("AnotherSceneIsThereForAll", { ...limit, ...all }, async () => {
 test("RegionsThatAreDrawnAreTheNodesRegions", { ...limit, ...all }, async () => {
   await page.keyboard.press("r");
   await page.waitForSelector("#plan:not([hidden])");
-  await page.mouse.move(640, 620);
-  await page.mouse.down();
-  await page.mouse.move(760, 620, { steps: 4 });
-  await page.mouse.up();
+  await dragUntil(page, [640, 620], [760, 620], "#regions-apply");
   await page.click("#regions-apply");
   const moved = await until(() => witness.latest.map.regions.find((region) => region.x1 > 1), "the border to be elsewhere");
   await seen((x1) => window.aurasim.map.regions.some((region) => region.x1 === x1), moved.x1);

@@ -6,6 +6,7 @@ const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 1000; // back soon after an overseer that was restarted
 /** Statuses come four times a second; this long without a word and the connection is taken for dead. */
 const SILENCE_MS = 8000;
+const REST_OF_SILENCE_MS = 500;
 
 /**
  * @typedef {object} Handlers
@@ -62,13 +63,16 @@ export class Connection {
     return true;
   }
 
+  /** A page that was busy has messages waiting: they are read before the rest of the silence is over. */
   #listen() {
     this.never(this.silence);
     this.silence = this.later(() => {
-      const socket = this.socket;
-      this.#closed();
-      socket?.close();
-    }, SILENCE_MS);
+      this.silence = this.later(() => {
+        const socket = this.socket;
+        this.#closed();
+        socket?.close();
+      }, REST_OF_SILENCE_MS);
+    }, SILENCE_MS - REST_OF_SILENCE_MS);
   }
 
   #receive(data) {
