@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <csignal>
-#include <stdexcept>
 
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
+#include "cli/spawn.h"
 #include "cli/stop_signal.h"
 #include "node/report.h"
 
@@ -85,21 +83,7 @@ void Launcher::start_nodes() {
   }
 }
 
-pid_t Launcher::start_node(std::uint32_t region) const {
-  std::vector<std::string> words = arguments_of(region);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t pid = ::fork();
-  if (pid < 0) throw std::runtime_error("cannot start a process");
-  if (pid == 0) {
-    ::setpgid(0, 0);                     // Ctrl-C is the launcher's to handle
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // and nobody outlives it
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
-  return pid;
-}
+pid_t Launcher::start_node(std::uint32_t region) const { return spawn(arguments_of(region)); }
 
 void Launcher::collect_exits() {
   for (Child& child : children_) {

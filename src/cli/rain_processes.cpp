@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <stdexcept>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "cli/launch_setup.h"
+#include "cli/spawn.h"
 #include "experiment/scale/rain_run.h"
 #include "node/csv.h"
 
@@ -21,15 +21,7 @@ using Cells = std::vector<std::string_view>;
 
 /// Waits for it. True if it ended well.
 bool run_program(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t pid = ::fork();
-  if (pid < 0) throw std::runtime_error("cannot start a process");
-  if (pid == 0) {
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
+  const pid_t pid = spawn(std::move(words));
   int status = 0;
   while (::waitpid(pid, &status, 0) != pid) {
   }

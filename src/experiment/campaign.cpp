@@ -1,17 +1,16 @@
 #include "experiment/campaign.h"
 
 #include <chrono>
-#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiment/on_threads.h"
 #include "experiment/trial.h"
 #include "experiment/trial_file.h"
 
@@ -186,21 +185,7 @@ bool run_campaign(const Campaign& campaign, const std::filesystem::path& directo
   const std::filesystem::path file = directory / "collisions.csv";
   const std::size_t done = keep_whole_blocks(file, campaign.rows_per_job());
   Desk desk(campaign, file, done, show);
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  std::vector<std::jthread> workers;
-  for (int i = 0; i < threads; ++i) {
-    workers.emplace_back([&] {
-      try {
-        work(campaign, run, desk, stop);
-      } catch (...) {
-        const std::lock_guard lock(failure_mutex);
-        failure = std::current_exception();
-      }
-    });
-  }
-  workers.clear();
-  if (failure) std::rethrow_exception(failure);
+  on_threads(threads, [&] { work(campaign, run, desk, stop); });
   return !stop;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <mutex>
-#include <thread>
+
+#include "experiment/on_threads.h"
 
 namespace aurasim::experiment {
 namespace {
@@ -162,21 +162,7 @@ bool run_rains(const std::vector<Rain>& rains, const RainPlace& place, const std
     if (!std::filesystem::exists(windows_file(directory, rain))) missing.push_back(rain);
   }
   Queue queue(std::move(missing), show);
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  std::vector<std::jthread> workers;
-  for (int i = 0; i < threads; ++i) {
-    workers.emplace_back([&] {
-      try {
-        work(queue, place, directory, stop);
-      } catch (...) {
-        const std::lock_guard lock(failure_mutex);
-        failure = std::current_exception();
-      }
-    });
-  }
-  workers.clear();
-  if (failure) std::rethrow_exception(failure);
+  on_threads(threads, [&] { work(queue, place, directory, stop); });
   return !stop;
 }
 
