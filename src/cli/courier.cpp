@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 6s;
 constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
-constexpr auto kPatienceForRays = 400ms;
+constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
 
 }  // namespace
 
