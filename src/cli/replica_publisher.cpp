@@ -8,6 +8,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kKeyFramePeriod = std::chrono::seconds(1);
+constexpr auto kBondsPeriod = std::chrono::milliseconds(250);  // of a run that stands
 
 }  // namespace
 
@@ -21,7 +22,7 @@ ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participan
 void ReplicaPublisher::begin_generation(core::Generation generation) {
   feed_.emplace(region_, generation, map_version_);
   generation_ = generation;
-  told_ = bonds_told_ = -1;
+  told_ = -1;
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
@@ -35,7 +36,8 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
 
 void ReplicaPublisher::while_paused(node::Node& node) {
   if (!writer_.anybody_listens()) return;
-  if (bonds_told_ != node.current_step()) tell_bonds(node);
+  // Again and again: nobody asks for a sample that was lost.
+  if (Clock::now() - last_bonds_ >= kBondsPeriod) tell_bonds(node);
   if (told_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) tell(node);
 }
 
@@ -64,7 +66,7 @@ void ReplicaPublisher::tell(node::Node& node) {
 
 void ReplicaPublisher::tell_bonds(node::Node& node) {
   if (!bonds_.anybody_listens()) return;
-  bonds_told_ = node.current_step();
+  last_bonds_ = Clock::now();
   bonds_.send(node::bonds_of(node, generation_, map_version_));
 }
 

@@ -38,9 +38,9 @@ class ReplicaPublisher {
   std::optional<node::ReplicaFeed> feed_;
   core::Generation generation_ = 0;
   core::Step told_ = -1;
-  core::Step bonds_told_ = -1;
   std::uint64_t arrivals_ = 0;  ///< observers that have got a key frame of their own
   std::chrono::steady_clock::time_point last_key_frame_;
+  std::chrono::steady_clock::time_point last_bonds_;
 };
 
 }  // namespace aurasim::cli

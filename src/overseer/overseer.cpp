@@ -23,6 +23,7 @@ constexpr std::size_t kRoomForClients = 20'000;  // prototypes that clients may 
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kLookPeriod = 20ms;
+constexpr auto kOverlayPeriod = 200ms;
 constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
 
 /// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
@@ -202,10 +203,11 @@ void Overseer::compose_frames() {
     web_.show(*frame);
     write_down(*frame);
   }
-  if (any) show_overlays();
+  if (any || Clock::now() >= next_overlays_) show_overlays();  // also of a run that stands
 }
 
 void Overseer::show_overlays() {
+  next_overlays_ = Clock::now() + kOverlayPeriod;
   const Show wanted = web_.wanted();
   overlays_.look(participant_, observer_settings_, wanted, scene_, *view_);
   if (!wanted.auras && !wanted.links && !wanted.contacts) return;

@@ -91,6 +91,7 @@ class Overseer {
   Clock::time_point hand_offs_measured_;
   Clock::time_point next_status_;
   Clock::time_point next_look_;
+  Clock::time_point next_overlays_;
 };
 
 }  // namespace aurasim::overseer
