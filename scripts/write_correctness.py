@@ -143,14 +143,19 @@ def radius_table(directory):
     return table(["tolerance", "K", "thesis, m", "tight, m", "swept, head on at top speed, m"], out)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def read_results(about):
+    """The command line, and the summaries of the collision and the loss experiment."""
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("collision", type=pathlib.Path)
     parser.add_argument("loss", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs")
     arguments = parser.parse_args()
-    collision = json.loads((arguments.collision / "summary.json").read_text())
-    loss = json.loads((arguments.loss / "summary.json").read_text())
+    return (arguments, json.loads((arguments.collision / "summary.json").read_text()),
+            json.loads((arguments.loss / "summary.json").read_text()))
+
+
+def main():
+    arguments, collision, loss = read_results(__doc__)
 
     text = INTRODUCTION.format(repeats=collision["repeats"], substeps=collision["substeps"])
     text += "## What has to hold, and what was found\n\n" + targets_table(collision)

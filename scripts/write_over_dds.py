@@ -3,12 +3,8 @@
 
     scripts/write_over_dds.py COLLISION_DIR LOSS_DIR [--out DIR]
 """
-import argparse
-import json
-import pathlib
-
 from report_parts import table
-from write_correctness import SERIES, pairs_table, targets_table
+from write_correctness import SERIES, pairs_table, read_results, targets_table
 
 INTRODUCTION = """# Do bodies collide across borders as they do in one world? Over DDS, in real time
 
@@ -52,13 +48,7 @@ def loss_table(summary):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("collision", type=pathlib.Path)
-    parser.add_argument("loss", type=pathlib.Path)
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs")
-    arguments = parser.parse_args()
-    collision = json.loads((arguments.collision / "summary.json").read_text())
-    loss = json.loads((arguments.loss / "summary.json").read_text())
+    arguments, collision, loss = read_results(__doc__)
     text = INTRODUCTION.format(repeats=collision["repeats"])
     text += "## What has to hold, and what was found\n\n" + targets_table(collision)
     text += "Packet loss:\n\n" + targets_table(loss)

@@ -64,11 +64,6 @@ dds::TransportSettings transport_settings(const core::RegionMap& map, core::Regi
   return settings;
 }
 
-/// The common begin of a run, named when all nodes are there.
-struct Start {
-  Clock::time_point epoch;
-};
-
 }  // namespace
 
 struct RealCluster::Member {
@@ -145,9 +140,9 @@ RealCluster::~RealCluster() = default;
 std::vector<Course> RealCluster::run(const core::Scene& scene, const ClusterRules& rules, core::Step last) {
   node::NodeSetup setup = node_setup(rules);
   setup.protocol.generation = ++generation_;
-  Start start;
+  Clock::time_point epoch;  // named when all nodes are there
   std::barrier all_there(static_cast<std::ptrdiff_t>(members_.size()),
-                         [&start]() noexcept { start.epoch = Clock::now() + kStartsIn; });
+                         [&epoch]() noexcept { epoch = Clock::now() + kStartsIn; });
   {
     std::vector<std::jthread> threads;
     for (std::uint32_t r = 0; r < members_.size(); ++r) {
@@ -161,7 +156,7 @@ std::vector<Course> RealCluster::run(const core::Scene& scene, const ClusterRule
           member.note(node, node.start());
           member.held.leave();
           all_there.arrive_and_wait();
-          member.drive(node, rules, start.epoch, last);
+          member.drive(node, rules, epoch, last);
         } catch (...) {
           member.failure = std::current_exception();
         }

@@ -22,14 +22,15 @@ bool crosses(const Segment& ray, const core::Rectangle& region, double margin_m)
          clip(ray.from.y(), ray.to.y(), region.y0 - margin_m, region.y1 + margin_m, enter, leave);
 }
 
-}  // namespace
-
+/// Of a point from the nearest point of the segment, metres.
 double distance_to(const Segment& segment, const core::Vec3& p) {
   const core::Vec3 along = segment.to - segment.from;
   const double squared = along.squaredNorm();
   const double share = squared > 0 ? std::clamp((p - segment.from).dot(along) / squared, 0.0, 1.0) : 0;
   return (segment.from + share * along - p).norm();
 }
+
+}  // namespace
 
 std::vector<core::RegionId> regions_for_ray(const Segment& ray, const core::RegionMap& map, const WorldView& view,
                                             const core::Scene& scene, double margin_m) {

@@ -15,9 +15,6 @@ struct Segment {
   core::Vec3 to = core::Vec3::Zero();
 };
 
-/// Distance of a point from the nearest point of the segment, metres.
-double distance_to(const Segment& segment, const core::Vec3& p);
-
 /// Those that the segment crosses, or passes within `margin_m`, and the hosts of bodies that it may meet, wherever they
 /// are. Ascending. `margin_m`: as far as a body may have moved since the view was told.
 std::vector<core::RegionId> regions_for_ray(const Segment& ray, const core::RegionMap& map, const WorldView& view,
