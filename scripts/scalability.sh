@@ -9,12 +9,23 @@ out=${1:-build/scalability}
 aurasim=build/release/aurasim
 [[ -x $aurasim ]] || scripts/build.sh release
 
+# FROM, TO: one node needs no lookahead, so its runs are those of another K, too.
+copy_one_node() {
+  mkdir -p "$2/runs"
+  cp "$1"/runs/columns-columns_1x80-* "$2/runs"
+}
+
 # One node alone takes half of all the time of the long runs: what compares auras and settings is a third as long.
 "$aurasim" experiment scalability --out "$out/long" --series columns,cuts --aura swept
+copy_one_node "$out/long" "$out/long_k1"
+"$aurasim" experiment scalability --out "$out/long_k1" --series columns --aura swept --columns 1,2,4,8 --lookahead 1
 "$aurasim" experiment scalability --out "$out/short" --seconds 20
 "$aurasim" experiment bandwidth --out "$out/bandwidth"
 if [[ ${AURASIM_WALL:-0} == 1 ]]; then
-  "$aurasim" experiment scalability --processes --series columns,cuts --columns 1,2 --aura swept --out "$out/wall"
+  wall=("$aurasim" experiment scalability --processes --series columns --columns 1,2 --aura swept)
+  "${wall[@]}" --out "$out/wall"
+  copy_one_node "$out/wall" "$out/wall_k1"
+  "${wall[@]}" --out "$out/wall_k1" --lookahead 1
 fi
 /usr/bin/python3 scripts/plot_scalability.py "$out/long"
 /usr/bin/python3 scripts/plot_scalability.py "$out/short"

@@ -112,6 +112,8 @@ void add_options(CLI::App& command, const std::shared_ptr<Arguments>& a, const s
   command.add_option("--rate", a->plan.rate_per_s, "bodies per second")->check(CLI::Range(1.0, 1e4));
   command.add_option("--seconds", a->plan.run_s, "simulated time of each run")->check(CLI::Range(5.0, 3600.0));
   command.add_option("--substeps", a->plan.substeps, "physics substeps in each step")->check(CLI::Range(1, 16));
+  command.add_option("--lookahead", a->plan.lookahead, "K of runs with several nodes; 0: from the tolerances")
+      ->check(CLI::Range(0, 16));
   command.add_option("--repeats", a->plan.repeats, "runs of each kind, each with other bodies")
       ->check(CLI::Range(1, 1000));
   command.add_option("--threads", a->threads, "runs at the same time")->check(CLI::Range(1, 64));

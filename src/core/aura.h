@@ -39,7 +39,7 @@ struct Path {
   bool moves = true;        ///< false: asleep, stays where it is
   double age_steps = 0;     ///< how long ago the state was known, seen from now
   double unborn_steps = 0;  ///< the body appears this many steps from now
-  double speed_m_s = 0;     ///< top speed in its cluster, for the uncertainty
+  double speed_m_s = 0;     ///< top speed that it may come to have, for the uncertainty
   double blur_m = 0;        ///< its surface may be this far from where it seems: it was said in few bytes
 };
 
@@ -59,9 +59,13 @@ class Aura {
   double foreign_reach(int hops) const;
   double cluster_reach(int hops) const;
 
-  /// Top speed that a body alone can have while a message about it is under way: its own, what gravity adds, and
-  /// 0.1 m/s; 0.05 m/s asleep. For kThesis and kTight the promised V.
-  double speed_of(const BodyState& body) const;
+  /// How much faster than its own speed a body that nothing pushes may become: 0.1 m/s; 0.05 m/s asleep. What gravity
+  /// adds is in its path. For kThesis and kTight the promised V.
+  double calm_speed(bool awake) const;
+  /// What it has besides, by itself, and can push others with: its own speed, and a kick that is on its way, m/s.
+  double own_speed_of(const BodyState& body) const;
+  /// Top speed that a body alone can have.
+  double speed_of(const BodyState& body) const { return calm_speed(body.awake) + own_speed_of(body); }
 
   /// Where a body of `path` is `steps` from now.
   Pose ahead(const Path& path, double steps) const;

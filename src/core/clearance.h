@@ -1,10 +1,16 @@
-// The one geometric question that core/ asks of physics/.
+// What core/ asks of physics/ about a body's kind.
 #pragma once
 
 #include "core/body_state.h"
 #include "core/ids.h"
 
 namespace aurasim::core {
+
+/// What decides how much of a push a body passes on.
+struct BodyTraits {
+  double mass_kg = 1;
+  double restitution = 1;  ///< of its material, 0 to 1
+};
 
 /// Distance between the real shapes of two bodies. Given to core/ by physics/ (Bullet's GJK).
 class ClearanceQuery {
@@ -18,6 +24,9 @@ class ClearanceQuery {
 
   /// Radius of the sphere around the body's origin that holds its shape. Metres.
   virtual double bounding_radius(PrototypeId prototype) const = 0;
+
+  /// A body of which nothing is known passes on all that it gets.
+  virtual BodyTraits traits(PrototypeId) const { return {}; }
 };
 
 }  // namespace aurasim::core

@@ -11,14 +11,14 @@ namespace {
 /// made no difference in any run, and costs (docs/decisions/0006-hops.md).
 constexpr int kMostHops = 3;
 
-/// A group of near_ whose bodies are not known to be of one cluster.
+/// Of a group of near_ whose bodies are not known to be of one cluster.
 constexpr std::uint32_t kSeveral = ~0u;
 
 int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, kMostHops); }
 
 }  // namespace
 
-void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std::span<const std::uint64_t> regions,
+void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
                      std::span<const Contact> contacts, std::span<const Contact> joints) {
   paths_ = paths;
   const auto n = paths.size();
@@ -27,7 +27,6 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std:
   std::iota(label_.begin(), label_.end(), 0u);
   std::iota(next_.begin(), next_.end(), 0u);
   size_.assign(n, 1);
-  speed_.assign(speeds.begin(), speeds.end());
   regions_.resize(n);
   hops_.assign(n, 1);
   most_hops_ = 1;
@@ -38,17 +37,48 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> speeds, std:
   links_.clear();
   asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
-  if (aura_.rules().kind != AuraKind::kNone) {
-    for (const Contact& c : contacts) unite(c.a, c.b);
-    for (const Contact& j : joints) unite(j.a, j.b);
-  }
+  traits_.clear();
+  for (const Path& path : paths) traits_.push_back(aura_.clearance().traits(path.prototype));
+  pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
+  if (aura_.rules().kind != AuraKind::kNone) join(contacts, joints);
+  for (std::uint32_t i = 0; i < n; ++i) pushes_.start(i);
+  pushes_.spread(raised_);
+  raised_.clear();
   body_speed_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    body_speed_[i] = speed(i);
-    paths_[i].speed_m_s = body_speed_[i];
-  }
+  for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = body_speed_[i] = pushed_speed(i);
   near_.build(paths, body_speed_);
-  group_owner_.assign(near_.group_count(), kSeveral);
+  owned_.assign(near_.group_count(), {kSeveral, 0});
+}
+
+void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> joints) {
+  for (const Contact& c : contacts) {
+    unite(c.a, c.b);
+    pushes_.add(c.a, c.b, false);
+  }
+  for (const Contact& j : joints) {
+    unite(j.a, j.b);
+    pushes_.add(j.a, j.b, true);
+  }
+}
+
+double Clusters::pushed_speed(std::uint32_t i) const {
+  const double push = pushes_.speed(i);
+  return aura_.calm_speed(paths_[i].moves || push > Push::kUnfelt_m_s) + push;
+}
+
+/// Whoever has become faster looks further.
+void Clusters::take_raised() {
+  pushes_.spread(raised_);
+  for (const std::uint32_t i : raised_) {
+    const double speed = pushed_speed(i);
+    Path& path = paths_[i];
+    if (speed <= path.speed_m_s) continue;
+    if (path.speed_m_s <= NearIndex::kSlow && speed > NearIndex::kSlow) near_.raise(i, path.pose.p_WB);
+    path.speed_m_s = speed;
+    ++growth_;
+    to_ask_.push_back(i);
+  }
+  raised_.clear();
 }
 
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
@@ -77,15 +107,14 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   if (size_[a] < size_[b]) std::swap(a, b);
   for_each_member(b, [&](std::uint32_t j) { label_[j] = a; });
   size_[a] += size_[b];
-  growth_ += speed_[a] != speed_[b] || regions_[a] != regions_[b];
-  speed_[a] = std::max(speed_[a], speed_[b]);
+  growth_ += regions_[a] != regions_[b];
   set_regions(a, regions_[a] | regions_[b]);
   complete_[a] = complete_[a] | complete_[b];
   std::swap(next_[a], next_[b]);  // splices the two rings of members
   return a;
 }
 
-void Clusters::push_members(std::uint32_t i) {
+void Clusters::ask_members(std::uint32_t i) {
   for_each_member(i, [this](std::uint32_t j) { to_ask_.push_back(j); });
 }
 
@@ -93,69 +122,70 @@ void Clusters::complete(std::uint32_t i) {
   if (complete_[of(i)]) return;
   complete_[of(i)] = 1;
   if (aura_.rules().kind == AuraKind::kNone) return;
-  push_members(i);
+  ask_members(i);
   while (!to_ask_.empty()) {
     const std::uint32_t j = to_ask_.back();
     to_ask_.pop_back();
-    const std::uint32_t cluster = of(j);
-    const int hops_now = hops(j);
-    if (asked_speed_[j] >= speed_[cluster] && asked_hops_[j] >= hops_now) continue;
-    asked_speed_[j] = speed_[cluster];
-    asked_hops_[j] = hops_now;
+    if (asked_speed_[j] >= speed(j) && asked_hops_[j] >= hops(j)) continue;
+    asked_speed_[j] = speed(j);
+    asked_hops_[j] = hops(j);
     look_around(j);
   }
 }
 
-void Clusters::spread_speed(std::uint32_t cluster) {
-  const double speed = speed_[of(cluster)];
-  for_each_member(cluster, [&](std::uint32_t j) {
-    if (paths_[j].speed_m_s <= NearIndex::kSlow && speed > NearIndex::kSlow) near_.raise(j);
-    paths_[j].speed_m_s = speed;
-  });
-}
-
-/// Are all bodies of the group in cluster `mine`? Once they are of one cluster, they stay together.
-bool Clusters::owns(std::uint32_t mine, std::uint32_t group) {
-  std::uint32_t& owner = group_owner_[group];
-  if (owner == kSeveral) {
+/// Are all bodies of the group of the cluster of body `i`, and would it make none of them faster? Once they are of one
+/// cluster, they stay together.
+bool Clusters::knows(std::uint32_t i, std::uint32_t group) {
+  Owned& owned = owned_[group];
+  if (owned.by == kSeveral) {
     const std::uint32_t first = near_.any_of(group);
-    if (of(first) != mine) return false;
-    if (!near_.all_of(group, [&](std::uint32_t j) { return of(j) == mine; })) return false;
-    owner = first;
+    if (of(first) != of(i)) return false;
+    if (!near_.all_of(group, [&](std::uint32_t j) { return of(j) == of(i); })) return false;
+    owned = {first, 0};
   }
-  return of(owner) == mine;
+  if (of(owned.by) != of(i)) return false;
+  const double enough = pushes_.raises_none_above(i);
+  if (enough <= owned.least_pushed_m_s) return true;
+  if (!near_.all_of(group, [&](std::uint32_t j) { return enough <= pushes_.speed(j); })) return false;
+  owned.least_pushed_m_s = enough;
+  return true;
 }
 
 void Clusters::look_around(std::uint32_t i) {
-  std::uint32_t mine = of(i);
-  const double speed = speed_[mine];
-  const int hops_here = hops_[mine];
+  const double speed_here = speed(i);
+  const int hops_here = hops(i);
   const Path& path = paths_[i];
   const Aura::Range& widest = link_ranges_[static_cast<std::size_t>(most_hops_)];
   linked_.clear();
-  const auto is_ours = [&](std::uint32_t group) { return owns(mine, group); };
   const auto ask = [&](std::uint32_t j) {
-    const std::uint32_t theirs = of(j);
-    if (theirs == mine) return;
-    const int hops = std::max(hops_here, hops_[theirs]);
-    const double range =
-        link_ranges_[static_cast<std::size_t>(hops)].at(speed + speed_[theirs]) + path.radius_m + paths_[j].radius_m;
+    if (of(j) == of(i) && (j == i || !pushes_.raises(i, j))) return;
+    const int hops_both = std::max(hops_here, hops(j));
+    const double range = link_ranges_[static_cast<std::size_t>(hops_both)].at(speed_here + speed(j)) + path.radius_m +
+                         paths_[j].radius_m;
     if ((path.pose.p_WB - paths_[j].pose.p_WB).squaredNorm() > range * range) return;
-    if (aura_.linked(path, paths_[j], hops)) linked_.push_back(j);
+    if (aura_.linked(path, paths_[j], hops_both)) linked_.push_back(j);
   };
-  near_.for_each_near(path.pose.p_WB, path.radius_m, widest.at(speed + NearIndex::kSlow),
-                      widest.at(speed + near_.top_speed()), is_ours, ask);
-  for (const std::uint32_t j : linked_) {
-    const std::uint32_t theirs = of(j);
-    mine = of(i);
-    if (theirs == mine) continue;
-    const bool grew = speed_[theirs] > speed_[mine] || (regions_[theirs] & ~regions_[mine]) != 0;
-    if (!grew) push_members(j);
-    const bool slower = speed_[theirs] < speed_[mine];
-    mine = unite(i, j);
-    if (grew) push_members(mine);
-    if (grew || slower) spread_speed(mine);
+  near_.for_each_near(
+      path.pose.p_WB, path.radius_m, widest.at(speed_here + NearIndex::kSlow),
+      widest.at(speed_here + near_.top_speed()), [&](std::uint32_t group) { return knows(i, group); }, ask);
+  for (const std::uint32_t j : linked_) link(i, j);
+}
+
+/// The two may touch.
+void Clusters::link(std::uint32_t i, std::uint32_t j) {
+  const std::uint32_t theirs = of(j);
+  if (theirs != of(i)) {
+    const bool more_regions = (regions_[theirs] & ~regions_[of(i)]) != 0;
+    if (!more_regions) ask_members(j);
+    unite(i, j);
+    if (more_regions) ask_members(i);
+  } else if (!pushes_.raises(i, j)) {
+    return;
   }
+  pushes_.add(i, j, false);
+  pushes_.start(i);
+  pushes_.start(j);
+  take_raised();
 }
 
 }  // namespace aurasim::core

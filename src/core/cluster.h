@@ -1,6 +1,6 @@
 // Clusters: bodies of one host that must move together, because they touch, are jointed, or may touch on their
-// predicted paths. A cluster's top speed decides how far it looks ahead, and looking further may make it larger, so
-// both grow until neither does. Only clusters that somebody asks for are completed.
+// predicted paths. What may push a body decides how far its path is looked for others, and whom it may touch it may
+// push, so both grow until neither does. Only clusters that somebody asks for are completed.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include "core/aura.h"
 #include "core/near_index.h"
+#include "core/pushes.h"
 
 namespace aurasim::core {
 
@@ -17,9 +18,9 @@ class Clusters {
   explicit Clusters(const Aura& aura) : aura_(aura) {}
 
   /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`.
-  /// `speeds` are Aura::speed_of each body; `regions[i]` has a bit for every other region in reach of body i.
+  /// `own_m_s` are Aura::own_speed_of each body; `regions[i]` has a bit for every other region in reach of body i.
   /// Paths stay the caller's; their speed_m_s is kept up to date here.
-  void begin(std::span<Path> paths, std::span<const double> speeds, std::span<const std::uint64_t> regions,
+  void begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
              std::span<const Contact> contacts, std::span<const Contact> joints);
 
   /// Another region has a body near body i. False when that was known; otherwise the cluster has to be completed again.
@@ -30,13 +31,14 @@ class Clusters {
 
   /// The cluster of a body, as the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
-  double speed(std::uint32_t i) const { return speed_[of(i)]; }
+  /// The top speed that it may come to have while a message about it is under way, m/s.
+  double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
   /// Number of other regions through which a pull on this cluster can chain (DESIGN section 4, corners): those in
   /// reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }
-  /// Grows whenever a cluster turns out faster, or has more hops, than it seemed.
+  /// Grows whenever a body turns out faster, or a cluster has more hops, than it seemed.
   std::uint64_t growth() const { return growth_; }
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
@@ -56,11 +58,14 @@ class Clusters {
 
  private:
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
-  bool owns(std::uint32_t mine, std::uint32_t group);
+  void join(std::span<const Contact> contacts, std::span<const Contact> joints);
+  void link(std::uint32_t i, std::uint32_t j);
+  void take_raised();
+  double pushed_speed(std::uint32_t i) const;
+  bool knows(std::uint32_t i, std::uint32_t group);
   void look_around(std::uint32_t i);
-  void push_members(std::uint32_t i);
+  void ask_members(std::uint32_t i);
   void set_regions(std::uint32_t cluster, std::uint64_t regions);
-  void spread_speed(std::uint32_t cluster);
 
   const Aura& aura_;
   std::span<Path> paths_;
@@ -68,9 +73,14 @@ class Clusters {
   std::uint64_t growth_ = 0;
   std::vector<Aura::Range> link_ranges_;  ///< by hops
   NearIndex near_;
-  std::vector<std::uint32_t> group_owner_;  ///< by group of near_: one of its bodies, once all are of one cluster
+  /// A group of near_.
+  struct Owned {
+    std::uint32_t by;         ///< one of its bodies, once all are of one cluster
+    double least_pushed_m_s;  ///< none of them is pushed less
+  };
+  std::vector<Owned> owned_;
+  Pushes pushes_;
   std::vector<std::uint32_t> label_, next_, size_;
-  std::vector<double> speed_;
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
@@ -79,6 +89,8 @@ class Clusters {
   std::vector<int> asked_hops_;
   std::vector<std::uint32_t> to_ask_;
   std::vector<std::uint32_t> linked_;
+  std::vector<std::uint32_t> raised_;  ///< whoever may have become faster
+  std::vector<BodyTraits> traits_;
   std::vector<double> body_speed_;
 };
 

@@ -23,7 +23,7 @@ void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighb
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions();
-  clusters_.begin(paths_, speeds_, regions_, snapshot.contacts, snapshot.joints);
+  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, snapshot.joints);
   complete_near_boundaries();
   pair_up();
   judge();
@@ -34,10 +34,12 @@ void Gathering::measure(const Snapshot& snapshot) {
   ids_.resize(n);
   paths_.resize(n);
   speeds_.resize(n);
+  own_speeds_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const BodyState& body = snapshot.bodies[i];
     ids_[i] = body.id;
     speeds_[i] = aura_.speed_of(body);
+    own_speeds_[i] = aura_.own_speed_of(body);
     paths_[i] = path_of(body, snapshot.step, aura_.clearance());
   }
 }

@@ -79,7 +79,7 @@ class Gathering {
   Clusters clusters_;
   std::vector<BodyId> ids_;
   std::vector<Path> paths_;
-  std::vector<double> speeds_;
+  std::vector<double> speeds_, own_speeds_;
   std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   std::vector<Foreign> foreign_;

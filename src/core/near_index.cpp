@@ -28,6 +28,4 @@ void NearIndex::build(std::span<const Path> paths, std::span<const double> speed
   fast_.build();
 }
 
-void NearIndex::raise(std::uint32_t i) { always_.push_back(i); }
-
 }  // namespace aurasim::core

@@ -13,14 +13,14 @@ namespace aurasim::core {
 
 class NearIndex {
  public:
-  /// Bodies whose cluster is slower than this are slow (m/s).
+  /// Bodies that can become no faster than this are slow (m/s).
   static constexpr double kSlow = 3.0;
 
-  /// Indexes `paths`; `speeds[i]` is the top speed of body i's cluster as far as it is known.
+  /// Indexes `paths`; `speeds[i]` is the top speed of body i as far as it is known.
   void build(std::span<const Path> paths, std::span<const double> speeds);
 
-  /// Body `i` was indexed as slow, and its cluster turned out to be fast.
-  void raise(std::uint32_t i);
+  /// Body `i` at `p` was indexed as slow, and turned out to be fast.
+  void raise(std::uint32_t i, const Vec3& p) { fast_.insert(i, p); }
 
   double top_speed() const { return top_speed_; }
   double top_radius() const { return top_radius_; }
@@ -60,7 +60,7 @@ class NearIndex {
  private:
   SpatialGrid slow_;
   SpatialGrid fast_;
-  std::vector<std::uint32_t> always_;  ///< large, or raised
+  std::vector<std::uint32_t> always_;  ///< large
   double small_radius_ = 0;            ///< largest radius of the bodies in the grids
   double top_speed_ = 0;
   double top_radius_ = 0;

@@ -161,7 +161,7 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   });
 }
 
-/// After 2K steps the body has to be within what its aura said then: the path, plus U v age.
+/// After 2K steps the body has to be within what its aura said then: the path, with or without its fall, plus U v age.
 void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
   if (!track.projected || aura_.rules().kind != AuraKind::kSwept) return;
   const AuraRecord& promise = track.promise;
@@ -174,8 +174,10 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
   path.moves = (promise.flags & kAuraAsleep) == 0;
   path.unborn_steps = static_cast<double>(std::max<Step>(0, promise.birth - promise.stamp));
   const double off = (aura_.ahead(path, age).p_WB - body.pose.p_WB).norm();
-  const double allowed =
-      aura_.rules().contact_margin_m + aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
+  path.v_WB = Vec3::Zero();
+  const double fall = (aura_.ahead(path, age).p_WB - path.pose.p_WB).norm();
+  const double allowed = aura_.rules().contact_margin_m + fall +
+                         aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
   if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
   track.promise = track.said;
 }

@@ -153,11 +153,10 @@ void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reaso
   Departure& departure = departing_.emplace_back();
   departure.destination = destination;
   departure.reason = reason;
-  const double speed = gathering_.clusters().speed(i);
   const bool collision = reason == HandOffReason::kAuraCollision;
   gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
     departure.bodies.push_back(snapshot.bodies[j].id);
-    projection_.depart(snapshot.bodies[j], j, speed, destination,
+    projection_.depart(snapshot.bodies[j], j, gathering_.clusters().speed(j), destination,
                        collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
   });
   std::sort(departure.bodies.begin(), departure.bodies.end());
@@ -223,14 +222,14 @@ std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules,
   early.lookahead = 4 * rules.lookahead;
   const Aura aura(early, clearance);
   std::vector<Path> paths;
-  std::vector<double> speeds;
+  std::vector<double> own_speeds;
   for (const BodyState& body : scene.bodies) {
     paths.push_back(path_of(body, scene.step, clearance));
-    speeds.push_back(aura.speed_of(body));
+    own_speeds.push_back(aura.own_speed_of(body));
   }
   const std::vector<std::uint64_t> no_regions(scene.bodies.size(), 0);
   Clusters clusters(aura);
-  clusters.begin(paths, speeds, no_regions, scene.contacts, scene.joints);
+  clusters.begin(paths, own_speeds, no_regions, scene.contacts, scene.joints);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {
     RegionId lowest = hosts[i];

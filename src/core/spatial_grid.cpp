@@ -9,6 +9,7 @@ namespace aurasim::core {
 void SpatialGrid::clear(double cell_m) {
   cell_m_ = cell_m;
   points_.clear();
+  late_.clear();
 }
 
 void SpatialGrid::add(std::uint32_t index, const Vec3& p) { points_.push_back({cell_of(p), p.z(), index, 0}); }
@@ -28,6 +29,14 @@ void SpatialGrid::build() {
   }
   for (std::uint32_t b = 0; b < buckets; ++b) starts_[b] = starts_[b + 1];
   starts_[buckets] = static_cast<std::uint32_t>(points_.size());
+}
+
+void SpatialGrid::insert(std::uint32_t index, const Vec3& p) {
+  if (late_.empty()) late_heads_.assign(group_count(), kNone);
+  const Cell cell = cell_of(p);
+  const std::uint32_t bucket = bucket_of(cell);
+  late_.push_back({{cell, p.z(), index, bucket}, late_heads_[bucket]});
+  late_heads_[bucket] = static_cast<std::uint32_t>(late_.size() - 1);
 }
 
 SpatialGrid::Cell SpatialGrid::cell_of(const Vec3& p) const {

@@ -21,6 +21,9 @@ class SpatialGrid {
   /// Sorts what was added into columns. Call once before any query.
   void build();
 
+  /// Adds a point after build(). It is in no group.
+  void insert(std::uint32_t index, const Vec3& p);
+
   /// Calls `visit(index)` for every point within the box [lo, hi], grown to whole columns (a superset).
   template <class Visit>
   void for_each_in(const Vec3& lo, const Vec3& hi, Visit&& visit) const {
@@ -32,17 +35,19 @@ class SpatialGrid {
   /// columns; where the box is larger than the world, nobody is asked.
   template <class Skip, class Visit>
   void for_each_in(const Vec3& lo, const Vec3& hi, Skip&& skip, Visit&& visit) const {
-    if (points_.empty()) return;
+    if (empty()) return;
     const Cell a = cell_of(lo);
     const Cell b = cell_of(hi);
     const double cells = double(b.x - a.x + 1) * double(b.y - a.y + 1);
     if (cells > 4.0 * static_cast<double>(points_.size()) + 64) {  // a box larger than the world: look at every point
       for (const Point& point : points_) visit(point.index);
+      for (const Late& late : late_) visit(late.point.index);
       return;
     }
     for (std::int64_t x = a.x; x <= b.x; ++x) {
       for (std::int64_t y = a.y; y <= b.y; ++y) {
         const std::uint32_t bucket = bucket_of({x, y});
+        if (!late_.empty()) visit_late(bucket, {x, y}, lo.z(), hi.z(), visit);
         if (starts_[bucket] == starts_[bucket + 1] || skip(bucket)) continue;
         visit_column(bucket, {x, y}, lo.z(), hi.z(), visit);
       }
@@ -61,7 +66,7 @@ class SpatialGrid {
   /// Some point of a group that has any.
   std::uint32_t any_of(std::uint32_t group) const { return sorted_[starts_[group]].index; }
 
-  bool empty() const { return points_.empty(); }
+  bool empty() const { return points_.empty() && late_.empty(); }
 
  private:
   struct Cell {
@@ -74,6 +79,11 @@ class SpatialGrid {
     std::uint32_t index;
     std::uint32_t bucket;
   };
+  struct Late {
+    Point point;
+    std::uint32_t next;  ///< of the same bucket, in late_
+  };
+  static constexpr std::uint32_t kNone = ~0u;
 
   Cell cell_of(const Vec3& p) const;
   std::uint32_t bucket_of(const Cell& cell) const;
@@ -81,10 +91,20 @@ class SpatialGrid {
   template <class Visit>
   void visit_column(std::uint32_t bucket, const Cell& cell, double low, double high, Visit& visit) const {
     for (std::uint32_t i = starts_[bucket]; i < starts_[bucket + 1]; ++i) {
-      const Point& point = sorted_[i];
-      // Written so that a height that is not a number is visited: slower, never wrong.
-      if (point.cell == cell && !(point.z < low) && !(point.z > high)) visit(point.index);
+      if (is_within(sorted_[i], cell, low, high)) visit(sorted_[i].index);
     }
+  }
+
+  template <class Visit>
+  void visit_late(std::uint32_t bucket, const Cell& cell, double low, double high, Visit& visit) const {
+    for (std::uint32_t i = late_heads_[bucket]; i != kNone; i = late_[i].next) {
+      if (is_within(late_[i].point, cell, low, high)) visit(late_[i].point.index);
+    }
+  }
+
+  /// Written so that a height that is not a number is visited: slower, never wrong.
+  static bool is_within(const Point& point, const Cell& cell, double low, double high) {
+    return point.cell == cell && !(point.z < low) && !(point.z > high);
   }
 
   double cell_m_ = 1;
@@ -92,6 +112,8 @@ class SpatialGrid {
   std::vector<Point> points_;
   std::vector<Point> sorted_;
   std::vector<std::uint32_t> starts_;
+  std::vector<Late> late_;
+  std::vector<std::uint32_t> late_heads_;  ///< by bucket, once there is any
 };
 
 }  // namespace aurasim::core

@@ -98,6 +98,11 @@ class Query : public core::ClearanceQuery {
 
   double bounding_radius(core::PrototypeId prototype) const override { return of(prototype).radius; }
 
+  core::BodyTraits traits(core::PrototypeId prototype) const override {
+    const core::Prototype& kind = scene_.prototypes.at(core::value_of(prototype));
+    return {kind.mass_kg, scene_.materials.at(kind.material).restitution};
+  }
+
  private:
   /// Made when first asked for: a scene may get more prototypes.
   const Parts& of(core::PrototypeId prototype) const {

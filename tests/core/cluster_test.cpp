@@ -24,6 +24,7 @@ class ClusterTest : public ::testing::Test {
     state.v_WB = v;
     paths.push_back(path_of(state, 0, shapes));
     speeds.push_back(aura().speed_of(state));
+    own_speeds.push_back(aura().own_speed_of(state));
     regions.push_back(0);
     return static_cast<std::uint32_t>(paths.size() - 1);
   }
@@ -36,7 +37,7 @@ class ClusterTest : public ::testing::Test {
   }
   Clusters& begin() {
     clusters.emplace(aura());
-    clusters->begin(paths, speeds, regions, contacts, joints);
+    clusters->begin(paths, own_speeds, regions, contacts, joints);
     return *clusters;
   }
   Clusters& complete_all() {
@@ -82,7 +83,7 @@ class ClusterTest : public ::testing::Test {
   }
 
   void place_random_scene(Random& random) {
-    paths.clear(), speeds.clear(), regions.clear(), contacts.clear(), joints.clear();
+    paths.clear(), speeds.clear(), own_speeds.clear(), regions.clear(), contacts.clear(), joints.clear();
     const PrototypeId kinds[] = {ball, big};
     const std::uint32_t count = 2 + random.below(60);
     const double box = random.between(3, 12);
@@ -102,7 +103,7 @@ class ClusterTest : public ::testing::Test {
   PrototypeId ball = shapes.sphere(0.4);
   PrototypeId big = shapes.sphere(3);
   std::vector<Path> paths;
-  std::vector<double> speeds;
+  std::vector<double> speeds, own_speeds;
   std::vector<std::uint64_t> regions;
   std::vector<Contact> contacts, joints;
   std::optional<Clusters> clusters;
@@ -146,12 +147,13 @@ TEST_F(ClusterTest, IsNotCompletedUnlessAskedFor) {
   EXPECT_FALSE(clusters->is_complete(c));
 }
 
-TEST_F(ClusterTest, IsAsFastAsItsFastestBody) {
+TEST_F(ClusterTest, IsAsFastAsItsFastestBodyWhereAllBounceFully) {
   const auto a = place(Vec3(0, 0, 0), Vec3(20, 0, 0)), b = place(Vec3(50, 0, 0), Vec3(1, 0, 0));
   contact(a, b);
   begin();
-  EXPECT_EQ(clusters->speed(b), speeds[a]);
-  EXPECT_EQ(paths[b].speed_m_s, speeds[a]);
+  clusters->complete(b);
+  EXPECT_NEAR(clusters->speed(b), speeds[a], 1e-12);
+  EXPECT_EQ(paths[b].speed_m_s, clusters->speed(b));
 }
 
 TEST_F(ClusterTest, ThatTurnsOutFasterLooksFurther) {
@@ -220,7 +222,7 @@ TEST_F(ClusterTest, AreThoseOfTheDefinition) {
     complete_all();
     const Plain plain = by_definition();
     for (std::uint32_t a = 0; a < paths.size(); ++a) {
-      ASSERT_EQ(clusters->speed(a), plain.speed[plain.of[a]]);
+      ASSERT_NEAR(clusters->speed(a), plain.speed[plain.of[a]], 1e-12);
       ASSERT_EQ(paths[a].speed_m_s, clusters->speed(a));
       for (std::uint32_t b = 0; b < a; ++b) {
         ASSERT_EQ(together(a, b), plain.of[a] == plain.of[b]) << "run " << run << ", bodies " << a << ", " << b;

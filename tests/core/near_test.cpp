@@ -21,11 +21,16 @@ std::vector<Vec3> random_points(Random& random, std::size_t count, double half_s
 
 class AGrid : public ::testing::Test {
  protected:
-  void fill(const std::vector<Vec3>& points, double cell_m) {
+  /// The points from `late` on are there only after the grid has been built.
+  void fill(const std::vector<Vec3>& points, double cell_m, std::size_t late) {
     grid.clear(cell_m);
-    for (std::uint32_t i = 0; i < points.size(); ++i) grid.add(i, points[i]);
-    grid.build();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      if (i == late) grid.build();
+      i < late ? grid.add(i, points[i]) : grid.insert(i, points[i]);
+    }
+    if (late >= points.size()) grid.build();
   }
+  void fill(const std::vector<Vec3>& points, double cell_m) { fill(points, cell_m, points.size()); }
   void expect_all_within(const std::vector<Vec3>& points, const Vec3& lo, const Vec3& hi) {
     std::map<std::uint32_t, int> visits;
     grid.for_each_in(lo, hi, [&](std::uint32_t i) { ++visits[i]; });
@@ -45,7 +50,7 @@ TEST_P(Grid, VisitsEveryPointInTheBoxOnce) {
   Random random("points");
   for (int run = 0; run < 40; ++run) {
     const std::vector<Vec3> points = random_points(random, 1 + random.below(300), 50);
-    fill(points, GetParam());
+    fill(points, GetParam(), random.below(static_cast<std::uint32_t>(points.size()) + 1));
     for (int query = 0; query < 40; ++query) {
       const Vec3 centre = random.in_box(60);
       const Vec3 half = (random.in_box(random.chance(0.3) ? 60 : 5)).cwiseAbs();
@@ -170,7 +175,7 @@ TEST_F(Near, ABodyThatTurnedOutFastIsFoundAtTheFastRange) {
   place(random, 200);
   for (std::uint32_t i = 0; i < paths.size(); i += 3) {
     if (!is_slow(i)) continue;
-    index.raise(i);
+    index.raise(i, paths[i].pose.p_WB);
     speeds[i] = 10;
   }
   for (int query = 0; query < 200; ++query) expect_found(random.in_box(50), 1, 0, 10);

@@ -21,6 +21,7 @@ Rain begin(const ScalabilityPlan& plan, const std::string& series, const Layout&
   rain.rate_per_s = plan.rate_per_s;
   rain.rain_s = rain.run_s = plan.run_s;
   rain.substeps = plan.substeps;
+  rain.lookahead = regions.count > 1 ? plan.lookahead : 0;
   return rain;
 }
 

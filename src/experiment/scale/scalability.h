@@ -37,6 +37,7 @@ struct ScalabilityPlan {
   double rate_per_s = 160;
   double run_s = 60;
   int substeps = 1;
+  int lookahead = 0;  ///< K of runs with several nodes, but for the series of that name; 0: from the tolerances
 };
 
 std::vector<Rain> rains_of(const ScalabilityPlan& plan);
