@@ -16,7 +16,7 @@ struct Preset {
 };
 
 inline constexpr std::array<Preset, 3> kPresets = {{
-    {"fast", "sequential_impulse", 10, 2, 1},
+    {"fast", "sequential_impulse", 10, 2, 2},
     {"balanced", "sequential_impulse", 20, 4, 2},
     {"exact", "sequential_impulse", 50, 8, 2},
 }};
