@@ -12,18 +12,6 @@ namespace {
 /// Share of the way that is undone in a substep. From 0.2 to 0.4 piles stand alike.
 constexpr btScalar kShare = btScalar(0.3);
 
-/// Two directions across the normal that depend on nothing else: the point's own turn with the sliding velocity.
-struct Across {
-  explicit Across(const btVector3& normal) { btPlaneSpace1(normal, first, second); }
-  btVector3 first;
-  btVector3 second;
-};
-
-btVector3 way_of(const btManifoldPoint& point) {
-  const Across across(point.m_normalWorldOnB);
-  return across.first * point.m_appliedImpulseLateral1 + across.second * point.m_appliedImpulseLateral2;
-}
-
 btManifoldPoint& point_of(const btSolverConstraint& contact) {
   return *static_cast<btManifoldPoint*>(contact.m_originalContactPoint);
 }
@@ -50,42 +38,45 @@ btScalar speed_along(const btSolverConstraint& row, btAlignedObjectArray<btSolve
 
 }  // namespace
 
-void Creep::pull_back(const ContactRows& rows, const btContactSolverInfo& info) const {
+/// The point's own directions turn with the sliding velocity.
+void Creep::pull_back(const ContactRows& rows, const btContactSolverInfo& info) {
   const btScalar per_s = kShare / info.m_timeStep;
+  contacts_.resize(static_cast<std::size_t>(rows.contacts.size()));
   for (int i = 0; i < rows.contacts.size(); ++i) {
-    const btManifoldPoint& point = point_of(rows.contacts[i]);
-    const btVector3 way = way_of(point);
+    Of& of = contacts_[static_cast<std::size_t>(i)];
+    of.point = &point_of(rows.contacts[i]);
+    btPlaneSpace1(of.point->m_normalWorldOnB, of.first, of.second);
+    of.way = of.first * of.point->m_appliedImpulseLateral1 + of.second * of.point->m_appliedImpulseLateral2;
     for (int d = 0; d < directions(info); ++d) {
       btSolverConstraint& row = rows.friction[rows.contacts[i].m_frictionIndex + d];
-      row.m_rhs -= way.dot(direction(point, d)) * per_s * row.m_jacDiagABInv;
+      row.m_rhs -= of.way.dot(direction(*of.point, d)) * per_s * row.m_jacDiagABInv;
     }
   }
 }
 
 void Creep::measure(const ContactRows& rows, const btContactSolverInfo& info) {
-  found_.clear();
   for (int i = 0; i < rows.contacts.size(); ++i) {
-    btManifoldPoint& point = point_of(rows.contacts[i]);
+    Of& of = contacts_[static_cast<std::size_t>(i)];
     const btScalar limit = rows.contacts[i].m_friction * static_cast<btScalar>(rows.contacts[i].m_appliedImpulse);
-    Of& of = found_.emplace_back(Of{&point, btVector3(0, 0, 0)});
-    if (!(limit > 0)) continue;  // nothing presses: forgotten
+    if (!(limit > 0)) {  // nothing presses: forgotten
+      of.way.setZero();
+      continue;
+    }
     bool sticks = true;
     btVector3 slid(0, 0, 0);
-    for (int d = 0; d < directions(info); ++d) {
+    for (int d = 0; d < directions(info) && sticks; ++d) {
       const btSolverConstraint& row = rows.friction[rows.contacts[i].m_frictionIndex + d];
-      sticks = sticks && std::abs(static_cast<btScalar>(row.m_appliedImpulse)) < limit;
-      slid += direction(point, d) * (speed_along(row, rows.bodies) * info.m_timeStep);
+      sticks = std::abs(static_cast<btScalar>(row.m_appliedImpulse)) < limit;
+      slid += direction(*of.point, d) * (speed_along(row, rows.bodies) * info.m_timeStep);
     }
-    of.way = way_of(point);
     if (sticks) of.way += slid;
   }
 }
 
 void Creep::remember() {
-  for (const Of& of : found_) {
-    const Across across(of.point->m_normalWorldOnB);
-    of.point->m_appliedImpulseLateral1 = of.way.dot(across.first);
-    of.point->m_appliedImpulseLateral2 = of.way.dot(across.second);
+  for (const Of& of : contacts_) {
+    of.point->m_appliedImpulseLateral1 = of.way.dot(of.first);
+    of.point->m_appliedImpulseLateral2 = of.way.dot(of.second);
   }
 }
 

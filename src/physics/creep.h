@@ -28,18 +28,21 @@ struct ContactRows {
 class Creep {
  public:
   /// Once the rows are made.
-  void pull_back(const ContactRows& rows, const btContactSolverInfo& info) const;
-  /// Once they are solved.
+  void pull_back(const ContactRows& rows, const btContactSolverInfo& info);
+  /// Once they are solved; the rows are still those of pull_back.
   void measure(const ContactRows& rows, const btContactSolverInfo& info);
   /// Once Bullet has written its results into the points.
   void remember();
 
  private:
+  /// Of one contact: its way, and two directions across the normal that depend on nothing else.
   struct Of {
-    btManifoldPoint* point;
+    btManifoldPoint* point = nullptr;
+    btVector3 first;
+    btVector3 second;
     btVector3 way;
   };
-  std::vector<Of> found_;
+  std::vector<Of> contacts_;  ///< as ContactRows::contacts
 };
 
 }  // namespace aurasim::physics
