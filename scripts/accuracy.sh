@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The stability and pareto experiments in both precisions, side by side, their figures, and docs/accuracy.md.
-#   scripts/accuracy.sh [DIR]      DIR: results (build/accuracy)
+#   scripts/accuracy.sh [DIR]      DIR: results (build/accuracy); about 8 minutes on 2 cores
 # AURASIM_QUICK=1: two steps instead of four, no presets but for the standing piles, and fewer points.
 # Fails, after writing everything, when a requirement is not met.
 set -euo pipefail

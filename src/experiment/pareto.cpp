@@ -113,6 +113,13 @@ ParetoPoint measure(const Planned& planned, const std::vector<Case>& cases) {
   return point;
 }
 
+/// The others, with the physics of a preset, would only say how much CPU times scatter.
+bool is_about_physics(const ParetoPoint& p) {
+  const RunRules usual;
+  return p.nodes == 1 && p.rules.sync == usual.sync && p.rules.lookahead == usual.lookahead &&
+         p.rules.aura == usual.aura;
+}
+
 std::string_view aura_name(core::AuraKind aura) { return aura == core::AuraKind::kTight ? "tight" : "swept"; }
 
 void write_csv(const std::vector<ParetoPoint>& points, const std::filesystem::path& file) {
@@ -144,8 +151,9 @@ const std::vector<ParetoError>& pareto_errors() {
 
 void mark_front(std::vector<ParetoPoint>& points) {
   for (ParetoPoint& p : points) {
-    p.on_front = p.nodes == 1 && std::none_of(points.begin(), points.end(), [&](const ParetoPoint& other) {
-                   return other.nodes == 1 && other.error <= p.error && other.cpu_us_per_step <= p.cpu_us_per_step &&
+    p.on_front = is_about_physics(p) && std::none_of(points.begin(), points.end(), [&](const ParetoPoint& other) {
+                   return is_about_physics(other) && other.error <= p.error &&
+                          other.cpu_us_per_step <= p.cpu_us_per_step &&
                           (other.error < p.error || other.cpu_us_per_step < p.cpu_us_per_step);
                  });
   }

@@ -35,10 +35,10 @@ struct ParetoPoint {
   double error = 0;            ///< their geometric mean
   double cpu_us_per_step = 0;  ///< of the busiest node, summed over the cases
   bool same_bits = true;       ///< as one node with the same physics
-  bool on_front = false;       ///< no other point of one node is cheaper and better
+  bool on_front = false;       ///< no other way to set up the physics is cheaper and better
 };
 
-/// Points that nothing else is both cheaper and better than.
+/// Points that nothing else is both cheaper and better than, among those that vary the physics.
 void mark_front(std::vector<ParetoPoint>& points);
 
 /// As StabilityProgress.

@@ -5,6 +5,8 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <LinearMath/btAabbUtil2.h>
 
 namespace aurasim::physics {
@@ -14,10 +16,27 @@ bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
 }
 
+bool is_plane(const btBroadphaseProxy& proxy) {
+  const auto* const object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
+  return object->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+}
+
+/// Bullet looks for more corners on a plane while it knows fewer than four, and counts those that have slid away.
+void drop_stale_points(btCollisionAlgorithm& algorithm) {
+  btManifoldArray manifolds;
+  algorithm.getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    manifolds[i]->refreshContactPoints(manifolds[i]->getBody0()->getWorldTransform(),
+                                       manifolds[i]->getBody1()->getWorldTransform());
+  }
+}
+
 /// The broadphase keeps pairs whose bounds were near once; how long differs from world to world. Here a pair lives
 /// exactly as long as its bounds of this substep overlap.
 void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   if (bounds_overlap(*pair.m_pProxy0, *pair.m_pProxy1)) {
+    const bool with_plane = is_plane(*pair.m_pProxy0) || is_plane(*pair.m_pProxy1);
+    if (with_plane && pair.m_algorithm != nullptr) drop_stale_points(*pair.m_algorithm);
     btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
   } else if (pair.m_algorithm != nullptr) {
     pair.m_algorithm->~btCollisionAlgorithm();

@@ -8,6 +8,8 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
+#include "physics/creep.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -46,7 +48,7 @@ void let_bounce(btSolverConstraint& row, const btSolverBody& a, const btSolverBo
 }
 
 template <class BulletSolver>
-class Bouncing : public BulletSolver {
+class Refined : public BulletSolver {
  public:
   using BulletSolver::BulletSolver;
 
@@ -58,17 +60,34 @@ class Bouncing : public BulletSolver {
       let_bounce(row, this->m_tmpSolverBodyPool[row.m_solverBodyIdA], this->m_tmpSolverBodyPool[row.m_solverBodyIdB],
                  info);
     }
+    creep_.pull_back(rows(), info);
   }
+
+  btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int count,
+                                         const btContactSolverInfo& info) override {
+    creep_.measure(rows(), info);
+    const btScalar residual = BulletSolver::solveGroupCacheFriendlyFinish(bodies, count, info);
+    creep_.remember();
+    return residual;
+  }
+
+ private:
+  ContactRows rows() {
+    return {this->m_tmpSolverContactConstraintPool, this->m_tmpSolverContactFrictionConstraintPool,
+            this->m_tmpSolverBodyPool};
+  }
+
+  Creep creep_;
 };
 
 /// A base, so that it outlives the solver that points at it.
 struct Dantzig {
   btDantzigSolver dantzig;
 };
-class DantzigSolver final : private Dantzig, public Bouncing<btMLCPSolver> {
+class DantzigSolver final : private Dantzig, public Refined<btMLCPSolver> {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
-  DantzigSolver() : Bouncing(&dantzig) {}
+  DantzigSolver() : Refined(&dantzig) {}
 };
 
 }  // namespace
@@ -76,13 +95,13 @@ class DantzigSolver final : private Dantzig, public Bouncing<btMLCPSolver> {
 std::unique_ptr<btConstraintSolver> make_solver(Solver kind) {
   switch (kind) {
     case Solver::kNncg:
-      return std::make_unique<Bouncing<btNNCGConstraintSolver>>();
+      return std::make_unique<Refined<btNNCGConstraintSolver>>();
     case Solver::kDantzig:
       return std::make_unique<DantzigSolver>();
     case Solver::kSequentialImpulse:
       break;
   }
-  return std::make_unique<Bouncing<btSequentialImpulseConstraintSolver>>();
+  return std::make_unique<Refined<btSequentialImpulseConstraintSolver>>();
 }
 
 }  // namespace aurasim::physics

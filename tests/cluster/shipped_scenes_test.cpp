@@ -67,6 +67,7 @@ class ShippedCluster : public testing::TestWithParam<std::tuple<std::size_t, std
     options.aura.substeps = launch.time.substeps;
     options.aura.uncertainty = launch.aura.uncertainty;
     options.solver_iterations = launch.physics.iterations;
+    options.friction_directions = launch.physics.friction_directions;
     options.aura.top_speed_m_s = 40;
     options.faults.loss = 0.05;
     options.faults.duplicate = 0.05;
@@ -94,7 +95,35 @@ TEST_P(ShippedCluster, HasTheBitsOfTheCentralRun) {
   std::cout << hand_offs << " hand-offs\n";
 }
 
-/// The rule above can fail: without auras, bodies go one by one and their joints are cut.
+/// The ball is left out; nothing may sleep.
+TEST(ShippedCardHouse, StandsForAMinuteUnlessSomethingComes) {
+  config::Launch launch = launch_of("card_house");
+  for (core::Prototype& prototype : launch.scene.prototypes) prototype.can_sleep = false;
+  const auto largest_drift = [&](const physics::Settings& settings) {
+    physics::RegionWorld world(launch.scene, settings);
+    std::vector<core::BodyRecord> cards;
+    for (const core::InitialBody& body : launch.scene.bodies) {
+      if (body.v_WB.isZero()) cards.push_back(core::initial_record(body));
+    }
+    EXPECT_EQ(cards.size(), 15u);
+    world.add(cards);
+    for (int step = 0; step < 3600; ++step) world.step();
+    double largest_m = 0;
+    for (std::size_t i = 0; i < cards.size(); ++i) {
+      largest_m = std::max(largest_m, (world.records()[i].p_WB - cards[i].p_WB).norm());
+    }
+    return largest_m;
+  };
+  physics::Settings settings;
+  settings.substeps = launch.time.substeps;
+  settings.solver_iterations = launch.physics.iterations;
+  settings.friction_directions = launch.physics.friction_directions;
+  EXPECT_LT(largest_drift(settings), 0.01);
+  settings.friction_directions = 1;
+  EXPECT_GT(largest_drift(settings), 0.1) << "friction in one direction does not hold it";
+}
+
+/// The first rule above can fail: without auras, bodies go one by one and their joints are cut.
 TEST(ShippedClusterBits, WithoutAurasJointsAreCutAndTheBitsDiffer) {
   const core::Scene scene = launch_of("ragdoll_stairs").scene;
   ClusterOptions options;

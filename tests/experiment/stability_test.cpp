@@ -78,16 +78,19 @@ TEST(StabilityCases, TheDoublePendulumComesNearerToItsReferenceWithSmallerSteps)
 }
 
 TEST(Pareto, TheFrontIsWhatNothingElseBeats) {
-  std::vector<ParetoPoint> points(4);
+  std::vector<ParetoPoint> points(5);
   const auto set = [&](std::size_t i, double error, double cost, int nodes = 1) {
     points[i].error = error, points[i].cpu_us_per_step = cost, points[i].nodes = nodes;
   };
   set(0, 1, 10), set(1, 0.5, 20), set(2, 0.6, 30), set(3, 0.1, 1, 2);
+  set(4, 0.5, 19);
+  points[4].rules.sync = core::SyncMode::kBounded;
   mark_front(points);
   EXPECT_TRUE(points[0].on_front);
   EXPECT_TRUE(points[1].on_front);
   EXPECT_FALSE(points[2].on_front) << "dearer and worse than the one before";
   EXPECT_FALSE(points[3].on_front) << "on two nodes";
+  EXPECT_FALSE(points[4].on_front) << "the same physics in another sync mode";
 }
 
 }  // namespace

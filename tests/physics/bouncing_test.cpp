@@ -1,4 +1,4 @@
-// Bounces of balls neither make nor lose energy but what restitution takes.
+// Bounces neither make nor lose energy but what restitution takes.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -77,6 +77,26 @@ TEST(BouncingBodies, EachBounceReachesTheSquareOfItsRestitution) {
   ASSERT_GE(tops.size(), 2u);
   EXPECT_NEAR(tops[0], 0.25, 0.02);
   EXPECT_NEAR(tops[1], 0.0625, 0.02);
+}
+
+/// All four corners touch in the same substep, so it does not begin to spin. Were they found one after the other, it
+/// would, and make energy.
+TEST(BouncingBodies, ABoxThatFallsFlatKeepsItsEnergyAndDoesNotSpin) {
+  const core::Scene scene = scene_of_bouncing(core::Box{{0.5, 0.5, 0.5}}, 1);
+  for (const int step_hz : {60, 240, 1000}) {
+    RegionWorld world(scene, settings_of(step_hz));
+    world.add(std::vector{body(1, 0, {0, 0, 1.5})});
+    const double before = energy(world.records().front(), 1.0 / step_hz) - kGravity * 0.5;
+    double largest = 0;
+    for (int i = 0; i < 5 * step_hz; ++i) {
+      world.step();
+      const core::BodyRecord& box = world.records().front();
+      const double now = energy(box, 1.0 / step_hz) - kGravity * 0.5;
+      largest = std::max(largest, std::abs(now - before) / before);
+      ASSERT_LT(box.w_WB.norm(), 0.05) << step_hz << " Hz, step " << i;
+    }
+    EXPECT_LT(largest, 0.01) << step_hz << " Hz";
+  }
 }
 
 TEST(BouncingBodies, TwoBallsThatMeetExchangeTheirVelocities) {

@@ -77,6 +77,23 @@ Case bouncing_ball() {
   return c;
 }
 
+/// A cube that falls flat, so four corners bounce at once.
+Case bouncing_box() {
+  constexpr double kHalf = 0.5;
+  Case c{"bouncing_box_1", "restitution 1, no friction: the energy stays; a cube of 1 m dropped flat from 1 m", 0, 5};
+  SceneBuilder scene(c.name);
+  scene.material(0, 1).ground().body(core::Box{{kHalf, kHalf, kHalf}}, 1, {-0.1, 0, kHalf + kDrop_m});
+  c.scene = scene.scene();
+  c.metrics = {{"|E - E0| / E0, velocities of the middle of the step", "1", Over::kLargest,
+                [scene = c.scene](const Moment& now) {
+                  core::BodyRecord box = now.bodies[0];
+                  box.v_WB.z() -= 0.5 * kGravity * now.step_s * (now.t_s > 0);
+                  const double whole = kGravity * kDrop_m;
+                  return std::abs(energy(scene, std::span(&box, 1)) - kGravity * (kHalf + kDrop_m)) / whole;
+                }}};
+  return c;
+}
+
 /// Height of a ball dropped from 1 m, restitution 1/2, at t.
 double bounced_height(double t_s) {
   double up = 0;
@@ -186,6 +203,7 @@ std::vector<Case> contact_cases() {
           bowling_ball(),
           bouncing_ball(),
           bouncing_ball_half(),
+          bouncing_box(),
           rolling_plate("rolling_plate", 0.2),
           rolling_plate("rolling_plate_no_erp", 0),
           bullet("bullet_ccd_off", false),
