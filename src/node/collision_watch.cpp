@@ -28,6 +28,8 @@ bool touch(const core::Snapshot& snapshot, std::uint32_t i, std::uint32_t j) {
       [](const core::Contact& x, const core::Contact& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
 }
 
+bool stands_still(const core::Path& path) { return path.v_WB.isZero(0) && path.w_WB.isZero(0); }
+
 bool by_id(const std::pair<core::BodyId, core::Step>& a, core::BodyId id) { return a.first < id; }
 
 }  // namespace
@@ -97,17 +99,19 @@ void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
   std::erase_if(untouching_, [&](const Pair& pair) { return !stays(pair.first) || !stays(pair.second); });
 }
 
-/// Nothing if they touch, or overlap so little that a contact in the next step will not be late.
+/// Nothing if they touch, or if one moves: then Bullet looks at them in the next step. Whoever will be kicked counts as
+/// awake already, so it is the motion that tells.
 std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::uint32_t j,
                                                         const core::Snapshot& snapshot,
                                                         const core::Gathering& gathering) const {
   const core::Path& a = gathering.path(i);
   const core::Path& b = gathering.path(j);
-  if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m || touch(snapshot, i, j)) return std::nullopt;
+  if (!stands_still(a) || !stands_still(b) || touch(snapshot, i, j)) return std::nullopt;
+  if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m) return std::nullopt;
   const double clearance = clearance_.clearance(a.prototype, a.pose, b.prototype, b.pose, kSlop);
   const auto [first, second] = std::minmax(snapshot.bodies[i].id, snapshot.bodies[j].id);
   SeenCollision seen;
-  seen.collision = {snapshot.step, first, second, -clearance, (a.v_WB - b.v_WB).norm(), a.pose.p_WB};
+  seen.collision = {snapshot.step, first, second, -clearance, 0, a.pose.p_WB};
   seen.late = is_late(seen.collision);
   return seen.late ? std::optional(seen) : std::nullopt;
 }
