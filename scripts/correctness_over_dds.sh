@@ -7,20 +7,12 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=${1:-build/correctness_over_dds}
-aurasim=build/release/aurasim
-[[ -x $aurasim ]] || scripts/build.sh release
+# shellcheck source=scripts/correctness_runs.sh
+source scripts/correctness_runs.sh
 
-met=yes
-# 1: done, but not every requirement is met
-run() {
-  local name=$1
-  shift
-  "$aurasim" experiment "$name" --aura none,tight,swept --repeats 20 --domain 61 --out "$out/$name" "$@" ||
-    { [[ $? == 1 && -s $out/$name/summary.json ]] && met=no; }
-}
-rm -f "$out"/{collision,loss}/summary.json
-run collision --pairs head_on --head-on-values 4
-run loss --head-on-values 5
+options=(--aura none,tight,swept --repeats 20 --domain 61)
+run collision --pairs head_on --head-on-values 4 "${options[@]}"
+run loss --head-on-values 5 "${options[@]}"
 /usr/bin/python3 scripts/write_over_dds.py "$out/collision" "$out/loss"
 echo "written: docs/correctness_over_dds.md"
 [[ $met == yes ]]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
@@ -19,8 +20,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kShowEvery = 250ms;
-constexpr auto kStopGently = 900ms;   // after this, SIGTERM
-constexpr auto kStopSurely = 1600ms;  // after this, SIGKILL
+constexpr auto kSayThatWeWait = 2s;
+constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process twice
 
 }  // namespace
 
@@ -115,16 +116,37 @@ void Launcher::stop_all() {
   RunSteering steering(launch_, control_);
   if (steering.find_run(0ms)) steering.send(dds::RunCommandKind::kStop);
   const auto begin = Clock::now();
-  bool told = false;
+  std::vector<NodeEnding> endings(children_.size(), NodeEnding(begin));
+  int presses = stop_requests();
+  bool said = false;
   while (any_running()) {
     control_.wait(20ms);
     collect_exits();
-    if (!told && Clock::now() - begin > kStopGently) {
-      signal_all(SIGTERM);
-      told = true;
-    }
-    if (Clock::now() - begin > kStopSurely) signal_all(SIGKILL);
+    const auto now = Clock::now();
+    if (now - begin < kOnePress) presses = stop_requests();
+    if (stop_requests() > presses) signal_all(SIGKILL);
+    for (std::size_t i = 0; i < children_.size(); ++i) urge(children_[i], endings[i]);
+    if (said || now - begin < kSayThatWeWait || !any_running()) continue;
+    said = true;
+    spdlog::warn("waiting for the nodes of regions [{}] to end; Ctrl-C once more kills them",
+                 fmt::join(running_regions(), ", "));
   }
+}
+
+void Launcher::urge(const Child& child, NodeEnding& ending) {
+  if (!child.running) return;
+  const auto& statuses = control_.statuses();
+  const auto seen = statuses.find(child.region);
+  const Urge urge = ending.urge(Clock::now(), seen == statuses.end() ? nullptr : &seen->second);
+  if (urge != Urge::kNone) ::kill(child.pid, urge == Urge::kKill ? SIGKILL : SIGTERM);
+}
+
+std::vector<std::uint32_t> Launcher::running_regions() const {
+  std::vector<std::uint32_t> regions;
+  for (const Child& child : children_) {
+    if (child.running) regions.push_back(core::value_of(child.region));
+  }
+  return regions;
 }
 
 void Launcher::show() {

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/live_table.h"
+#include "cli/node_ending.h"
 #include "cli/node_process.h"
 #include "cli/run_steering.h"
 #include "cli/viewer_process.h"
@@ -48,6 +49,8 @@ class Launcher {
   void collect_exits();
   bool any_running() const;
   void stop_all();
+  void urge(const Child& child, NodeEnding& ending);
+  std::vector<std::uint32_t> running_regions() const;
   void signal_all(int signal) const;
   void show();
   ExitCode conclude();

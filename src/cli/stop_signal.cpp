@@ -7,7 +7,7 @@ namespace {
 
 volatile std::sig_atomic_t requested = 0;
 
-void request(int) { requested = 1; }
+void request(int) { requested = requested + 1; }
 
 }  // namespace
 
@@ -19,5 +19,7 @@ void catch_stop_signals() {
 }
 
 bool stop_requested() { return requested != 0; }
+
+int stop_requests() { return requested; }
 
 }  // namespace aurasim::cli

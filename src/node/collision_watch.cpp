@@ -1,6 +1,8 @@
 #include "node/collision_watch.h"
 
 #include <algorithm>
+#include <optional>
+#include <tuple>
 
 namespace aurasim::node {
 namespace {
@@ -10,6 +12,23 @@ constexpr double kSlop = 0.02;
 
 /// For so many states after its birth, a body's overlaps are the scene's doing: it appeared there.
 constexpr core::Step kYoungSteps = 2;
+
+/// Place of a body in a snapshot.
+std::optional<std::uint32_t> index_of(const core::Snapshot& snapshot, core::BodyId id) {
+  const auto found = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
+                                      [](const core::BodyState& b, core::BodyId x) { return b.id < x; });
+  if (found == snapshot.bodies.end() || found->id != id) return std::nullopt;
+  return static_cast<std::uint32_t>(found - snapshot.bodies.begin());
+}
+
+bool touch(const core::Snapshot& snapshot, std::uint32_t i, std::uint32_t j) {
+  const auto [a, b] = std::minmax(i, j);
+  return std::binary_search(
+      snapshot.contacts.begin(), snapshot.contacts.end(), core::Contact{a, b},
+      [](const core::Contact& x, const core::Contact& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
+}
+
+bool stands_still(const core::Path& path) { return path.v_WB.isZero(0) && path.w_WB.isZero(0); }
 
 bool by_id(const std::pair<core::BodyId, core::Step>& a, core::BodyId id) { return a.first < id; }
 
@@ -41,13 +60,78 @@ bool CollisionWatch::flagged(core::Step step, core::Step last_violation) const {
 void CollisionWatch::judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
                            std::vector<SeenCollision>& out) {
   for (const physics::Collision& c : first_contacts) {
-    SeenCollision& seen = out.emplace_back();
-    seen.collision = c;
-    seen.late = is_late(c);
-    seen.flagged = flagged(c.step, last_violation);
-    late_ += seen.late;
-    unflagged_ += seen.late && !seen.flagged;
+    const bool judged_before = untouching_.erase({c.a, c.b}) > 0;
+    report({c, !judged_before && is_late(c)}, last_violation, out);
   }
+}
+
+void CollisionWatch::report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out) {
+  seen.flagged = flagged(seen.collision.step, last_violation);
+  late_ += seen.late;
+  missed_ += seen.missed;
+  unflagged_ += (seen.late || seen.missed) && !seen.flagged;
+  out.push_back(seen);
+}
+
+void CollisionWatch::join(const core::Adoption& adoption) {
+  for (const core::BodyRecord& body : adoption.cluster.bodies) {
+    joined_.push_back({body.id, adoption.source, adoption.stamp});
+    if (body.birth > 0) newborn(body.id, body.birth);
+  }
+}
+
+const CollisionWatch::Joined* CollisionWatch::joined(core::BodyId id) const {
+  const auto found =
+      std::lower_bound(joined_.begin(), joined_.end(), id, [](const Joined& j, core::BodyId x) { return j.id < x; });
+  return found != joined_.end() && found->id == id ? &*found : nullptr;
+}
+
+/// They were in one world before: whatever is between them has been judged there.
+bool CollisionWatch::came_together(const Pair& pair) const {
+  const Joined* const first = joined(pair.first);
+  const Joined* const second = joined(pair.second);
+  return first && second && first->source == second->source && first->stamp == second->stamp;
+}
+
+/// Who has left, and perhaps come back, may have been moved meanwhile.
+void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
+  const auto stays = [&](core::BodyId id) { return index_of(snapshot, id) && !joined(id); };
+  std::erase_if(untouching_, [&](const Pair& pair) { return !stays(pair.first) || !stays(pair.second); });
+}
+
+/// Nothing if they touch, or if one moves: then Bullet looks at them in the next step. Whoever will be kicked counts as
+/// awake already, so it is the motion that tells.
+std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::uint32_t j,
+                                                        const core::Snapshot& snapshot,
+                                                        const core::Gathering& gathering) const {
+  const core::Path& a = gathering.path(i);
+  const core::Path& b = gathering.path(j);
+  if (!stands_still(a) || !stands_still(b) || touch(snapshot, i, j)) return std::nullopt;
+  if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m) return std::nullopt;
+  const double clearance = clearance_.clearance(a.prototype, a.pose, b.prototype, b.pose, kSlop);
+  const auto [first, second] = std::minmax(snapshot.bodies[i].id, snapshot.bodies[j].id);
+  SeenCollision seen;
+  seen.collision = {snapshot.step, first, second, -clearance, 0, a.pose.p_WB};
+  seen.late = is_late(seen.collision);
+  return seen.late ? std::optional(seen) : std::nullopt;
+}
+
+void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::Gathering& gathering,
+                                    core::Step last_violation, std::vector<SeenCollision>& out) {
+  std::sort(joined_.begin(), joined_.end(), [](const Joined& a, const Joined& b) { return a.id < b.id; });
+  forget_parted(snapshot);
+  for (const Joined& arrival : joined_) {
+    const std::optional<std::uint32_t> here = index_of(snapshot, arrival.id);
+    if (!here) continue;
+    const core::Path& path = gathering.path(*here);
+    gathering.clusters().near().for_each_near(path.pose.p_WB, path.radius_m, 0, 0, [&](std::uint32_t other) {
+      if (other == *here) return;
+      std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, gathering);
+      if (!seen || !untouching_.insert({seen->collision.a, seen->collision.b}).second) return;
+      if (!came_together({seen->collision.a, seen->collision.b})) report(*seen, last_violation, out);
+    });
+  }
+  joined_.clear();
 }
 
 void CollisionWatch::remember(const core::Snapshot& snapshot, const core::Gathering& gathering) {
@@ -91,12 +175,10 @@ void CollisionWatch::compare(const core::Snapshot& snapshot, const core::Gatheri
     if (clearance > -kSlop) continue;
     const auto ids = std::minmax(foreign.id, snapshot.bodies[pair.own].id);
     if (!overlapping_.insert(ids).second) continue;
-    SeenCollision& seen = out.emplace_back();
+    SeenCollision seen;
     seen.collision = {stamp, ids.first, ids.second, -clearance, (own.v_WB - foreign.path.v_WB).norm(), pose->p_WB};
     seen.missed = true;
-    seen.flagged = flagged(stamp, last_violation);
-    ++missed_;
-    unflagged_ += !seen.flagged;
+    report(seen, last_violation, out);
   }
 }
 

@@ -1,10 +1,11 @@
 // Late and missed collisions (DESIGN section 9), as one node can see them.
-// Late: when two bodies first touch, they already overlap by more than one step of their relative speed.
-// Missed: two bodies of different hosts overlap in the same state.
+// Late: when two bodies first touch, or come to one host without touching, they already overlap by more than one step
+// of their relative speed. Missed: two bodies of different hosts overlap in the same state.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "core/clearance.h"
 #include "core/gathering.h"
 #include "core/ids.h"
+#include "core/intake.h"
 #include "physics/region_world.h"
 
 namespace aurasim::node {
@@ -32,9 +34,17 @@ class CollisionWatch {
   /// Bodies of age less than a step: where they appear is the scene's doing.
   void newborn(core::BodyId body, core::Step birth);
 
+  /// A cluster has joined for the state that is being computed.
+  void join(const core::Adoption& adoption);
+
   /// Judges the first contacts of a step. `last_violation` is the newest step with a broken promise.
   void judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
              std::vector<SeenCollision>& out);
+
+  /// Judges overlaps without a contact of the bodies that have joined. Bullet makes none between two that sleep:
+  /// nothing would be seen until something wakes them, long after the promise was broken that let it come to this.
+  void judge_arrivals(const core::Snapshot& snapshot, const core::Gathering& gathering, core::Step last_violation,
+                      std::vector<SeenCollision>& out);
 
   /// Compares foreign auras with where our own bodies were in the auras' states.
   void compare(const core::Snapshot& snapshot, const core::Gathering& gathering, core::Step last_violation,
@@ -45,6 +55,14 @@ class CollisionWatch {
   std::uint64_t unflagged() const { return unflagged_; }
 
  private:
+  using Pair = std::pair<core::BodyId, core::BodyId>;  ///< ascending
+
+  /// A body that joined for this state, and where and when it was last in a world.
+  struct Joined {
+    core::BodyId id;
+    core::RegionId source;
+    core::Step stamp;
+  };
   struct Remembered {
     core::BodyId id;
     core::Pose pose;
@@ -58,6 +76,12 @@ class CollisionWatch {
   bool was_just_born(const physics::Collision& c) const;
   bool flagged(core::Step step, core::Step last_violation) const;
   const core::Pose* remembered(core::Step step, core::BodyId id) const;
+  const Joined* joined(core::BodyId id) const;
+  bool came_together(const Pair& pair) const;
+  void forget_parted(const core::Snapshot& snapshot);
+  std::optional<SeenCollision> overlap_of(std::uint32_t i, std::uint32_t j, const core::Snapshot& snapshot,
+                                          const core::Gathering& gathering) const;
+  void report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out);
   void remember(const core::Snapshot& snapshot, const core::Gathering& gathering);
 
   double step_s_;
@@ -66,7 +90,9 @@ class CollisionWatch {
   const core::ClearanceQuery& clearance_;
   std::vector<std::pair<core::BodyId, core::Step>> births_;
   std::deque<State> states_;
-  std::set<std::pair<core::BodyId, core::BodyId>> overlapping_;  ///< already counted as missed
+  std::set<Pair> overlapping_;  ///< already counted as missed
+  std::vector<Joined> joined_;  ///< ascending id
+  std::set<Pair> untouching_;   ///< overlap without a contact: judged before it comes
   std::uint64_t late_ = 0;
   std::uint64_t missed_ = 0;
   std::uint64_t unflagged_ = 0;

@@ -242,8 +242,8 @@ void Node::note_arrivals(const core::Adoption& adoption) {
     row.destination = region();
     row.reason = adoption.reason;
     row.reclaimed = adoption.reclaimed;
-    if (body.birth > 0) watch_.newborn(body.id, body.birth);
   }
+  watch_.join(adoption);
 }
 
 /// The second half of a step: look at the state, tell the others, let go.
@@ -263,6 +263,7 @@ void Node::finish_state() {
   {
     const Timed timed(report_.durations.watch_s, setup_.clock);
     watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
+    watch_.judge_arrivals(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
     watch_.compare(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
     note_contacts(*snapshot);
   }

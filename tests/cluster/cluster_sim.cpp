@@ -17,6 +17,7 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     listeners.push_back(options_.map.neighbours(RegionId{r}, options_.neighbour_distance_m));
   }
   network_ = std::make_unique<transport::MemoryNetwork>(listeners, options_.faults, options_.seed);
+  if (options_.cut) cut_off(*options_.cut);
   for (std::uint32_t r = 0; r < regions; ++r) {
     node::NodeSetup setup;
     setup.protocol.self = RegionId{r};
@@ -33,6 +34,12 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
 }
 
 ClusterSim::~ClusterSim() = default;
+
+void ClusterSim::cut_off(const LinkCut& cut) {
+  for (std::uint32_t r = 0; r < options_.map.size(); ++r) {
+    if (RegionId{r} != cut.region) network_->faults().cut(cut.region, RegionId{r}, cut.from_s, cut.until_s);
+  }
+}
 
 double ClusterSim::chance() {
   random_ = random_ * 6364136223846793005ull + 1442695040888963407ull;

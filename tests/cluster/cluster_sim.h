@@ -22,6 +22,13 @@ struct Crash {
   double lease_s = 0.2;
 };
 
+/// One region's link to all others; what is sent meanwhile comes afterwards.
+struct LinkCut {
+  core::RegionId region{};
+  double from_s = 0;
+  double until_s = 0;
+};
+
 struct ClusterOptions {
   core::RegionMap map = core::RegionMap::columns(1, 1);
   core::AuraRules aura;
@@ -35,6 +42,7 @@ struct ClusterOptions {
   double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
   std::optional<Crash> crash;
+  std::optional<LinkCut> cut;
   std::vector<std::pair<core::Step, core::Action>>
       orders;  ///< given to region 0 before state 0, by the state they name
 };
@@ -81,6 +89,7 @@ class ClusterSim {
     bool alive = true;
   };
 
+  void cut_off(const LinkCut& cut);
   void step_if_due(Member& member, core::Step last);
   void take_report(Member& member, const node::StepReport& report);
   void check_single_host();

@@ -1,5 +1,4 @@
 // The promises of DESIGN sections 4 to 6, on whole simulated clusters.
-#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -18,10 +17,7 @@ using core::SyncMode;
 constexpr double kCell = 9;
 constexpr core::Step kSteps = 180;
 
-int seeds() {
-  const char* wanted = std::getenv("AURASIM_SEEDS");
-  return wanted ? std::max(1, std::atoi(wanted)) : 6;
-}
+int seeds() { return seeds_or(6); }
 
 struct Layout {
   const char* name;

@@ -1,5 +1,7 @@
 #include "cluster/scenes.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <random>
 
 namespace aurasim::test {
@@ -45,6 +47,11 @@ core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m,
   injector.prototypes = {core::PrototypeId{0}, core::PrototypeId{1}, core::PrototypeId{2}};
   scene.injectors = {injector};
   return scene;
+}
+
+int seeds_or(int usual) {
+  const char* wanted = std::getenv("AURASIM_SEEDS");
+  return wanted ? std::max(1, std::atoi(wanted)) : usual;
 }
 
 }  // namespace aurasim::test

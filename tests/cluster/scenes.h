@@ -1,4 +1,4 @@
-// Small scenes for simulated clusters, from a seed.
+// Small scenes for simulated clusters, from a seed, and how many seeds.
 #pragma once
 
 #include "core/scene.h"
@@ -8,5 +8,8 @@ namespace aurasim::test {
 /// `count` spheres, boxes and capsules over an area of `width_x_m` x `width_y_m` around the origin, thrown about at up
 /// to `speed_m_s` along x and y above a plane; a tenth of them come later, from an injector.
 core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed);
+
+/// How many seeds a rule is tried with: AURASIM_SEEDS, if it is set.
+int seeds_or(int usual);
 
 }  // namespace aurasim::test

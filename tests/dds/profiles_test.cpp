@@ -66,7 +66,7 @@ TEST(Interfaces, OfWhichAllAreLoopbackKeepTheRunOnThisHost) {
 }
 
 TEST(Interfaces, OfTheSettingsReplaceThoseOfTheFile) {
-  for (const char* file : {"aurasim.xml", "hosts.xml", "peers.xml"}) {
+  for (const char* file : {"aurasim.xml", "hosts.xml", "peers.xml", "slow_link.xml"}) {
     Settings settings = settings_for(0, file);
     settings.interfaces = {"10.1.2.3", "127.0.0.1"};
     EXPECT_THAT(white_list(qos_for(settings)), ElementsAre("10.1.2.3", "127.0.0.1")) << file;

@@ -1,0 +1,12 @@
+# Sourced by correctness.sh and correctness_over_dds.sh, which set `out`, the folder of the results.
+# shellcheck shell=bash
+
+aurasim=build/release/aurasim
+[[ -x $aurasim ]] || scripts/build.sh release
+rm -f "${out:?}"/{collision,loss}/summary.json
+met=yes
+
+# NAME OPTION...: an experiment, into $out/NAME. Exit code 1: it is done, but not every requirement is met.
+run() {
+  "$aurasim" experiment "$1" --out "$out/$1" "${@:2}" || { [[ $? == 1 && -s $out/$1/summary.json ]] && met=no; }
+}
