@@ -66,7 +66,7 @@ TEST_P(SleepersThatOverlap, AreFoundWhenTheyComeTogetherAndNotAgainWhenTheyWake)
   })) << "the kick wakes them";
 }
 
-INSTANTIATE_TEST_SUITE_P(SliderFrom, SleepersThatOverlap, testing::Values(-2.5, -2.1, -1.7, -1.4));
+INSTANTIATE_TEST_SUITE_P(SliderFrom, SleepersThatOverlap, testing::Values(-2.5, -2.3, -2.1, -1.9));
 
 TEST(LinkCut, WhatIsFoundAfterItIsNeverUnflagged) {
   const config::Launch launch =
