@@ -25,8 +25,8 @@ Push Push::joined_with(const Push& other) const {
   Push both{std::max(speed_m_s, other.speed_m_s), std::max(momentum_kg_m_s, other.momentum_kg_m_s), 0};
   for (const Push& push : {*this, other}) {
     if (push.speed_m_s <= 0) continue;
-    both.free_kg = std::max(both.free_kg,
-                            push.free_kg - both.momentum_kg_m_s * (1 / push.speed_m_s - 1 / both.speed_m_s));
+    both.free_kg =
+        std::max(both.free_kg, push.free_kg - both.momentum_kg_m_s * (1 / push.speed_m_s - 1 / both.speed_m_s));
   }
   return both;
 }
