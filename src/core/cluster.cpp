@@ -34,6 +34,7 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   link_ranges_.clear();
   for (int hops = 0; hops <= kMostHops; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
+  started_.assign(n, 0);
   links_.clear();
   asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
@@ -41,7 +42,10 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   for (const Path& path : paths) traits_.push_back(aura_.clearance().traits(path.prototype));
   pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
   if (aura_.rules().kind != AuraKind::kNone) join(contacts, joints);
-  for (std::uint32_t i = 0; i < n; ++i) pushes_.start(i);
+  // Those near a boundary will be asked for. What is known before the index is built costs less than what comes later.
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (regions[i] != 0) start_pushes(i);
+  }
   pushes_.spread(raised_);
   raised_.clear();
   body_speed_.resize(n);
@@ -64,6 +68,15 @@ void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> 
 double Clusters::pushed_speed(std::uint32_t i) const {
   const double push = pushes_.speed(i);
   return aura_.calm_speed(paths_[i].moves || push > Push::kUnfelt_m_s) + push;
+}
+
+/// Those of the members of body i's cluster, as far as they have not been.
+void Clusters::start_pushes(std::uint32_t i) {
+  if (started_[i]) return;
+  for_each_member(i, [this](std::uint32_t j) {
+    if (!started_[j]) pushes_.start(j);
+    started_[j] = 1;
+  });
 }
 
 /// Whoever has become faster looks further.
@@ -122,6 +135,8 @@ void Clusters::complete(std::uint32_t i) {
   if (complete_[of(i)]) return;
   complete_[of(i)] = 1;
   if (aura_.rules().kind == AuraKind::kNone) return;
+  start_pushes(i);
+  take_raised();
   ask_members(i);
   while (!to_ask_.empty()) {
     const std::uint32_t j = to_ask_.back();
@@ -179,6 +194,7 @@ void Clusters::link(std::uint32_t i, std::uint32_t j) {
     if (!more_regions) ask_members(j);
     unite(i, j);
     if (more_regions) ask_members(i);
+    start_pushes(j);
   } else if (!pushes_.raises(i, j)) {
     return;
   }

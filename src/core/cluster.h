@@ -60,6 +60,7 @@ class Clusters {
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
   void join(std::span<const Contact> contacts, std::span<const Contact> joints);
   void link(std::uint32_t i, std::uint32_t j);
+  void start_pushes(std::uint32_t i);
   void take_raised();
   double pushed_speed(std::uint32_t i) const;
   bool knows(std::uint32_t i, std::uint32_t group);
@@ -84,6 +85,7 @@ class Clusters {
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
+  std::vector<std::uint8_t> started_;  ///< by body: its push is passed on
   std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around
   std::vector<int> asked_hops_;
