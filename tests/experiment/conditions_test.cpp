@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/aura.h"
 #include "experiment/aura_radius.h"
 
 namespace aurasim::experiment {
@@ -55,7 +56,8 @@ TEST(AuraRadius, IsTheThesissOwnAtItsTolerances) {
 
 TEST(AuraRadius, HeadOnReachOfASphereAuraIsItsRadiusAndMargin) {
   const Conditions c = conditions_at(thesis_series()[1], 32, 1);
-  EXPECT_NEAR(head_on_reach_m(AuraChoice::kTight, c), aura_reach_m(AuraChoice::kTight, c) + 0.05, 1e-4);
+  EXPECT_NEAR(head_on_reach_m(AuraChoice::kTight, c),
+              aura_reach_m(AuraChoice::kTight, c) + core::AuraRules{}.contact_margin_m, 1e-4);
   EXPECT_EQ(head_on_reach_m(AuraChoice::kNone, c), 0);
   EXPECT_GT(head_on_reach_m(AuraChoice::kSwept, c), 0.5);
 }
