@@ -18,7 +18,8 @@ copy_one_node() {
 # One node alone takes half of all the time of the long runs: what compares auras and settings is a third as long.
 "$aurasim" experiment scalability --out "$out/long" --series columns,cuts --aura swept
 copy_one_node "$out/long" "$out/long_k1"
-"$aurasim" experiment scalability --out "$out/long_k1" --series columns --aura swept --columns 1,2,4,8 --lookahead 1
+"$aurasim" experiment scalability --out "$out/long_k1" --series columns --aura swept --columns 1,2,4,8 --lookahead 1 \
+  --repeats 3
 "$aurasim" experiment scalability --out "$out/short" --seconds 20
 "$aurasim" experiment bandwidth --out "$out/bandwidth"
 if [[ ${AURASIM_WALL:-0} == 1 ]]; then

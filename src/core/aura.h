@@ -11,7 +11,7 @@ enum class AuraKind : std::uint8_t {
   kNone,    ///< the naive control: a body goes where its centre is, and nobody is warned
   kThesis,  ///< eq. 3.4, spheres, one top speed, frames not aligned
   kTight,   ///< the bound for aligned frames, spheres, one top speed
-  kSwept,   ///< real shapes on predicted paths, a top speed for each cluster
+  kSwept,   ///< real shapes on predicted paths, a top speed for each body
 };
 
 /// What all nodes of a run agree on about auras.

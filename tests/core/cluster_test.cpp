@@ -2,6 +2,7 @@
 #include "core/cluster.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -82,9 +83,9 @@ class ClusterTest : public ::testing::Test {
     return plain;
   }
 
-  void place_random_scene(Random& random) {
+  void place_random_scene(Random& random) { place_random_scene(random, {ball, big}); }
+  void place_random_scene(Random& random, const std::array<PrototypeId, 2>& kinds) {
     paths.clear(), speeds.clear(), own_speeds.clear(), regions.clear(), contacts.clear(), joints.clear();
-    const PrototypeId kinds[] = {ball, big};
     const std::uint32_t count = 2 + random.below(60);
     const double box = random.between(3, 12);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -102,6 +103,7 @@ class ClusterTest : public ::testing::Test {
   RoundShapes shapes;
   PrototypeId ball = shapes.sphere(0.4);
   PrototypeId big = shapes.sphere(3);
+  PrototypeId clay = shapes.sphere(0.4, {1, 0});
   std::vector<Path> paths;
   std::vector<double> speeds, own_speeds;
   std::vector<std::uint64_t> regions;
@@ -165,6 +167,48 @@ TEST_F(ClusterTest, ThatTurnsOutFasterLooksFurther) {
   contact(slow, fast);
   complete_all();
   EXPECT_TRUE(together(slow, other));
+}
+
+TEST_F(ClusterTest, WhatHitsAHeapMakesItFastWhereItHits) {
+  constexpr std::uint32_t kBalls = 12;
+  for (std::uint32_t i = 0; i < kBalls; ++i) place(clay, Vec3(0.8 * i, 0, 0), Vec3::Zero());
+  for (std::uint32_t i = 0; i + 1 < kBalls; ++i) contact(i, i + 1);
+  const auto faller = place(clay, Vec3(0, 0, 0.9), Vec3(0, 0, -20));
+  const auto beside_it = place(clay, Vec3(-0.9, 0, 0), Vec3::Zero());
+  const auto far_from_it = place(clay, Vec3(0.8 * (kBalls - 1) + 0.9, 0, 0), Vec3::Zero());
+  complete_all();
+  EXPECT_TRUE(together(0, faller));
+  EXPECT_TRUE(together(0, beside_it));
+  EXPECT_FALSE(together(0, far_from_it));
+  EXPECT_GT(clusters->speed(0), 20);
+  EXPECT_LT(clusters->speed(kBalls - 1), 4);
+}
+
+TEST_F(ClusterTest, AreClosedHoweverPushesSpread) {
+  Random random("clay");
+  std::size_t united = 0;
+  for (int run = 0; run < 300; ++run) {
+    rules.lookahead = 1 + static_cast<int>(random.below(2));
+    place_random_scene(random, {clay, big});
+    complete_all();
+    for (std::uint32_t a = 0; a < paths.size(); ++a) {
+      ASSERT_GE(clusters->speed(a), speeds[a] - 1e-12);
+      for (std::uint32_t b = 0; b < a; ++b) {
+        united += together(a, b);
+        ASSERT_TRUE(together(a, b) || !aura().linked(paths[a], paths[b], 1)) << "run " << run << " " << a << ", " << b;
+      }
+    }
+    for (const Contact& c : contacts) {
+      for (const auto& [from, to] : {std::pair{c.a, c.b}, std::pair{c.b, c.a}}) {
+        const BodyTraits kind = shapes.traits(paths[from].prototype);
+        const double least = Push::of(own_speeds[from], kind, rules.uncertainty)
+                                 .through(shapes.traits(paths[to].prototype).mass_kg)
+                                 .speed_m_s;
+        ASSERT_GE(clusters->speed(to), least - Push::kUnfelt_m_s) << "run " << run << " " << from << " on " << to;
+      }
+    }
+  }
+  EXPECT_GT(united, 5000u);
 }
 
 TEST_F(ClusterTest, TheNaiveControlKnowsNoClusters) {
