@@ -26,7 +26,7 @@ if [[ ${AURASIM_WALL:-0} == 1 ]]; then
   wall=("$aurasim" experiment scalability --processes --series columns --columns 1,2 --aura swept)
   "${wall[@]}" --out "$out/wall"
   copy_one_node "$out/wall" "$out/wall_k1"
-  "${wall[@]}" --out "$out/wall_k1" --lookahead 1
+  "${wall[@]}" --out "$out/wall_k1" --lookahead 1 --repeats 3
 fi
 /usr/bin/python3 scripts/plot_scalability.py "$out/long"
 /usr/bin/python3 scripts/plot_scalability.py "$out/short"
