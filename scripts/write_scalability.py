@@ -58,7 +58,7 @@ def of(runs, series, **wanted):
 
 
 def share(part, whole):
-    return f"{100 * part / whole:.1f}%" if whole else "-"
+    return f"{100 * part / whole:.1f}%" if whole and part is not None else "-"
 
 
 def run_row(r, *first):
@@ -101,20 +101,17 @@ def requirements(summaries, sizes, walls):
     """`summaries`, `walls`: by K."""
     rows = []
     for k, summary in summaries.items():
-        for series in ("columns", "cuts"):
-            for nodes, wanted in WANTED.items():
-                r = speed_up_of(summary, series, "swept", nodes)
-                if r:
-                    found = r["frame_max"]["median"]
-                    rows.append(requirement(f"max frame, {nodes} nodes against 1, by CPU time, {series}, swept, K = {k} "
-                                            f"(thesis {THESIS[nodes]})", of_repeats(r), f"at least {wanted}",
-                                            found >= wanted))
+        for nodes, wanted in WANTED.items():
+            r = speed_up_of(summary, "columns", "swept", nodes)
+            if r:
+                rows.append(requirement(f"max frame, {nodes} nodes against 1, by CPU time, columns, swept, K = {k} "
+                                        f"(thesis {THESIS[nodes]})", of_repeats(r), f"at least {wanted}",
+                                        r["frame_max"]["median"] >= wanted))
     for k, wall in walls.items():
         r = speed_up_of(wall, "columns", "swept", 2)
         if r:
-            found = r["frame_max"]["median"]
             rows.append(requirement(f"max frame, 2 nodes against 1, wall clock over DDS, columns, K = {k}",
-                                    of_repeats(r), "at least 3", found >= 3))
+                                    of_repeats(r), "at least 3", r["frame_max"]["median"] >= 3))
     for k, summary in summaries.items():
         rains = of(summary["runs"], "columns", nodes=2, aura="swept")
         if rains:
@@ -241,6 +238,7 @@ def main():
     text += "coefficients (log10 of the frame time over bodies).\n\n"
     for k, of_k in summaries.items():
         text += f"K = {k}:\n\n" + speed_up_table(of_k)
+    text += "In *cuts* the bodies are the same, so as many times less as there are nodes is what can be had.\n\n"
     text += "The first 20 s, 3,200 bodies, with every aura:\n\n" + speed_up_table(short)
     text += "## Columns: the rain follows the regions\n\nTimes other than frames are sums over the nodes, means of the last "
     text += "5 s; late collisions of one node are those that one world has, too.\n\n"
@@ -271,7 +269,8 @@ def main():
         text += "ms, of the first run of each kind:\n\n" + over_time_table(directory, walls)
     for k, wall in walls.items():
         text += f"K = {k}:\n\n"
-        text += runs_table(of(wall["runs"], "columns"), ["bodies", "nodes", "time taken / simulated"],
+        unknown = {"returns": None, "late": "-"}  # what reports of processes do not say in windows
+        text += runs_table([r | unknown for r in of(wall["runs"], "columns")], ["bodies", "nodes", "time taken / simulated"],
                            lambda r: (r["bodies"], r["nodes"], f"{r['slow_down']:.2f}"))
     text += bandwidth_text
     text += "## Figures\n\n"
