@@ -96,7 +96,7 @@ bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
     case AuraKind::kSwept:
       break;
   }
-  return paths_meet(foreign, own, hops * rules_.lookahead);
+  return paths_meet(foreign, own, hops * rules_.lookahead).has_value();
 }
 
 bool Aura::linked(const Path& a, const Path& b, int hops) const {
@@ -109,7 +109,7 @@ bool Aura::linked(const Path& a, const Path& b, int hops) const {
     case AuraKind::kSwept:
       break;
   }
-  return paths_meet(a, b, (hops + 1) * rules_.lookahead - 1);
+  return paths_meet(a, b, (hops + 1) * rules_.lookahead - 1).has_value();
 }
 
 bool Aura::meets_ghost(const Path& ghost, const Path& own, int hops) const {
@@ -121,7 +121,7 @@ double Aura::zone(double speed_m_s, int hops, double other_speed_m_s, double oth
   const double own_steps = (1 + hops) * rules_.lookahead;
   const double other_steps = hops * rules_.lookahead;
   const double way = (1 + rules_.uncertainty) * rules_.step_s * (speed_m_s * own_steps + other_speed_m_s * other_steps);
-  return way + 3 * drop_m(own_steps) + drop_m(other_steps) + other_radius_m + rules_.contact_margin_m;
+  return way + 2 * drop_m(own_steps) + drop_m(other_steps) + other_radius_m + rules_.contact_margin_m;
 }
 
 Aura::Range Aura::notice(double foreign_speed_m_s, double foreign_age_steps, int hops) const {
@@ -129,7 +129,7 @@ Aura::Range Aura::notice(double foreign_speed_m_s, double foreign_age_steps, int
   const double own_steps = (1 + hops) * rules_.lookahead;
   const double foreign_steps = foreign_age_steps + own_steps;
   const double way_per_speed = (1 + rules_.uncertainty) * rules_.step_s;
-  const double drop = 3 * drop_m(foreign_steps) + drop_m(own_steps);
+  const double drop = 2 * drop_m(foreign_steps) + drop_m(own_steps);
   return {way_per_speed * foreign_speed_m_s * foreign_steps + drop + rules_.contact_margin_m,
           way_per_speed * own_steps};
 }
@@ -141,7 +141,7 @@ Aura::Range Aura::meet_range(const Path& foreign, int hops) const {
   if (rules_.kind != AuraKind::kSwept) return {std::max(reach(hops), cluster_reach(hops)) + margin, 0};
   const double own_steps = hops * rules_.lookahead;
   const double foreign_steps = foreign.age_steps + own_steps;
-  const double way = rules_.step_s * foreign_steps * drift_m_s(foreign) + 3 * drop_m(foreign_steps) + drop_m(own_steps);
+  const double way = rules_.step_s * foreign_steps * drift_m_s(foreign) + 2 * drop_m(foreign_steps) + drop_m(own_steps);
   return {std::max(1.0, rules_.reach_scale) * (margin + way),
           std::max(1.0, rules_.reach_scale) * rules_.step_s * own_steps};
 }
@@ -149,16 +149,20 @@ Aura::Range Aura::meet_range(const Path& foreign, int hops) const {
 Aura::Range Aura::link_range(int hops) const {
   if (rules_.kind != AuraKind::kSwept) return {cluster_reach(hops) + rules_.contact_margin_m, 0};
   const double steps = (hops + 1) * rules_.lookahead - 1;
-  return {4 * drop_m(steps) + rules_.contact_margin_m, (1 + rules_.uncertainty) * rules_.step_s * steps};
+  return {3 * drop_m(steps) + rules_.contact_margin_m, (1 + rules_.uncertainty) * rules_.step_s * steps};
 }
 
-bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
+std::optional<double> Aura::first_meeting(const Path& a, const Path& b, int hops) const {
+  return paths_meet(a, b, hops * rules_.lookahead);
+}
+
+std::optional<double> Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
   const int substeps = rules_.substeps;
   const double spread = rules_.uncertainty * rules_.step_s;
   const double last = horizon_steps;
   // The clearance shrinks at most this fast, in metres per step.
   const double oldest = std::max(a.age_steps, b.age_steps);
-  const double fall = rules_.gravity.norm() * (a.age_steps + b.age_steps + 2 * oldest + 4 * last) * rules_.step_s;
+  const double fall = rules_.gravity.norm() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules_.step_s;
   const double closing =
       rules_.step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m + b.w_WB.norm() * b.radius_m +
                        rules_.uncertainty * (a.speed_m_s + b.speed_m_s));
@@ -170,8 +174,8 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
     }
     const Pose at = ahead(a, k);
     const Pose bt = ahead(b, k);
-    // Either may stand on something and not fall as its path says, or be pressed down by what lies on it.
-    const double unfallen = 2 * drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
+    // One of them may stand on something and not fall as its path says. If both do, that makes no difference.
+    const double unfallen = drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
     const double allowed =
         rules_.reach_scale * (rules_.contact_margin_m + a.blur_m + b.blur_m + unfallen +
                               spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
@@ -179,12 +183,12 @@ bool Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
     if (clearance <= allowed) {
       const double limit = allowed + closing * (last - k);
       clearance = clearance_.clearance(a.prototype, at, b.prototype, bt, limit);
-      if (clearance <= allowed) return true;
+      if (clearance <= allowed) return k;
     }
     const double free_steps = closing > 0 ? (clearance - allowed) / closing : last;
     i += std::max(1, static_cast<int>(std::min(free_steps, last) * substeps));
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace aurasim::core

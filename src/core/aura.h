@@ -2,6 +2,8 @@
 // they can touch. Distances and their derivation: DESIGN section 3; eq. 3.4 of A. Brown's thesis for `kThesis`.
 #pragma once
 
+#include <optional>
+
 #include "core/body_state.h"
 #include "core/clearance.h"
 
@@ -24,7 +26,7 @@ struct AuraRules {
   double frame_s = 0.015;          ///< T_F
   double latency_s = 0.002;        ///< T_L
   double uncertainty = 0.5;        ///< U: share of its speed by which a body may leave its predicted path
-  double contact_margin_m = 0.05;  ///< contacts begin at 0.02 (physics/); with 0.03 a rain on four nodes had other bits
+  double contact_margin_m = 0.03;  ///< contacts begin at 0.02 (physics/), shapes are said to 1 mm, and a little more
   double reach_scale = 1;          ///< tests only: auras that are a little too small must fail
   Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
 };
@@ -72,6 +74,8 @@ class Aura {
 
   /// Do two bodies have to share a host? A foreign body and one of ours, seen now.
   bool meets(const Path& foreign, const Path& own, int hops) const;
+  /// In how many steps the paths of two bodies may meet first (kSwept); nothing if they do not within `hops` K.
+  std::optional<double> first_meeting(const Path& a, const Path& b, int hops) const;
   /// Do two bodies of one host have to move together?
   bool linked(const Path& a, const Path& b, int hops) const;
   /// A body sent away a moment ago and one of ours.
@@ -103,7 +107,7 @@ class Aura {
 
  private:
   bool spheres_within(const Path& a, const Path& b, double distance_m) const;
-  bool paths_meet(const Path& a, const Path& b, int horizon_steps) const;
+  std::optional<double> paths_meet(const Path& a, const Path& b, int horizon_steps) const;
   double drop_m(double steps) const;  ///< distance that gravity adds in `steps`
 
   AuraRules rules_;

@@ -48,9 +48,8 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   }
   pushes_.spread(raised_);
   raised_.clear();
-  body_speed_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = body_speed_[i] = pushed_speed(i);
-  near_.build(paths, body_speed_);
+  for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = pushed_speed(i);
+  near_.build(paths);
   owned_.assign(near_.group_count(), {kSeveral, 0});
 }
 
@@ -63,6 +62,7 @@ void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> 
     unite(j.a, j.b);
     pushes_.add(j.a, j.b, true);
   }
+  pushes_.form_trains();
 }
 
 double Clusters::pushed_speed(std::uint32_t i) const {
@@ -86,7 +86,7 @@ void Clusters::take_raised() {
     const double speed = pushed_speed(i);
     Path& path = paths_[i];
     if (speed <= path.speed_m_s) continue;
-    if (path.speed_m_s <= NearIndex::kSlow && speed > NearIndex::kSlow) near_.raise(i, path.pose.p_WB);
+    near_.raise(i, path.pose.p_WB, path.speed_m_s, speed);
     path.speed_m_s = speed;
     ++growth_;
     to_ask_.push_back(i);
@@ -138,6 +138,17 @@ void Clusters::complete(std::uint32_t i) {
   start_pushes(i);
   take_raised();
   ask_members(i);
+  look_on();
+}
+
+void Clusters::hit(std::uint32_t i, const Strike& foreign) {
+  if (!pushes_.hit(i, foreign)) return;
+  raised_.push_back(i);
+  take_raised();
+  look_on();
+}
+
+void Clusters::look_on() {
   while (!to_ask_.empty()) {
     const std::uint32_t j = to_ask_.back();
     to_ask_.pop_back();

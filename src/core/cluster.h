@@ -29,10 +29,17 @@ class Clusters {
   /// Completes the cluster of body `i`: no body outside it is linked to one inside.
   void complete(std::uint32_t i);
 
+  /// Would a foreign body's strike make body i faster than it is known to become?
+  bool feels(const Strike& foreign, std::uint32_t i) const { return pushes_.feels(foreign, i); }
+  /// It may hit body i. What that makes faster looks around again.
+  void hit(std::uint32_t i, const Strike& foreign);
+
   /// The cluster of a body, as the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
   /// The top speed that it may come to have while a message about it is under way, m/s.
   double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
+  /// What others push it with, if that makes it faster, or its strike harder, than it is alone.
+  std::optional<Push> pushed(std::uint32_t i) const { return pushes_.pushed(i); }
   /// Number of other regions through which a pull on this cluster can chain (DESIGN section 4, corners): those in
   /// reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
@@ -65,6 +72,7 @@ class Clusters {
   double pushed_speed(std::uint32_t i) const;
   bool knows(std::uint32_t i, std::uint32_t group);
   void look_around(std::uint32_t i);
+  void look_on();
   void ask_members(std::uint32_t i);
   void set_regions(std::uint32_t cluster, std::uint64_t regions);
 
@@ -93,7 +101,6 @@ class Clusters {
   std::vector<std::uint32_t> linked_;
   std::vector<std::uint32_t> raised_;  ///< whoever may have become faster
   std::vector<BodyTraits> traits_;
-  std::vector<double> body_speed_;
 };
 
 }  // namespace aurasim::core

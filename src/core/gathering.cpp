@@ -90,6 +90,7 @@ void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
   f.path.blur_m = said_within_m(f.path.radius_m);
+  f.strike = strike_of(aura);
 }
 
 double Gathering::band(double speed_m_s, int hops) const {
@@ -125,8 +126,8 @@ void Gathering::complete_near_boundaries() {
   for (const std::uint32_t i : near_) clusters_.complete(i);
 }
 
-/// Foreign auras and our bodies near them. A cluster that is completed here may turn out faster, and then reach
-/// further: repeated until nothing changes.
+/// Foreign auras and our bodies near them. A cluster that is completed here, or hit, may turn out faster, and then
+/// reach further: repeated until nothing changes.
 void Gathering::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
@@ -141,8 +142,30 @@ void Gathering::pair_up() {
       clusters_.add_regions(news.own, news.region);
       clusters_.complete(news.own);
     }
+    if (growth != clusters_.growth()) continue;
+    find_pairs();
+    take_hits();
   } while (growth != clusters_.growth());
-  find_pairs();
+}
+
+/// What is hit has to be known as that fast before it is, or whoever stands behind it learns of it too late: others act
+/// upon our auras when they are K states old, and look that much further ahead.
+void Gathering::take_hits() {
+  if (aura_.rules().kind != AuraKind::kSwept) return;
+  for (const Pair& pair : pairs_) {
+    const Foreign& f = foreign_[pair.foreign];
+    if (!clusters_.feels(f.strike, pair.own)) continue;
+    const int hops = clusters_.hops(pair.own) + kHomewardHops;
+    const std::optional<double> first = aura_.first_meeting(f.path, paths_[pair.own], hops);
+    if (first) clusters_.hit(pair.own, f.strike.times(1 - *first / ((hops + 2) * aura_.rules().lookahead)));
+  }
+}
+
+Strike Gathering::strike_of(const AuraRecord& aura) const {
+  const bool pushed = aura.pushed_m_s > 0;
+  const double own_m_s = pushed ? aura.v_WB.norm() : std::max(0.0, aura.speed_m_s - aura_.calm_speed(true));
+  const BodyTraits traits = aura_.clearance().traits(aura.prototype);
+  return {Push::of(own_m_s, traits, aura_.rules().uncertainty), {aura.pushed_m_s, aura.pushed_kg_m_s}};
 }
 
 /// Which of our bodies have to be announced because of a foreign one? In a heap most of them are already.

@@ -21,7 +21,8 @@ class Gathering {
     Path path;
     RegionId host;
     bool ghost;
-    bool born;  ///< in the state that its aura describes
+    bool born;      ///< in the state that its aura describes
+    Strike strike;  ///< what it may do to whom it hits
   };
   /// A foreign body and one of ours that may meet: indices of foreign() and path().
   struct Pair {
@@ -68,6 +69,8 @@ class Gathering {
   void complete_near_boundaries();
   void pair_up();
   void find_pairs();
+  void take_hits();
+  Strike strike_of(const AuraRecord& aura) const;
   void notice(const Foreign& foreign);
   void judge();
   void judge(const Pair& pair);

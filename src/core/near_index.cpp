@@ -1,10 +1,8 @@
 #include "core/near_index.h"
 
-#include <algorithm>
-
 namespace aurasim::core {
 
-void NearIndex::build(std::span<const Path> paths, std::span<const double> speeds) {
+void NearIndex::build(std::span<const Path> paths) {
   double sum = 0;
   top_speed_ = top_radius_ = small_radius_ = 0;
   for (const Path& path : paths) sum += path.radius_m;
@@ -15,14 +13,14 @@ void NearIndex::build(std::span<const Path> paths, std::span<const double> speed
   fast_.clear(2 * cell);
   always_.clear();
   for (std::uint32_t i = 0; i < paths.size(); ++i) {
-    top_speed_ = std::max(top_speed_, speeds[i]);
+    top_speed_ = std::max(top_speed_, paths[i].speed_m_s);
     top_radius_ = std::max(top_radius_, paths[i].radius_m);
     if (paths[i].radius_m > large) {
       always_.push_back(i);
       continue;
     }
     small_radius_ = std::max(small_radius_, paths[i].radius_m);
-    (speeds[i] <= kSlow ? slow_ : fast_).add(i, paths[i].pose.p_WB);
+    (paths[i].speed_m_s <= kSlow ? slow_ : fast_).add(i, paths[i].pose.p_WB);
   }
   slow_.build();
   fast_.build();

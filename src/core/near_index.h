@@ -2,6 +2,7 @@
 // one fast or one large body does not widen every query.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,11 +17,14 @@ class NearIndex {
   /// Bodies that can become no faster than this are slow (m/s).
   static constexpr double kSlow = 3.0;
 
-  /// Indexes `paths`; `speeds[i]` is the top speed of body i as far as it is known.
-  void build(std::span<const Path> paths, std::span<const double> speeds);
+  /// Indexes `paths`, with their speeds as far as they are known.
+  void build(std::span<const Path> paths);
 
-  /// Body `i` at `p` was indexed as slow, and turned out to be fast.
-  void raise(std::uint32_t i, const Vec3& p) { fast_.insert(i, p); }
+  /// Body `i` at `p` turned out to be faster.
+  void raise(std::uint32_t i, const Vec3& p, double before_m_s, double now_m_s) {
+    top_speed_ = std::max(top_speed_, now_m_s);
+    if (before_m_s <= kSlow && now_m_s > kSlow) fast_.insert(i, p);
+  }
 
   double top_speed() const { return top_speed_; }
   double top_radius() const { return top_radius_; }

@@ -8,8 +8,8 @@ namespace {
 /// Is there anything in `now` that the others could not know from `said`?
 bool has_news(const AuraRecord& said, const AuraRecord& now) {
   const bool asleep = (now.flags & kAuraAsleep) != 0;
-  return !asleep || said.flags != now.flags || said.speed_m_s != now.speed_m_s || said.epoch != now.epoch ||
-         said.pose.p_WB != now.pose.p_WB;
+  return !asleep || said.flags != now.flags || said.speed_m_s != now.speed_m_s || said.pushed_m_s != now.pushed_m_s ||
+         said.pushed_kg_m_s != now.pushed_kg_m_s || said.epoch != now.epoch || said.pose.p_WB != now.pose.p_WB;
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ void Projection::move(Track& track, PhaseEvent event) {
   track.phase = *next;
 }
 
-AuraRecord Projection::describe(const BodyState& body, double speed_m_s, Step stamp) const {
+AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const {
   AuraRecord aura;
   aura.id = body.id;
   aura.epoch = body.epoch;
@@ -76,7 +76,11 @@ AuraRecord Projection::describe(const BodyState& body, double speed_m_s, Step st
     aura.v_WB = body.v_WB;
     aura.w_WB = body.w_WB;
   }
-  aura.speed_m_s = speed_m_s;
+  aura.speed_m_s = clusters.speed(i);
+  if (const std::optional<Push> pushed = clusters.pushed(i)) {
+    aura.pushed_m_s = pushed->speed_m_s;
+    aura.pushed_kg_m_s = pushed->momentum_kg_m_s;
+  }
   return aura;
 }
 
@@ -109,7 +113,7 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
-      say(track, describe(body, gathering.clusters().speed(i), snapshot.step), batch);
+      say(track, describe(body, i, gathering.clusters(), snapshot.step), batch);
     } else if (track.projected) {
       ++counters_.deleted;
       track.projected = false;
@@ -120,11 +124,11 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
   expire_ghosts(snapshot, batch);
 }
 
-void Projection::depart(const BodyState& body, std::uint32_t i, double speed_m_s, RegionId destination, PhaseEvent why,
-                        AuraBatch& batch) {
+void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination,
+                        PhaseEvent why, AuraBatch& batch) {
   Track& track = tracks_[i];
   move(track, why);
-  AuraRecord ghost = describe(body, speed_m_s, batch.stamp);
+  AuraRecord ghost = describe(body, i, clusters, batch.stamp);
   ghost.host = destination;
   ghost.epoch = body.epoch + 1;
   ghost.flags |= kAuraGhost;

@@ -54,7 +54,7 @@ class Projection {
   void speak(const Snapshot& snapshot, const Gathering& gathering, AuraBatch& batch, ViolationLog& violations);
 
   /// Body i leaves for `destination`: the others keep its last aura, as a ghost, for 2K steps.
-  void depart(const BodyState& body, std::uint32_t i, double speed_m_s, RegionId destination, PhaseEvent why,
+  void depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination, PhaseEvent why,
               AuraBatch& batch);
 
   std::span<const AuraRecord> ghosts() const { return ghosts_; }
@@ -68,7 +68,7 @@ class Projection {
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
-  AuraRecord describe(const BodyState& body, double speed_m_s, Step stamp) const;
+  AuraRecord describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const;
   void check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations);

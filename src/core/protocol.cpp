@@ -156,7 +156,7 @@ void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reaso
   const bool collision = reason == HandOffReason::kAuraCollision;
   gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
     departure.bodies.push_back(snapshot.bodies[j].id);
-    projection_.depart(snapshot.bodies[j], j, gathering_.clusters().speed(j), destination,
+    projection_.depart(snapshot.bodies[j], j, gathering_.clusters(), destination,
                        collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
   });
   std::sort(departure.bodies.begin(), departure.bodies.end());

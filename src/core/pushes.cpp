@@ -5,39 +5,32 @@
 namespace aurasim::core {
 
 Push Push::of(double speed_m_s, const BodyTraits& traits, double uncertainty) {
-  const double share = (1 + traits.restitution) / std::clamp(uncertainty, 0.1, 1.0);
-  return {speed_m_s, share * traits.mass_kg * speed_m_s, std::max(0.0, share - 1) * traits.mass_kg};
+  const double most_m_s = (1 + traits.restitution) / std::clamp(uncertainty, 0.1, 1.0) * speed_m_s;
+  return {most_m_s, traits.mass_kg * most_m_s};
 }
 
-// One over the speed is zero or linear in the mass that is dragged along, on either side of free_kg. This one's is
-// convex, so where it is not above the other's at both ends of a piece on which that is linear, it is nowhere above.
+// One over the speed is linear in the mass that is dragged along: who is not slower at both ends is nowhere slower.
 bool Push::covers(const Push& other) const {
   constexpr double kNearly = 1 - 1e-9;  // so that rounding does not make news of what is known
   if (other.speed_m_s <= kUnfelt_m_s) return true;
   if (speed_m_s < kNearly * other.speed_m_s) return false;
-  if (momentum_kg_m_s >= other.momentum_kg_m_s && free_kg >= other.free_kg) return true;
-  if (speed_with(other.free_kg) < kNearly * other.speed_m_s) return false;
-  const double unfelt_kg = other.free_kg + other.momentum_kg_m_s * (1 / kUnfelt_m_s - 1 / other.speed_m_s);
+  if (momentum_kg_m_s >= kNearly * other.momentum_kg_m_s) return true;
+  const double unfelt_kg = other.momentum_kg_m_s * (1 / kUnfelt_m_s - 1 / other.speed_m_s);
   return speed_with(unfelt_kg) >= kNearly * kUnfelt_m_s;
-}
-
-Push Push::joined_with(const Push& other) const {
-  Push both{std::max(speed_m_s, other.speed_m_s), std::max(momentum_kg_m_s, other.momentum_kg_m_s), 0};
-  for (const Push& push : {*this, other}) {
-    if (push.speed_m_s <= 0) continue;
-    both.free_kg =
-        std::max(both.free_kg, push.free_kg - both.momentum_kg_m_s * (1 / push.speed_m_s - 1 / both.speed_m_s));
-  }
-  return both;
 }
 
 void Pushes::begin(std::span<const double> own_m_s, std::span<const BodyTraits> traits, double uncertainty) {
   const auto n = own_m_s.size();
-  pushes_.resize(n);
-  inert_kg_.resize(n);
+  uncertainty_ = uncertainty;
+  own_m_s_.assign(own_m_s.begin(), own_m_s.end());
+  traits_.assign(traits.begin(), traits.end());
+  received_.assign(n, {});
+  own_.resize(n);
+  lightest_ = {};
   for (std::size_t i = 0; i < n; ++i) {
-    pushes_[i] = Push::of(own_m_s[i], traits[i], uncertainty);
-    inert_kg_[i] = (1 - traits[i].restitution) * traits[i].mass_kg;
+    own_[i] = Push::of(own_m_s[i], traits[i], uncertainty);
+    lightest_.mass_kg = i == 0 ? traits[i].mass_kg : std::min(lightest_.mass_kg, traits[i].mass_kg);
+    lightest_.restitution = i == 0 ? traits[i].restitution : std::max(lightest_.restitution, traits[i].restitution);
   }
   first_link_.assign(n, kNone);
   links_.clear();
@@ -50,29 +43,77 @@ void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
   }
 }
 
+std::uint32_t Pushes::train_of(std::uint32_t i) {
+  while (train_[i] != i) i = train_[i] = train_[train_[i]];
+  return i;
+}
+
+/// Whoever touches body i, itself or through others, and is at least half as fast pushes on when i strikes something.
+void Pushes::form_trains() {
+  by_speed_.clear();
+  for (std::uint32_t i = 0; i < own_m_s_.size(); ++i) {
+    if (own_m_s_[i] > Push::kUnfelt_m_s && first_link_[i] != kNone) by_speed_.push_back(i);
+  }
+  std::sort(by_speed_.begin(), by_speed_.end(), [&](auto a, auto b) { return own_m_s_[a] > own_m_s_[b]; });
+  train_.assign(own_m_s_.size(), kNone);
+  trains_.resize(own_m_s_.size());
+  auto next = by_speed_.begin();
+  for (const std::uint32_t i : by_speed_) {
+    for (; next != by_speed_.end() && own_m_s_[*next] >= 0.5 * own_m_s_[i]; ++next) {
+      train_[*next] = *next;
+      const double kg = traits_[*next].mass_kg;
+      trains_[*next] = {kg, kg * own_m_s_[*next]};
+      for (std::uint32_t at = first_link_[*next]; at != kNone; at = links_[at].next) {
+        if (train_[links_[at].to] == kNone) continue;
+        const std::uint32_t a = train_of(*next), b = train_of(links_[at].to);
+        if (a == b) continue;
+        train_[b] = a;
+        trains_[a].kg += trains_[b].kg;
+        trains_[a].kg_m_s += trains_[b].kg_m_s;
+      }
+    }
+    const double share = own_[i].speed_m_s / own_m_s_[i];
+    const Train& train = trains_[train_of(i)];
+    own_[i] = {share * std::max(own_m_s_[i], train.kg_m_s / train.kg), share * train.kg_m_s};
+  }
+}
+
+std::optional<Push> Pushes::pushed(std::uint32_t i) const {
+  const Push alone = Push::of(own_m_s_[i], traits_[i], uncertainty_);
+  const Push all = alone.covers(own_[i]) ? received_[i] : received_[i].joined_with(own_[i]);
+  if (all.speed_m_s <= own_m_s_[i] && alone.covers(all)) return std::nullopt;
+  return all;
+}
+
 void Pushes::start(std::uint32_t i) {
   if (speed(i) <= Push::kUnfelt_m_s) return;
   for (std::uint32_t at = first_link_[i]; at != kNone; at = links_[at].next) {
-    if (pushes_[links_[at].to].covers(along(i, links_[at]))) continue;
+    if (received_[links_[at].to].covers(along(i, links_[at]))) continue;
     to_do_.emplace(speed(i), i);
     return;
   }
 }
 
+bool Pushes::hit(std::uint32_t i, const Strike& strike) {
+  if (!feels(strike, i)) return false;
+  received_[i] = received_[i].joined_with(strike.on(traits_[i]));
+  start(i);
+  return true;
+}
+
 void Pushes::spread(std::vector<std::uint32_t>& raised) {
   while (!to_do_.empty()) {
-    const auto [speed, i] = to_do_.top();
+    const auto [fast_m_s, i] = to_do_.top();
     to_do_.pop();
-    if (speed < pushes_[i].speed_m_s) continue;  // it has become faster since, and is there again
+    if (fast_m_s < speed(i)) continue;  // it has become faster since, and is there again
     for (std::uint32_t at = first_link_[i]; at != kNone; at = links_[at].next) {
       const std::uint32_t to = links_[at].to;
-      Push& known = pushes_[to];
       const Push coming = along(i, links_[at]);
-      if (known.covers(coming)) continue;
-      const double before = known.speed_m_s;
-      known = known.joined_with(coming);
-      if (known.speed_m_s > before) raised.push_back(to);
-      to_do_.emplace(known.speed_m_s, to);
+      if (received_[to].covers(coming)) continue;
+      const double before = speed(to);
+      received_[to] = received_[to].joined_with(coming);
+      if (speed(to) > before) raised.push_back(to);
+      to_do_.emplace(speed(to), to);
     }
   }
 }

@@ -3,7 +3,9 @@
 // by all of their masses. So a faller makes its heap fast where it lands, not everywhere.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <queue>
 #include <span>
 #include <utility>
@@ -13,32 +15,45 @@
 
 namespace aurasim::core {
 
-/// The most that a push can do: it makes a body `speed_m_s` fast, and what it makes move beyond `free_kg` shares its
-/// momentum, speed(m) = 1 / (1 / speed_m_s + max(0, m - free_kg) / momentum_kg_m_s).
+/// The most that a push can do: what it makes move, of mass m, becomes 1 / (1 / speed_m_s + m / momentum_kg_m_s) fast.
 struct Push {
   double speed_m_s = 0;
   double momentum_kg_m_s = 0;
-  double free_kg = 0;
 
-  /// Of a body by itself. Where it hits, it gives at most (1 + restitution) of its momentum away; a promise leaves room
-  /// for the share `uncertainty` of the speed that it states, so speeds are stated so much larger than they can be.
+  /// Of a body by itself, to whatever it hits: at most (1 + restitution) of its momentum, shared with the other one. A
+  /// promise leaves room for the share `uncertainty` of the speed that it states, so speeds are stated so much larger
+  /// than they can be.
   static Push of(double speed_m_s, const BodyTraits& traits, double uncertainty);
 
   double speed_with(double more_kg) const {
-    if (more_kg <= free_kg || speed_m_s <= 0) return speed_m_s;
-    return 1 / (1 / speed_m_s + (more_kg - free_kg) / momentum_kg_m_s);
+    return more_kg <= 0 || speed_m_s <= 0 ? speed_m_s : 1 / (1 / speed_m_s + more_kg / momentum_kg_m_s);
   }
   /// What is left of it for a body that is pushed by the one it is of.
-  Push through(double more_kg) const {
-    return {speed_with(more_kg), momentum_kg_m_s, more_kg < free_kg ? free_kg - more_kg : 0};
-  }
+  Push through(double more_kg) const { return {speed_with(more_kg), momentum_kg_m_s}; }
+  /// One that comes later, and so moves what it hits by this share of the way.
+  Push times(double share) const { return {share * speed_m_s, share * momentum_kg_m_s}; }
   /// Is nothing that `other` can do, beyond kUnfelt_m_s, more than this can do?
   bool covers(const Push& other) const;
   /// A push that covers both.
-  Push joined_with(const Push& other) const;
+  Push joined_with(const Push& other) const {
+    return {std::max(speed_m_s, other.speed_m_s), std::max(momentum_kg_m_s, other.momentum_kg_m_s)};
+  }
 
   /// A change of speed for which every stated speed has room (Aura::calm_speed).
   static constexpr double kUnfelt_m_s = 0.1;
+};
+
+/// What a body may do to whom it hits: by itself, and by what pushes it.
+struct Strike {
+  Push own;
+  Push received;
+
+  /// By itself it gives a part of its momentum, which both share; what goes through it is lost only to bodies that do
+  /// not bounce.
+  Push on(const BodyTraits& other) const {
+    return own.through(other.mass_kg).joined_with(received.through((1 - other.restitution) * other.mass_kg));
+  }
+  Strike times(double share) const { return {own.times(share), received.times(share)}; }
 };
 
 /// Pushes of all bodies of a node along contacts, joints, and pairs that may touch.
@@ -49,21 +64,35 @@ class Pushes {
 
   /// Two bodies touch, may touch, or are jointed (`rigid`): what pushes one pushes the other.
   void add(std::uint32_t a, std::uint32_t b, bool rigid);
+  /// Once all that touch each other are known: bodies that move as one strike as one.
+  void form_trains();
   /// What pushes body `i` is to be passed on by the next spread().
   void start(std::uint32_t i);
+  /// Would such a strike make body `i` faster than it is known to become?
+  bool feels(const Strike& strike, std::uint32_t i) const {
+    return strike.on(traits_[i]).speed_m_s > speed(i) + Push::kUnfelt_m_s;
+  }
+  /// Something else may hit body `i`. True if it feels that.
+  bool hit(std::uint32_t i, const Strike& strike);
   /// Passes on what pushes the bodies that have been started, and whoever is pushed by them. Whoever gets faster is
   /// appended to `raised`, some more than once.
   void spread(std::vector<std::uint32_t>& raised);
 
   /// What the body's own speed and all that pushes it make of it, m/s.
-  double speed(std::uint32_t i) const { return pushes_[i].speed_m_s; }
+  double speed(std::uint32_t i) const { return std::max(own_m_s_[i], received_[i].speed_m_s); }
+  /// What others push it with, if that makes it faster, or its strike harder, than it is alone.
+  std::optional<Push> pushed(std::uint32_t i) const;
+  /// What it may do to whom it hits.
+  Strike strike(std::uint32_t i) const { return {own_[i], received_[i]}; }
   /// Would a contact make body `to` much faster than it is known to become? What pushes one reaches the other through
   /// contacts, too, where both are in one heap, and speeds are stated with room (Push::of).
   bool raises(std::uint32_t from, std::uint32_t to) const {
-    return pushes_[from].through(inert_kg_[to]).speed_m_s > kMuch * pushes_[to].speed_m_s + Push::kUnfelt_m_s;
+    return strike(from).on(traits_[to]).speed_m_s > kMuch * speed(to) + Push::kUnfelt_m_s;
   }
   /// Bodies that are pushed that much are not raised by body `i`, m/s.
-  double raises_none_above(std::uint32_t i) const { return (speed(i) - Push::kUnfelt_m_s) / kMuch; }
+  double raises_none_above(std::uint32_t i) const {
+    return (strike(i).on(lightest_).speed_m_s - Push::kUnfelt_m_s) / kMuch;
+  }
 
  private:
   struct Link {
@@ -71,16 +100,29 @@ class Pushes {
     std::uint32_t next;  ///< of the same body
     bool rigid;
   };
+  struct Train {
+    double kg;
+    double kg_m_s;
+  };
   static constexpr std::uint32_t kNone = ~0u;
   static constexpr double kMuch = 1.5;
 
+  /// A lever may give its end more than its centre gets: jointed bodies pass on all that they get.
   Push along(std::uint32_t from, const Link& link) const {
-    // A lever may give its end more than its centre gets: jointed bodies pass on all that they get.
-    return link.rigid ? pushes_[from] : pushes_[from].through(inert_kg_[link.to]);
+    if (link.rigid) return {speed(from), std::max(own_[from].momentum_kg_m_s, received_[from].momentum_kg_m_s)};
+    return strike(from).on(traits_[link.to]);
   }
 
-  std::vector<Push> pushes_;
-  std::vector<double> inert_kg_;  ///< what a body takes of the momentum that goes through it
+  std::uint32_t train_of(std::uint32_t i);
+
+  double uncertainty_ = 1;
+  std::vector<double> own_m_s_;
+  std::vector<Push> own_, received_;
+  std::vector<BodyTraits> traits_;
+  BodyTraits lightest_;                  ///< nothing takes less of a push
+  std::vector<std::uint32_t> by_speed_;  ///< fastest first
+  std::vector<std::uint32_t> train_;     ///< towards a member that stands for all, kNone: not in any
+  std::vector<Train> trains_;            ///< by that member
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
   std::priority_queue<std::pair<double, std::uint32_t>> to_do_;  ///< fastest first, so that most are done once

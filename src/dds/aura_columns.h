@@ -1,5 +1,6 @@
 // Auras as columns of a wire::AuraBatch, in as few bytes as their use allows (docs/protocol.md): 37 each where only
-// places matter, 65 with motion. Positions, rotations and velocities are rounded (core/aura_precision.h).
+// places matter, 65 with motion, 12 more where others push. Positions, rotations and velocities are rounded
+// (core/aura_precision.h).
 #pragma once
 
 #include <optional>

@@ -62,11 +62,9 @@ inline bool all_finite(const std::vector<float>& column) {
   return bad == 0;
 }
 
-inline bool none_negative(const std::vector<double>& column) {
-  return std::ranges::all_of(column, [](double x) { return x >= 0; });
-}
-inline bool none_negative(const std::vector<std::int64_t>& column) {
-  return std::ranges::all_of(column, [](std::int64_t x) { return x >= 0; });
+template <class Number>
+bool none_negative(const std::vector<Number>& column) {
+  return std::ranges::all_of(column, [](Number x) { return x >= 0; });
 }
 
 inline bool all_below(const std::vector<std::uint32_t>& column, std::uint32_t bound) {

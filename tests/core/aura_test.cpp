@@ -180,7 +180,7 @@ class SweptMeeting : public AuraTest {
           rules.uncertainty * rules.step_s * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k));
       const double gap = shapes.clearance(a.prototype, aura().ahead(a, k), b.prototype, aura().ahead(b, k), 1e300);
       const double t = rules.step_s * std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0);
-      const double fall = rules.gravity.norm() * t * (t + rules.step_s);
+      const double fall = 0.5 * rules.gravity.norm() * t * (t + rules.step_s);
       least = std::min(least, gap - rules.contact_margin_m - spread - fall);
     }
     return least;

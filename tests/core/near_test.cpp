@@ -119,15 +119,14 @@ class Near : public ::testing::Test {
  protected:
   void place(Random& random, std::size_t count) {
     paths.assign(count, {});
-    speeds.clear();
     for (Path& path : paths) {
       path.pose.p_WB = random.in_box(40);
       path.radius_m = random.chance(0.05) ? random.between(5, 20) : random.between(0.1, 1);
-      speeds.push_back(random.chance(0.3) ? random.between(3, 30) : random.between(0, 3));
+      path.speed_m_s = random.chance(0.3) ? random.between(3, 30) : random.between(0, 3);
     }
-    index.build(paths, speeds);
+    index.build(paths);
   }
-  bool is_slow(std::uint32_t i) const { return speeds[i] <= NearIndex::kSlow; }
+  bool is_slow(std::uint32_t i) const { return paths[i].speed_m_s <= NearIndex::kSlow; }
   std::set<std::uint32_t> near(const Vec3& p, double radius, double slow_range, double fast_range) const {
     std::set<std::uint32_t> found;
     index.for_each_near(p, radius, slow_range, fast_range, [&](std::uint32_t i) { found.insert(i); });
@@ -144,7 +143,6 @@ class Near : public ::testing::Test {
 
   NearIndex index;
   std::vector<Path> paths;
-  std::vector<double> speeds;
 };
 
 TEST_F(Near, FindsEveryBodyInItsRange) {
@@ -161,7 +159,8 @@ TEST_F(Near, FindsEveryBodyInItsRange) {
 TEST_F(Near, KnowsTheTopSpeedAndRadius) {
   Random random("bodies");
   place(random, 100);
-  EXPECT_EQ(index.top_speed(), *std::max_element(speeds.begin(), speeds.end()));
+  const auto slower = [](const Path& a, const Path& b) { return a.speed_m_s < b.speed_m_s; };
+  EXPECT_EQ(index.top_speed(), std::max_element(paths.begin(), paths.end(), slower)->speed_m_s);
   double radius = 0;
   for (const Path& path : paths) radius = std::max(radius, path.radius_m);
   EXPECT_EQ(index.top_radius(), radius);
@@ -175,8 +174,8 @@ TEST_F(Near, ABodyThatTurnedOutFastIsFoundAtTheFastRange) {
   place(random, 200);
   for (std::uint32_t i = 0; i < paths.size(); i += 3) {
     if (!is_slow(i)) continue;
-    index.raise(i, paths[i].pose.p_WB);
-    speeds[i] = 10;
+    index.raise(i, paths[i].pose.p_WB, paths[i].speed_m_s, 10);
+    paths[i].speed_m_s = 10;
   }
   for (int query = 0; query < 200; ++query) expect_found(random.in_box(50), 1, 0, 10);
 }
@@ -186,7 +185,7 @@ TEST_F(Near, OneLargeBodyDoesNotWidenEveryQuery) {
   place(random, 500);
   for (Path& path : paths) path.radius_m = 0.5;
   paths[7].radius_m = 30;
-  index.build(paths, speeds);
+  index.build(paths);
   EXPECT_LT(near(Vec3::Zero(), 0.5, 1, 2).size(), 60u);
 }
 
