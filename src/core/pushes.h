@@ -53,6 +53,8 @@ struct Strike {
   Push on(const BodyTraits& other) const {
     return own.through(other.mass_kg).joined_with(received.through((1 - other.restitution) * other.mass_kg));
   }
+  /// Nothing gets faster by it, however light.
+  double most_m_s() const { return std::max(own.speed_m_s, received.speed_m_s); }
   Strike times(double share) const { return {own.times(share), received.times(share)}; }
 };
 
@@ -70,6 +72,7 @@ class Pushes {
   void start(std::uint32_t i);
   /// Would such a strike make body `i` faster than it is known to become?
   bool feels(const Strike& strike, std::uint32_t i) const {
+    if (strike.most_m_s() <= speed(i) + Push::kUnfelt_m_s) return false;
     return strike.on(traits_[i]).speed_m_s > speed(i) + Push::kUnfelt_m_s;
   }
   /// Something else may hit body `i`. True if it feels that.

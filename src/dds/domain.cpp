@@ -1,18 +1,15 @@
 #include "dds/domain.h"
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastrtps/types/DynamicDataFactory.h>
-#include <fastrtps/types/DynamicTypeBuilderFactory.h>
-#include <fastrtps/types/TypeObjectFactory.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
 #include "aurasimPubSubTypes.h"
-#include "aurasimTypeObject.h"
 #include "dds/guarded_type.h"
 #include "dds/impaired_transport.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
+#include "dds/type_tables.h"
 
 namespace aurasim::dds {
 
@@ -50,15 +47,6 @@ void switch_intraprocess_delivery_off() {
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
-}
-
-/// Before any discovery thread runs: Fast DDS 2.9.1 creates these tables without a lock when they are first used, and a
-/// process that discovers a peer in that moment crashes (1 in 100 starts of 8 processes at once).
-void set_type_tables_up() {
-  eprosima::fastrtps::types::TypeObjectFactory::get_instance();
-  eprosima::fastrtps::types::DynamicTypeBuilderFactory::get_instance();
-  eprosima::fastrtps::types::DynamicDataFactory::get_instance();
-  registeraurasimTypes();
 }
 
 }  // namespace

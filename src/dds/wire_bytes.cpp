@@ -4,6 +4,7 @@
 
 #include "aurasim.h"
 #include "aurasimPubSubTypes.h"
+#include "dds/type_tables.h"
 
 namespace aurasim::dds {
 namespace {
@@ -37,7 +38,10 @@ struct WireBytes::Samples {
   wire::MigrationAckPubSubType ack_type;
 };
 
-WireBytes::WireBytes() : samples_(std::make_unique<Samples>()) {}
+WireBytes::WireBytes() {
+  set_type_tables_up();
+  samples_ = std::make_unique<Samples>();
+}
 WireBytes::~WireBytes() = default;
 
 std::vector<std::uint8_t> WireBytes::of(const core::AuraBatch& batch) {

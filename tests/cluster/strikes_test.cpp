@@ -27,11 +27,15 @@ class StrikeScene {
     core::Material material;
     material.restitution = seed % 2 == 0 ? 0 : 0.5;
     scene_.materials = {material};
-    scene_.prototypes = {
-        {"ball", 0, 0, 1, true}, {"bar", 1, 0, 1, true}, {"light ball", 0, 0, 0.2, true}, {"heavy ball", 0, 0, 5, true}};
+    scene_.prototypes = {{"ball", 0, 0, 1, true},
+                         {"bar", 1, 0, 1, true},
+                         {"light ball", 0, 0, 0.2, true},
+                         {"heavy ball", 0, 0, 5, true}};
   }
 
-  double between(double low, double high) { return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53); }
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53);
+  }
   bool chance() { return random_() % 2 == 0; }
 
   core::InitialBody& put(core::PrototypeId kind, const Vec3& p) {
@@ -58,7 +62,8 @@ void add_row(StrikeScene& scene, double y_m) {
   }
   const double speed = scene.between(4, 16);
   const double flight_s = scene.between(0.2, 3.5);
-  scene.put(scene.chance() ? kHeavyBall : kBall, {-side * (3.5 + speed * flight_s), y_m, 0}).v_WB = {side * speed, 0, 0};
+  scene.put(scene.chance() ? kHeavyBall : kBall, {-side * (3.5 + speed * flight_s), y_m, 0}).v_WB = {side * speed, 0,
+                                                                                                     0};
 }
 
 /// A bar that turns on the spot, and balls that its ends throw over the border, or at other balls there.

@@ -1,9 +1,12 @@
 // Aura batches and acks as wire types and back: exact, and whatever is not sound is refused for the right reason.
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -116,6 +119,20 @@ TEST(AuraCodec, AnUpdateTakesFewBytes) {
   EXPECT_EQ(bytes_per_update(false, true), 37U) << "as with tight and thesis auras; 40 are allowed";
   EXPECT_EQ(bytes_per_update(true, false), 65U) << "as with swept auras; 80 are allowed";
   EXPECT_EQ(bytes_per_update(true, false, true), 77U) << "if others push every body";
+}
+
+/// The first messages of a process, made on several threads at once.
+[[noreturn]] void make_messages_on_threads() {
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i) threads.emplace_back([] { WireBytes(); });
+  }
+  std::exit(0);
+}
+
+TEST(WireBytesDeathTest, MayBeMadeOnSeveralThreadsAtOnce) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // each in a process of its own
+  for (int i = 0; i < 20; ++i) ASSERT_EXIT(make_messages_on_threads(), ::testing::ExitedWithCode(0), "") << i;
 }
 
 TEST(PackedRotation, IsWithinItsErrorForEveryRotation) {
