@@ -96,7 +96,7 @@ bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
     case AuraKind::kSwept:
       break;
   }
-  return paths_meet(foreign, own, hops * rules_.lookahead).has_value();
+  return first_meeting(foreign, own, hops).has_value();
 }
 
 bool Aura::linked(const Path& a, const Path& b, int hops) const {

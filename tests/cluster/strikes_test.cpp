@@ -1,6 +1,6 @@
 // A body that is struck strikes the next: whoever is faster than it seemed a moment ago, because of what a body of
 // another node has done to it, has the bits of one world all the same.
-#include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <random>
 
