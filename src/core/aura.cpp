@@ -86,7 +86,7 @@ bool Aura::spheres_within(const Path& a, const Path& b, double distance_m) const
   return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= d * d;
 }
 
-bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
+bool Aura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const {
   switch (rules_.kind) {
     case AuraKind::kNone:
       return false;
@@ -96,7 +96,7 @@ bool Aura::meets(const Path& foreign, const Path& own, int hops) const {
     case AuraKind::kSwept:
       break;
   }
-  return first_meeting(foreign, own, hops).has_value();
+  return paths_meet(foreign, own, hops * rules_.lookahead - fewer_steps).has_value();
 }
 
 bool Aura::linked(const Path& a, const Path& b, int hops) const {
@@ -112,8 +112,8 @@ bool Aura::linked(const Path& a, const Path& b, int hops) const {
   return paths_meet(a, b, (hops + 1) * rules_.lookahead - 1).has_value();
 }
 
-bool Aura::meets_ghost(const Path& ghost, const Path& own, int hops) const {
-  return rules_.kind == AuraKind::kSwept ? meets(ghost, own, hops) : linked(ghost, own, hops);
+bool Aura::meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const {
+  return rules_.kind == AuraKind::kSwept ? meets(ghost, own, hops, fewer_steps) : linked(ghost, own, hops);
 }
 
 double Aura::zone(double speed_m_s, int hops, double other_speed_m_s, double other_radius_m) const {

@@ -72,14 +72,14 @@ class Aura {
   /// Where a body of `path` is `steps` from now.
   Pose ahead(const Path& path, double steps) const;
 
-  /// Do two bodies have to share a host? A foreign body and one of ours, seen now.
-  bool meets(const Path& foreign, const Path& own, int hops) const;
+  /// Do two bodies have to share a host? A foreign body and one of ours, seen now, looking h K - `fewer_steps` ahead.
+  bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const;
   /// In how many steps the paths of two bodies may meet first (kSwept); nothing if they do not within `hops` K.
   std::optional<double> first_meeting(const Path& a, const Path& b, int hops) const;
   /// Do two bodies of one host have to move together?
   bool linked(const Path& a, const Path& b, int hops) const;
   /// A body sent away a moment ago and one of ours.
-  bool meets_ghost(const Path& ghost, const Path& own, int hops) const;
+  bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps = 0) const;
 
   /// A body whose surface is this near to another region's territory projects its aura (metres).
   /// `other_speed_m_s`, `other_radius_m`: the largest over there.

@@ -19,8 +19,9 @@ int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1
 }  // namespace
 
 void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
-                     std::span<const Contact> contacts, std::span<const Contact> joints) {
+                     std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each) {
   paths_ = paths;
+  hops_each_ = hops_each;
   const auto n = paths.size();
   label_.resize(n);
   next_.resize(n);
@@ -28,11 +29,11 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   std::iota(next_.begin(), next_.end(), 0u);
   size_.assign(n, 1);
   regions_.resize(n);
-  hops_.assign(n, 1);
-  most_hops_ = 1;
+  hops_.assign(n, hops_each);
+  most_hops_ = hops_each;
   for (std::uint32_t i = 0; i < n; ++i) set_regions(i, regions[i]);
   link_ranges_.clear();
-  for (int hops = 0; hops <= kMostHops; ++hops) link_ranges_.push_back(aura_.link_range(hops));
+  for (int hops = 0; hops <= kMostHops * hops_each; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
   started_.assign(n, 0);
   links_.clear();
@@ -66,7 +67,7 @@ void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> 
 }
 
 double Clusters::pushed_speed(std::uint32_t i) const {
-  const double push = pushes_.speed(i);
+  const double push = pushes_.off_path_m_s(i);
   return aura_.calm_speed(paths_[i].moves || push > Push::kUnfelt_m_s) + push;
 }
 
@@ -96,7 +97,7 @@ void Clusters::take_raised() {
 
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
   regions_[cluster] = regions;
-  const int hops = hops_of(regions);
+  const int hops = hops_each_ * hops_of(regions);
   if (hops > hops_[cluster]) ++growth_;
   hops_[cluster] = hops;
   most_hops_ = std::max(most_hops_, hops);

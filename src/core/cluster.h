@@ -19,9 +19,10 @@ class Clusters {
 
   /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`.
   /// `own_m_s` are Aura::own_speed_of each body; `regions[i]` has a bit for every other region in reach of body i.
-  /// Paths stay the caller's; their speed_m_s is kept up to date here.
+  /// Paths stay the caller's; their speed_m_s is kept up to date here. `hops_each`: how often a pull may have to come
+  /// through each region (Ranks::changing).
   void begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
-             std::span<const Contact> contacts, std::span<const Contact> joints);
+             std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each = 1);
 
   /// Another region has a body near body i. False when that was known; otherwise the cluster has to be completed again.
   bool add_regions(std::uint32_t i, std::uint64_t regions);
@@ -36,9 +37,9 @@ class Clusters {
 
   /// The cluster of a body, as the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
-  /// The top speed that it may come to have while a message about it is under way, m/s.
+  /// How fast it may leave its path, at most, while a message about it is under way, m/s.
   double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
-  /// What others push it with, if that makes it faster, or its strike harder, than it is alone.
+  /// What others push it with, if that takes it further off its path, or makes its strike harder, than it can alone.
   std::optional<Push> pushed(std::uint32_t i) const { return pushes_.pushed(i); }
   /// Number of other regions through which a pull on this cluster can chain (DESIGN section 4, corners): those in
   /// reach, by their territory or by a body of theirs; at least 1.
@@ -78,6 +79,7 @@ class Clusters {
 
   const Aura& aura_;
   std::span<Path> paths_;
+  int hops_each_ = 1;
   int most_hops_ = 1;
   std::uint64_t growth_ = 0;
   std::vector<Aura::Range> link_ranges_;  ///< by hops

@@ -19,14 +19,15 @@ constexpr int kHomewardHops = 1;
 Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
 
 void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
-                     std::span<const AuraRecord> ghosts) {
+                     std::span<const AuraRecord> ghosts, const Ranks& ranks) {
+  const int hops_each = ranks.changing() ? 2 : 1;
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
-  mark_regions();
-  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, snapshot.joints);
+  mark_regions(hops_each);
+  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, snapshot.joints, hops_each);
   complete_near_boundaries();
   pair_up();
-  judge();
+  judge(ranks);
 }
 
 void Gathering::measure(const Snapshot& snapshot) {
@@ -98,7 +99,7 @@ double Gathering::band(double speed_m_s, int hops) const {
 }
 
 /// Which regions are in reach of each body. Where several are, pulls can chain, and the reach grows with them.
-void Gathering::mark_regions() {
+void Gathering::mark_regions(int hops_each) {
   const auto n = paths_.size();
   regions_.assign(n, 0);
   near_.clear();
@@ -107,8 +108,8 @@ void Gathering::mark_regions() {
     top_speed = std::max(top_speed, speeds_[i]);
     others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
   }
-  const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
-  const double fast_band = band(top_speed, 1 + kHomewardHops);
+  const double slow_band = band(NearIndex::kSlow, hops_each + kHomewardHops);
+  const double fast_band = band(top_speed, hops_each + kHomewardHops);
   for (std::uint32_t i = 0; i < n; ++i) {
     const bool slow = speeds_[i] <= NearIndex::kSlow;
     const Vec3& p = paths_[i].pose.p_WB;
@@ -117,7 +118,8 @@ void Gathering::mark_regions() {
     int hops = 0;
     for (int found = 1; found > hops; found = std::popcount(regions_[i])) {
       hops = found;
-      regions_[i] = vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops) + paths_[i].radius_m);
+      regions_[i] =
+          vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops_each * hops) + paths_[i].radius_m);
     }
   }
 }
@@ -162,10 +164,11 @@ void Gathering::take_hits() {
 }
 
 Strike Gathering::strike_of(const AuraRecord& aura) const {
-  const bool pushed = aura.pushed_m_s > 0;
-  const double own_m_s = pushed ? aura.v_WB.norm() : std::max(0.0, aura.speed_m_s - aura_.calm_speed(true));
   const BodyTraits traits = aura_.clearance().traits(aura.prototype);
-  return {Push::of(own_m_s, traits, aura_.rules().uncertainty), {aura.pushed_m_s, aura.pushed_kg_m_s}};
+  const double alone_m_s = std::max(0.0, aura.speed_m_s - aura_.calm_speed(true));
+  const Push own = aura.pushed_m_s > 0 ? Push::of(aura.v_WB.norm(), traits, aura_.rules().uncertainty)
+                                       : Push{alone_m_s, traits.mass_kg * alone_m_s};
+  return {own, {aura.pushed_m_s, aura.pushed_kg_m_s}};
 }
 
 /// Which of our bodies have to be announced because of a foreign one? In a heap most of them are already.
@@ -226,24 +229,27 @@ void Gathering::find_pairs() {
   }
 }
 
-void Gathering::judge() {
+void Gathering::judge(const Ranks& ranks) {
   touched_.assign(paths_.size(), 0);
   expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
-  for (const Pair& pair : pairs_) judge(pair);
+  for (const Pair& pair : pairs_) judge(pair, ranks);
 }
 
-bool Gathering::meets(const Foreign& foreign, const Path& own, int hops) const {
-  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops) : aura_.meets(foreign.path, own, hops);
+bool Gathering::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {
+  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops, fewer_steps)
+                       : aura_.meets(foreign.path, own, hops, fewer_steps);
 }
 
-void Gathering::judge(const Pair& pair) {
+void Gathering::judge(const Pair& pair, const Ranks& ranks) {
   const Foreign& f = foreign_[pair.foreign];
   const Path& own = paths_[pair.own];
   const std::uint32_t cluster = clusters_.of(pair.own);
   const int hops = clusters_.hops(pair.own);
-  const bool pulls = f.host < pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host);
-  if ((!touched_[cluster] || pulls) && meets(f, own, hops)) {
+  const bool pulls = f.host != pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host) &&
+                     ranks.pulls(f.host) && ranks.outranks(f.host, pulled_to_[cluster]);
+  const int fewer_steps = ranks.changing() ? 1 : 0;  // 2 h K - 1 are enough (docs/decisions/0016-ranks.md)
+  if ((!touched_[cluster] || pulls) && meets(f, own, hops, fewer_steps)) {
     touched_[cluster] = 1;
     if (pulls) pulled_to_[cluster] = f.host;
   }

@@ -10,6 +10,7 @@
 #include "core/cluster.h"
 #include "core/messages.h"
 #include "core/neighbour.h"
+#include "core/ranks.h"
 #include "core/vicinity.h"
 
 namespace aurasim::core {
@@ -33,7 +34,8 @@ class Gathering {
   Gathering(const Aura& aura, const Vicinity& vicinity);
 
   /// Looks at a state, given what the neighbours have said and our own ghosts (bodies just sent away).
-  void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts);
+  void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts,
+            const Ranks& ranks);
 
   const Clusters& clusters() const { return clusters_; }
   const Path& path(std::uint32_t i) const { return paths_[i]; }
@@ -65,16 +67,16 @@ class Gathering {
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
   void add_foreign(const AuraRecord& aura, Step known, Step now);
-  void mark_regions();
+  void mark_regions(int hops_each);
   void complete_near_boundaries();
   void pair_up();
   void find_pairs();
   void take_hits();
   Strike strike_of(const AuraRecord& aura) const;
   void notice(const Foreign& foreign);
-  void judge();
-  void judge(const Pair& pair);
-  bool meets(const Foreign& foreign, const Path& own, int hops) const;
+  void judge(const Ranks& ranks);
+  void judge(const Pair& pair, const Ranks& ranks);
+  bool meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps = 0) const;
   double band(double speed_m_s, int hops) const;
 
   const Aura& aura_;

@@ -8,6 +8,7 @@
 #include "core/body_state.h"
 #include "core/ids.h"
 #include "core/order.h"
+#include "core/ranks.h"
 
 namespace aurasim::core {
 
@@ -57,7 +58,8 @@ struct AuraBatch {
   double top_speed_m_s = 0;
   double top_radius_m = 0;
   std::uint64_t violations =
-      0;  ///< grows whenever the source breaks a promise, and in every step in which one stays so
+      0;             ///< grows whenever the source breaks a promise, and in every step in which one stays so
+  RankClaims ranks;  ///< of the source
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;

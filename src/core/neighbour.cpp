@@ -26,6 +26,7 @@ void Neighbour::note_marks(const AuraBatch& batch) {
   }
   // News of a death may not wait for its turn: whoever waits for the dead would wait for ever.
   dead_ = batch.dead;
+  ranks_ = batch.ranks;
   claims_ = batch.claims;
 }
 

@@ -39,6 +39,8 @@ class Neighbour {
   double top_speed_m_s() const { return top_speed_m_s_; }
   double top_radius_m() const { return top_radius_m_; }
   std::uint64_t violations() const { return violations_; }
+  /// As far as received: claims count long after they are made.
+  const RankClaims& ranks() const { return ranks_; }
   bool holds_for_dead(RegionId region) const;
   const std::vector<RegionId>& dead() const { return dead_; }
   const std::vector<BodyEpoch>& claims() const { return claims_; }
@@ -65,6 +67,7 @@ class Neighbour {
   double top_speed_m_s_ = 0;
   double top_radius_m_ = 0;
   std::uint64_t violations_ = 0;
+  RankClaims ranks_;
   std::vector<RegionId> dead_;
   std::vector<BodyEpoch> claims_;
   std::vector<Order> orders_;

@@ -12,6 +12,8 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       gathering_(aura_, vicinity_),
       projection_(aura_, vicinity_),
       orders_(settings.last_order),
+      claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
+      ranks_(settings.aura.lookahead),
       hops_across_(hops_across(map, settings.neighbour_distance_m)) {}
 
 const Changes& Protocol::receive(Step n) {
@@ -76,13 +78,22 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   departing_.clear();
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
-  gathering_.look(snapshot, intake_.neighbours(), projection_.ghosts());
+  rank(snapshot.step);
+  gathering_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
   projection_.classify(snapshot, gathering_);
   decide(snapshot);
+  claimer_.reconsider(snapshot.step, largest_cluster_);
   projection_.speak(snapshot, gathering_, outbox_.aura, violations_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
   return departing_;
+}
+
+void Protocol::rank(Step now) {
+  ranks_.begin(now, vicinity_.self, claimer_.claims());
+  for (const Neighbour& neighbour : intake_.neighbours()) {
+    if (neighbour.alive()) ranks_.add(neighbour.id(), neighbour.ranks());
+  }
 }
 
 void Protocol::decide(const Snapshot& snapshot) {
@@ -188,6 +199,7 @@ void Protocol::fill_header() {
   batch.top_speed_m_s = gathering_.top_speed();
   batch.top_radius_m = gathering_.top_radius();
   batch.violations = violations_.warnings();
+  batch.ranks = claimer_.claims();
   std::sort(batch.updates.begin(), batch.updates.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);

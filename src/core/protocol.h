@@ -17,6 +17,7 @@
 #include "core/messages.h"
 #include "core/order_log.h"
 #include "core/projection.h"
+#include "core/ranks.h"
 #include "core/region_map.h"
 #include "core/vicinity.h"
 #include "core/violation.h"
@@ -32,6 +33,7 @@ struct ProtocolSettings {
   Step start = 0;                   ///< the first state that it looks at
   std::uint64_t last_order = 0;     ///< orders up to this one have been heard
   Step resend_after_steps = 120;    ///< an unacknowledged hand-off is sent again every so often
+  Step shuffle_ranks_steps = 0;     ///< tests only: another rank every so many steps
 };
 
 struct Changes {
@@ -121,6 +123,7 @@ class Protocol {
   bool settles_elsewhere(std::uint32_t i, Step now);
   RegionId lowest_owner(std::uint32_t i) const;
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
+  void rank(Step now);
   void fill_header();
   void hear_violations();
 
@@ -133,6 +136,8 @@ class Protocol {
   Gathering gathering_;
   Projection projection_;
   OrderLog orders_;
+  RankClaimer claimer_;
+  Ranks ranks_;
   int hops_across_;
   Changes changes_;
   std::vector<Departure> departing_;

@@ -79,9 +79,9 @@ void Pushes::form_trains() {
 }
 
 std::optional<Push> Pushes::pushed(std::uint32_t i) const {
-  const Push alone = Push::of(own_m_s_[i], traits_[i], uncertainty_);
-  const Push all = alone.covers(own_[i]) ? received_[i] : received_[i].joined_with(own_[i]);
-  if (all.speed_m_s <= own_m_s_[i] && alone.covers(all)) return std::nullopt;
+  const Push by_itself = alone(i);
+  const Push all = by_itself.covers(own_[i]) ? received_[i] : received_[i].joined_with(own_[i]);
+  if (all.speed_m_s <= by_itself.speed_m_s && by_itself.covers(all)) return std::nullopt;
   return all;
 }
 

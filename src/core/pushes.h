@@ -83,7 +83,10 @@ class Pushes {
 
   /// What the body's own speed and all that pushes it make of it, m/s.
   double speed(std::uint32_t i) const { return std::max(own_m_s_[i], received_[i].speed_m_s); }
-  /// What others push it with, if that makes it faster, or its strike harder, than it is alone.
+  /// How fast it may leave its path, m/s: pushed by others, or because it hits something itself, be it the ground. That
+  /// changes its own speed by as much as it gives to the lightest of bodies.
+  double off_path_m_s(std::uint32_t i) const { return std::max(alone(i).speed_m_s, received_[i].speed_m_s); }
+  /// What others push it with, if that takes it further off its path, or makes its strike harder, than it can alone.
   std::optional<Push> pushed(std::uint32_t i) const;
   /// What it may do to whom it hits.
   Strike strike(std::uint32_t i) const { return {own_[i], received_[i]}; }
@@ -116,6 +119,7 @@ class Pushes {
     return strike(from).on(traits_[link.to]);
   }
 
+  Push alone(std::uint32_t i) const { return Push::of(own_m_s_[i], traits_[i], uncertainty_); }
   std::uint32_t train_of(std::uint32_t i);
 
   double uncertainty_ = 1;

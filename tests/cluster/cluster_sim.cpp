@@ -24,6 +24,7 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.protocol.sync = options_.sync;
     setup.protocol.aura = options_.aura;
     setup.protocol.neighbour_distance_m = options_.neighbour_distance_m;
+    setup.protocol.shuffle_ranks_steps = options_.shuffle_ranks_steps;
     setup.physics.step_s = options_.aura.step_s;
     setup.physics.substeps = options_.aura.substeps;
     setup.physics.solver = options_.solver;

@@ -41,6 +41,7 @@ struct ClusterOptions {
   double frame_s = 0.004;     ///< of every node and step
   double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
+  core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often
   std::optional<Crash> crash;
   std::optional<LinkCut> cut;
   std::vector<std::pair<core::Step, core::Action>>

@@ -70,7 +70,7 @@ class SweptAura : public ::testing::TestWithParam<std::pair<int, int>> {
   }
 
  private:
-  static Step steps(const AuraRules& rules) { return 16 * rules.lookahead + 20; }
+  static Step steps(const AuraRules& rules) { return 46 * rules.lookahead + 20; }
 
   Vec3 velocity(Random& random) {
     const Vec3 heading = random.chance(0.5) ? Vec3(random.chance(0.5) ? 1 : -1, 0, 0) : random.direction();
@@ -80,7 +80,7 @@ class SweptAura : public ::testing::TestWithParam<std::pair<int, int>> {
   void place_pair(KinematicWorld& world, Random& random, const AuraRules& rules, std::uint32_t slot,
                   const PrototypeId (&kinds)[2], const RoundShapes& shapes) {
     const auto touch =
-        static_cast<std::size_t>(random.between(13 * rules.lookahead + 2, 15 * rules.lookahead + 15) * rules.substeps);
+        static_cast<std::size_t>(random.between(43 * rules.lookahead + 2, 45 * rules.lookahead + 15) * rules.substeps);
     const double way = 30 * rules.step_s * 6 * rules.lookahead;
     Vec3 m = random.in_box(way) + Vec3(0, 0, 300.0 * slot);
     for (std::uint32_t i = 0; i < 2; ++i) {

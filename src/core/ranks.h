@@ -1,0 +1,88 @@
+// Of two hosts whose bodies may meet, the one that ranks higher keeps its own and gets the other's. The thesis ranks by
+// region alone; here a node whose bodies hang together in a large heap ranks higher, because moving the heap costs more
+// than moving what it meets (docs/decisions/0016-ranks.md). Ranks are claimed long before they count, so that all nodes
+// change them in the same state.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace aurasim::core {
+
+struct RankClaim {
+  std::uint8_t weight = 0;
+  Step stamp = 0;  ///< when it was made
+
+  bool operator==(const RankClaim&) const = default;
+};
+
+/// The last two claims of a node: `next` counts from next.stamp + rank_notice on, `held` until then.
+struct RankClaims {
+  RankClaim held;
+  RankClaim next;
+};
+
+/// Steps between a claim and the state from which on it counts: everyone has heard of it, and has looked further ahead
+/// for as long as a pull can take.
+constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
+
+/// The ranks of a node and of its neighbours in one state.
+class Ranks {
+ public:
+  explicit Ranks(int lookahead) : lookahead_(lookahead) {}
+
+  /// Starts state `now` of node `self`; then one add() for each that is alive.
+  void begin(Step now, RegionId self, const RankClaims& claims);
+  void add(RegionId region, const RankClaims& claims) { nodes_.push_back({region, claims}); }
+
+  /// Bodies of ours go to `host` if they may meet one of its bodies. Not for K - 1 states after it came to outrank us:
+  /// the last bodies that it sent us may still be under way.
+  bool pulls(RegionId host) const;
+  /// Of two that pull, bodies go to the higher one.
+  bool outranks(RegionId a, RegionId b) const { return outranks(a, b, now_); }
+  /// Two of the nodes are about to change places, or just have: a pull that begins now may have to wait, and to come
+  /// all the way back. So it has to begin earlier.
+  bool changing() const;
+
+ private:
+  struct Node {
+    RegionId region;
+    RankClaims claims;
+  };
+  const Node& node(RegionId region) const;
+  const RankClaim& claim(const Node& node, Step n) const;
+  bool outranks(RegionId a, RegionId b, Step n) const { return outranks(node(a), node(b), n); }
+  bool outranks(const Node& a, const Node& b, Step n) const;
+  bool changes(const Node& node, Step from) const;
+
+  int lookahead_;
+  Step now_ = 0;
+  std::vector<Node> nodes_;  ///< ours first
+};
+
+/// What a node claims for itself.
+class RankClaimer {
+ public:
+  /// `shuffle_steps` > 0, tests only: another weight every so many steps, whatever the clusters are.
+  RankClaimer(RegionId self, int lookahead, Step shuffle_steps)
+      : self_(self), lookahead_(lookahead), shuffle_steps_(shuffle_steps) {}
+
+  const RankClaims& claims() const { return claims_; }
+  /// Claims anew if the largest cluster that others could pull asks for it. `bodies`: how many it has.
+  void reconsider(Step now, std::size_t bodies);
+
+ private:
+  std::uint8_t wanted_weight(Step now, std::size_t bodies);
+
+  RegionId self_;
+  int lookahead_;
+  Step shuffle_steps_;
+  RankClaims claims_;
+  bool claimed_ = false;  ///< ever
+  Step last_large_ = 0;   ///< when the largest cluster last was nearly as large as claimed
+};
+
+}  // namespace aurasim::core
