@@ -66,8 +66,10 @@ double Aura::own_speed_of(const BodyState& body) const {
 
 double Aura::drop_m(double steps) const {
   const double t = steps * rules_.step_s;
-  return 0.5 * rules_.gravity.norm() * t * (t + rules_.step_s);
+  return 0.5 * gravity_m_s2_ * t * (t + rules_.step_s);
 }
+
+double Aura::last_instant(int horizon_steps) const { return std::max(0.0, horizon_steps - 1.0 / rules_.substeps); }
 
 Pose Aura::ahead(const Path& path, double steps) const {
   const double k = path.age_steps + steps - (path.unborn_steps > 0 ? path.age_steps + path.unborn_steps : 0);
@@ -139,7 +141,7 @@ double Aura::drift_m_s(const Path& path) const { return path.v_WB.norm() + rules
 Aura::Range Aura::meet_range(const Path& foreign, int hops) const {
   const double margin = rules_.contact_margin_m + foreign.blur_m;
   if (rules_.kind != AuraKind::kSwept) return {std::max(reach(hops), cluster_reach(hops)) + margin, 0};
-  const double own_steps = hops * rules_.lookahead;
+  const double own_steps = last_instant(hops * rules_.lookahead);
   const double foreign_steps = foreign.age_steps + own_steps;
   const double way = rules_.step_s * foreign_steps * drift_m_s(foreign) + 2 * drop_m(foreign_steps) + drop_m(own_steps);
   return {std::max(1.0, rules_.reach_scale) * (margin + way),
@@ -148,7 +150,7 @@ Aura::Range Aura::meet_range(const Path& foreign, int hops) const {
 
 Aura::Range Aura::link_range(int hops) const {
   if (rules_.kind != AuraKind::kSwept) return {cluster_reach(hops) + rules_.contact_margin_m, 0};
-  const double steps = (hops + 1) * rules_.lookahead - 1;
+  const double steps = last_instant((hops + 1) * rules_.lookahead - 1);
   return {3 * drop_m(steps) + rules_.contact_margin_m, (1 + rules_.uncertainty) * rules_.step_s * steps};
 }
 
@@ -162,7 +164,7 @@ std::optional<double> Aura::paths_meet(const Path& a, const Path& b, int horizon
   const double last = horizon_steps;
   // The clearance shrinks at most this fast, in metres per step.
   const double oldest = std::max(a.age_steps, b.age_steps);
-  const double fall = rules_.gravity.norm() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules_.step_s;
+  const double fall = gravity_m_s2_ * (a.age_steps + b.age_steps + oldest + 3 * last) * rules_.step_s;
   const double closing =
       rules_.step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m + b.w_WB.norm() * b.radius_m +
                        rules_.uncertainty * (a.speed_m_s + b.speed_m_s));

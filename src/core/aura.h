@@ -50,7 +50,8 @@ Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance);
 
 class Aura {
  public:
-  Aura(const AuraRules& rules, const ClearanceQuery& clearance) : rules_(rules), clearance_(clearance) {}
+  Aura(const AuraRules& rules, const ClearanceQuery& clearance)
+      : rules_(rules), gravity_m_s2_(rules.gravity.norm()), clearance_(clearance) {}
 
   const AuraRules& rules() const { return rules_; }
   const ClearanceQuery& clearance() const { return clearance_; }
@@ -108,9 +109,11 @@ class Aura {
  private:
   bool spheres_within(const Path& a, const Path& b, double distance_m) const;
   std::optional<double> paths_meet(const Path& a, const Path& b, int horizon_steps) const;
-  double drop_m(double steps) const;  ///< distance that gravity adds in `steps`
+  double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
+  double last_instant(int horizon_steps) const;  ///< at which paths_meet() looks, in steps from now
 
   AuraRules rules_;
+  double gravity_m_s2_;
   const ClearanceQuery& clearance_;
 };
 

@@ -37,10 +37,11 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   complete_.assign(n, 0);
   started_.assign(n, 0);
   links_.clear();
+  grown_.clear();
   asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
   traits_.clear();
-  for (const Path& path : paths) traits_.push_back(aura_.clearance().traits(path.prototype));
+  for (const Path& path : paths) traits_.push_back(traits_of(path.prototype));
   pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
   if (aura_.rules().kind != AuraKind::kNone) join(contacts, joints);
   // Those near a boundary will be asked for. What is known before the index is built costs less than what comes later.
@@ -52,6 +53,13 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = pushed_speed(i);
   near_.build(paths);
   owned_.assign(near_.group_count(), {kSeveral, 0});
+}
+
+const BodyTraits& Clusters::traits_of(PrototypeId prototype) {
+  for (auto known = static_cast<std::uint32_t>(kinds_.size()); known <= value_of(prototype); ++known) {
+    kinds_.push_back(aura_.clearance().traits(PrototypeId{known}));
+  }
+  return kinds_[value_of(prototype)];
 }
 
 void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> joints) {
@@ -89,7 +97,7 @@ void Clusters::take_raised() {
     if (speed <= path.speed_m_s) continue;
     near_.raise(i, path.pose.p_WB, path.speed_m_s, speed);
     path.speed_m_s = speed;
-    ++growth_;
+    grown_.push_back(i);
     to_ask_.push_back(i);
   }
   raised_.clear();
@@ -98,15 +106,22 @@ void Clusters::take_raised() {
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
   regions_[cluster] = regions;
   const int hops = hops_each_ * hops_of(regions);
-  if (hops > hops_[cluster]) ++growth_;
   hops_[cluster] = hops;
   most_hops_ = std::max(most_hops_, hops);
+}
+
+/// Before the cluster of body `i` gets so many.
+void Clusters::note_more_hops(std::uint32_t i, int hops) {
+  if (hops <= hops_[of(i)]) return;
+  for_each_member(i, [this](std::uint32_t j) { grown_.push_back(j); });
 }
 
 bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
   const std::uint32_t cluster = of(i);
   if ((regions & ~regions_[cluster]) == 0) return false;
-  set_regions(cluster, regions_[cluster] | regions);
+  const std::uint64_t all = regions_[cluster] | regions;
+  note_more_hops(i, hops_each_ * hops_of(all));
+  set_regions(cluster, all);
   complete_[cluster] = 0;
   return true;
 }
@@ -119,10 +134,12 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   if (a == b) return a;
   links_.push_back(link);
   if (size_[a] < size_[b]) std::swap(a, b);
+  const std::uint64_t all = regions_[a] | regions_[b];
+  note_more_hops(a, hops_each_ * hops_of(all));
+  note_more_hops(b, hops_each_ * hops_of(all));
   for_each_member(b, [&](std::uint32_t j) { label_[j] = a; });
   size_[a] += size_[b];
-  growth_ += regions_[a] != regions_[b];
-  set_regions(a, regions_[a] | regions_[b]);
+  set_regions(a, all);
   complete_[a] = complete_[a] | complete_[b];
   std::swap(next_[a], next_[b]);  // splices the two rings of members
   return a;
@@ -181,11 +198,12 @@ bool Clusters::knows(std::uint32_t i, std::uint32_t group) {
 void Clusters::look_around(std::uint32_t i) {
   const double speed_here = speed(i);
   const int hops_here = hops(i);
+  const double enough = pushes_.raises_none_above(i);
   const Path& path = paths_[i];
   const Aura::Range& widest = link_ranges_[static_cast<std::size_t>(most_hops_)];
   linked_.clear();
   const auto ask = [&](std::uint32_t j) {
-    if (of(j) == of(i) && (j == i || !pushes_.raises(i, j))) return;
+    if (of(j) == of(i) && (j == i || pushes_.speed(j) >= enough || !pushes_.raises(i, j))) return;
     const int hops_both = std::max(hops_here, hops(j));
     const double range = link_ranges_[static_cast<std::size_t>(hops_both)].at(speed_here + speed(j)) + path.radius_m +
                          paths_[j].radius_m;

@@ -46,8 +46,11 @@ class Clusters {
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }
-  /// Grows whenever a body turns out faster, or a cluster has more hops, than it seemed.
-  std::uint64_t growth() const { return growth_; }
+  /// Bodies that turned out faster, or to have more hops, than they seemed since the last call; some more than once.
+  void take_grown(std::vector<std::uint32_t>& grown) {
+    grown.clear();
+    std::swap(grown, grown_);
+  }
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
   /// The pairs by which clusters came to be one: a tree of each cluster.
@@ -66,6 +69,7 @@ class Clusters {
 
  private:
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
+  const BodyTraits& traits_of(PrototypeId prototype);
   void join(std::span<const Contact> contacts, std::span<const Contact> joints);
   void link(std::uint32_t i, std::uint32_t j);
   void start_pushes(std::uint32_t i);
@@ -76,12 +80,13 @@ class Clusters {
   void look_on();
   void ask_members(std::uint32_t i);
   void set_regions(std::uint32_t cluster, std::uint64_t regions);
+  void note_more_hops(std::uint32_t i, int hops);
 
   const Aura& aura_;
   std::span<Path> paths_;
   int hops_each_ = 1;
   int most_hops_ = 1;
-  std::uint64_t growth_ = 0;
+  std::vector<std::uint32_t> grown_;
   std::vector<Aura::Range> link_ranges_;  ///< by hops
   NearIndex near_;
   /// A group of near_.
@@ -102,7 +107,8 @@ class Clusters {
   std::vector<std::uint32_t> to_ask_;
   std::vector<std::uint32_t> linked_;
   std::vector<std::uint32_t> raised_;  ///< whoever may have become faster
-  std::vector<BodyTraits> traits_;
+  std::vector<BodyTraits> traits_;     ///< of the bodies
+  std::vector<BodyTraits> kinds_;      ///< by prototype, as far as asked for
 };
 
 }  // namespace aurasim::core

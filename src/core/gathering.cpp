@@ -14,6 +14,12 @@ namespace {
 /// others may act upon auras from before it left. So auras have to be known that much earlier, too.
 constexpr int kHomewardHops = 1;
 
+/// Are the bounding spheres at most `distance_m` apart?
+bool is_within(const Path& a, const Path& b, double distance_m) {
+  const double reach = a.radius_m + b.radius_m + distance_m;
+  return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= reach * reach;
+}
+
 }  // namespace
 
 Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
@@ -27,6 +33,7 @@ void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighb
   clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, snapshot.joints, hops_each);
   complete_near_boundaries();
   pair_up();
+  widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
   judge(ranks);
 }
 
@@ -39,8 +46,8 @@ void Gathering::measure(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < n; ++i) {
     const BodyState& body = snapshot.bodies[i];
     ids_[i] = body.id;
-    speeds_[i] = aura_.speed_of(body);
     own_speeds_[i] = aura_.own_speed_of(body);
+    speeds_[i] = aura_.calm_speed(body.awake) + own_speeds_[i];
     paths_[i] = path_of(body, snapshot.step, aura_.clearance());
   }
 }
@@ -50,11 +57,7 @@ void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbo
   foreign_.clear();
   live_.clear();
   others_top_speed_ = others_top_radius_ = 0;
-  const auto is_local = [&](BodyId id) {
-    const auto found = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
-                                        [](const BodyState& b, BodyId x) { return b.id < x; });
-    return found != snapshot.bodies.end() && found->id == id;
-  };
+  const auto is_local = [&](BodyId id) { return std::binary_search(ids_.begin(), ids_.end(), id); };
   for (const Neighbour& neighbour : neighbours) {
     if (!neighbour.alive()) continue;
     live_.push_back(neighbour.id());
@@ -69,6 +72,18 @@ void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbo
   for (const AuraRecord& ghost : ghosts) {
     if (!is_local(ghost.id)) add_foreign(ghost, ghost.stamp, snapshot.step);
   }
+  index_foreign();
+}
+
+void Gathering::index_foreign() {
+  oldest_foreign_steps_ = most_foreign_blur_m_ = 0;
+  foreign_paths_.clear();
+  for (const Foreign& foreign : foreign_) {
+    foreign_paths_.push_back(foreign.path);
+    oldest_foreign_steps_ = std::max(oldest_foreign_steps_, foreign.path.age_steps);
+    most_foreign_blur_m_ = std::max(most_foreign_blur_m_, foreign.path.blur_m);
+  }
+  near_foreign_.build(foreign_paths_);
 }
 
 void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
@@ -129,38 +144,57 @@ void Gathering::complete_near_boundaries() {
 }
 
 /// Foreign auras and our bodies near them. A cluster that is completed here, or hit, may turn out faster, and then
-/// reach further: repeated until nothing changes.
+/// reach further: whatever has grown is looked at again, until nothing does.
 void Gathering::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
   group_noticed_.assign(clusters_.near().group_count(), 0);
   group_noticed_by_.assign(clusters_.near().group_count(), 0);
-  std::uint64_t growth = 0;
-  do {
-    growth = clusters_.growth();
-    news_.clear();
-    for (const Foreign& foreign : foreign_) notice(foreign);
-    for (const News& news : news_) {
-      clusters_.add_regions(news.own, news.region);
-      clusters_.complete(news.own);
-    }
-    if (growth != clusters_.growth()) continue;
-    find_pairs();
-    take_hits();
-  } while (growth != clusters_.growth());
+  clusters_.take_grown(grown_);  // seen below as they are now
+  for (const Foreign& foreign : foreign_) notice(foreign);
+  hear_news();
+  notice_grown();
+  find_pairs();
+  for (std::size_t looked = 0; looked < pairs_.size();) {
+    looked = take_hits(looked);
+    changed_.clear();
+    notice_grown();
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    for (const std::uint32_t own : changed_) pair_again(own);
+  }
+}
+
+void Gathering::hear_news() {
+  for (const News& news : news_) {
+    clusters_.add_regions(news.own, news.region);
+    clusters_.complete(news.own);
+  }
+  news_.clear();
+}
+
+void Gathering::notice_grown() {
+  for (clusters_.take_grown(grown_); !grown_.empty(); clusters_.take_grown(grown_)) {
+    changed_.insert(changed_.end(), grown_.begin(), grown_.end());
+    for (const std::uint32_t own : grown_) notice_again(own);
+    hear_news();
+  }
 }
 
 /// What is hit has to be known as that fast before it is, or whoever stands behind it learns of it too late: others act
 /// upon our auras when they are K states old, and look that much further ahead.
-void Gathering::take_hits() {
-  if (aura_.rules().kind != AuraKind::kSwept) return;
-  for (const Pair& pair : pairs_) {
+/// Of the pairs from the `first` on; returns how many pairs there are.
+std::size_t Gathering::take_hits(std::size_t first) {
+  if (aura_.rules().kind != AuraKind::kSwept) return pairs_.size();
+  for (; first < pairs_.size(); ++first) {
+    const Pair& pair = pairs_[first];
     const Foreign& f = foreign_[pair.foreign];
     if (!clusters_.feels(f.strike, pair.own)) continue;
     const int hops = clusters_.hops(pair.own) + kHomewardHops;
-    const std::optional<double> first = aura_.first_meeting(f.path, paths_[pair.own], hops);
-    if (first) clusters_.hit(pair.own, f.strike.times(1 - *first / ((hops + 2) * aura_.rules().lookahead)));
+    const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops);
+    if (when) clusters_.hit(pair.own, f.strike.times(1 - *when / ((hops + 2) * aura_.rules().lookahead)));
   }
+  return first;
 }
 
 Strike Gathering::strike_of(const AuraRecord& aura) const {
@@ -191,14 +225,40 @@ void Gathering::notice(const Foreign& foreign) {
   near.for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(NearIndex::kSlow), ranges_.back().at(top_speed()),
                      all_know, [&](std::uint32_t i) {
                        if (knows(i)) return;
-                       const Path& own = paths_[i];
                        const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
-                       const double reach = path.radius_m + own.radius_m + ranges_[hops].at(own.speed_m_s);
-                       if ((path.pose.p_WB - own.pose.p_WB).squaredNorm() > reach * reach) return;
-                       noticed_[i] = 1;
-                       noticed_by_[i] |= region;
-                       news_.push_back({i, region});
+                       if (is_within(path, paths_[i], ranges_[hops].at(paths_[i].speed_m_s))) note(i, region);
                      });
+}
+
+void Gathering::note(std::uint32_t own, std::uint64_t region) {
+  noticed_[own] = 1;
+  noticed_by_[own] |= region;
+  news_.push_back({own, region});
+}
+
+/// Calls `visit(index)` for at least every foreign body that notices our body `own`.
+template <class Visit>
+void Gathering::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
+  const Path& path = paths_[own];
+  const int hops = clusters_.hops(own) + kHomewardHops;
+  const auto range = [&](double speed_m_s) {
+    return aura_.notice(speed_m_s, oldest_foreign_steps_, hops).at(path.speed_m_s) + most_foreign_blur_m_;
+  };
+  near_foreign_.for_each_near(path.pose.p_WB, path.radius_m, range(NearIndex::kSlow), range(near_foreign_.top_speed()),
+                              visit);
+}
+
+/// One of ours is faster, or has more hops, than when the foreign bodies noticed it.
+void Gathering::notice_again(std::uint32_t own) {
+  const Path& path = paths_[own];
+  const int hops = clusters_.hops(own) + kHomewardHops;
+  for_each_foreign_near(own, [&](std::uint32_t f) {
+    const Foreign& foreign = foreign_[f];
+    const std::uint64_t region = vicinity_.bit_of(foreign.host);
+    if (noticed_[own] && (noticed_by_[own] & region) == region) return;
+    const Aura::Range range = aura_.notice(foreign.path.speed_m_s, foreign.path.age_steps, hops);
+    if (is_within(foreign.path, path, range.at(path.speed_m_s))) note(own, region);
+  });
 }
 
 /// Who may meet whom. Whoever does has been noticed: meeting looks less far.
@@ -218,15 +278,23 @@ void Gathering::find_pairs() {
     for (int hops = 0; hops <= clusters_.most_hops() + kHomewardHops; ++hops) {
       ranges_.push_back(aura_.meet_range(path, hops));
     }
+    const auto ask = [&](std::uint32_t i) {
+      const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
+      if (is_within(path, paths_[i], ranges_[hops].at(drifts_[i]))) pairs_.push_back({f, i});
+    };
     clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(slow_drift),
-                                   ranges_.back().at(fast_drift), [&](std::uint32_t i) {
-                                     const Path& own = paths_[i];
-                                     const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
-                                     const double reach = path.radius_m + own.radius_m + ranges_[hops].at(drifts_[i]);
-                                     if ((path.pose.p_WB - own.pose.p_WB).squaredNorm() <= reach * reach)
-                                       pairs_.push_back({f, i});
-                                   });
+                                   ranges_.back().at(fast_drift), ask);
   }
+}
+
+/// One of ours has grown since: its pairs, those that were found before as well.
+void Gathering::pair_again(std::uint32_t own) {
+  const Path& path = paths_[own];
+  const int hops = clusters_.hops(own) + kHomewardHops;
+  for_each_foreign_near(own, [&](std::uint32_t f) {
+    const Aura::Range range = aura_.meet_range(foreign_[f].path, hops);
+    if (is_within(foreign_[f].path, path, range.at(aura_.drift_m_s(path)))) pairs_.push_back({f, own});
+  });
 }
 
 void Gathering::judge(const Ranks& ranks) {
@@ -260,8 +328,10 @@ void Gathering::judge(const Pair& pair, const Ranks& ranks) {
 bool Gathering::must_be_announced(std::uint32_t i) const {
   if (aura_.rules().kind == AuraKind::kNone) return false;
   if (noticed_[i]) return true;
-  const double reach = band(clusters_.speed(i), clusters_.hops(i) + kHomewardHops) + paths_[i].radius_m;
-  return !vicinity_.deep_inside(paths_[i].pose.p_WB, reach);
+  const Path& path = paths_[i];
+  if (vicinity_.deep_inside(path.pose.p_WB, widest_band_m_ + path.radius_m)) return false;
+  const double reach = band(clusters_.speed(i), clusters_.hops(i) + kHomewardHops) + path.radius_m;
+  return !vicinity_.deep_inside(path.pose.p_WB, reach);
 }
 
 bool Gathering::outside(std::uint32_t i) const {

@@ -67,13 +67,21 @@ class Gathering {
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
   void add_foreign(const AuraRecord& aura, Step known, Step now);
+  void index_foreign();
   void mark_regions(int hops_each);
   void complete_near_boundaries();
   void pair_up();
-  void find_pairs();
-  void take_hits();
-  Strike strike_of(const AuraRecord& aura) const;
   void notice(const Foreign& foreign);
+  void notice_grown();
+  void notice_again(std::uint32_t own);
+  void note(std::uint32_t own, std::uint64_t region);
+  void hear_news();
+  void find_pairs();
+  void pair_again(std::uint32_t own);
+  template <class Visit>
+  void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
+  std::size_t take_hits(std::size_t first);
+  Strike strike_of(const AuraRecord& aura) const;
   void judge(const Ranks& ranks);
   void judge(const Pair& pair, const Ranks& ranks);
   bool meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps = 0) const;
@@ -88,13 +96,19 @@ class Gathering {
   std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   std::vector<Foreign> foreign_;
+  std::vector<Path> foreign_paths_;
+  NearIndex near_foreign_;
+  double oldest_foreign_steps_ = 0;
+  double most_foreign_blur_m_ = 0;
   std::vector<Pair> pairs_;
   std::vector<Aura::Range> ranges_;  ///< of one foreign body, by hops
   struct News {
     std::uint32_t own;
     std::uint64_t region;
   };
-  std::vector<News> news_;  ///< our bodies that have been noticed by a region, and did not know
+  std::vector<News> news_;              ///< our bodies that have been noticed by a region, and did not know
+  std::vector<std::uint32_t> grown_;    ///< of our bodies, whose range has grown
+  std::vector<std::uint32_t> changed_;  ///< likewise, since the pairs were found
   std::vector<std::uint32_t> near_;
   std::vector<double> drifts_;  ///< Aura::drift_m_s
   std::vector<std::uint8_t> noticed_;
@@ -104,6 +118,7 @@ class Gathering {
   std::vector<std::uint8_t> touched_;            ///< by cluster
   std::vector<std::uint8_t> expected_;           ///< by cluster
   std::vector<RegionId> pulled_to_;              ///< by cluster
+  double widest_band_m_ = 0;                     ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "core/projection.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace aurasim::core {
 namespace {
@@ -15,13 +16,19 @@ bool has_news(const AuraRecord& said, const AuraRecord& now) {
 }  // namespace
 
 void Projection::follow(const Snapshot& snapshot) {
+  const auto same = [](const Track& track, const BodyState& body) {
+    return track.id == body.id && track.epoch == body.epoch;
+  };
+  if (std::equal(tracks_.begin(), tracks_.end(), snapshot.bodies.begin(), snapshot.bodies.end(), same)) return;
   std::swap(tracks_, before_);
   tracks_.clear();
+  ids_.clear();
   auto old = before_.begin();
   for (const BodyState& body : snapshot.bodies) {
+    ids_.push_back(body.id);
     for (; old != before_.end() && old->id < body.id; ++old) note_gone(*old);
     if (old != before_.end() && old->id == body.id && old->epoch == body.epoch) {
-      tracks_.push_back(*old);
+      tracks_.push_back(std::move(*old));
     } else {
       Track& fresh = tracks_.emplace_back();
       fresh.id = body.id;
@@ -34,7 +41,7 @@ void Projection::follow(const Snapshot& snapshot) {
 
 /// Taken out by an order, or because another node has a higher epoch of it.
 void Projection::note_gone(const Track& track) {
-  if (track.projected && track.phase != Phase::kSent) gone_.push_back(track.id);
+  if (track.projected() && track.phase != Phase::kSent) gone_.push_back(track.id);
 }
 
 void Projection::take_back_gone(AuraBatch& batch) {
@@ -48,9 +55,8 @@ void Projection::take_back_gone(AuraBatch& batch) {
 }
 
 const Track* Projection::find(BodyId id) const {
-  const auto found =
-      std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const Track& t, BodyId x) { return t.id < x; });
-  return found != tracks_.end() && found->id == id ? &*found : nullptr;
+  const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+  return found != ids_.end() && *found == id ? &tracks_[static_cast<std::size_t>(found - ids_.begin())] : nullptr;
 }
 
 void Projection::move(Track& track, PhaseEvent event) {
@@ -85,11 +91,10 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
 }
 
 void Projection::say(Track& track, const AuraRecord& aura, AuraBatch& batch) {
-  if (track.projected && !has_news(track.said, aura)) return;
-  ++(track.projected ? counters_.updated : counters_.created);
-  if (!track.projected) track.promise = aura;
-  track.projected = true;
-  track.said = aura;
+  if (track.projected() && !has_news(track.said->newest, aura)) return;
+  ++(track.projected() ? counters_.updated : counters_.created);
+  if (!track.projected()) track.said = std::make_unique<Track::Said>(aura, aura);
+  track.said->newest = aura;
   batch.updates.push_back(aura);
 }
 
@@ -114,9 +119,9 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
       say(track, describe(body, i, gathering.clusters(), snapshot.step), batch);
-    } else if (track.projected) {
+    } else if (track.projected()) {
       ++counters_.deleted;
-      track.projected = false;
+      track.said.reset();
       batch.deletes.push_back(track.id);
     }
   }
@@ -133,7 +138,7 @@ void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& 
   ghost.epoch = body.epoch + 1;
   ghost.flags |= kAuraGhost;
   if (aura_.rules().kind == AuraKind::kNone) return;
-  ++(track.projected ? counters_.updated : counters_.created);
+  ++(track.projected() ? counters_.updated : counters_.created);
   ghosts_.push_back(ghost);
   batch.updates.push_back(ghost);
 }
@@ -152,7 +157,7 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   std::erase_if(ghosts_, [&](const AuraRecord& ghost) {
     const Track* here = find(ghost.id);
     if (here && here->phase != Phase::kSent) {
-      if (!here->projected) {
+      if (!here->projected()) {
         ++counters_.deleted;
         batch.deletes.push_back(ghost.id);
       }
@@ -167,8 +172,8 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
 
 /// After 2K steps the body has to be within what its aura said then: the path, with or without its fall, plus U v age.
 void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
-  if (!track.projected || aura_.rules().kind != AuraKind::kSwept) return;
-  const AuraRecord& promise = track.promise;
+  if (!track.projected() || aura_.rules().kind != AuraKind::kSwept) return;
+  const AuraRecord& promise = track.said->promise;
   const auto age = static_cast<double>(now - promise.stamp);
   if (age < 2 * aura_.rules().lookahead) return;
   Path path;
@@ -183,7 +188,7 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
   const double allowed = aura_.rules().contact_margin_m + fall +
                          aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;
   if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
-  track.promise = track.said;
+  track.said->promise = track.said->newest;
 }
 
 void Projection::check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,12 +21,15 @@ struct Track {
   BodyId id{};
   Epoch epoch = 0;
   Phase phase = Phase::kInjected;
-  bool projected = false;    ///< the other regions have its aura
   bool too_fast = false;     ///< already counted
   bool out_of_span = false;  ///< already counted
   Step island_since = -1;    ///< first of the states in a row in which its cluster was an island; -1: is none
-  AuraRecord said;           ///< its newest aura
-  AuraRecord promise;        ///< an older one, kept until what it promised can be checked
+  struct Said {
+    AuraRecord newest;
+    AuraRecord promise;  ///< an older one, kept until what it promised can be checked
+  };
+  std::unique_ptr<Said> said;  ///< its auras, while the other regions have one
+  bool projected() const { return said != nullptr; }
 };
 
 /// Counted since the start; one per aura and message.
@@ -76,6 +80,7 @@ class Projection {
   const Aura& aura_;
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
+  std::vector<BodyId> ids_;             ///< of tracks_, close together: for looking them up
   std::vector<AuraRecord> ghosts_;
   std::vector<BodyId> gone_;  ///< projected in the last state, not hosted any longer, not sent either
   std::size_t projecting_ = 0;

@@ -23,7 +23,7 @@ void Pushes::begin(std::span<const double> own_m_s, std::span<const BodyTraits> 
   const auto n = own_m_s.size();
   uncertainty_ = uncertainty;
   own_m_s_.assign(own_m_s.begin(), own_m_s.end());
-  traits_.assign(traits.begin(), traits.end());
+  traits_ = traits;
   received_.assign(n, {});
   own_.resize(n);
   lightest_ = {};

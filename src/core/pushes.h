@@ -61,7 +61,7 @@ struct Strike {
 /// Pushes of all bodies of a node along contacts, joints, and pairs that may touch.
 class Pushes {
  public:
-  /// Starts a step: bodies that move at `own_m_s` by themselves and push nobody yet.
+  /// Starts a step: bodies that move at `own_m_s` by themselves and push nobody yet. `traits` stay the caller's.
   void begin(std::span<const double> own_m_s, std::span<const BodyTraits> traits, double uncertainty);
 
   /// Two bodies touch, may touch, or are jointed (`rigid`): what pushes one pushes the other.
@@ -125,7 +125,7 @@ class Pushes {
   double uncertainty_ = 1;
   std::vector<double> own_m_s_;
   std::vector<Push> own_, received_;
-  std::vector<BodyTraits> traits_;
+  std::span<const BodyTraits> traits_;
   BodyTraits lightest_;                  ///< nothing takes less of a push
   std::vector<std::uint32_t> by_speed_;  ///< fastest first
   std::vector<std::uint32_t> train_;     ///< towards a member that stands for all, kNone: not in any

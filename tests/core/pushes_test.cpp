@@ -14,8 +14,9 @@ constexpr double kUncertainty = 0.5;
 
 class PushesTest : public ::testing::Test {
  protected:
-  void chain(const std::vector<double>& own_m_s, const std::vector<BodyTraits>& traits, bool rigid = false) {
-    pushes.begin(own_m_s, traits, kUncertainty);
+  void chain(const std::vector<double>& own_m_s, const std::vector<BodyTraits>& kinds, bool rigid = false) {
+    kinds_ = kinds;
+    pushes.begin(own_m_s, kinds_, kUncertainty);
     for (std::uint32_t i = 0; i + 1 < own_m_s.size(); ++i) pushes.add(i, i + 1, rigid);
     pushes.form_trains();
     for (std::uint32_t i = 0; i < own_m_s.size(); ++i) pushes.start(i);
@@ -24,7 +25,20 @@ class PushesTest : public ::testing::Test {
 
   Pushes pushes;
   std::vector<std::uint32_t> raised;
+
+ private:
+  std::vector<BodyTraits> kinds_;
 };
+
+/// Onto the ground, say: what does not bounce stops, what bounces fully comes back as fast.
+TEST_F(PushesTest, ABodyByItselfMayLoseOrTurnItsOwnSpeed) {
+  chain({20}, {kPlastic});
+  EXPECT_EQ(kUncertainty * pushes.off_path_m_s(0), 20);
+  EXPECT_EQ(pushes.speed(0), 20) << "others it pushes no harder";
+  EXPECT_FALSE(pushes.pushed(0)) << "others know that from its speed";
+  chain({20}, {kElastic});
+  EXPECT_EQ(kUncertainty * pushes.off_path_m_s(0), 40);
+}
 
 TEST_F(PushesTest, AChainThatDoesNotBounceSharesTheMomentum) {
   chain({20, 0, 0, 0, 0, 0}, std::vector(6, kPlastic));
