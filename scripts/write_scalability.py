@@ -259,7 +259,8 @@ def main():
                        lambda r: (f"{100 * r['border_share']:g}%",))
     text += "## Asleep\n\nThe rain stops half way; in the last 5 s some sleep.\n\n"
     text += runs_table(of(runs, "asleep"), ["bodies", "awake"], lambda r: (r["bodies"], r["awake"]))
-    text += "## U: how far a body may leave its path, 4 nodes\n\n"
+    text += "## U: how far a body may leave its path, 4 nodes\n\nWhat hits can do is stated over U "
+    text += "(docs/decisions/0015), so between 0.1 and 1 only the room of slow bodies changes; above 1 all have more.\n\n"
     text += runs_table(sorted(of(runs, "uncertainty"), key=lambda r: r["uncertainty"]), ["U"],
                        lambda r: (f"{r['uncertainty']:g}",))
     text += "## K: how far nodes may be apart, 4 nodes\n\n"

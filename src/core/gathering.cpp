@@ -151,6 +151,7 @@ void Gathering::pair_up() {
   group_noticed_.assign(clusters_.near().group_count(), 0);
   group_noticed_by_.assign(clusters_.near().group_count(), 0);
   clusters_.take_grown(grown_);  // seen below as they are now
+  changed_.clear();
   for (const Foreign& foreign : foreign_) notice(foreign);
   hear_news();
   notice_grown();
@@ -181,9 +182,9 @@ void Gathering::notice_grown() {
   }
 }
 
-/// What is hit has to be known as that fast before it is, or whoever stands behind it learns of it too late: others act
-/// upon our auras when they are K states old, and look that much further ahead.
-/// Of the pairs from the `first` on; returns how many pairs there are.
+/// Of the pairs from the `first` on; returns how many pairs there are. What is hit has to be known as that fast before
+/// it is, or whoever stands behind it learns of it too late: others act upon our auras when they are K states old, and
+/// look that much further ahead.
 std::size_t Gathering::take_hits(std::size_t first) {
   if (aura_.rules().kind != AuraKind::kSwept) return pairs_.size();
   for (; first < pairs_.size(); ++first) {
