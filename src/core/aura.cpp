@@ -98,7 +98,7 @@ bool Aura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps
     case AuraKind::kSwept:
       break;
   }
-  return paths_meet(foreign, own, hops * rules_.lookahead - fewer_steps).has_value();
+  return first_meeting(foreign, own, hops, fewer_steps).has_value();
 }
 
 bool Aura::linked(const Path& a, const Path& b, int hops) const {
@@ -154,8 +154,8 @@ Aura::Range Aura::link_range(int hops) const {
   return {3 * drop_m(steps) + rules_.contact_margin_m, (1 + rules_.uncertainty) * rules_.step_s * steps};
 }
 
-std::optional<double> Aura::first_meeting(const Path& a, const Path& b, int hops) const {
-  return paths_meet(a, b, hops * rules_.lookahead);
+std::optional<double> Aura::first_meeting(const Path& a, const Path& b, int hops, int fewer_steps) const {
+  return paths_meet(a, b, hops * rules_.lookahead - fewer_steps);
 }
 
 std::optional<double> Aura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {

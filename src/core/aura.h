@@ -75,8 +75,9 @@ class Aura {
 
   /// Do two bodies have to share a host? A foreign body and one of ours, seen now, looking h K - `fewer_steps` ahead.
   bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const;
-  /// In how many steps the paths of two bodies may meet first (kSwept); nothing if they do not within `hops` K.
-  std::optional<double> first_meeting(const Path& a, const Path& b, int hops) const;
+  /// In how many steps the paths of two bodies may meet first (kSwept); nothing if they do not within
+  /// h K - `fewer_steps`.
+  std::optional<double> first_meeting(const Path& a, const Path& b, int hops, int fewer_steps = 0) const;
   /// Do two bodies of one host have to move together?
   bool linked(const Path& a, const Path& b, int hops) const;
   /// A body sent away a moment ago and one of ours.

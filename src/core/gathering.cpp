@@ -27,6 +27,7 @@ Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), 
 void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                      std::span<const AuraRecord> ghosts, const Ranks& ranks) {
   const int hops_each = ranks.changing() ? 2 : 1;
+  fewer_steps_ = ranks.changing() ? 1 : 0;  // 2 h K - 1 are enough (docs/decisions/0016-ranks.md)
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions(hops_each);
@@ -192,7 +193,7 @@ std::size_t Gathering::take_hits(std::size_t first) {
     const Foreign& f = foreign_[pair.foreign];
     if (!clusters_.feels(f.strike, pair.own)) continue;
     const int hops = clusters_.hops(pair.own) + kHomewardHops;
-    const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops);
+    const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops, fewer_steps_);
     if (when) clusters_.hit(pair.own, f.strike.times(1 - *when / ((hops + 2) * aura_.rules().lookahead)));
   }
   return first;
@@ -317,8 +318,7 @@ void Gathering::judge(const Pair& pair, const Ranks& ranks) {
   const int hops = clusters_.hops(pair.own);
   const bool pulls = f.host != pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host) &&
                      ranks.pulls(f.host) && ranks.outranks(f.host, pulled_to_[cluster]);
-  const int fewer_steps = ranks.changing() ? 1 : 0;  // 2 h K - 1 are enough (docs/decisions/0016-ranks.md)
-  if ((!touched_[cluster] || pulls) && meets(f, own, hops, fewer_steps)) {
+  if ((!touched_[cluster] || pulls) && meets(f, own, hops, fewer_steps_)) {
     touched_[cluster] = 1;
     if (pulls) pulled_to_[cluster] = f.host;
   }

@@ -118,6 +118,7 @@ class Gathering {
   std::vector<std::uint8_t> touched_;            ///< by cluster
   std::vector<std::uint8_t> expected_;           ///< by cluster
   std::vector<RegionId> pulled_to_;              ///< by cluster
+  int fewer_steps_ = 0;                          ///< how much less far than h K meetings are looked for
   double widest_band_m_ = 0;                     ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
