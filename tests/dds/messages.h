@@ -75,7 +75,7 @@ inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core:
   batch.top_speed_m_s = 31.4;
   batch.top_radius_m = 0.87;
   batch.violations = 5;
-  batch.ranks = {{1, 17}, {3, 1'234'567'890'000}};
+  batch.ranks = {{1, 0}, {3, 0}};  // not after any stamp
   for (std::size_t i = 0; i < auras; ++i) {
     batch.updates.push_back(aura_of(i));
   }
