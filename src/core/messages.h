@@ -57,8 +57,8 @@ struct AuraBatch {
   bool full = false;  ///< `updates` is the whole set; forget what was known of this source
   double top_speed_m_s = 0;
   double top_radius_m = 0;
-  std::uint64_t violations =
-      0;             ///< grows whenever the source breaks a promise, and in every step in which one stays so
+  /// Grows whenever the source breaks a promise, and in every step in which one stays so.
+  std::uint64_t violations = 0;
   RankClaims ranks;  ///< of the source
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;

@@ -82,7 +82,7 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   gathering_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
   projection_.classify(snapshot, gathering_);
   decide(snapshot);
-  claimer_.reconsider(snapshot.step, largest_cluster_);
+  claimer_.reconsider(snapshot.step, {largest_cluster_, guest_heap_}, ranks_);
   projection_.speak(snapshot, gathering_, outbox_.aura, violations_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
@@ -98,7 +98,7 @@ void Protocol::rank(Step now) {
 
 void Protocol::decide(const Snapshot& snapshot) {
   decided_.assign(snapshot.bodies.size(), 0);
-  largest_cluster_ = 0;
+  largest_cluster_ = guest_heap_ = 0;
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (aura_.rules().kind == AuraKind::kNone) {
       decide_naively(i, snapshot);
@@ -107,9 +107,18 @@ void Protocol::decide(const Snapshot& snapshot) {
     const std::uint32_t cluster = gathering_.clusters().of(i);
     if (!gathering_.clusters().is_complete(i) || decided_[cluster]) continue;
     decided_[cluster] = 1;
-    largest_cluster_ = std::max(largest_cluster_, gathering_.clusters().size(i));
+    const std::size_t size = gathering_.clusters().size(i);
+    largest_cluster_ = std::max(largest_cluster_, size);
+    if (size >= RankClaimer::kLeastBodies && size > guest_heap_ && is_abroad(i)) guest_heap_ = size;
     decide_for_cluster(i, snapshot);
   }
+}
+
+/// Two thirds of body i's cluster, or more, are outside our region.
+bool Protocol::is_abroad(std::uint32_t i) const {
+  std::size_t outside = 0;
+  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += gathering_.outside(j) ? 1 : 0; });
+  return 3 * outside >= 2 * gathering_.clusters().size(i);
 }
 
 /// AC before BT: a touched cluster is never an island.

@@ -119,6 +119,7 @@ class Protocol {
   void obey_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
+  bool is_abroad(std::uint32_t i) const;
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
   bool settles_elsewhere(std::uint32_t i, Step now);
   RegionId lowest_owner(std::uint32_t i) const;
@@ -148,6 +149,7 @@ class Protocol {
   std::uint64_t violations_heard_ = 0;
   Step last_violation_step_ = -1'000'000;
   std::size_t largest_cluster_ = 0;
+  std::size_t guest_heap_ = 0;  ///< RankClaimer::Heaps::guests
 };
 
 /// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.

@@ -1,19 +1,27 @@
 #include "core/ranks.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace aurasim::core {
 namespace {
 
-/// A cluster of so many bodies counts, and every four times as many count more.
-constexpr std::size_t kFirstLarge = 256;
-/// So many steps without a cluster of nearly that size, and the claim is given up.
-constexpr Step kPatience = 240;
+/// Each step of weight is twice as many bodies. Whoever is below another node takes its place with four times as many:
+/// two heaps that are about as large do not change places each time one of them grows.
+constexpr int kMuchMore = 2;
+/// So many steps without a cluster of a quarter of its size, and the claim is given up.
+constexpr Step kPatience = 1200;
+/// Guests may stay so many steps.
+constexpr Step kHospitality = 10;
+/// Once they are gone, whoever has stepped back for them waits until their host has claimed, or for so long.
+constexpr Step kHumility = 120;
 
-std::size_t least_bodies(std::uint8_t weight) { return kFirstLarge << (2 * (weight - 1)); }
+std::size_t least_bodies(std::uint8_t weight) {
+  return RankClaimer::kLeastBodies << (weight - RankClaim::kNothing - 1);
+}
 
 std::uint8_t weight_of(std::size_t bodies) {
-  std::uint8_t weight = 0;
+  std::uint8_t weight = RankClaim::kNothing;
   while (weight < 20 && bodies >= least_bodies(static_cast<std::uint8_t>(weight + 1))) ++weight;
   return weight;
 }
@@ -48,7 +56,7 @@ bool Ranks::outranks(const Node& a, const Node& b, Step n) const {
   const RankClaim& of_a = claim(a, n);
   const RankClaim& of_b = claim(b, n);
   if (of_a.weight != of_b.weight) return of_a.weight > of_b.weight;
-  if (of_a.weight > 0 && of_a.stamp != of_b.stamp) return of_a.stamp < of_b.stamp;
+  if (of_a.weight > RankClaim::kNothing && of_a.stamp != of_b.stamp) return of_a.stamp < of_b.stamp;
   return a.region < b.region;
 }
 
@@ -71,20 +79,45 @@ bool Ranks::changing() const {
   });
 }
 
-std::uint8_t RankClaimer::wanted_weight(Step now, std::size_t bodies) {
+bool Ranks::on_top() const {
+  constexpr Step kAllCount = std::numeric_limits<Step>::max();
+  return std::all_of(nodes_.begin() + 1, nodes_.end(),
+                     [this](const Node& other) { return outranks(nodes_.front(), other, kAllCount); });
+}
+
+std::uint8_t Ranks::most_of_others() const {
+  std::uint8_t most = 0;
+  for (auto other = nodes_.begin() + 1; other != nodes_.end(); ++other)
+    most = std::max(most, other->claims.next.weight);
+  return most;
+}
+
+std::uint8_t RankClaimer::wanted_weight(Step now, const Heaps& heaps, const Ranks& ranks) {
   if (shuffle_steps_ > 0) {
     const auto turn = static_cast<std::uint64_t>(now / shuffle_steps_);
     const auto run = static_cast<std::uint64_t>(shuffle_steps_);
     return turn == 0 ? 0 : static_cast<std::uint8_t>(scrambled((run << 40) + (turn << 16) + value_of(self_)) % 4);
   }
-  const std::uint8_t weight = weight_of(bodies);
-  const std::uint8_t claimed = claims_.next.weight;
-  if (claimed > 0 && 4 * bodies >= least_bodies(claimed)) last_large_ = now;
-  return weight > claimed || now - last_large_ > kPatience ? weight : claimed;
+  if (steps_back(now, heaps.guests, ranks)) return RankClaim::kStepsBack;
+  const std::uint8_t weight = weight_of(heaps.near);
+  const std::uint8_t claimed = std::max(claims_.next.weight, RankClaim::kNothing);
+  const bool claims = claimed > RankClaim::kNothing;
+  if (claims && 4 * heaps.near >= least_bodies(claimed)) last_large_ = now;
+  if (weight <= claimed) return claims && now - last_large_ > kPatience ? weight : claimed;
+  const std::uint8_t others = ranks.most_of_others();
+  const bool first = others <= RankClaim::kNothing || ranks.on_top();
+  return first || weight >= others + kMuchMore ? weight : claimed;
 }
 
-void RankClaimer::reconsider(Step now, std::size_t bodies) {
-  const std::uint8_t weight = wanted_weight(now, bodies);
+bool RankClaimer::steps_back(Step now, std::size_t guests, const Ranks& ranks) {
+  const bool has_guests = guests >= kLeastBodies;
+  (has_guests ? last_guests_ : alone_) = now;
+  if (claims_.next.weight != RankClaim::kStepsBack) return now - alone_ >= kHospitality;
+  return has_guests || (now - last_guests_ <= kHumility && ranks.most_of_others() <= RankClaim::kNothing);
+}
+
+void RankClaimer::reconsider(Step now, const Heaps& heaps, const Ranks& ranks) {
+  const std::uint8_t weight = wanted_weight(now, heaps, ranks);
   if (weight == claims_.next.weight) return;
   // One change at a time: everybody remembers two claims.
   if (claimed_ && now < claims_.next.stamp + rank_notice(lookahead_) + 2 * lookahead_) return;

@@ -13,7 +13,12 @@
 namespace aurasim::core {
 
 struct RankClaim {
-  std::uint8_t weight = 0;
+  /// Of a node that steps back: it hosts a heap of somebody else's region, which can only go home to a higher node.
+  static constexpr std::uint8_t kStepsBack = 0;
+  /// Of a node that claims nothing.
+  static constexpr std::uint8_t kNothing = 1;
+
+  std::uint8_t weight = kNothing;
   Step stamp = 0;  ///< when it was made
 
   bool operator==(const RankClaim&) const = default;
@@ -47,6 +52,11 @@ class Ranks {
   /// all the way back. So it has to begin earlier.
   bool changing() const;
 
+  /// Once all claims that have been made count: are we the highest?
+  bool on_top() const;
+  /// The largest weight that another node has claimed last.
+  std::uint8_t most_of_others() const;
+
  private:
   struct Node {
     RegionId region;
@@ -66,16 +76,26 @@ class Ranks {
 /// What a node claims for itself.
 class RankClaimer {
  public:
+  /// The largest clusters of a node, in bodies.
+  struct Heaps {
+    std::size_t near = 0;    ///< others could pull it
+    std::size_t guests = 0;  ///< most of it is outside our region
+  };
+  /// Smaller ones do not count.
+  static constexpr std::size_t kLeastBodies = 256;
+
   /// `shuffle_steps` > 0, tests only: another weight every so many steps, whatever the clusters are.
   RankClaimer(RegionId self, int lookahead, Step shuffle_steps)
       : self_(self), lookahead_(lookahead), shuffle_steps_(shuffle_steps) {}
 
   const RankClaims& claims() const { return claims_; }
-  /// Claims anew if the largest cluster that others could pull asks for it. `bodies`: how many it has.
-  void reconsider(Step now, std::size_t bodies);
+  /// Claims anew if our heaps ask for it: if they are much larger than what anyone who is above us has claimed. Steps
+  /// back if a heap of guests stays.
+  void reconsider(Step now, const Heaps& heaps, const Ranks& ranks);
 
  private:
-  std::uint8_t wanted_weight(Step now, std::size_t bodies);
+  std::uint8_t wanted_weight(Step now, const Heaps& heaps, const Ranks& ranks);
+  bool steps_back(Step now, std::size_t guests, const Ranks& ranks);
 
   RegionId self_;
   int lookahead_;
@@ -83,6 +103,8 @@ class RankClaimer {
   RankClaims claims_;
   bool claimed_ = false;  ///< ever
   Step last_large_ = 0;   ///< when the largest cluster last was nearly as large as claimed
+  Step alone_ = 0;        ///< when no heap of guests was here last
+  Step last_guests_ = 0;  ///< when one was
 };
 
 }  // namespace aurasim::core

@@ -35,12 +35,19 @@ TEST(Ranks, AreThoseOfTheRegionsWhereNobodyClaims) {
 
 TEST(Ranks, MoreWeightIsHigherAndOfEqualOnesTheOlderClaim) {
   const Step late = 1000;
-  EXPECT_TRUE(seen_by(kFirst, late, {{}, once(1, 5), {}}).pulls(kSecond));
-  EXPECT_FALSE(seen_by(kSecond, late, {{}, once(1, 5), {}}).pulls(kFirst));
-  EXPECT_FALSE(seen_by(kFirst, late, {once(2, 9), once(1, 5), {}}).pulls(kSecond));
-  EXPECT_TRUE(seen_by(kFirst, late, {once(1, 9), once(1, 5), {}}).pulls(kSecond));
-  EXPECT_FALSE(seen_by(kFirst, late, {once(1, 5), once(1, 5), {}}).pulls(kSecond));
-  EXPECT_FALSE(seen_by(kFirst, late, {once(0, 9), once(0, 5), {}}).pulls(kSecond)) << "as if nobody had claimed";
+  EXPECT_TRUE(seen_by(kFirst, late, {{}, once(2, 5), {}}).pulls(kSecond));
+  EXPECT_FALSE(seen_by(kSecond, late, {{}, once(2, 5), {}}).pulls(kFirst));
+  EXPECT_FALSE(seen_by(kFirst, late, {once(3, 9), once(2, 5), {}}).pulls(kSecond));
+  EXPECT_TRUE(seen_by(kFirst, late, {once(2, 9), once(2, 5), {}}).pulls(kSecond));
+  EXPECT_FALSE(seen_by(kFirst, late, {once(2, 5), once(2, 5), {}}).pulls(kSecond));
+  EXPECT_FALSE(seen_by(kFirst, late, {once(RankClaim::kNothing, 9), {}, {}}).pulls(kSecond)) << "as if it had not";
+}
+
+TEST(Ranks, WhoeverStepsBackIsBelowThoseWhoClaimNothing) {
+  const RankClaims back = once(RankClaim::kStepsBack, 5);
+  EXPECT_TRUE(seen_by(kFirst, 1000, {back, {}, {}}).pulls(kThird));
+  EXPECT_FALSE(seen_by(kSecond, 1000, {back, {}, {}}).pulls(kFirst));
+  EXPECT_TRUE(seen_by(kSecond, 1000, {back, once(RankClaim::kStepsBack, 3), {}}).pulls(kFirst)) << "both do";
 }
 
 TEST(Ranks, TwoNodesNeverPullFromEachOther) {
@@ -56,7 +63,7 @@ TEST(Ranks, TwoNodesNeverPullFromEachOther) {
 TEST(Ranks, AClaimCountsAfterItsNoticeAndPullsWhenAllIsQuiet) {
   const Step made = 100, counts = made + kNotice;
   for (Step now = made; now < counts + 20; ++now) {
-    const std::initializer_list<RankClaims> claims = {{}, once(1, made)};
+    const std::initializer_list<RankClaims> claims = {{}, once(2, made)};
     EXPECT_EQ(seen_by(kSecond, now, claims).pulls(kFirst), now < counts) << now;
     EXPECT_EQ(seen_by(kFirst, now, claims).pulls(kSecond), now >= counts + kLookahead - 1) << now;
   }
@@ -66,9 +73,9 @@ TEST(Ranks, AreChangingFromBeforeAClaimCountsUntilThePullsHaveTurned) {
   const Step counts = 100 + kNotice;
   for (Step now = 100; now < counts + 20; ++now) {
     const bool near = now >= counts - 4 * kLookahead - 1 && now < counts + kLookahead;
-    EXPECT_EQ(seen_by(kFirst, now, {{}, once(1, 100), {}}).changing(), near) << now;
-    EXPECT_EQ(seen_by(kThird, now, {{}, once(1, 100), {}}).changing(), near) << "of two others, " << now;
-    EXPECT_FALSE(seen_by(kFirst, now, {once(1, 100), {}, {}}).changing()) << "it was the first already";
+    EXPECT_EQ(seen_by(kFirst, now, {{}, once(2, 100), {}}).changing(), near) << now;
+    EXPECT_EQ(seen_by(kThird, now, {{}, once(2, 100), {}}).changing(), near) << "of two others, " << now;
+    EXPECT_FALSE(seen_by(kFirst, now, {once(2, 100), {}, {}}).changing()) << "it was the first already";
   }
 }
 
@@ -78,40 +85,86 @@ TEST(Ranks, ChangeIsKnownToAllBeforeItMatters) {
 
 class Claimer : public ::testing::Test {
  protected:
+  using Heaps = RankClaimer::Heaps;
+  static constexpr std::uint8_t kNothing = RankClaim::kNothing, kStepsBack = RankClaim::kStepsBack;
   RankClaimer claimer_{kSecond, kLookahead, 0};
-  std::uint8_t weight_after(Step now, std::size_t bodies) {
-    claimer_.reconsider(now, bodies);
+  RankClaims of_first_;
+  std::uint8_t weight_after(Step now, const Heaps& heaps) {
+    claimer_.reconsider(now, heaps, seen_by(kSecond, now, {of_first_, claimer_.claims()}));
     return claimer_.claims().next.weight;
+  }
+  /// Guests that stay from one step to another.
+  std::uint8_t weight_with_guests(Step first, Step last, const Heaps& heaps) {
+    for (Step now = first; now < last; ++now) weight_after(now, heaps);
+    return weight_after(last, heaps);
   }
 };
 
 TEST_F(Claimer, ClaimsNothingForSmallClusters) {
-  EXPECT_EQ(weight_after(10, 255), 0);
+  EXPECT_EQ(weight_after(10, {255, 0}), kNothing);
   EXPECT_EQ(claimer_.claims().next.stamp, 0);
 }
 
-TEST_F(Claimer, ClaimsMoreForFourTimesAsMany) {
-  EXPECT_EQ(weight_after(10, 256), 1);
+TEST_F(Claimer, ClaimsMoreForTwiceAsMany) {
+  EXPECT_EQ(weight_after(10, {256, 0}), kNothing + 1);
   EXPECT_EQ(claimer_.claims().next.stamp, 10);
-  EXPECT_EQ(weight_after(1000, 1023), 1);
-  EXPECT_EQ(weight_after(1010, 1024), 2);
-  EXPECT_EQ(claimer_.claims().held.weight, 1);
+  EXPECT_EQ(weight_after(1000, {511, 0}), kNothing + 1);
+  EXPECT_EQ(weight_after(1010, {512, 0}), kNothing + 2);
+  EXPECT_EQ(claimer_.claims().held.weight, kNothing + 1);
   EXPECT_EQ(claimer_.claims().held.stamp, 10);
 }
 
 TEST_F(Claimer, MakesOneChangeAtATime) {
-  EXPECT_EQ(weight_after(0, 256), 1);
-  EXPECT_EQ(weight_after(1, 100'000), 1) << "the first one does not count yet";
-  EXPECT_EQ(weight_after(kNotice + 2 * kLookahead - 1, 100'000), 1);
-  EXPECT_EQ(weight_after(kNotice + 2 * kLookahead, 100'000), 5);
+  EXPECT_EQ(weight_after(0, {256, 0}), 2);
+  EXPECT_EQ(weight_after(1, {5'000, 0}), 2) << "the first one does not count yet";
+  EXPECT_EQ(weight_after(kNotice + 2 * kLookahead - 1, {5'000, 0}), 2);
+  EXPECT_EQ(weight_after(kNotice + 2 * kLookahead, {5'000, 0}), 6);
+}
+
+TEST_F(Claimer, TakesTheFirstPlaceOnlyWithMuchMore) {
+  of_first_ = once(3, 5);
+  EXPECT_EQ(weight_after(100, {2047, 0}), kNothing) << "2 to 4 times as many";
+  EXPECT_EQ(weight_after(110, {2048, 0}), 5);
+  of_first_ = once(7, 120);
+  EXPECT_EQ(weight_after(200, {10'000, 0}), 5) << "the other one has taken it back";
+}
+
+TEST_F(Claimer, SaysOnTheFirstPlaceHowMuchItHas) {
+  of_first_ = once(3, 50);
+  EXPECT_EQ(weight_after(100, {2048, 0}), 5);
+  EXPECT_EQ(weight_after(200, {4096, 0}), 6);
 }
 
 TEST_F(Claimer, GivesUpOnlyWhatItHasNotHadForLong) {
-  EXPECT_EQ(weight_after(0, 1024), 2);
-  EXPECT_EQ(weight_after(200, 256), 2) << "nearly as large";
-  EXPECT_EQ(weight_after(300, 10), 2);
-  EXPECT_EQ(weight_after(440, 10), 2);
-  EXPECT_EQ(weight_after(441, 10), 0);
+  EXPECT_EQ(weight_after(0, {1024, 0}), 4);
+  EXPECT_EQ(weight_after(1000, {256, 0}), 4) << "nearly as large";
+  EXPECT_EQ(weight_after(1300, {10, 0}), 4);
+  EXPECT_EQ(weight_after(2200, {10, 0}), 4);
+  EXPECT_EQ(weight_after(2201, {10, 0}), kNothing);
+}
+
+TEST_F(Claimer, StepsBackWhenGuestsStay) {
+  EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
+  EXPECT_EQ(weight_with_guests(100, 105, {1400, 1400}), 4) << "they may go by themselves";
+  EXPECT_EQ(weight_with_guests(106, 107, {1400, 255}), 4) << "as most of them did";
+  EXPECT_EQ(weight_with_guests(108, 116, {1400, 1400}), 4);
+  EXPECT_EQ(weight_after(117, {1400, 1400}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(118, 300, {1400, 1400}), kStepsBack);
+}
+
+TEST_F(Claimer, ThatHasSteppedBackWaitsUntilTheOtherHasClaimed) {
+  EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
+  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(151, 200, {1400, 0}), kStepsBack);
+  of_first_ = once(4, 198);
+  EXPECT_EQ(weight_after(201, {1400, 0}), kNothing) << "it has no more than the other";
+}
+
+TEST_F(Claimer, ThatHasSteppedBackDoesNotWaitForEver) {
+  EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
+  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(151, 270, {10, 0}), kStepsBack);
+  EXPECT_EQ(weight_after(271, {10, 0}), kNothing);
 }
 
 }  // namespace
