@@ -48,25 +48,33 @@ class NodeLoss : public SystemTest {
     EXPECT_LT(reached[dead], last);
   }
 
-  /// The summary names the dead region and its bodies, and whoever is not among them lives on exactly one survivor.
+  /// The summary names the dead region and its bodies, and whoever is not among them lives on exactly one survivor:
+  /// here, or in a hand-off of the last state, whose sender still keeps it (a row of its own, of the same epoch).
   void expect_bodies_named(const Report& report, int dead, std::int64_t bodies_at_start) const {
     const nlohmann::json regions = report.entry("dead_regions");
     ASSERT_EQ(regions.size(), 1U);
     EXPECT_EQ(regions[0].at("region"), dead);
     const auto gone = regions[0].at("bodies").get<std::set<std::int64_t>>();
     EXPECT_FALSE(gone.empty());
-    std::set<std::int64_t> alive;
+    std::map<std::int64_t, std::int64_t> here, under_way;  // body -> epoch
     for (int region = 0; region < 4; ++region) {
       if (region == dead) continue;
       const Table bodies(report.region_folder(region) / "bodies.csv");
       for (std::size_t row = 0; row < bodies.rows(); ++row) {
         const std::int64_t body = bodies.whole(row, "body");
-        EXPECT_TRUE(alive.insert(body).second) << "twice: body " << body;
+        auto& where = bodies.text(row, "where") == "here" ? here : under_way;
+        EXPECT_TRUE(where.emplace(body, bodies.whole(row, "epoch")).second) << "twice: body " << body;
         EXPECT_FALSE(gone.contains(body)) << "alive and gone: body " << body;
       }
     }
+    for (const auto& [body, epoch] : under_way) {
+      const auto arrived = here.find(body);
+      if (arrived == here.end()) continue;
+      EXPECT_GE(arrived->second, epoch) << "given away and still here: body " << body;
+    }
     for (std::int64_t body = 0; body < bodies_at_start; ++body) {
-      EXPECT_TRUE(alive.contains(body) || gone.contains(body)) << "neither alive nor gone: body " << body;
+      EXPECT_TRUE(here.contains(body) || under_way.contains(body) || gone.contains(body))
+          << "neither alive nor gone: body " << body;
     }
   }
 
