@@ -109,8 +109,10 @@ std::uint8_t RankClaimer::wanted_weight(Step now, const Heaps& heaps, const Rank
   return first || weight >= others + kMuchMore ? weight : claimed;
 }
 
+/// Not where K is larger than one: the wider look while ranks change then joins the guests with the heap at home, and
+/// all of it goes to the other node, where most of it is a guest again (docs/decisions/0016-ranks.md).
 bool RankClaimer::steps_back(Step now, std::size_t guests, const Ranks& ranks) {
-  const bool has_guests = guests >= kLeastBodies;
+  const bool has_guests = lookahead_ == 1 && guests >= kLeastBodies;
   (has_guests ? last_guests_ : alone_) = now;
   if (claims_.next.weight != RankClaim::kStepsBack) return now - alone_ >= kHospitality;
   return has_guests || (now - last_guests_ <= kHumility && ranks.most_of_others() <= RankClaim::kNothing);

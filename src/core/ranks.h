@@ -89,8 +89,8 @@ class RankClaimer {
       : self_(self), lookahead_(lookahead), shuffle_steps_(shuffle_steps) {}
 
   const RankClaims& claims() const { return claims_; }
-  /// Claims anew if our heaps ask for it: if they are much larger than what anyone who is above us has claimed. Steps
-  /// back if a heap of guests stays.
+  /// Claims anew if our heaps ask for it: if they are much larger than what anyone who is above us has claimed. Where
+  /// K = 1, steps back if a heap of guests stays.
   void reconsider(Step now, const Heaps& heaps, const Ranks& ranks);
 
  private:

@@ -307,6 +307,46 @@ TEST_F(ProtocolTest, ANeighboursViolationIsHeard) {
   EXPECT_EQ(protocol->last_violation_step(), 5);
 }
 
+/// Region 0 hosts a heap of region 1, beside which a ball of region 1 lies.
+class Guests : public ProtocolTest {
+ protected:
+  /// Starts with a square of `side` balls in each row.
+  void start_with_heap(std::uint32_t side) {
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      host(i, Vec3(20 + 0.9 * (i % side), 0.9 * (i / side), 0));
+      if (i > 0) snapshot.contacts.push_back({i - 1, i});
+    }
+    start(0);
+  }
+  /// The step in which all of them go, -1 if they do not within `steps`.
+  Step goes_within(Step steps) {
+    const std::size_t all = snapshot.bodies.size();
+    while (now < steps) {
+      hear_next({foreign(10'000, Vec3(20, -0.95, 0))});
+      receive_next();
+      const std::vector<Departure>& departures = observe();
+      if (departures.empty()) continue;
+      EXPECT_EQ(departures.front().bodies.size(), all);
+      EXPECT_EQ(departures.front().destination, region(1));
+      return now;
+    }
+    return -1;
+  }
+};
+
+TEST_F(Guests, GoHomeInAHeapAlthoughItIsTouchedAllTheTime) {
+  start_with_heap(17);
+  const Step gone = goes_within(100);
+  EXPECT_GE(gone, 10 + rank_notice(settings.aura.lookahead)) << "not before everybody knows";
+  EXPECT_LE(gone, 12 + rank_notice(settings.aura.lookahead));
+}
+
+TEST_F(Guests, StayWhileTheyAreFewAndTouched) {
+  start_with_heap(15);
+  EXPECT_EQ(goes_within(100), -1);
+  EXPECT_EQ(protocol->outbox().aura.ranks.next.weight, RankClaim::kNothing);
+}
+
 class AssignHosts : public ProtocolTest {
  protected:
   std::vector<RegionId> assign(const RegionMap& layout) {

@@ -87,16 +87,17 @@ class Claimer : public ::testing::Test {
  protected:
   using Heaps = RankClaimer::Heaps;
   static constexpr std::uint8_t kNothing = RankClaim::kNothing, kStepsBack = RankClaim::kStepsBack;
-  RankClaimer claimer_{kSecond, kLookahead, 0};
+  RankClaimer claimer_{kSecond, kLookahead, 0}, near_sighted_{kSecond, 1, 0};
   RankClaims of_first_;
-  std::uint8_t weight_after(Step now, const Heaps& heaps) {
-    claimer_.reconsider(now, heaps, seen_by(kSecond, now, {of_first_, claimer_.claims()}));
-    return claimer_.claims().next.weight;
+  std::uint8_t weight_after(Step now, const Heaps& heaps) { return weight_after(claimer_, now, heaps); }
+  std::uint8_t weight_after(RankClaimer& claimer, Step now, const Heaps& heaps) const {
+    claimer.reconsider(now, heaps, seen_by(kSecond, now, {of_first_, claimer.claims()}));
+    return claimer.claims().next.weight;
   }
-  /// Guests that stay from one step to another.
+  /// Guests that stay from one step to another, where K = 1.
   std::uint8_t weight_with_guests(Step first, Step last, const Heaps& heaps) {
-    for (Step now = first; now < last; ++now) weight_after(now, heaps);
-    return weight_after(last, heaps);
+    for (Step now = first; now < last; ++now) weight_after(near_sighted_, now, heaps);
+    return weight_after(near_sighted_, last, heaps);
   }
 };
 
@@ -148,7 +149,7 @@ TEST_F(Claimer, StepsBackWhenGuestsStay) {
   EXPECT_EQ(weight_with_guests(100, 105, {1400, 1400}), 4) << "they may go by themselves";
   EXPECT_EQ(weight_with_guests(106, 107, {1400, 255}), 4) << "as most of them did";
   EXPECT_EQ(weight_with_guests(108, 116, {1400, 1400}), 4);
-  EXPECT_EQ(weight_after(117, {1400, 1400}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(117, 117, {1400, 1400}), kStepsBack);
   EXPECT_EQ(weight_with_guests(118, 300, {1400, 1400}), kStepsBack);
 }
 
@@ -157,14 +158,18 @@ TEST_F(Claimer, ThatHasSteppedBackWaitsUntilTheOtherHasClaimed) {
   EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
   EXPECT_EQ(weight_with_guests(151, 200, {1400, 0}), kStepsBack);
   of_first_ = once(4, 198);
-  EXPECT_EQ(weight_after(201, {1400, 0}), kNothing) << "it has no more than the other";
+  EXPECT_EQ(weight_with_guests(201, 201, {1400, 0}), kNothing) << "it has no more than the other";
+}
+
+TEST_F(Claimer, DoesNotStepBackWhereKIsLarger) {
+  for (Step now = 0; now < 100; ++now) EXPECT_EQ(weight_after(now, {1400, now < 50 ? 0u : 1400u}), 4) << now;
 }
 
 TEST_F(Claimer, ThatHasSteppedBackDoesNotWaitForEver) {
   EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
   EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
   EXPECT_EQ(weight_with_guests(151, 270, {10, 0}), kStepsBack);
-  EXPECT_EQ(weight_after(271, {10, 0}), kNothing);
+  EXPECT_EQ(weight_with_guests(271, 271, {10, 0}), kNothing);
 }
 
 }  // namespace
