@@ -96,7 +96,8 @@ std::uint8_t RankClaimer::wanted_weight(Step now, const Heaps& heaps, const Rank
   if (shuffle_steps_ > 0) {
     const auto turn = static_cast<std::uint64_t>(now / shuffle_steps_);
     const auto run = static_cast<std::uint64_t>(shuffle_steps_);
-    return turn == 0 ? 0 : static_cast<std::uint8_t>(scrambled((run << 40) + (turn << 16) + value_of(self_)) % 4);
+    if (turn == 0) return RankClaim::kNothing;
+    return static_cast<std::uint8_t>(scrambled((run << 40) + (turn << 16) + value_of(self_)) % 4);
   }
   if (steps_back(now, heaps.guests, ranks)) return RankClaim::kStepsBack;
   const std::uint8_t weight = weight_of(heaps.near);
