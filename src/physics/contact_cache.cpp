@@ -108,6 +108,11 @@ void append_manifolds(std::vector<KeyedManifold> manifolds, const LocalFrame& fr
     }
     return parts_of(*a.manifold) < parts_of(*b.manifold);
   });
+  std::size_t points = 0;
+  for (const KeyedManifold& manifold : manifolds)
+    points += static_cast<std::size_t>(manifold.manifold->getNumContacts());
+  cluster.manifolds.reserve(cluster.manifolds.size() + manifolds.size());
+  cluster.points.reserve(cluster.points.size() + points * core::kContactPointDoubles);
   for (const auto& [object0, object1, manifold] : manifolds) {
     const std::size_t first_point = cluster.points.size() / core::kContactPointDoubles;
     const auto point_count = static_cast<std::size_t>(manifold->getNumContacts());

@@ -1,6 +1,7 @@
 #include "physics/dynamics_world.h"
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -90,6 +91,19 @@ class Awake {
   int state_;
 };
 
+/// What tells the contacts of a new pair. For boxes and spheres it has a manifold from the beginning.
+void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
+  auto& object0 = *static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+  auto& object1 = *static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+  if (!dispatcher.needsCollision(&object0, &object1)) return;
+  const auto wrap = [](const btCollisionObject& object) {
+    return btCollisionObjectWrapper(nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1);
+  };
+  const btCollisionObjectWrapper wrap0 = wrap(object0);
+  const btCollisionObjectWrapper wrap1 = wrap(object1);
+  pair.m_algorithm = dispatcher.findAlgorithm(&wrap0, &wrap1, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+}
+
 }  // namespace
 
 struct DynamicsWorld::Bullet {
@@ -160,6 +174,10 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
   const Awake awake(a.isStaticObject() ? b : a);
   btBroadphasePair* const pair = bullet_->pairs.addOverlappingPair(a.getBroadphaseProxy(), b.getBroadphaseProxy());
   if (pair == nullptr) return;
+  if (pair->m_algorithm == nullptr) make_algorithm(*pair, bullet_->dispatcher);
+  collect_manifolds(*pair, result);
+  // A look at the shapes would be most of the work of a hand-off. Of compounds, only some parts have their manifolds.
+  if (!result.empty() && result.front().parts == Parts{}) return;
   btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world.getDispatchInfo());
   collect_manifolds(*pair, result);
   for (const PartManifold& made : result) made.manifold->clearManifold();
