@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace aurasim::core {
 
 void SpatialGrid::clear(double cell_m) {
-  cell_m_ = cell_m;
+  per_m_ = 1 / cell_m;
   points_.clear();
   late_.clear();
 }
@@ -37,21 +36,6 @@ void SpatialGrid::insert(std::uint32_t index, const Vec3& p) {
   const std::uint32_t bucket = bucket_of(cell);
   late_.push_back({{cell, p.z(), index, bucket}, late_heads_[bucket]});
   late_heads_[bucket] = static_cast<std::uint32_t>(late_.size() - 1);
-}
-
-SpatialGrid::Cell SpatialGrid::cell_of(const Vec3& p) const {
-  // Far out (or not a number) everything shares the last cell: slower, never wrong.
-  const auto along = [this](double x) {
-    const double c = std::floor(x / cell_m_);
-    return static_cast<std::int64_t>(std::clamp(std::isfinite(c) ? c : 0.0, -1e9, 1e9));
-  };
-  return {along(p.x()), along(p.y())};
-}
-
-std::uint32_t SpatialGrid::bucket_of(const Cell& cell) const {
-  std::uint64_t h = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15ull;
-  h ^= static_cast<std::uint64_t>(cell.y) * 0xC2B2AE3D27D4EB4Full;
-  return static_cast<std::uint32_t>(h ^ (h >> 29)) & mask_;
 }
 
 }  // namespace aurasim::core

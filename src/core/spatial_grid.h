@@ -85,8 +85,23 @@ class SpatialGrid {
   };
   static constexpr std::uint32_t kNone = ~0u;
 
-  Cell cell_of(const Vec3& p) const;
-  std::uint32_t bucket_of(const Cell& cell) const;
+  Cell cell_of(const Vec3& p) const { return {along(p.x()), along(p.y())}; }
+
+  /// Far out (or not a number) everything shares the last cell: slower, never wrong.
+  std::int64_t along(double x) const {
+    constexpr double kFar = 1e9;
+    const double c = x * per_m_;
+    if (!(c > -kFar)) return static_cast<std::int64_t>(-kFar);
+    if (c > kFar) return static_cast<std::int64_t>(kFar);
+    const auto towards_zero = static_cast<std::int64_t>(c);
+    return towards_zero - (static_cast<double>(towards_zero) > c ? 1 : 0);
+  }
+
+  std::uint32_t bucket_of(const Cell& cell) const {
+    std::uint64_t h = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15ull;
+    h ^= static_cast<std::uint64_t>(cell.y) * 0xC2B2AE3D27D4EB4Full;
+    return static_cast<std::uint32_t>(h ^ (h >> 29)) & mask_;
+  }
 
   template <class Visit>
   void visit_column(std::uint32_t bucket, const Cell& cell, double low, double high, Visit& visit) const {
@@ -107,7 +122,7 @@ class SpatialGrid {
     return point.cell == cell && !(point.z < low) && !(point.z > high);
   }
 
-  double cell_m_ = 1;
+  double per_m_ = 1;  ///< columns per metre
   std::uint32_t mask_ = 0;
   std::vector<Point> points_;
   std::vector<Point> sorted_;
