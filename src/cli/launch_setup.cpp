@@ -1,6 +1,8 @@
 #include "cli/launch_setup.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <stdexcept>
 
 #include "core/aura.h"
 #include "node/local_origin.h"
@@ -120,7 +122,9 @@ dds::WorldMap world_map(const config::Launch& launch) {
 
 std::filesystem::path executable_for(const std::string& precision) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  return self.parent_path() / (precision == "single" ? "aurasim-single" : "aurasim");
+  std::filesystem::path program = self.parent_path() / (precision == "single" ? "aurasim-single" : "aurasim");
+  if (!std::filesystem::exists(program)) throw std::runtime_error(program.string() + " is missing");
+  return program;
 }
 
 }  // namespace aurasim::cli
