@@ -10,6 +10,8 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
+#include "physics/fetch.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -36,15 +38,13 @@ void ContactIslands::updateActivationState(btCollisionWorld* world, btDispatcher
     if (!objects[i]->isStaticOrKinematicObject()) objects[i]->setIslandTag(moving++);
   }
   initUnionFind(moving);
-  for (int i = 0; i < dispatcher->getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
-    if (manifold.getNumContacts() == 0) continue;
+  for_each_touching(manifolds_of(*dispatcher), [this](const btPersistentManifold& manifold) {
     const btCollisionObject* const body0 = manifold.getBody0();
     const btCollisionObject* const body1 = manifold.getBody1();
     if (body0->mergesSimulationIslands() && body1->mergesSimulationIslands()) {
       getUnionFind().unite(body0->getIslandTag(), body1->getIslandTag());
     }
-  }
+  });
 }
 
 /// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
@@ -70,15 +70,13 @@ void ContactIslands::settle(btCollisionWorld& world, int first, int last) {
 
 void ContactIslands::collect_awake_manifolds(btDispatcher& dispatcher) {
   entries_.clear();
-  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-    btPersistentManifold* const manifold = dispatcher.getManifoldByIndexInternal(i);
-    if (manifold->getNumContacts() == 0) continue;
-    const btCollisionObject* const body0 = manifold->getBody0();
-    const btCollisionObject* const body1 = manifold->getBody1();
-    if (is_asleep(*body0) && is_asleep(*body1)) continue;
-    if (!dispatcher.needsResponse(body0, body1)) continue;
-    entries_.push_back({island_of(*manifold), both_indices(*manifold), parts_of(*manifold), manifold});
-  }
+  for_each_touching(manifolds_of(dispatcher), [&](btPersistentManifold& manifold) {
+    const btCollisionObject* const body0 = manifold.getBody0();
+    const btCollisionObject* const body1 = manifold.getBody1();
+    if (is_asleep(*body0) && is_asleep(*body1)) return;
+    if (!dispatcher.needsResponse(body0, body1)) return;
+    entries_.push_back({island_of(manifold), both_indices(manifold), parts_of(manifold), &manifold});
+  });
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.island, a.bodies, a.parts) < std::tie(b.island, b.bodies, b.parts);
   });

@@ -1,5 +1,9 @@
 #include "physics/contact_pairs.h"
 
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include "physics/fetch.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -8,7 +12,37 @@ constexpr int kLeaving = 0;
 
 bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilterMask == kLeaving; }
 
+void fetch_pair(const btBroadphasePair& pair) {
+  fetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
+  fetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
+  if (pair.m_algorithm != nullptr) fetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
+}
+
+/// Of a pair that is here itself.
+void fetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  fetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
+  fetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
+  if (pair.m_algorithm == nullptr) return;
+  manifolds.resizeNoInitialize(0);
+  pair.m_algorithm->getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) fetch_head(*manifolds[i]);
+}
+
 }  // namespace
+
+/// As Bullet does.
+void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) {
+  btBroadphasePairArray& pairs = getOverlappingPairArray();
+  for (int i = 0; i < pairs.size();) {
+    if (i + kFetchedAhead < pairs.size()) fetch_pair(pairs[i + kFetchedAhead]);
+    if (i + kFetchedAhead / 2 < pairs.size()) fetch_parts(pairs[i + kFetchedAhead / 2], manifolds_);
+    if (callback->processOverlap(pairs[i])) {
+      removeOverlappingPair(pairs[i].m_pProxy0, pairs[i].m_pProxy1, dispatcher);
+    } else {
+      ++i;
+    }
+  }
+}
 
 void ContactPairs::remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher) {
   for (btBroadphaseProxy* proxy : leaving) proxy->m_collisionFilterMask = kLeaving;

@@ -1,8 +1,9 @@
-// Bullet's pairs of near bodies, with a quick way out for many bodies at once.
+// Bullet's pairs of near bodies, with a quick way through them, and out of them for many bodies at once.
 #pragma once
 
 #include <span>
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 namespace aurasim::physics {
@@ -13,8 +14,14 @@ class ContactPairs : public btHashedOverlappingPairCache {
   /// Forgets every pair of these bodies, with its contacts. They must leave the broadphase next.
   void remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher);
 
+  using btHashedOverlappingPairCache::processAllOverlappingPairs;
+  void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
+
   void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
   void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+
+ private:
+  btManifoldArray manifolds_;  ///< of a pair that comes next
 };
 
 }  // namespace aurasim::physics

@@ -8,6 +8,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/fetch.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -46,16 +48,14 @@ FirstContact describe(const btPersistentManifold& manifold) {
 void FirstContacts::look(btDispatcher& dispatcher, btOverlappingPairCache& pairs) {
   ++now_;
   new_.clear();
-  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-    if (manifold.getNumContacts() == 0) continue;
-    if (!is_moving(*manifold.getBody0()) || !is_moving(*manifold.getBody1())) continue;
+  for_each_touching(manifolds_of(dispatcher), [this](btPersistentManifold& manifold) {
+    if (!is_moving(*manifold.getBody0()) || !is_moving(*manifold.getBody1())) return;
     if (last_touch(manifold) != now_ - 1) {
       manifold.m_companionIdB = static_cast<int>(now_);
       new_.push_back(&manifold);
     }
     manifold.m_companionIdA = static_cast<int>(now_);
-  }
+  });
   for (const btPersistentManifold* manifold : new_) {
     if (is_compound(*manifold->getBody0()) || is_compound(*manifold->getBody1())) {
       report_pair(*manifold, pairs);

@@ -11,6 +11,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/fetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -353,12 +354,12 @@ const core::Snapshot& Simulation::snapshot() {
 void Simulation::list_contacts() {
   unsorted_contacts_.clear();
   contacts_before_.assign(table_.size() + 1, 0);
-  for (const btPersistentManifold* manifold : world_.manifolds()) {
-    const auto [a, b] = std::minmax({manifold->getBody0()->getUserIndex(), manifold->getBody1()->getUserIndex()});
-    if (manifold->getNumContacts() == 0 || is_static(a)) continue;  // points are never farther than kContactMargin
+  for_each_touching(world_.manifolds(), [this](const btPersistentManifold& manifold) {
+    const auto [a, b] = std::minmax({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex()});
+    if (is_static(a)) return;  // points are never farther than kContactMargin
     unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     ++contacts_before_[static_cast<std::size_t>(a) + 1];
-  }
+  });
   for (std::size_t i = 1; i < contacts_before_.size(); ++i) contacts_before_[i] += contacts_before_[i - 1];
 
   std::vector<core::Contact>& contacts = snapshot_.contacts;

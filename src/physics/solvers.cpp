@@ -9,6 +9,7 @@
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
 #include "physics/creep.h"
+#include "physics/fetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -54,7 +55,13 @@ class Refined : public BulletSolver {
 
  protected:
   void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override {
-    BulletSolver::convertContacts(manifolds, count, info);
+    // Bullet makes the rows of one manifold after the other.
+    constexpr int kAtOnce = kFetchedAhead / 2;
+    for (int i = 0; i < count; i += kAtOnce) {
+      for (int j = i + 2 * kAtOnce; j < std::min(i + 3 * kAtOnce, count); ++j) fetch_head(*manifolds[j]);
+      for (int j = i + kAtOnce; j < std::min(i + 2 * kAtOnce, count); ++j) fetch_points(*manifolds[j]);
+      BulletSolver::convertContacts(manifolds + i, std::min(kAtOnce, count - i), info);
+    }
     for (int i = 0; i < this->m_tmpSolverContactConstraintPool.size(); ++i) {
       btSolverConstraint& row = this->m_tmpSolverContactConstraintPool[i];
       let_bounce(row, this->m_tmpSolverBodyPool[row.m_solverBodyIdA], this->m_tmpSolverBodyPool[row.m_solverBodyIdB],
