@@ -4,11 +4,10 @@
 #include <stdexcept>
 
 #include <sys/prctl.h>
-#include <unistd.h>
 
 namespace aurasim::cli {
 
-pid_t spawn(std::vector<std::string> words) {
+pid_t spawn(std::vector<std::string> words, int output) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -17,6 +16,7 @@ pid_t spawn(std::vector<std::string> words) {
   if (pid == 0) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (output != STDOUT_FILENO) ::dup2(output, STDOUT_FILENO);
     ::execv(arguments[0], arguments.data());
     ::_exit(127);
   }

@@ -5,11 +5,13 @@
 #include <vector>
 
 #include <sys/types.h>
+#include <unistd.h>
 
 namespace aurasim::cli {
 
 /// `words`: the program's path and its arguments. It does not get our Ctrl-C, and ends (SIGTERM) when the calling
-/// thread does. Exit code 127 if there is no such program. Throws std::runtime_error when no process can be started.
-pid_t spawn(std::vector<std::string> words);
+/// thread does. What it prints goes to the file descriptor `output`. Exit code 127 if there is no such program. Throws
+/// std::runtime_error when no process can be started.
+pid_t spawn(std::vector<std::string> words, int output = STDOUT_FILENO);
 
 }  // namespace aurasim::cli

@@ -3,44 +3,36 @@
 #include <array>
 #include <csignal>
 #include <ctime>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "cli/launch_setup.h"
+#include "cli/spawn.h"
 
 namespace aurasim::cli {
 
 ViewerProcess::~ViewerProcess() { stop(); }
 
 void ViewerProcess::start(const FileArguments& files, const std::string& recording) {
-  std::vector<std::string> words = {executable_for("double").string(), "overseer", files.file};
-  for (const std::string& change : files.overrides) words.insert(words.end(), {"--set", change});
-  if (!recording.empty()) words.insert(words.end(), {"--record", recording});
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return spdlog::warn("no viewer: cannot open a pipe");
-  pid_ = ::fork();
-  if (pid_ == 0) {
-    ::setpgid(0, 0);                     // Ctrl-C is the launcher's to handle
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // and nobody outlives it
-    ::dup2(pipe[1], STDOUT_FILENO);
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
+  try {
+    std::vector<std::string> words = {executable_for("double").string(), "overseer", files.file};
+    for (const std::string& change : files.overrides) words.insert(words.end(), {"--set", change});
+    if (!recording.empty()) words.insert(words.end(), {"--record", recording});
+    pid_ = spawn(std::move(words), pipe[1]);
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("no viewer: {}", error.what());
   }
   ::close(pipe[1]);
   output_ = pipe[0];
   ::fcntl(output_, F_SETFL, O_NONBLOCK);
-  if (pid_ < 0) {
-    pid_ = 0;
-    spdlog::warn("no viewer: cannot start a process");
-  }
 }
 
 void ViewerProcess::look() {
