@@ -30,17 +30,13 @@ void fetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
 
 }  // namespace
 
-/// As Bullet does.
-void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) {
+/// The narrow phase, which takes no pair out.
+void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher*, const btDispatcherInfo&) {
   btBroadphasePairArray& pairs = getOverlappingPairArray();
-  for (int i = 0; i < pairs.size();) {
+  for (int i = 0; i < pairs.size(); ++i) {
     if (i + kFetchedAhead < pairs.size()) fetch_pair(pairs[i + kFetchedAhead]);
     if (i + kFetchedAhead / 2 < pairs.size()) fetch_parts(pairs[i + kFetchedAhead / 2], manifolds_);
-    if (callback->processOverlap(pairs[i])) {
-      removeOverlappingPair(pairs[i].m_pProxy0, pairs[i].m_pProxy1, dispatcher);
-    } else {
-      ++i;
-    }
+    callback->processOverlap(pairs[i]);
   }
 }
 

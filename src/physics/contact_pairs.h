@@ -15,7 +15,8 @@ class ContactPairs : public btHashedOverlappingPairCache {
   void remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher);
 
   using btHashedOverlappingPairCache::processAllOverlappingPairs;
-  void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
+  void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
+                                  const btDispatcherInfo& info) override;
 
   void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
   void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;

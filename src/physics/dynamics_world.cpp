@@ -137,6 +137,9 @@ DynamicsWorld::~DynamicsWorld() {
     bullet_->world.removeConstraint(bullet_->world.getConstraint(bullet_->world.getNumConstraints() - 1));
   }
   btCollisionObjectArray& objects = bullet_->world.getCollisionObjectArray();
+  std::vector<btBroadphaseProxy*> proxies;
+  for (int i = 0; i < objects.size(); ++i) proxies.push_back(objects[i]->getBroadphaseHandle());
+  bullet_->pairs.remove_pairs_of(proxies, bullet_->dispatcher);
   while (objects.size() > 0) bullet_->world.removeCollisionObject(objects[objects.size() - 1]);
 }
 
