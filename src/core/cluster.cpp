@@ -71,7 +71,6 @@ void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> 
     unite(j.a, j.b);
     pushes_.add(j.a, j.b, true);
   }
-  pushes_.form_trains();
 }
 
 double Clusters::pushed_speed(std::uint32_t i) const {
@@ -82,10 +81,13 @@ double Clusters::pushed_speed(std::uint32_t i) const {
 /// Those of the members of body i's cluster, as far as they have not been.
 void Clusters::start_pushes(std::uint32_t i) {
   if (started_[i]) return;
+  starting_.clear();
   for_each_member(i, [this](std::uint32_t j) {
-    if (!started_[j]) pushes_.start(j);
+    if (!started_[j]) starting_.push_back(j);
     started_[j] = 1;
   });
+  pushes_.form_trains(starting_);
+  for (const std::uint32_t j : starting_) pushes_.start(j);
 }
 
 /// Whoever has become faster looks further.

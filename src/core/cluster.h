@@ -100,6 +100,7 @@ class Clusters {
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
+  std::vector<std::uint32_t> starting_;
   std::vector<std::uint8_t> started_;  ///< by body: its push is passed on
   std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around

@@ -34,6 +34,8 @@ void Pushes::begin(std::span<const double> own_m_s, std::span<const BodyTraits> 
   }
   first_link_.assign(n, kNone);
   links_.clear();
+  train_.assign(n, kNone);
+  trains_.resize(n);
 }
 
 void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
@@ -49,17 +51,14 @@ std::uint32_t Pushes::train_of(std::uint32_t i) {
 }
 
 /// Whoever touches body i, itself or through others, and is at least half as fast pushes on when i strikes something.
-void Pushes::form_trains() {
-  by_speed_.clear();
-  for (std::uint32_t i = 0; i < own_m_s_.size(); ++i) {
-    if (own_m_s_[i] > Push::kUnfelt_m_s && first_link_[i] != kNone) by_speed_.push_back(i);
-  }
-  std::sort(by_speed_.begin(), by_speed_.end(), [&](auto a, auto b) { return own_m_s_[a] > own_m_s_[b]; });
-  train_.assign(own_m_s_.size(), kNone);
-  trains_.resize(own_m_s_.size());
-  auto next = by_speed_.begin();
-  for (const std::uint32_t i : by_speed_) {
-    for (; next != by_speed_.end() && own_m_s_[*next] >= 0.5 * own_m_s_[i]; ++next) {
+void Pushes::form_trains(std::span<std::uint32_t> members) {
+  std::sort(members.begin(), members.end(), [&](auto a, auto b) { return own_m_s_[a] > own_m_s_[b]; });
+  const auto unfelt =
+      std::find_if(members.begin(), members.end(), [&](auto i) { return own_m_s_[i] <= Push::kUnfelt_m_s; });
+  auto next = members.begin();
+  for (const std::uint32_t i : std::span(members.begin(), unfelt)) {
+    if (first_link_[i] == kNone) continue;
+    for (; next != unfelt && own_m_s_[*next] >= 0.5 * own_m_s_[i]; ++next) {
       train_[*next] = *next;
       const double kg = traits_[*next].mass_kg;
       trains_[*next] = {kg, kg * own_m_s_[*next]};

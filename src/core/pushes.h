@@ -66,8 +66,9 @@ class Pushes {
 
   /// Two bodies touch, may touch, or are jointed (`rigid`): what pushes one pushes the other.
   void add(std::uint32_t a, std::uint32_t b, bool rigid);
-  /// Once all that touch each other are known: bodies that move as one strike as one.
-  void form_trains();
+  /// Of `members`, those that move as one strike as one. Once all that touch one of them are members, and before
+  /// anybody who may touch one is added. Sorts them.
+  void form_trains(std::span<std::uint32_t> members);
   /// What pushes body `i` is to be passed on by the next spread().
   void start(std::uint32_t i);
   /// Would such a strike make body `i` faster than it is known to become?
@@ -126,10 +127,9 @@ class Pushes {
   std::vector<double> own_m_s_;
   std::vector<Push> own_, received_;
   std::span<const BodyTraits> traits_;
-  BodyTraits lightest_;                  ///< nothing takes less of a push
-  std::vector<std::uint32_t> by_speed_;  ///< fastest first
-  std::vector<std::uint32_t> train_;     ///< towards a member that stands for all, kNone: not in any
-  std::vector<Train> trains_;            ///< by that member
+  BodyTraits lightest_;               ///< nothing takes less of a push
+  std::vector<std::uint32_t> train_;  ///< towards a member that stands for all, kNone: not in any
+  std::vector<Train> trains_;         ///< by that member
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
   std::priority_queue<std::pair<double, std::uint32_t>> to_do_;  ///< fastest first, so that most are done once

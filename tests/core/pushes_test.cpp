@@ -1,6 +1,8 @@
 // A push along contacts against momentum: what a chain of bodies that do not bounce can come to have.
 #include "core/pushes.h"
 
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "core/random.h"
@@ -18,7 +20,9 @@ class PushesTest : public ::testing::Test {
     kinds_ = kinds;
     pushes.begin(own_m_s, kinds_, kUncertainty);
     for (std::uint32_t i = 0; i + 1 < own_m_s.size(); ++i) pushes.add(i, i + 1, rigid);
-    pushes.form_trains();
+    std::vector<std::uint32_t> all(own_m_s.size());
+    std::iota(all.begin(), all.end(), 0U);
+    pushes.form_trains(all);
     for (std::uint32_t i = 0; i < own_m_s.size(); ++i) pushes.start(i);
     pushes.spread(raised);
   }
