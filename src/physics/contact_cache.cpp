@@ -109,8 +109,7 @@ void append_manifolds(std::vector<KeyedManifold> manifolds, const LocalFrame& fr
     return parts_of(*a.manifold) < parts_of(*b.manifold);
   });
   std::size_t points = 0;
-  for (const KeyedManifold& manifold : manifolds)
-    points += static_cast<std::size_t>(manifold.manifold->getNumContacts());
+  for (const KeyedManifold& keyed : manifolds) points += static_cast<std::size_t>(keyed.manifold->getNumContacts());
   cluster.manifolds.reserve(cluster.manifolds.size() + manifolds.size());
   cluster.points.reserve(cluster.points.size() + points * core::kContactPointDoubles);
   for (const auto& [object0, object1, manifold] : manifolds) {

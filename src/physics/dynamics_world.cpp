@@ -180,9 +180,10 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
   if (pair->m_algorithm == nullptr) make_algorithm(*pair, bullet_->dispatcher);
   collect_manifolds(*pair, result);
   // A look at the shapes would be most of the work of a hand-off. Of compounds, only some parts have their manifolds.
-  if (!result.empty() && result.front().parts == Parts{}) return;
-  btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world.getDispatchInfo());
-  collect_manifolds(*pair, result);
+  if (result.empty() || result.front().parts != Parts{}) {
+    btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world.getDispatchInfo());
+    collect_manifolds(*pair, result);
+  }
   for (const PartManifold& made : result) made.manifold->clearManifold();
 }
 
