@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/fetch.h"
+
 namespace aurasim::core {
 namespace {
 
@@ -15,13 +17,6 @@ bool has_news(const AuraRecord& said, const AuraRecord& now) {
 
 /// What has been said lies all over the memory, and physics has been there since: waiting for it was most of its cost.
 constexpr std::size_t kFetchedAhead = 8;
-
-void fetch(const Track::Said* said) {
-  constexpr std::size_t kCacheLine = 64;
-  if (said == nullptr) return;
-  const auto* const bytes = static_cast<const char*>(static_cast<const void*>(said));
-  for (std::size_t at = 0; at < sizeof(Track::Said); at += kCacheLine) __builtin_prefetch(bytes + at);
-}
 
 }  // namespace
 
@@ -120,7 +115,9 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
                        ViolationLog& violations) {
   projecting_ = 0;
   for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
-    if (i + kFetchedAhead < tracks_.size()) fetch(tracks_[i + kFetchedAhead].said.get());
+    if (i + kFetchedAhead < tracks_.size() && tracks_[i + kFetchedAhead].projected()) {
+      fetch(tracks_[i + kFetchedAhead].said.get(), sizeof(Track::Said));
+    }
     Track& track = tracks_[i];
     if (track.phase == Phase::kSent) continue;
     const BodyState& body = snapshot.bodies[i];

@@ -12,6 +12,7 @@
 #include "physics/contact_islands.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
+#include "physics/fetch.h"
 #include "physics/free_rotation.h"
 #include "physics/solvers.h"
 
@@ -167,10 +168,7 @@ void DynamicsWorld::step(double substep_s) {
   bullet_->world.stepSimulation(dt, /*maxSubSteps=*/0, dt);
 }
 
-std::span<btPersistentManifold* const> DynamicsWorld::manifolds() const {
-  return {bullet_->dispatcher.getInternalManifoldPointer(),
-          static_cast<std::size_t>(bullet_->dispatcher.getNumManifolds())};
-}
+std::span<btPersistentManifold* const> DynamicsWorld::manifolds() const { return manifolds_of(bullet_->dispatcher); }
 
 void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result) {
   result.clear();

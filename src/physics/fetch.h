@@ -8,17 +8,14 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "core/fetch.h"
+
 namespace aurasim::physics {
 
 /// So many objects ahead; their parts half as many. 8 to 16 do alike.
 inline constexpr int kFetchedAhead = 16;
 
-inline void fetch(const void* begin, std::size_t bytes) {
-  constexpr std::size_t kCacheLine = 64;
-  const char* const first = static_cast<const char*>(begin);
-  for (std::size_t at = 0; at < bytes; at += kCacheLine) __builtin_prefetch(first + at);
-  __builtin_prefetch(first + bytes - 1);
-}
+using core::fetch;
 
 /// What a manifold is between and how many points it has: all of it but the points.
 inline void fetch_head(const btPersistentManifold& manifold) {

@@ -5,6 +5,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/fetch.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -67,15 +68,14 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
 }
 
 void Simulation::take_out(core::BodyId id) {
-  for (const btPersistentManifold* manifold : world_.manifolds()) {
-    if (manifold->getNumContacts() == 0) continue;
+  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
-    for (const auto& [one, other] : {std::pair(manifold->getBody0(), manifold->getBody1()),
-                                     std::pair(manifold->getBody1(), manifold->getBody0())}) {
+    for (const auto& [one, other] :
+         {std::pair(manifold.getBody0(), manifold.getBody1()), std::pair(manifold.getBody1(), manifold.getBody0())}) {
       if (one == gone && other->getUserIndex() >= 0)
         wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
     }
-  }
+  });
   const std::uint64_t severed = severed_contacts_;
   release({&id, 1});
   severed_contacts_ = severed;  // nothing was cut that should have gone along

@@ -259,19 +259,18 @@ Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
     if (members[i]) copy.cluster.bodies.push_back(table_[i].record(frame_));
   }
   std::vector<KeyedManifold> manifolds;
-  for (const btPersistentManifold* manifold : world_.manifolds()) {
-    if (manifold->getNumContacts() == 0) continue;
-    const int index0 = manifold->getBody0()->getUserIndex();
-    const int index1 = manifold->getBody1()->getUserIndex();
+  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
+    const int index0 = manifold.getBody0()->getUserIndex();
+    const int index1 = manifold.getBody1()->getUserIndex();
     const bool member0 = !is_static(index0) && members[static_cast<std::size_t>(index0)];
     const bool member1 = !is_static(index1) && members[static_cast<std::size_t>(index1)];
-    if (!member0 && !member1) continue;
+    if (!member0 && !member1) return;
     if ((member0 || is_static(index0)) && (member1 || is_static(index1))) {
-      manifolds.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
+      manifolds.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
     } else {
       ++copy.across;
     }
-  }
+  });
   append_manifolds(std::move(manifolds), frame_, copy.cluster);
   if (!settings_.p_WO.isZero()) put_back_slid(copy.cluster);
   copy.across += joints_.append_to(copy.cluster);
