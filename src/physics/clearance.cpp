@@ -55,6 +55,33 @@ Pose composed(const Pose& outer, const Pose& inner) {
   return {outer.p_WB + outer.q_WB * inner.p_WB, outer.q_WB * inner.q_WB};
 }
 
+bool is_ball(const Part& part) { return part.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
+
+/// The point of the part that is farthest in `direction` (a unit vector), without its margin.
+btVector3 farthest(const Part& part, const btTransform& X, const btVector3& direction) {
+  return X(part.shape->localGetSupportVertexWithoutMarginNonVirtual(direction * X.getBasis()));
+}
+
+/// The two are at least this far apart, maybe more: a few steps of Gilbert's algorithm (1966) towards the nearest
+/// points of the two, stopped once a plane between them is as wide as `enough_m`. Most pairs need no more.
+double apart_at_least(const Part& a, const btTransform& X_A, const Part& b, const btTransform& X_B, double enough_m) {
+  constexpr int kSteps = 4;
+  const btScalar margins = a.shape->getMarginNonVirtual() + b.shape->getMarginNonVirtual();
+  btScalar widest = -std::numeric_limits<btScalar>::infinity();
+  btVector3 between = X_B.getOrigin() - X_A.getOrigin();  // from a point of A to one of B
+  for (int step = 0; step < kSteps && static_cast<double>(widest) <= enough_m; ++step) {
+    const btScalar length = between.length();
+    if (!(length > SIMD_EPSILON)) break;
+    const btVector3 normal = between / length;
+    const btVector3 across = farthest(b, X_B, -normal) - farthest(a, X_A, normal);
+    widest = std::max(widest, across.dot(normal) - margins);
+    const btVector3 on = across - between;
+    const btScalar share = -between.dot(on) / std::max(on.length2(), btScalar(SIMD_EPSILON));
+    between += std::clamp(share, btScalar(0), btScalar(1)) * on;
+  }
+  return static_cast<double>(widest);
+}
+
 /// Poses are relative to A's origin, so that single precision loses nothing far out.
 double distance(const Part& a, const btTransform& X_A, const Part& b, const btTransform& X_B, double if_undecided) {
   btVoronoiSimplexSolver simplex;
@@ -85,12 +112,7 @@ class Query : public core::ClearanceQuery {
       const Pose X_A = composed({Vec3::Zero(), pose_a.q_WB}, part_a.pose);
       for (const Part& part_b : parts_b.parts) {
         const Pose X_B = composed({p_AB, pose_b.q_WB}, part_b.pose);
-        const double spheres_apart = (X_B.p_WB - X_A.p_WB).norm() - part_a.radius - part_b.radius;
-        if (spheres_apart > std::min(limit_m, nearest)) {
-          nearest = std::min(nearest, spheres_apart);
-        } else {
-          nearest = std::min(nearest, distance(part_a, to_bullet(X_A), part_b, to_bullet(X_B), spheres_apart));
-        }
+        nearest = std::min(nearest, between(part_a, X_A, part_b, X_B, std::min(limit_m, nearest)));
       }
     }
     return nearest;
@@ -104,6 +126,14 @@ class Query : public core::ClearanceQuery {
   }
 
  private:
+  static double between(const Part& a, const Pose& pose_a, const Part& b, const Pose& pose_b, double limit_m) {
+    const double spheres_apart = (pose_b.p_WB - pose_a.p_WB).norm() - a.radius - b.radius;
+    if (spheres_apart > limit_m || (is_ball(a) && is_ball(b))) return spheres_apart;
+    const btTransform X_A = to_bullet(pose_a), X_B = to_bullet(pose_b);
+    const double apart = apart_at_least(a, X_A, b, X_B, limit_m);
+    return apart > limit_m ? apart : distance(a, X_A, b, X_B, spheres_apart);
+  }
+
   /// Made when first asked for: a scene may get more prototypes.
   const Parts& of(core::PrototypeId prototype) const {
     while (prototypes_.size() <= core::value_of(prototype)) {

@@ -18,6 +18,11 @@ constexpr double kFar = 100;
 
 Quat turned(double angle, const Vec3& axis) { return Quat(Eigen::AngleAxisd(angle, axis)); }
 
+Pose random_pose(std::mt19937_64& random, double far) {
+  return {{uniform(random, -far, far), uniform(random, -far, far), uniform(random, -far, far)},
+          Quat(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1), 0.2).normalized()};
+}
+
 class Clearance : public ::testing::Test {
  protected:
   double between(const core::Shape& a, const Pose& pose_a, const core::Shape& b, const Pose& pose_b,
@@ -103,14 +108,10 @@ TEST_F(Clearance, DoesNotChangeWhenBothBodiesAreMovedAndTurned) {
   std::mt19937_64 random(11);
   const core::Scene scene = scene_of_all_shapes();
   const auto query = make_clearance_query(scene);
-  const auto random_pose = [&](double far) {
-    return Pose{{uniform(random, -far, far), uniform(random, -far, far), uniform(random, -far, far)},
-                Quat(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1), 0.2).normalized()};
-  };
   for (int i = 0; i < 2000; ++i) {
     const core::PrototypeId a{static_cast<std::uint32_t>(random() % kKinds)};
     const core::PrototypeId b{static_cast<std::uint32_t>(random() % kKinds)};
-    const Pose pose_a = random_pose(1.5), pose_b = random_pose(1.5), moved = random_pose(5000);
+    const Pose pose_a = random_pose(random, 1.5), pose_b = random_pose(random, 1.5), moved = random_pose(random, 5000);
     const auto move = [&](const Pose& p) { return Pose{moved.p_WB + moved.q_WB * p.p_WB, moved.q_WB * p.q_WB}; };
     const double here = query->clearance(a, pose_a, b, pose_b, kFar);
     const double there = query->clearance(a, move(pose_a), b, move(pose_b), kFar);
@@ -126,6 +127,31 @@ TEST_F(Clearance, AboveTheLimitIsAboveTheLimit) {
   EXPECT_GT(between(cube, at(0, 0, 0), cube, at(50, 0, 0), 2), 2);
   EXPECT_GT(between(cube, at(0, 0, 0), cube, at(3.001, 0, 0), 2), 2);
   EXPECT_NEAR(between(cube, at(0, 0, 0), cube, at(2.9, 0, 0), 2), 1.9, kTolerance);
+}
+
+TEST_F(Clearance, IsWithinALimitWheneverItIs) {
+  std::mt19937_64 random(12);
+  const core::Scene scene = scene_of_all_shapes();
+  const auto query = make_clearance_query(scene);
+  int within = 0, beyond = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const core::PrototypeId a{static_cast<std::uint32_t>(random() % kKinds)};
+    const core::PrototypeId b{static_cast<std::uint32_t>(random() % kKinds)};
+    const Pose pose_a = random_pose(random, 1), pose_b = random_pose(random, 1);
+    const double exact = query->clearance(a, pose_a, b, pose_b, kFar);
+    const double limit = uniform(random, 0, 0.5);
+    if (std::abs(exact - limit) < 10 * kTolerance) continue;
+    const double answer = query->clearance(a, pose_a, b, pose_b, limit);
+    ASSERT_EQ(answer <= limit, exact <= limit) << "kinds " << core::value_of(a) << " and " << core::value_of(b);
+    if (answer > limit) {
+      ASSERT_LE(answer, exact + 10 * kTolerance);
+    } else {
+      ASSERT_NEAR(answer, exact, exact > 0 ? kTolerance : 0.01);
+    }
+    ++(answer <= limit ? within : beyond);
+  }
+  EXPECT_GT(within, 5000);
+  EXPECT_GT(beyond, 5000);
 }
 
 TEST_F(Clearance, KnowsBoundingRadii) {
