@@ -11,9 +11,6 @@ namespace {
 /// made no difference in any run, and costs (docs/decisions/0006-hops.md).
 constexpr int kMostHops = 3;
 
-/// Of a group of near_ whose bodies are not known to be of one cluster.
-constexpr std::uint32_t kSeveral = ~0u;
-
 int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, kMostHops); }
 
 }  // namespace
@@ -52,7 +49,6 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   raised_.clear();
   for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = pushed_speed(i);
   near_.build(paths);
-  owned_.assign(near_.group_count(), {kSeveral, 0});
 }
 
 const BodyTraits& Clusters::traits_of(PrototypeId prototype) {
@@ -179,24 +175,6 @@ void Clusters::look_on() {
   }
 }
 
-/// Are all bodies of the group of the cluster of body `i`, and would it make none of them faster? Once they are of one
-/// cluster, they stay together.
-bool Clusters::knows(std::uint32_t i, std::uint32_t group) {
-  Owned& owned = owned_[group];
-  if (owned.by == kSeveral) {
-    const std::uint32_t first = near_.any_of(group);
-    if (of(first) != of(i)) return false;
-    if (!near_.all_of(group, [&](std::uint32_t j) { return of(j) == of(i); })) return false;
-    owned = {first, 0};
-  }
-  if (of(owned.by) != of(i)) return false;
-  const double enough = pushes_.raises_none_above(i);
-  if (enough <= owned.least_pushed_m_s) return true;
-  if (!near_.all_of(group, [&](std::uint32_t j) { return enough <= pushes_.speed(j); })) return false;
-  owned.least_pushed_m_s = enough;
-  return true;
-}
-
 void Clusters::look_around(std::uint32_t i) {
   const double speed_here = speed(i);
   const int hops_here = hops(i);
@@ -212,9 +190,8 @@ void Clusters::look_around(std::uint32_t i) {
     if ((path.pose.p_WB - paths_[j].pose.p_WB).squaredNorm() > range * range) return;
     if (aura_.linked(path, paths_[j], hops_both)) linked_.push_back(j);
   };
-  near_.for_each_near(
-      path.pose.p_WB, path.radius_m, widest.at(speed_here + NearIndex::kSlow),
-      widest.at(speed_here + near_.top_speed()), [&](std::uint32_t group) { return knows(i, group); }, ask);
+  near_.for_each_near(path.pose.p_WB, path.radius_m, widest.at(speed_here + NearIndex::kSlow),
+                      widest.at(speed_here + near_.top_speed()), ask);
   for (const std::uint32_t j : linked_) link(i, j);
 }
 

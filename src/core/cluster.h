@@ -75,7 +75,6 @@ class Clusters {
   void start_pushes(std::uint32_t i);
   void take_raised();
   double pushed_speed(std::uint32_t i) const;
-  bool knows(std::uint32_t i, std::uint32_t group);
   void look_around(std::uint32_t i);
   void look_on();
   void ask_members(std::uint32_t i);
@@ -89,12 +88,6 @@ class Clusters {
   std::vector<std::uint32_t> grown_;
   std::vector<Aura::Range> link_ranges_;  ///< by hops
   NearIndex near_;
-  /// A group of near_.
-  struct Owned {
-    std::uint32_t by;         ///< one of its bodies, once all are of one cluster
-    double least_pushed_m_s;  ///< none of them is pushed less
-  };
-  std::vector<Owned> owned_;
   Pushes pushes_;
   std::vector<std::uint32_t> label_, next_, size_;
   std::vector<std::uint64_t> regions_;

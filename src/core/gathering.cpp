@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "core/aura_precision.h"
-
 namespace aurasim::core {
 
 namespace {
@@ -15,9 +13,9 @@ namespace {
 constexpr int kHomewardHops = 1;
 
 /// Are the bounding spheres at most `distance_m` apart?
-bool is_within(const Path& a, const Path& b, double distance_m) {
-  const double reach = a.radius_m + b.radius_m + distance_m;
-  return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= reach * reach;
+bool is_within(const Path& a, const Vec3& p, double radius_m, double distance_m) {
+  const double reach = a.radius_m + radius_m + distance_m;
+  return (a.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
 }  // namespace
@@ -67,47 +65,13 @@ void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbo
     others_top_speed_ = std::max(others_top_speed_, silent ? aura_.rules().top_speed_m_s : neighbour.top_speed_m_s());
     others_top_radius_ = std::max(others_top_radius_, neighbour.top_radius_m());
     for (const AuraRecord& aura : neighbour.auras()) {
-      if (!is_local(aura.id)) add_foreign(aura, neighbour.applied(), snapshot.step);
+      if (!is_local(aura.id)) foreign_.add(aura, neighbour.applied(), snapshot.step, aura_);
     }
   }
   for (const AuraRecord& ghost : ghosts) {
-    if (!is_local(ghost.id)) add_foreign(ghost, ghost.stamp, snapshot.step);
+    if (!is_local(ghost.id)) foreign_.add(ghost, ghost.stamp, snapshot.step, aura_);
   }
-  index_foreign();
-}
-
-void Gathering::index_foreign() {
-  oldest_foreign_steps_ = most_foreign_blur_m_ = 0;
-  foreign_paths_.clear();
-  for (const Foreign& foreign : foreign_) {
-    foreign_paths_.push_back(foreign.path);
-    oldest_foreign_steps_ = std::max(oldest_foreign_steps_, foreign.path.age_steps);
-    most_foreign_blur_m_ = std::max(most_foreign_blur_m_, foreign.path.blur_m);
-  }
-  near_foreign_.build(foreign_paths_);
-}
-
-void Gathering::add_foreign(const AuraRecord& aura, Step known, Step now) {
-  const bool asleep = (aura.flags & kAuraAsleep) != 0;
-  const bool ghost = (aura.flags & kAuraGhost) != 0;
-  Foreign& f = foreign_.emplace_back();
-  f.id = aura.id;
-  f.host = aura.host;
-  f.ghost = ghost;
-  f.born = aura.birth <= aura.stamp;
-  f.path.prototype = aura.prototype;
-  f.path.radius_m = aura_.clearance().bounding_radius(aura.prototype);
-  f.path.pose = aura.pose;
-  f.path.v_WB = aura.v_WB;
-  f.path.w_WB = aura.w_WB;
-  f.path.moves = !asleep;
-  // Asleep and unchanged in its source's last batch: as fresh as that batch. A ghost has been out of sight since.
-  f.path.age_steps =
-      static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
-  f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
-  f.path.speed_m_s = aura.speed_m_s;
-  f.path.blur_m = said_within_m(f.path.radius_m);
-  f.strike = strike_of(aura);
+  foreign_.build();
 }
 
 double Gathering::band(double speed_m_s, int hops) const {
@@ -149,11 +113,9 @@ void Gathering::complete_near_boundaries() {
 void Gathering::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
-  group_noticed_.assign(clusters_.near().group_count(), 0);
-  group_noticed_by_.assign(clusters_.near().group_count(), 0);
   clusters_.take_grown(grown_);  // seen below as they are now
   changed_.clear();
-  for (const Foreign& foreign : foreign_) notice(foreign);
+  for (const ForeignBlock& block : foreign_.blocks()) notice(block);
   hear_news();
   notice_grown();
   find_pairs();
@@ -199,37 +161,47 @@ std::size_t Gathering::take_hits(std::size_t first) {
   return first;
 }
 
-Strike Gathering::strike_of(const AuraRecord& aura) const {
-  const BodyTraits traits = aura_.clearance().traits(aura.prototype);
-  const double alone_m_s = std::max(0.0, aura.speed_m_s - aura_.calm_speed(true));
-  const Push own = aura.pushed_m_s > 0 ? Push::of(aura.v_WB.norm(), traits, aura_.rules().uncertainty)
-                                       : Push{alone_m_s, traits.mass_kg * alone_m_s};
-  return {own, {aura.pushed_m_s, aura.pushed_kg_m_s}};
+/// Fills ranges_ with range_of(body, hops) of all bodies of the block, and says how far own bodies of at most so many
+/// m/s have to be looked for.
+template <class RangeOf>
+Gathering::Reach Gathering::take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s,
+                                        RangeOf&& range_of) {
+  const int most_hops = clusters_.most_hops() + kHomewardHops;
+  Reach reach;
+  ranges_.clear();
+  ranges_each_ = static_cast<std::size_t>(most_hops) + 1;
+  for (const std::uint32_t f : block.bodies) {
+    for (int hops = 0; hops <= most_hops; ++hops) ranges_.push_back(range_of(foreign_[f].path, hops));
+    reach.slow_m = std::max(reach.slow_m, ranges_.back().at(slow_m_s));
+    reach.fast_m = std::max(reach.fast_m, ranges_.back().at(fast_m_s));
+  }
+  return reach;
 }
 
-/// Which of our bodies have to be announced because of a foreign one? In a heap most of them are already.
-void Gathering::notice(const Foreign& foreign) {
-  const Path& path = foreign.path;
-  const std::uint64_t region = vicinity_.bit_of(foreign.host);
-  const NearIndex& near = clusters_.near();
-  ranges_.clear();
-  for (int hops = 0; hops <= clusters_.most_hops() + kHomewardHops; ++hops) {
-    ranges_.push_back(aura_.notice(path.speed_m_s, path.age_steps, hops));
-  }
+/// Of the k-th body of the block, after take_ranges().
+bool Gathering::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
+  const double range = ranges_[k * ranges_each_ + own.hops].at(own.speed_m_s);
+  return is_within(foreign_[block.bodies[k]].path, own.p_WB, own.radius_m, range);
+}
+
+/// Which of our bodies have to be announced because of foreign ones? In a heap most of them are already.
+void Gathering::notice(const ForeignBlock& block) {
+  const std::uint64_t region = vicinity_.bit_of(block.host);
   const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
-  const auto all_know = [&](std::uint32_t group) {
-    const bool known = group_noticed_[group] && (group_noticed_by_[group] & region) == region;
-    if (known || !knows(near.any_of(group)) || !near.all_of(group, knows)) return known;
-    group_noticed_[group] = 1;
-    group_noticed_by_[group] |= region;
-    return true;
-  };
-  near.for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(NearIndex::kSlow), ranges_.back().at(top_speed()),
-                     all_know, [&](std::uint32_t i) {
-                       if (knows(i)) return;
-                       const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
-                       if (is_within(path, paths_[i], ranges_[hops].at(paths_[i].speed_m_s))) note(i, region);
-                     });
+  const Reach reach = take_ranges(block, NearIndex::kSlow, top_speed(), [&](const Path& path, int hops) {
+    return aura_.notice(path.speed_m_s, path.age_steps, hops);
+  });
+  candidates_.clear();
+  clusters_.near().for_each_near(block.lo, block.hi, reach.slow_m, reach.fast_m, [&](std::uint32_t i) {
+    if (!knows(i)) candidates_.push_back(candidate(i, paths_[i].speed_m_s));
+  });
+  for (std::size_t k = 0; k < block.bodies.size(); ++k) {
+    std::erase_if(candidates_, [&](const Candidate& c) {
+      if (!is_in_range(block, k, c)) return false;
+      if (!knows(c.own)) note(c.own, region);
+      return true;
+    });
+  }
 }
 
 void Gathering::note(std::uint32_t own, std::uint64_t region) {
@@ -238,16 +210,21 @@ void Gathering::note(std::uint32_t own, std::uint64_t region) {
   news_.push_back({own, region});
 }
 
+Gathering::Candidate Gathering::candidate(std::uint32_t own, double speed_m_s) const {
+  const auto hops = static_cast<std::size_t>(clusters_.hops(own) + kHomewardHops);
+  return {paths_[own].pose.p_WB, paths_[own].radius_m, speed_m_s, hops, own};
+}
+
 /// Calls `visit(index)` for at least every foreign body that notices our body `own`.
 template <class Visit>
 void Gathering::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
   const auto range = [&](double speed_m_s) {
-    return aura_.notice(speed_m_s, oldest_foreign_steps_, hops).at(path.speed_m_s) + most_foreign_blur_m_;
+    return aura_.notice(speed_m_s, foreign_.oldest_steps(), hops).at(path.speed_m_s) + foreign_.most_blur_m();
   };
-  near_foreign_.for_each_near(path.pose.p_WB, path.radius_m, range(NearIndex::kSlow), range(near_foreign_.top_speed()),
-                              visit);
+  const NearIndex& near = foreign_.near();
+  near.for_each_near(path.pose.p_WB, path.radius_m, range(NearIndex::kSlow), range(near.top_speed()), visit);
 }
 
 /// One of ours is faster, or has more hops, than when the foreign bodies noticed it.
@@ -259,33 +236,28 @@ void Gathering::notice_again(std::uint32_t own) {
     const std::uint64_t region = vicinity_.bit_of(foreign.host);
     if (noticed_[own] && (noticed_by_[own] & region) == region) return;
     const Aura::Range range = aura_.notice(foreign.path.speed_m_s, foreign.path.age_steps, hops);
-    if (is_within(foreign.path, path, range.at(path.speed_m_s))) note(own, region);
+    if (is_within(foreign.path, path.pose.p_WB, path.radius_m, range.at(path.speed_m_s))) note(own, region);
   });
 }
 
 /// Who may meet whom. Whoever does has been noticed: meeting looks less far.
 void Gathering::find_pairs() {
   pairs_.clear();
-  double slow_drift = 0;
-  double fast_drift = 0;
-  drifts_.clear();
-  for (const Path& own : paths_) {
-    drifts_.push_back(aura_.drift_m_s(own));
-    double& most = own.speed_m_s <= NearIndex::kSlow ? slow_drift : fast_drift;
-    most = std::max(most, drifts_.back());
-  }
-  for (std::uint32_t f = 0; f < foreign_.size(); ++f) {
-    const Path& path = foreign_[f].path;
-    ranges_.clear();
-    for (int hops = 0; hops <= clusters_.most_hops() + kHomewardHops; ++hops) {
-      ranges_.push_back(aura_.meet_range(path, hops));
+  for (const ForeignBlock& block : foreign_.blocks()) find_pairs(block);
+}
+
+void Gathering::find_pairs(const ForeignBlock& block) {
+  const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
+  const Reach reach = take_ranges(block, drift * NearIndex::kSlow, drift * top_speed(),
+                                  [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
+  candidates_.clear();
+  clusters_.near().for_each_near(block.lo, block.hi, reach.slow_m, reach.fast_m, [&](std::uint32_t i) {
+    candidates_.push_back(candidate(i, aura_.drift_m_s(paths_[i])));
+  });
+  for (std::size_t k = 0; k < block.bodies.size(); ++k) {
+    for (const Candidate& c : candidates_) {
+      if (is_in_range(block, k, c)) pairs_.push_back({block.bodies[k], c.own});
     }
-    const auto ask = [&](std::uint32_t i) {
-      const auto hops = static_cast<std::size_t>(clusters_.hops(i) + kHomewardHops);
-      if (is_within(path, paths_[i], ranges_[hops].at(drifts_[i]))) pairs_.push_back({f, i});
-    };
-    clusters_.near().for_each_near(path.pose.p_WB, path.radius_m, ranges_.back().at(slow_drift),
-                                   ranges_.back().at(fast_drift), ask);
   }
 }
 
@@ -295,7 +267,8 @@ void Gathering::pair_again(std::uint32_t own) {
   const int hops = clusters_.hops(own) + kHomewardHops;
   for_each_foreign_near(own, [&](std::uint32_t f) {
     const Aura::Range range = aura_.meet_range(foreign_[f].path, hops);
-    if (is_within(foreign_[f].path, path, range.at(aura_.drift_m_s(path)))) pairs_.push_back({f, own});
+    if (is_within(foreign_[f].path, path.pose.p_WB, path.radius_m, range.at(aura_.drift_m_s(path))))
+      pairs_.push_back({f, own});
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/aura.h"
 #include "core/cluster.h"
+#include "core/foreign.h"
 #include "core/messages.h"
 #include "core/neighbour.h"
 #include "core/ranks.h"
@@ -17,14 +18,6 @@ namespace aurasim::core {
 
 class Gathering {
  public:
-  struct Foreign {
-    BodyId id;
-    Path path;
-    RegionId host;
-    bool ghost;
-    bool born;      ///< in the state that its aura describes
-    Strike strike;  ///< what it may do to whom it hits
-  };
   /// A foreign body and one of ours that may meet: indices of foreign() and path().
   struct Pair {
     std::uint32_t foreign;
@@ -63,25 +56,41 @@ class Gathering {
   double top_radius() const { return clusters_.near().top_radius(); }
 
  private:
+  /// One of ours, as far as it matters to who is near it.
+  struct Candidate {
+    Vec3 p_WB;
+    double radius_m;
+    double speed_m_s;  ///< for which ranges are asked
+    std::size_t hops;  ///< likewise
+    std::uint32_t own;
+  };
+  /// How far slow and fast bodies have to be looked for.
+  struct Reach {
+    double slow_m = 0;
+    double fast_m = 0;
+  };
+
   void measure(const Snapshot& snapshot);
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
-  void add_foreign(const AuraRecord& aura, Step known, Step now);
-  void index_foreign();
   void mark_regions(int hops_each);
   void complete_near_boundaries();
   void pair_up();
-  void notice(const Foreign& foreign);
+  void notice(const ForeignBlock& block);
   void notice_grown();
   void notice_again(std::uint32_t own);
   void note(std::uint32_t own, std::uint64_t region);
   void hear_news();
   void find_pairs();
+  void find_pairs(const ForeignBlock& block);
+  bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
+  Candidate candidate(std::uint32_t own, double speed_m_s) const;
+  template <class RangeOf>
+  Reach take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s, RangeOf&& range_of);
   void pair_again(std::uint32_t own);
   template <class Visit>
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
   std::size_t take_hits(std::size_t first);
-  Strike strike_of(const AuraRecord& aura) const;
   void judge(const Ranks& ranks);
   void judge(const Pair& pair, const Ranks& ranks);
   bool meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps = 0) const;
@@ -95,13 +104,11 @@ class Gathering {
   std::vector<double> speeds_, own_speeds_;
   std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
-  std::vector<Foreign> foreign_;
-  std::vector<Path> foreign_paths_;
-  NearIndex near_foreign_;
-  double oldest_foreign_steps_ = 0;
-  double most_foreign_blur_m_ = 0;
+  ForeignBodies foreign_;
   std::vector<Pair> pairs_;
-  std::vector<Aura::Range> ranges_;  ///< of one foreign body, by hops
+  std::vector<Aura::Range> ranges_;    ///< of the foreign bodies of a block, by body and hops
+  std::size_t ranges_each_ = 0;        ///< of one body
+  std::vector<Candidate> candidates_;  ///< likewise: who may be in range
   struct News {
     std::uint32_t own;
     std::uint64_t region;
@@ -110,16 +117,13 @@ class Gathering {
   std::vector<std::uint32_t> grown_;    ///< of our bodies, whose range has grown
   std::vector<std::uint32_t> changed_;  ///< likewise, since the pairs were found
   std::vector<std::uint32_t> near_;
-  std::vector<double> drifts_;  ///< Aura::drift_m_s
   std::vector<std::uint8_t> noticed_;
-  std::vector<std::uint64_t> noticed_by_;        ///< bits of regions
-  std::vector<std::uint8_t> group_noticed_;      ///< by group of bodies near each other: all of them are
-  std::vector<std::uint64_t> group_noticed_by_;  ///< regions that all of them are noticed by
-  std::vector<std::uint8_t> touched_;            ///< by cluster
-  std::vector<std::uint8_t> expected_;           ///< by cluster
-  std::vector<RegionId> pulled_to_;              ///< by cluster
-  int fewer_steps_ = 0;                          ///< how much less far than h K meetings are looked for
-  double widest_band_m_ = 0;                     ///< beyond it, no body is near another region
+  std::vector<std::uint64_t> noticed_by_;  ///< bits of regions
+  std::vector<std::uint8_t> touched_;      ///< by cluster
+  std::vector<std::uint8_t> expected_;     ///< by cluster
+  std::vector<RegionId> pulled_to_;        ///< by cluster
+  int fewer_steps_ = 0;                    ///< how much less far than h K meetings are looked for
+  double widest_band_m_ = 0;               ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

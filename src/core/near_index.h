@@ -30,35 +30,21 @@ class NearIndex {
   double top_radius() const { return top_radius_; }
 
   /// Calls `visit(index)` for at least every body whose bounding sphere comes within `slow_range_m` (slow bodies) or
-  /// `fast_range_m` (fast ones) of the sphere of `radius_m` around `p`. Some are visited twice.
+  /// `fast_range_m` (fast ones) of the box [lo, hi]. Some are visited twice.
   template <class Visit>
-  void for_each_near(const Vec3& p, double radius_m, double slow_range_m, double fast_range_m, Visit&& visit) const {
-    for_each_near(
-        p, radius_m, slow_range_m, fast_range_m, [](std::uint32_t) { return false; }, visit);
-  }
-
-  /// The same without the groups of bodies for which `skip(group)` is true.
-  template <class Skip, class Visit>
-  void for_each_near(const Vec3& p, double radius_m, double slow_range_m, double fast_range_m, Skip&& skip,
-                     Visit&& visit) const {
-    const Vec3 slow = Vec3::Constant(radius_m + slow_range_m + small_radius_);
-    slow_.for_each_in(p - slow, p + slow, skip, visit);
-    const Vec3 fast = Vec3::Constant(radius_m + fast_range_m + small_radius_);
-    const auto skip_fast = [&](std::uint32_t group) { return skip(slow_.group_count() + group); };
-    if (!fast_.empty()) fast_.for_each_in(p - fast, p + fast, skip_fast, visit);
+  void for_each_near(const Vec3& lo, const Vec3& hi, double slow_range_m, double fast_range_m, Visit&& visit) const {
+    const Vec3 slow = Vec3::Constant(slow_range_m + small_radius_);
+    slow_.for_each_in(lo - slow, hi + slow, visit);
+    const Vec3 fast = Vec3::Constant(fast_range_m + small_radius_);
+    fast_.for_each_in(lo - fast, hi + fast, visit);
     for (const std::uint32_t i : always_) visit(i);
   }
 
-  /// Groups are neighbours in space, the same from build() to build().
-  std::uint32_t group_count() const { return slow_.group_count() + fast_.group_count(); }
-  template <class Holds>
-  bool all_of(std::uint32_t group, Holds&& holds) const {
-    const std::uint32_t slow_groups = slow_.group_count();
-    return group < slow_groups ? slow_.all_of(group, holds) : fast_.all_of(group - slow_groups, holds);
-  }
-  std::uint32_t any_of(std::uint32_t group) const {
-    const std::uint32_t slow_groups = slow_.group_count();
-    return group < slow_groups ? slow_.any_of(group) : fast_.any_of(group - slow_groups);
+  /// The same for the sphere of `radius_m` around `p`.
+  template <class Visit>
+  void for_each_near(const Vec3& p, double radius_m, double slow_range_m, double fast_range_m, Visit&& visit) const {
+    const Vec3 half = Vec3::Constant(radius_m);
+    for_each_near(p - half, p + half, slow_range_m, fast_range_m, visit);
   }
 
  private:

@@ -162,7 +162,7 @@ void CollisionWatch::compare(const core::Snapshot& snapshot, const core::Gatheri
                              core::Step last_violation, std::vector<SeenCollision>& out) {
   remember(snapshot, gathering);
   for (const core::Gathering::Pair& pair : gathering.pairs()) {
-    const core::Gathering::Foreign& foreign = gathering.foreign(pair.foreign);
+    const core::Foreign& foreign = gathering.foreign(pair.foreign);
     if (foreign.ghost || !foreign.born) continue;
     const core::Path& own = gathering.path(pair.own);
     const core::Step stamp = snapshot.step - static_cast<core::Step>(foreign.path.age_steps);

@@ -1,7 +1,6 @@
 // The two indexes of places, against looking at every point.
 #include <algorithm>
 #include <map>
-#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -75,33 +74,6 @@ TEST_F(AGrid, VisitsOnlyNearCells) {
   std::size_t visits = 0;
   grid.for_each_in(Vec3(0, 0, 0), Vec3(4, 4, 4), [&](std::uint32_t) { ++visits; });
   EXPECT_LT(visits, 50u);
-}
-
-/// Every body is of exactly one group, and is visited unless its group is passed over.
-TEST_F(AGrid, PassesOverGroupsAsAWhole) {
-  Random random("points");
-  const std::vector<Vec3> points = random_points(random, 500, 20);
-  fill(points, 1.5);
-  const Vec3 lo = Vec3::Constant(-12);
-  const Vec3 hi = Vec3::Constant(12);
-  const auto odd = [](std::uint32_t group) { return group % 2 == 1; };
-  std::set<std::uint32_t> all, even;
-  grid.for_each_in(lo, hi, [&](std::uint32_t i) { all.insert(i); });
-  grid.for_each_in(lo, hi, odd, [&](std::uint32_t i) { even.insert(i); });
-  std::set<std::uint32_t> grouped;
-  for (std::uint32_t group = 0; group < grid.group_count(); ++group) {
-    std::set<std::uint32_t> members;
-    grid.all_of(group, [&](std::uint32_t i) { return members.insert(i).second; });
-    if (members.empty()) continue;
-    EXPECT_TRUE(members.contains(grid.any_of(group)));
-    for (const std::uint32_t i : members) {
-      EXPECT_TRUE(grouped.insert(i).second);
-      EXPECT_EQ(even.contains(i), all.contains(i) && !odd(group)) << i;
-    }
-  }
-  EXPECT_EQ(grouped.size(), points.size());
-  EXPECT_LT(even.size(), all.size());
-  EXPECT_FALSE(even.empty());
 }
 
 TEST_F(AGrid, CanBeFilledAgain) {

@@ -1,0 +1,62 @@
+// What a node knows of the bodies of others, as of one state.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/aura.h"
+#include "core/messages.h"
+#include "core/near_index.h"
+#include "core/pushes.h"
+
+namespace aurasim::core {
+
+struct Foreign {
+  BodyId id{};
+  Path path;
+  RegionId host{};
+  bool ghost = false;
+  bool born = true;  ///< in the state that its aura describes
+  Strike strike;     ///< what it may do to whom it hits
+};
+
+/// Some bodies of one host, near each other, all of them slow or all of them fast. They are asked about together: what
+/// is near one of them is mostly near all.
+struct ForeignBlock {
+  RegionId host{};
+  std::span<const std::uint32_t> bodies;  ///< indices of ForeignBodies
+  Vec3 lo, hi;                            ///< a box that holds their bounding spheres
+};
+
+class ForeignBodies {
+ public:
+  void clear();
+  /// What `aura` says of a body, seen in state `now`; the last word of its source is of state `known`.
+  void add(const AuraRecord& aura, Step known, Step now, const Aura& rules);
+  /// Call once after the last add() and before any question about who is near.
+  void build();
+
+  std::size_t size() const { return bodies_.size(); }
+  const Foreign& operator[](std::uint32_t i) const { return bodies_[i]; }
+  std::span<const ForeignBlock> blocks() const { return blocks_; }
+  const NearIndex& near() const { return near_; }
+  double oldest_steps() const { return oldest_steps_; }
+  double most_blur_m() const { return most_blur_m_; }
+
+ private:
+  void form_blocks();
+  void add_block(std::span<const std::uint32_t> bodies);
+
+  std::vector<Foreign> bodies_;
+  std::vector<Path> paths_;
+  NearIndex near_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< block and body
+  std::vector<std::uint32_t> sorted_;
+  std::vector<ForeignBlock> blocks_;
+  double oldest_steps_ = 0;
+  double most_blur_m_ = 0;
+};
+
+}  // namespace aurasim::core
