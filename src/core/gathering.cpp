@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace aurasim::core {
 
@@ -12,10 +11,10 @@ namespace {
 /// others may act upon auras from before it left. So auras have to be known that much earlier, too.
 constexpr int kHomewardHops = 1;
 
-/// Are the bounding spheres at most `distance_m` apart?
-bool is_within(const Path& a, const Vec3& p, double radius_m, double distance_m) {
-  const double reach = a.radius_m + radius_m + distance_m;
-  return (a.pose.p_WB - p).squaredNorm() <= reach * reach;
+/// Is the body's bounding sphere at most `distance_m` from the sphere of `radius_m` around `p`?
+bool is_within(const Path& body, const Vec3& p, double radius_m, double distance_m) {
+  const double reach = body.radius_m + radius_m + distance_m;
+  return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
 }  // namespace
@@ -266,9 +265,9 @@ void Gathering::pair_again(std::uint32_t own) {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
   for_each_foreign_near(own, [&](std::uint32_t f) {
-    const Aura::Range range = aura_.meet_range(foreign_[f].path, hops);
-    if (is_within(foreign_[f].path, path.pose.p_WB, path.radius_m, range.at(aura_.drift_m_s(path))))
-      pairs_.push_back({f, own});
+    const Path& theirs = foreign_[f].path;
+    const double range = aura_.meet_range(theirs, hops).at(aura_.drift_m_s(path));
+    if (is_within(theirs, path.pose.p_WB, path.radius_m, range)) pairs_.push_back({f, own});
   });
 }
 

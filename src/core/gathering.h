@@ -107,8 +107,8 @@ class Gathering {
   ForeignBodies foreign_;
   std::vector<Pair> pairs_;
   std::vector<Aura::Range> ranges_;    ///< of the foreign bodies of a block, by body and hops
-  std::size_t ranges_each_ = 0;        ///< of one body
-  std::vector<Candidate> candidates_;  ///< likewise: who may be in range
+  std::size_t ranges_each_ = 0;        ///< of one of them
+  std::vector<Candidate> candidates_;  ///< ours that may be in range of a block
   struct News {
     std::uint32_t own;
     std::uint64_t region;
