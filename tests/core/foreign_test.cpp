@@ -1,6 +1,7 @@
 // What is known of the bodies of others, and the blocks in which they are asked about.
 #include "core/foreign.h"
 
+#include <limits>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -89,8 +90,15 @@ TEST_F(AForeignBody, IsInOneBlockWithOthersOfItsHostAndPace) {
       }
     }
     EXPECT_EQ(seen.size(), count);
-    EXPECT_LT(bodies.blocks().size(), count + 1);
   }
+}
+
+TEST_F(AForeignBody, SharesItsBlockWithThoseBesideItAndNotWithThoseFarAway) {
+  for (int i = 0; i < 9; ++i) bodies.add(aura_at({0.3 + 0.1 * i, 0.5, 0}), kNow, kNow, aura);
+  for (int i = 0; i < 9; ++i) bodies.add(aura_at({50.3 + 0.1 * i, 0.5, 0}), kNow, kNow, aura);
+  bodies.build();
+  ASSERT_EQ(bodies.blocks().size(), 2u);
+  EXPECT_EQ(bodies.blocks()[0].bodies.size(), 9u);
 }
 
 TEST_F(AForeignBody, NowhereOrFarOutIsInABlockToo) {
