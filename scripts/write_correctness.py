@@ -56,7 +56,7 @@ thesis, section 5.2: two bodies of different regions fly at each other and meet 
 | body | sphere, radius not given; sleep not mentioned | never sleeps; sphere of 3.5 m: at 96 m/s each, two smaller ones would pass their deepest overlap within two steps, and what is late would not look late |
 | speed | less 0 to 1 m/s at random | the same, but never less than half |
 | frames | normal around the target, half of them longer | 0.9 to 1 times the target: the tolerance holds where it should |
-| lookahead | ceil((2 T_F + T_L) / T_P), frames not aligned | K = ceil((T_F + T_L) / T_P), DESIGN section 2 |
+| lookahead | ceil((2 T_F + T_L) / T_P), frames not aligned | K = ceil((T_F + T_L) / T_P), docs/design.md, "Time and lookahead" |
 | thrashed pairs | left out of N | counted in N |
 | N | only collisions with a body that has just migrated | every pair that meets in the control |
 | machines | AWS, `tc` | virtual time |
@@ -172,7 +172,7 @@ promised: for latency and frame time it waits instead.
     text += "## Every kind of pair\n\nSums over the nine series. `none` is the naive control and has to fail.\n\n"
     text += pairs_table(collision)
     text += """The requirements above are for `tight` (also at the thesis's size) and `swept`. The thesis's own aura, eq. 3.4, is not
-enough for this protocol: here only the lower-ranked region pulls (DESIGN section 4, two-object thrashing), so the other
+enough for this protocol: here only the lower-ranked region pulls (docs/design.md, "Who leaves"), so the other
 side has to be told of its bodies (5K - 2) steps ahead instead of (3K' - 1); and it has no word on corners, where pulls
 chain.
 

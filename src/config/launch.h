@@ -36,7 +36,7 @@ struct Tolerances {
 
 struct Aura {
   AuraRadius radius = AuraRadius::kSwept;
-  double uncertainty = 0.5;  ///< U of DESIGN section 3
+  double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"
 };
 
 struct Physics {
@@ -97,7 +97,7 @@ struct Launch {
   Overseer overseer;
 
   double step_s() const { return 1.0 / time.step_hz; }
-  /// K of DESIGN section 2.
+  /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;

@@ -41,7 +41,7 @@ void check_neighbour_count(const Field& regions, const Launch& launch) {
 double reach_m(const Launch& launch) { return way_m(launch, 3) + 2 * largest_radius_m(launch.scene); }
 
 // A body projects near foreign bodies wherever they are, (5 K - 2) steps ahead; where pulls chain at a corner the
-// distances grow by K steps for each of two bodies (DESIGN sections 3 and 4).
+// distances grow by K steps for each of two bodies (docs/design.md, "The aura and its reach").
 double zone_m(const Launch& launch) { return way_m(launch, 7) + 2 * largest_radius_m(launch.scene); }
 
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch) {

@@ -12,7 +12,8 @@ namespace aurasim::config {
 inline constexpr int kLargestLookahead = 64;
 
 /// Distance between the surfaces of two bodies within which they have to share a host, at the top speed of the
-/// tolerances, plus the largest bounding radius of each (`reach` of DESIGN section 3). Metres.
+/// tolerances, plus the largest bounding radius of each (docs/design.md, "The aura and
+/// its reach"). Metres.
 double reach_m(const Launch& launch);
 
 /// Farthest from a region at which another one may have to hear of its bodies. Metres.

@@ -1,5 +1,6 @@
 // The aura: how far ahead, and how far away, two bodies must know of each other so that they share a host before
-// they can touch. Distances and their derivation: DESIGN section 3; eq. 3.4 of A. Brown's thesis for `kThesis`.
+// they can touch. Distances and their derivation: docs/design.md, "The aura and its reach"; eq. 3.4 of A. Brown's
+// thesis for `kThesis`.
 #pragma once
 
 #include <optional>
@@ -56,8 +57,8 @@ class Aura {
   const AuraRules& rules() const { return rules_; }
   const ClearanceQuery& clearance() const { return clearance_; }
 
-  /// Reaches of DESIGN section 3 for one top speed, beyond the bounding spheres, in metres. `hops` is the number of
-  /// regions through which a pull can chain (1 away from corners).
+  /// Reaches of docs/design.md, "The aura and its reach", for one top speed, beyond the bounding spheres, in metres.
+  /// `hops` is the number of regions through which a pull can chain (1 away from corners).
   double reach(int hops) const;
   double foreign_reach(int hops) const;
   double cluster_reach(int hops) const;

@@ -41,8 +41,8 @@ class Clusters {
   double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
   /// What others push it with, if that takes it further off its path, or makes its strike harder, than it can alone.
   std::optional<Push> pushed(std::uint32_t i) const { return pushes_.pushed(i); }
-  /// Number of other regions through which a pull on this cluster can chain (DESIGN section 4, corners): those in
-  /// reach, by their territory or by a body of theirs; at least 1.
+  /// Number of other regions through which a pull on this cluster can chain (docs/design.md, "Who leaves"): those
+  /// in reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }

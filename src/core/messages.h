@@ -1,4 +1,4 @@
-// What nodes say to each other (DESIGN section 7). Plain values: the transport decides how they travel.
+// What nodes say to each other (docs/design.md, "On the wire"). Plain values: the transport decides how they travel.
 // Every message carries the step it describes (its stamp) and the generation of the run.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Aura Projection on one node: what it hears from its neighbours, what it tells them, which bodies go where.
 // No clock, thread, socket or physics in here: time, messages and snapshots are passed in, so a whole cluster of
-// nodes can run inside one test. One step of a node (DESIGN section 4):
+// nodes can run inside one test. One step of a node (docs/design.md, "One step"):
 //   receive(n)         ->  bodies to adopt or to let go          [physics computes state n]
 //   observe(snapshot)  ->  auras, clusters, bodies to release    [physics takes them out]
 //   hand_over(...)     ->  hand-offs in the outbox

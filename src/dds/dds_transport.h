@@ -1,4 +1,5 @@
-// One region's nodes-to-nodes messages over DDS (DESIGN section 7): topics aura, migration, migration_ack.
+// One region's nodes-to-nodes messages over DDS (docs/design.md, "On the wire"): topics aura, migration and
+// migration_ack.
 // Readers name only the neighbours' partitions. Samples arrive in DDS threads, which do no more than wake the owner;
 // decoding happens in take().
 #pragma once

@@ -20,7 +20,7 @@
 
 namespace aurasim::dds {
 
-/// The topics of DESIGN section 7 that there are so far.
+/// The topics of docs/protocol.md.
 enum class TopicId : std::uint8_t {
   kAura,
   kMigration,
@@ -40,7 +40,7 @@ inline constexpr std::size_t kTopicCount = 13;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 
-// Partitions of DESIGN section 7.
+// Partitions of docs/protocol.md.
 inline const std::string kWorldPartition = "world";
 inline const std::string kEveryRegionPartition = "region/*";
 std::string partition_of(core::RegionId source);

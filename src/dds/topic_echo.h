@@ -14,7 +14,7 @@
 
 namespace aurasim::dds {
 
-/// Names of all topics, in the order of DESIGN section 7.
+/// Names of all topics, in the order of `TopicId`.
 std::vector<std::string> topic_names();
 
 /// Used by one thread. The participant must outlive it.

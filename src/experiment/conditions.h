@@ -60,10 +60,11 @@ Series thinned(const Series& series, std::size_t count);
 Conditions conditions_at(const Series& series, double value, int substeps);
 bool within_tolerance(const Series& series, double value);
 
-/// K of DESIGN section 2.
+/// K of docs/design.md, "Time and lookahead".
 int lookahead(const Tolerances& promised);
 core::AuraRules rules_for(AuraChoice choice, const Conditions& conditions);
-/// Extra distance of an aura beyond the bounding sphere, eq. 3.4 or DESIGN section 3; 0 for kNone and kSwept. Metres.
+/// Extra distance of an aura beyond the bounding sphere, eq. 3.4 or docs/design.md, "The aura and its reach"; 0
+/// for kNone and kSwept. Metres.
 double aura_reach_m(AuraChoice choice, const Conditions& conditions);
 
 inline constexpr double kStep_s = 1.0 / 60;

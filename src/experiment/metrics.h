@@ -1,4 +1,4 @@
-// The definitions of DESIGN section 9, and sums over trials.
+// The definitions of docs/design.md, "What is counted", and sums over trials.
 #pragma once
 
 #include <cstdint>

@@ -60,7 +60,8 @@ class Tallies {
 nlohmann::json json_of(const Tally& tally);
 nlohmann::json json_of(const std::vector<Target>& targets);
 
-/// DESIGN section 9 and the thesis's own numbers, as requirements. Only those that the campaign has trials for.
+/// docs/design.md, "What is counted", and the thesis's own numbers, as requirements. Only those that the campaign has
+/// trials for.
 std::vector<Target> collision_targets(const Tallies& tallies);
 std::vector<Target> loss_targets(const Tallies& tallies);
 

@@ -1,4 +1,4 @@
-// Late and missed collisions (DESIGN section 9), as one node can see them.
+// Late and missed collisions (docs/design.md, "What is counted"), as one node can see them.
 // Late: when two bodies first touch, or come to one host without touching, they already overlap by more than one step
 // of their relative speed. Missed: two bodies of different hosts overlap in the same state.
 #pragma once

@@ -1,6 +1,6 @@
-// One region's node: protocol, physics and mail, one step at a time (DESIGN section 4). Knows no wall clock but for
-// measuring its own phases; the caller says when to step. The same class runs in a process over DDS and, many at a
-// time, inside a test in virtual time.
+// One region's node: protocol, physics and mail, one step at a time (docs/design.md, "One step"). Knows no wall clock
+// but for measuring its own phases; the caller says when to step. The same class runs in a process over DDS and, many
+// at a time, inside a test in virtual time.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// Merges what the nodes of a run have left on disk into one report (DESIGN section 8), and counts bodies: who is
-// here, who went down with a dead node, who is lost, who is there twice. Nothing is guessed: a body counts as gone
-// with a dead node only if the records say that it was there.
+// Merges what the nodes of a run have left on disk into one report (docs/design.md, "What is counted"), and counts
+// bodies: who is here, who went down with a dead node, who is lost, who is there twice. Nothing is guessed: a body
+// counts as gone with a dead node only if the records say that it was there.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// A Bullet world that is set up for equal bits (DESIGN section 6), and the few things that are done to it.
+// A Bullet world that is set up for equal bits (docs/design.md, "The same bits"), and the few things that are done to
+// it.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // One region's Bullet world, set up so that the same bodies take the same path, to the last bit, whichever worlds
-// they visit on the way (DESIGN section 6). No Bullet header is needed to use it: the two precisions are two
-// libraries behind this one header.
+// they visit on the way (docs/design.md, "The same bits"). No Bullet header is needed to use it: the two precisions are
+// two libraries behind this one header.
 #pragma once
 
 #include <cstdint>
@@ -68,7 +68,7 @@ struct RayHit {
   double distance_m = 0;
 };
 
-/// Tells a listener about states that were made up in a scratch world (DESIGN section 6, catch-up):
+/// Tells a listener about states that were made up in a scratch world (docs/design.md, "The same bits"):
 /// the records of the cluster's bodies in state `step`, in ascending order of id.
 using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
 

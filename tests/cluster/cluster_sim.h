@@ -1,5 +1,6 @@
 // A whole cluster of nodes in one process, in virtual time, over a seeded network that misbehaves. The real protocol,
-// the real physics; only clock and wire are simulated. Checks the invariants of DESIGN section 5 on every step.
+// the real physics; only clock and wire are simulated. Checks the invariants of docs/design.md, "Exactly once",
+// on every step.
 #pragma once
 
 #include <cstdint>

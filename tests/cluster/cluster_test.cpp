@@ -1,4 +1,4 @@
-// The promises of DESIGN sections 4 to 6, on whole simulated clusters.
+// The promises of docs/design.md ("Who leaves", "Exactly once", "The same bits"), on whole simulated clusters.
 #include <iostream>
 #include <string>
 

@@ -1,4 +1,5 @@
-// Distances against DESIGN section 3 and the thesis, paths against an integrator, meetings against sampling.
+// Distances against docs/design.md, "The aura and its reach", and the thesis, paths against an integrator, meetings
+// against sampling.
 #include "core/aura.h"
 
 #include <algorithm>

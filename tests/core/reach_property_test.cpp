@@ -1,5 +1,5 @@
 // The property that the aura exists for: whatever meets at a border is computed by one node from the first instant on.
-// Every reach is exactly as in DESIGN section 3, and a tenth of a step less is too little.
+// Every reach is exactly as in docs/design.md, "The aura and its reach", and a tenth of a step less is too little.
 #include <cstdio>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The definitions of DESIGN section 9.
+// The definitions of docs/design.md, "What is counted".
 #include "experiment/metrics.h"
 
 #include <gtest/gtest.h>

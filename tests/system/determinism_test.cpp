@@ -1,4 +1,4 @@
-// DESIGN section 6: the hash of every state is equal on any number of nodes. Domains 150 to 156.
+// docs/design.md, "The same bits": the hash of every state is equal on any number of nodes. Domains 150 to 156.
 #include <sstream>
 
 #include "system_fixture.h"

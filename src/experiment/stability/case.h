@@ -36,7 +36,7 @@ struct Case {
   core::Scene scene = {};
   std::vector<Metric> metrics = {};
   double border_x_m = 0;     ///< where two nodes meet
-  double uncertainty = 0.5;  ///< U of DESIGN section 3; 1 where contacts throw resting bodies
+  double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"; 1 where contacts throw resting bodies
   double contact_erp = 0.2;
   bool continuous = false;  ///< continuous collision detection
 };
