@@ -8,7 +8,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=${1:-build/accuracy}
 bin=build/release
-[[ -x $bin/aurasim && -x $bin/aurasim-single ]] || scripts/build.sh release
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/accuracy.md "$out" "double and single"
 
 stability=()
 pareto=()
@@ -26,7 +28,6 @@ both_experiments() {
   [[ $met -le 1 && -s $out/stability-$precision/summary.json && -s $out/pareto-$precision/summary.json ]] || return 2
   return "$met"
 }
-mkdir -p "$out"
 both_experiments "$bin/aurasim-single" single > "$out/single.log" 2>&1 &
 single=$!
 met=0

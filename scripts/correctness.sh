@@ -6,6 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=${1:-build/correctness}
+page=docs/correctness.md
 # shellcheck source=scripts/correctness_runs.sh
 source scripts/correctness_runs.sh
 

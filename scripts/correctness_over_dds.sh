@@ -7,6 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=${1:-build/correctness_over_dds}
+page=docs/correctness_over_dds.md
 # shellcheck source=scripts/correctness_runs.sh
 source scripts/correctness_runs.sh
 

@@ -1,8 +1,10 @@
-# Sourced by correctness.sh and correctness_over_dds.sh, which set `out`, the folder of the results.
+# Sourced by correctness.sh and correctness_over_dds.sh, which set `out`, the folder of the results, and `page`.
 # shellcheck shell=bash
 
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring "${page:?}" "${out:?}" double
 aurasim=build/release/aurasim
-[[ -x $aurasim ]] || scripts/build.sh release
 rm -f "${out:?}"/{collision,loss}/summary.json
 met=yes
 

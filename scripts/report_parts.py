@@ -18,6 +18,11 @@ def save(figure, folder, name):
     pyplot.close(figure)
 
 
+def measured_line(folder):
+    """With which commit and build the results in `folder` were measured: what scripts/measured.sh has left there."""
+    return (folder / "measured.txt").read_text().strip()
+
+
 def machine_line():
     model = platform.machine()
     try:

@@ -7,7 +7,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=${1:-build/scalability}
 aurasim=build/release/aurasim
-[[ -x $aurasim ]] || scripts/build.sh release
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/scalability.md "$out" double
 
 # FROM, TO: one node needs no lookahead, so its runs are those of another K, too.
 copy_one_node() {

@@ -12,7 +12,7 @@ import pathlib
 import shutil
 
 from plot_accuracy import rows_of
-from report_parts import machine_line, table
+from report_parts import machine_line, measured_line, table
 
 STEPS = ("60", "120", "240", "1000")
 GRAVITY = 9.81  # m/s^2
@@ -20,6 +20,8 @@ PRESETS = ("fast", "balanced", "exact")
 FIGURES = ["pareto_double", "convergence_double", "pareto_single", "convergence_single"]
 
 INTRODUCTION = """# How exact, and what each digit costs
+
+{measured}
 
 Written by `scripts/accuracy.sh`; do not edit. {machine}. Where cells are empty it was a short run (`AURASIM_QUICK=1`).
 
@@ -232,7 +234,7 @@ def main():
     names = ("stability-double", "stability-single", "pareto-double", "pareto-single")
     summaries = [json.loads((directory / name / "summary.json").read_text()) for name in names]
 
-    text = INTRODUCTION.format(machine=machine_line())
+    text = INTRODUCTION.format(machine=machine_line(), measured=measured_line(directory))
     text += "## What has to hold, and what was found\n\n" + targets_table(summaries)
     text += "## Hard cases, double precision\n\nThe error on two nodes is that on one wherever it says *same bits*.\n\n"
     text += errors_table(double)

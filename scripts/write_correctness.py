@@ -9,7 +9,7 @@ import json
 import pathlib
 import shutil
 
-from report_parts import table
+from report_parts import measured_line, table
 
 SERIES = {"speed_16m_s": "speed, 16 m/s", "speed_32m_s": "speed, 32 m/s", "speed_48m_s": "speed, 48 m/s",
           "latency_2ms": "latency, 2 ms", "latency_8ms": "latency, 8 ms", "latency_16ms": "latency, 16 ms",
@@ -21,6 +21,8 @@ FIGURES = ["fig_5.18_control_penetration_time", "fig_5.23_speed_32m_s_late_and_m
            "fig_5.37_frame_15ms_late_and_missed", "fig_5.43_loss_late_and_missed", "fig_5.21_aura_size_speed"]
 
 INTRODUCTION = """# Do bodies collide across borders as they do in one world?
+
+{measured}
 
 Written by `scripts/correctness.sh`, from trials in virtual time; do not edit. The experiments are those of A. Brown's
 thesis, section 5.2: two bodies of different regions fly at each other and meet where one of them is over the border.
@@ -157,7 +159,8 @@ def read_results(about):
 def main():
     arguments, collision, loss = read_results(__doc__)
 
-    text = INTRODUCTION.format(repeats=collision["repeats"], substeps=collision["substeps"])
+    text = INTRODUCTION.format(measured=measured_line(arguments.collision.parent), repeats=collision["repeats"],
+                               substeps=collision["substeps"])
     text += "## What has to hold, and what was found\n\n" + targets_table(collision)
     text += "Packet loss:\n\n" + targets_table(loss)
     text += "## Within tolerance (thesis, table 5.1)\n\nHead-on pairs; late % / missed % / thrashed.\n\n"

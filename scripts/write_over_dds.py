@@ -3,10 +3,12 @@
 
     scripts/write_over_dds.py COLLISION_DIR LOSS_DIR [--out DIR]
 """
-from report_parts import table
+from report_parts import measured_line, table
 from write_correctness import SERIES, pairs_table, read_results, targets_table
 
 INTRODUCTION = """# Do bodies collide across borders as they do in one world? Over DDS, in real time
+
+{measured}
 
 Written by `scripts/correctness_over_dds.sh`; do not edit. A part of the experiments of `correctness.md` ({repeats} pairs
 for each of 4 values of every series), with real nodes that stay up between trials: each has a thread and a DDS
@@ -49,7 +51,7 @@ def loss_table(summary):
 
 def main():
     arguments, collision, loss = read_results(__doc__)
-    text = INTRODUCTION.format(repeats=collision["repeats"])
+    text = INTRODUCTION.format(measured=measured_line(arguments.collision.parent), repeats=collision["repeats"])
     text += "## What has to hold, and what was found\n\n" + targets_table(collision)
     text += "Packet loss:\n\n" + targets_table(loss)
     text += "## By series\n\n" + series_table(collision)

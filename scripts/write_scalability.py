@@ -12,7 +12,7 @@ import pathlib
 import shutil
 import statistics
 
-from report_parts import machine_line, table
+from report_parts import machine_line, measured_line, table
 
 FIGURES = [("long", "fig_5.2_frame_columns"), ("short", "fig_5.5_frame_corners"), ("long", "fig_5.6_hand_offs_columns"),
            ("long", "fig_5.8_updates_columns"), ("long", "fig_5.11_cost_over_bodies_log"),
@@ -24,6 +24,8 @@ WALLS = {2: "wall", 1: "wall_k1"}  # folders by K
 STEP_MS = 1000 / 60
 
 INTRODUCTION = """# How much faster are several nodes?
+
+{measured}
 
 Written by `scripts/scalability.sh`; do not edit. Machine: {machine}. Every number is of this machine and these seeds
 (1 and 2, plus 10 for each repeat); what watches the whole rain are medians of {repeats} runs with other bodies, but for
@@ -264,7 +266,8 @@ def main():
     runs = short["runs"]
     sizes, bandwidth_text = bandwidth(directory / "bandwidth")
 
-    text = INTRODUCTION.format(machine=machine_line(), repeats=1 + max(r["repeat"] for r in summaries[1]["runs"]))
+    text = INTRODUCTION.format(measured=measured_line(directory), machine=machine_line(),
+                               repeats=1 + max(r["repeat"] for r in summaries[1]["runs"]))
     text += f"**{arguments.note}**\n\n" if arguments.note else ""
     text += "## What has to hold, and what was found\n\n" + requirements(summaries, sizes, walls, directory)
     text += "## Speed-up\n\nOne node's frame over the slowest node's. The thesis's numbers are ratios of fitted "
