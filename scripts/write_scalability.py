@@ -48,7 +48,7 @@ first 20 s and 3,200 bodies only.
   percentile of any window of 5 s. *last*: mean of the last 5 s.
 - **In real time**: with so many bodies, and with fewer, the mean frame of every 5 s was within a step of 16.7 ms.
 - Two worlds. **columns**: the rain follows the regions of the run, as in the thesis, so more nodes have a larger and
-  thinner world; one node gets everything into one heap. **cuts**: one world of 8 columns, cut into 1, 2, 4 and 8; the
+  thinner world; one node gets everything into one large cluster. **cuts**: one world of 8 columns, cut into 1, 2, 4 and 8; the
   bodies are the same and only the cuts differ.
 - **back**: share of the handed over bodies that return to where they came from within a second. **hosted**: bodies on
   the fullest node over the mean, at the worst end of a window.
