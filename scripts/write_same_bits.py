@@ -15,8 +15,8 @@ from report_parts import machine_line, measured_line, table
 INTRODUCTION = """# The same bits on any number of nodes: measured
 
 Written by `scripts/same_bits.sh`; do not edit. Each part says with which commit and build it was measured. Real processes
-over DDS on one host ({machine}), `deterministic`, `time.pace=none`. Each row is a run of {steps:,} steps whose state
-hash is compared in every step with the run on one node.
+over DDS on one host, `deterministic`, `time.pace=none`. Each row is a run of {steps:,} steps whose state hash is compared
+in every step with the run on one node. Machine: {machine}.
 
 """
 NETWORKS = {
@@ -24,7 +24,9 @@ NETWORKS = {
     "bad": ("On a bad network", "Every datagram that a node sends is delayed by 16 ms, give or take 5 ms, and 10% of them "
             "are dropped.\n\n"),
 }
-ALSO = """Not in the tables, but in CI: every scene in virtual time, three cuts each, over a network that loses and copies 5%
+ALSO = """## Also in CI
+
+Every scene in virtual time, three cuts each, over a network that loses and copies 5%
 (`tests/cluster/shipped_scenes_test.cpp`); runs with orders of clients (`tests/cluster/orders_test.cpp`); 1,000 seeds of
 thrown bodies (`ctest -L long`).
 
@@ -61,7 +63,7 @@ def cost_part(directory):
     runs = {b["name"]: b for b in json.loads((directory / "bench.json").read_text())["benchmarks"]}
 
     def cpu(name):
-        return f"{runs[name]['cpu_time']:.2g} {runs[name]['time_unit']}"
+        return f"{runs[name]['cpu_time']:.3g} {runs[name]['time_unit']}"
 
     plain = next(b for name, b in runs.items() if "plain_bullet" in name)
     return "## What it costs\n\n" + measured_line(directory) + f"""
