@@ -171,7 +171,7 @@ ExitCode Launcher::report_and_count(ExitCode so_far) {
   for (const Child& child : children_) {
     if (child.died) facts.died.push_back(child.region);
   }
-  return merge_and_tell(*options_.report, facts, so_far);
+  return merge_and_print(*options_.report, facts, so_far);
 }
 
 }  // namespace aurasim::cli

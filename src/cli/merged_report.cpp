@@ -4,7 +4,7 @@
 
 namespace aurasim::cli {
 
-ExitCode merge_and_tell(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far) {
+ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far) {
   const node::Accounts accounts = node::merge_report(folder, facts);
   fmt::print("report: {}\n", (folder / "summary.json").string());
   fmt::print(

@@ -9,6 +9,6 @@
 namespace aurasim::cli {
 
 /// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice.
-ExitCode merge_and_tell(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far);
+ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far);
 
 }  // namespace aurasim::cli

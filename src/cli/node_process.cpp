@@ -89,7 +89,7 @@ ExitCode NodeProcess::meet_and_run() {
   publish(dds::NodeState::kStarting);
   transport_.emplace(participant_, neighbour_transport(launch_, options_.region));
   observers_.emplace(launch_, participant_, options_.region);
-  desk_.emplace(launch_, participant_, options_.region);
+  command_server_.emplace(launch_, participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return stop_requested() ? ExitCode::kOk : ExitCode::kRefused;
   begin_generation(start_->generation, start_->epoch_ns);
   return run_steps();
@@ -128,7 +128,7 @@ bool NodeProcess::this_region_is_taken() {
   return false;
 }
 
-/// Listens before it speaks: a node's endpoints would disturb a run that is already here.
+/// Listens before it publishes: a node's endpoints would disturb a run that is already here.
 bool NodeProcess::domain_is_free() {
   const auto begin = Clock::now();
   const auto strangers = [this] {
@@ -196,7 +196,7 @@ bool NodeProcess::wait_for_start() {
     }
     publish(dds::NodeState::kWaiting);
     start_when_all_wait();
-    obey_commands();
+    execute_commands();
     control_.wait(50ms);
   }
   return true;
@@ -209,7 +209,7 @@ void NodeProcess::begin_generation(core::Generation generation, std::int64_t epo
   setup.hash_states = options_.report.has_value();
   node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
   node_->accept_early_mail(std::move(mail));
-  desk_->begin_generation(*node_, generation);
+  command_server_->begin_generation(*node_, generation);
   run_orders_.clear();
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
@@ -230,7 +230,7 @@ bool NodeProcess::finished() const {
 
 ExitCode NodeProcess::run_steps() {
   while (!finished()) {
-    obey_commands();
+    execute_commands();
     serve_clients();
     reset_if_due();
     change_if_due();
@@ -281,7 +281,7 @@ void NodeProcess::compute_step() {
   const auto begin = Clock::now();
   const node::StepReport& report = node_->step();
   observers_->after_step(*node_, report);
-  desk_->after_step(report);
+  command_server_->after_step(report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
@@ -289,7 +289,7 @@ void NodeProcess::compute_step() {
   wait_ms_ = 0;
   note(report, frame_ms);
   publish_running();
-  obey_orders();
+  apply_orders();
 }
 
 void NodeProcess::note(const node::StepReport& report, double frame_ms) {
@@ -337,11 +337,11 @@ double NodeProcess::real_time_factor() const {
   return wall_s > 0 ? static_cast<double>(node_->current_step()) * launch_.step_s() / wall_s : 1;
 }
 
-void NodeProcess::obey_commands() {
-  for (const dds::RunCommand& command : control_.take_commands()) obey(command);
+void NodeProcess::execute_commands() {
+  for (const dds::RunCommand& command : control_.take_commands()) execute(command);
 }
 
-void NodeProcess::obey(const dds::RunCommand& command) {
+void NodeProcess::execute(const dds::RunCommand& command) {
   using Kind = dds::RunCommandKind;
   if (command.kind == Kind::kStart) {
     if (!start_ && command.generation == waits_to_start_) start_ = command;
@@ -380,7 +380,7 @@ void NodeProcess::reset_if_due() {
   begin_generation(reset.generation + 1, reset.epoch_ns);
 }
 
-/// The others may still need what was said last, and we their acknowledgements.
+/// The others may still need what was published last, and we their acknowledgements.
 void NodeProcess::linger() {
   const auto deadline = Clock::now() + kLinger;
   const auto all_done = [this] {

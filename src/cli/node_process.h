@@ -1,4 +1,4 @@
-// One node as a process: joins the DDS domain, waits for its neighbours, keeps pace, obeys run commands, records.
+// One node as a process: joins the DDS domain, waits for its neighbours, keeps pace, executes run commands, records.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_desk.h"
+#include "cli/command_server.h"
 #include "cli/fence.h"
 #include "cli/replica_publisher.h"
 #include "config/launch.h"
@@ -63,10 +63,10 @@ class NodeProcess {
   ExitCode run_steps();
   bool wait_until_due();
   void compute_step();
-  void obey_commands();
+  void execute_commands();
   void serve_clients();
-  void obey_orders();
-  void obey(const dds::RunCommand& command);
+  void apply_orders();
+  void execute(const dds::RunCommand& command);
   void reset_if_due();
   void change_if_due();
   void change_scene(const std::string& name);
@@ -87,10 +87,10 @@ class NodeProcess {
   dds::Participant participant_;
   dds::ControlBus control_;
   Fence fence_;
-  std::optional<dds::DdsTransport> transport_;  ///< once the domain is known to be free
-  std::optional<ReplicaPublisher> observers_;   ///< likewise
-  std::optional<CommandDesk> desk_;             ///< likewise
-  std::vector<core::Order> run_orders_;         ///< about the run as a whole, not yet due
+  std::optional<dds::DdsTransport> transport_;   ///< once the domain is known to be free
+  std::optional<ReplicaPublisher> observers_;    ///< likewise
+  std::optional<CommandServer> command_server_;  ///< likewise
+  std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;

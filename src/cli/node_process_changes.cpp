@@ -38,12 +38,12 @@ void NodeProcess::serve_clients() {
       return !entry.second.is_live() || std::find(known.begin(), known.end(), mesh) != known.end();
     });
   };
-  desk_->serve(*node_, run);
-  status_.meshes = desk_->meshes();
+  command_server_->serve(*node_, run);
+  status_.meshes = command_server_->meshes();
 }
 
 /// Orders about the run as a whole whose state has been computed.
-void NodeProcess::obey_orders() {
+void NodeProcess::apply_orders() {
   std::erase_if(run_orders_, [this](const core::Order& order) {
     if (node_->current_step() < order.at_step) return false;
     if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
@@ -120,12 +120,12 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
   }
   generation_ = waits_to_start_;
   start_.reset();
-  status_.state = dds::NodeState::kRunning;  // so that the next state is told at once
+  status_.state = dds::NodeState::kRunning;  // so that the next state is published at once
   while (!start_) {
     if (Clock::now() > deadline || stop_requested()) throw RepartitionFailed("the run does not go on after a change");
     publish(dds::NodeState::kWaiting);
     start_when_all_wait();
-    obey_commands();
+    execute_commands();
     control_.wait(10ms);
   }
 }
@@ -139,7 +139,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   settings.deadline = Clock::now() + kPatience;
   const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
   observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
-  observers_->tell_census(*node_, settings.census);
+  observers_->publish_census(*node_, settings.census);
   const std::vector<core::Departure> departures = find_new_hosts(settings, *changed, participant_, *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
@@ -166,7 +166,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   connect_anew(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
   observers_->begin_generation(generation_);
-  desk_->change_map(generation_, node_->current_step());
+  command_server_->change_map(generation_, node_->current_step());
   control_.use_map(launch_.regions.version());
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
   observers_->after_step(*node_, report);

@@ -33,8 +33,8 @@ class Census {
 
   void accept(const core::Replica& replica) {
     const bool counts = replica.key_frame && replica.generation == settings_.census && replica.stamp == step_;
-    if (!counts || heard_.contains(replica.source)) return;
-    heard_.insert({replica.source, true});
+    if (!counts || received_.contains(replica.source)) return;
+    received_.insert({replica.source, true});
     for (const core::ReplicaBody& body : replica.bodies) {
       core::BodyState state;
       state.id = body.id;
@@ -48,12 +48,12 @@ class Census {
     }
   }
 
-  bool complete() const { return heard_.size() == regions_; }
+  bool complete() const { return received_.size() == regions_; }
 
   std::vector<std::uint32_t> silent() const {
     std::vector<std::uint32_t> silent;
     for (std::uint32_t r = 0; r < regions_; ++r) {
-      if (!heard_.contains(RegionId{r})) silent.push_back(r);
+      if (!received_.contains(RegionId{r})) silent.push_back(r);
     }
     return silent;
   }
@@ -67,7 +67,7 @@ class Census {
   const RepartitionSettings& settings_;
   std::size_t regions_;
   core::Step step_;
-  std::map<RegionId, bool> heard_;
+  std::map<RegionId, bool> received_;
   std::vector<Resident> residents_;
 };
 
@@ -81,7 +81,8 @@ std::vector<Resident> take_census(const RepartitionSettings& settings, const cor
   Census census(settings, map.size(), node.current_step());
   while (!census.complete()) {
     if (Clock::now() > settings.deadline) {
-      throw RepartitionFailed(fmt::format("new regions: regions {} have not said what they host", census.silent()));
+      throw RepartitionFailed(
+          fmt::format("new regions: regions {} have not published what they host", census.silent()));
     }
     reader.wait(kRound);
     for (const core::Replica& replica : reader.take()) census.accept(replica);
@@ -157,7 +158,7 @@ std::vector<node::HandOffRow> exchange(const RepartitionSettings& settings, cons
                                        node::Node& node) {
   std::vector<node::HandOffRow> rows;
   transport.send(pack(settings, launch, departures, node, rows));
-  std::map<RegionId, bool> expects;  // by region that has spoken: does it send us bodies?
+  std::map<RegionId, bool> expects;  // by region that has published: does it send us bodies?
   std::map<RegionId, core::HandOff> came;
   const auto is_done = [&] {
     return expects.size() + 1 == launch.regions.size() &&

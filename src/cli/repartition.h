@@ -1,5 +1,5 @@
 // How bodies find their new hosts when the run gets other regions. The world stands still in one state; every node has
-// taken in all bodies that were on their way to it. Each node tells all others what it hosts, all work out the same new
+// taken in all bodies that were on their way to it. Each node publishes what it hosts, all work out the same new
 // hosts, and each sends its bodies straight there, with all that physics remembers of them.
 #pragma once
 

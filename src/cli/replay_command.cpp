@@ -45,8 +45,8 @@ overseer::Hello hello_of(const overseer::Replay& replay) {
 void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
   for (const overseer::PageRequest& page_request : web.take_requests()) {
     if (const auto* control = std::get_if<overseer::ReplayControl>(&page_request)) {
-      replay.obey(*control);
-      web.tell(overseer::Notice::kReplay, replay_message(replay));
+      replay.apply(*control);
+      web.publish(overseer::Notice::kReplay, replay_message(replay));
     } else {
       const auto& request = std::get<overseer::Request>(page_request);
       web.answer({request.client, request.id, false, "this is a recording", nullptr});
@@ -58,18 +58,18 @@ int replay(const Arguments& arguments) {
   overseer::Replay replay(arguments.file);
   overseer::ShapeStore shapes;
   const auto web = open_web_server(web_settings({}, arguments.web), shapes);
-  web->tell(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
+  web->publish(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
   catch_stop_signals();
   auto next_status = Clock::now();
   while (!stop_requested()) {
     serve_requests(*web, replay);
     overseer::Replay::Output due =
         replay.advance(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
-    for (auto& [notice, text] : due.texts) web->tell(notice, std::move(text));
+    for (auto& [notice, text] : due.texts) web->publish(notice, std::move(text));
     for (const overseer::WorldFrame& frame : due.frames) web->show(frame);
     if (Clock::now() >= next_status) {
       next_status = Clock::now() + kStatusPeriod;
-      web->tell(overseer::Notice::kReplay, replay_message(replay));
+      web->publish(overseer::Notice::kReplay, replay_message(replay));
     }
     std::this_thread::sleep_for(kRound);
   }

@@ -1,6 +1,6 @@
 #include "cli/replica_publisher.h"
 
-#include "node/bonds.h"
+#include "node/cluster_graph.h"
 
 namespace aurasim::cli {
 namespace {
@@ -8,7 +8,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kKeyFramePeriod = std::chrono::seconds(1);
-constexpr auto kBondsPeriod = std::chrono::milliseconds(250);  // of a run that stands
+constexpr auto kClusterGraphPeriod = std::chrono::milliseconds(250);  // of a run that stands
 
 }  // namespace
 
@@ -17,12 +17,12 @@ ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participan
       map_version_(launch.regions.version()),
       tick_steps_(node::tick_steps(launch.time.step_hz, launch.observe.tick_hz)),
       writer_(participant, region),
-      bonds_(participant, region) {}
+      graphs_(participant, region) {}
 
 void ReplicaPublisher::begin_generation(core::Generation generation) {
   feed_.emplace(region_, generation, map_version_);
   generation_ = generation;
-  told_ = -1;
+  published_ = -1;
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
@@ -31,14 +31,14 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
     return;
   }
   feed_->note(report);
-  if (report.step % tick_steps_ == 0) tell(node);
+  if (report.step % tick_steps_ == 0) publish(node);
 }
 
 void ReplicaPublisher::while_paused(node::Node& node) {
   if (!writer_.anybody_listens()) return;
   // Again and again: nobody asks for a sample that was lost.
-  if (Clock::now() - last_bonds_ >= kBondsPeriod) tell_bonds(node);
-  if (told_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) tell(node);
+  if (Clock::now() - last_graph_ >= kClusterGraphPeriod) publish_cluster_graph(node);
+  if (published_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) publish(node);
 }
 
 /// Whoever has just come gets a key frame at once: the last one may be of a time when nobody listened.
@@ -47,27 +47,27 @@ bool ReplicaPublisher::key_frame_is_due() const {
   return feed_->changed_since_key_frame() && Clock::now() - last_key_frame_ >= kKeyFramePeriod;
 }
 
-void ReplicaPublisher::tell_census(node::Node& node, core::Generation generation) {
+void ReplicaPublisher::publish_census(node::Node& node, core::Generation generation) {
   begin_generation(generation);
-  writer_.send(feed_->tell_changes(node.world().snapshot()));  // key frames count from the first tick on
-  writer_.send(feed_->tell_all(node.world().snapshot(), {}));
+  writer_.send(feed_->compose_changes(node.world().snapshot()));  // key frames count from the first tick on
+  writer_.send(feed_->compose_key_frame(node.world().snapshot(), {}));
 }
 
-void ReplicaPublisher::tell(node::Node& node) {
+void ReplicaPublisher::publish(node::Node& node) {
   const core::Snapshot& snapshot = node.world().snapshot();
-  told_ = snapshot.step;
-  writer_.send(feed_->tell_changes(snapshot));
-  tell_bonds(node);
+  published_ = snapshot.step;
+  writer_.send(feed_->compose_changes(snapshot));
+  publish_cluster_graph(node);
   if (!key_frame_is_due()) return;
   arrivals_ = writer_.arrivals();
   last_key_frame_ = Clock::now();
-  writer_.send(feed_->tell_all(snapshot, node.protocol().departures().open()));
+  writer_.send(feed_->compose_key_frame(snapshot, node.protocol().departures().open()));
 }
 
-void ReplicaPublisher::tell_bonds(node::Node& node) {
-  if (!bonds_.anybody_listens()) return;
-  last_bonds_ = Clock::now();
-  bonds_.send(node::bonds_of(node, generation_, map_version_));
+void ReplicaPublisher::publish_cluster_graph(node::Node& node) {
+  if (!graphs_.anybody_listens()) return;
+  last_graph_ = Clock::now();
+  graphs_.send(node::cluster_graph_of(node, generation_, map_version_));
 }
 
 }  // namespace aurasim::cli

@@ -1,4 +1,4 @@
-// When a node process tells observers what (node/replica_feed.h), and over which topic (dds/replica_bus.h).
+// When a node process publishes what for observers (node/replica_feed.h), and over which topic (dds/replica_bus.h).
 #pragma once
 
 #include <chrono>
@@ -18,29 +18,29 @@ class ReplicaPublisher {
 
   void begin_generation(core::Generation generation);
   /// The bodies that are here, whoever listens, as a key frame of `generation`.
-  void tell_census(node::Node& node, core::Generation generation);
+  void publish_census(node::Node& node, core::Generation generation);
   void use_map(std::uint64_t map_version) { map_version_ = map_version; }
   /// After the first state and after every step.
   void after_step(node::Node& node, const node::StepReport& report);
-  /// As often as you like while the run stands still: what was not told yet of the state that it stands in.
+  /// As often as you like while the run stands still: what was not published yet of the state that it stands in.
   void while_paused(node::Node& node);
 
  private:
-  void tell(node::Node& node);
-  void tell_bonds(node::Node& node);
+  void publish(node::Node& node);
+  void publish_cluster_graph(node::Node& node);
   bool key_frame_is_due() const;
 
   core::RegionId region_;
   std::uint64_t map_version_;
   core::Step tick_steps_;
   dds::ReplicaWriter writer_;
-  dds::BondsWriter bonds_;
+  dds::ClusterGraphWriter graphs_;
   std::optional<node::ReplicaFeed> feed_;
   core::Generation generation_ = 0;
-  core::Step told_ = -1;
+  core::Step published_ = -1;
   std::uint64_t arrivals_ = 0;  ///< observers that have got a key frame of their own
   std::chrono::steady_clock::time_point last_key_frame_;
-  std::chrono::steady_clock::time_point last_bonds_;
+  std::chrono::steady_clock::time_point last_graph_;
 };
 
 }  // namespace aurasim::cli

@@ -18,7 +18,7 @@ int merge(const Arguments& arguments) {
   facts.step_s = launch.step_s();
   facts.died = node::regions_without_end(arguments.folder, facts.regions);
   return static_cast<int>(
-      merge_and_tell(arguments.folder, facts, facts.died.empty() ? ExitCode::kOk : ExitCode::kFailed));
+      merge_and_print(arguments.folder, facts, facts.died.empty() ? ExitCode::kOk : ExitCode::kFailed));
 }
 
 }  // namespace

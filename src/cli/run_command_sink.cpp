@@ -63,7 +63,7 @@ void RunCommandSink::submit(overseer::Request request) {
 }
 
 void RunCommandSink::carry_held() {
-  if (held_.empty() || (!courier_.all_listen() && Clock::now() < held_.front().deadline)) return;
+  if (held_.empty() || (!client_.all_listen() && Clock::now() < held_.front().deadline)) return;
   for (Held& held : std::exchange(held_, {})) {
     if (waits_for_parts(held.request)) {
       held_.push_back(std::move(held));
@@ -89,7 +89,7 @@ core::MeshRef RunCommandSink::parts_of(std::uint64_t hash, const std::shared_ptr
   if (const auto* why = std::get_if<std::string>(&parts)) throw BadAsk(*why);
   const auto& pieces = std::get<core::TriangleMesh>(parts);
   const std::uint64_t hash_of_parts = config::content_hash(pieces);
-  courier_.bring(hash_of_parts, pieces);
+  client_.bring(hash_of_parts, pieces);
   return {hash_of_parts, core::MeshUse::kDecomposition};
 }
 
@@ -112,7 +112,7 @@ core::ClientShape RunCommandSink::client_shape(const overseer::ShapeChoice& choi
     const auto mesh = shapes_.find(stored->hash);
     using As = overseer::StoredShape::As;
     if (stored->as == As::kDecomposition) return parts_of(stored->hash, mesh);
-    if (mesh) courier_.bring(stored->hash, *mesh);  // or some other overseer has brought it
+    if (mesh) client_.bring(stored->hash, *mesh);  // or some other overseer has brought it
     return core::MeshRef{stored->hash, stored->as == As::kMesh ? core::MeshUse::kTriangles : core::MeshUse::kHull};
   }
   return std::visit(
@@ -164,7 +164,7 @@ void RunCommandSink::carry(const overseer::Request& request) {
     if (!steering_.is_there()) throw BadAsk("no node of this run is there");
     core::Command command;
     command.ask = ask_for(request.command);
-    sent_[courier_.send(std::move(command))] = {request.client, request.id};
+    sent_[client_.send(std::move(command))] = {request.client, request.id};
   } catch (const std::runtime_error& error) {
     replies_.push_back({request.client, request.id, false, error.what(), nullptr});
   }
@@ -172,7 +172,7 @@ void RunCommandSink::carry(const overseer::Request& request) {
 
 std::vector<overseer::Reply> RunCommandSink::take_replies() {
   carry_held();
-  for (const Delivery& delivery : courier_.take()) {
+  for (const Delivery& delivery : client_.take()) {
     const auto found = sent_.find(delivery.request);
     if (found == sent_.end()) continue;
     replies_.push_back(

@@ -1,5 +1,5 @@
 // Carries what pages ask for to the run: pause, resume, step and reset as run commands, everything else as commands of
-// clients (cli/courier.h). Never waits; a request is answered when its effect has been seen.
+// clients (cli/command_client.h). Never waits; a request is answered when its effect has been seen.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/courier.h"
+#include "cli/command_client.h"
 #include "cli/part_finder.h"
 #include "cli/run_steering.h"
 #include "overseer/commands.h"
@@ -21,7 +21,7 @@ class RunCommandSink final : public overseer::CommandSink {
   /// All of these outlive it.
   RunCommandSink(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
                  const overseer::ShapeStore& shapes)
-      : steering_(launch, control), courier_(participant, control, launch.agreement()), shapes_(shapes) {}
+      : steering_(launch, control), client_(participant, control, launch.agreement()), shapes_(shapes) {}
 
   void submit(overseer::Request request) override;
   std::vector<overseer::Reply> take_replies() override;
@@ -51,7 +51,7 @@ class RunCommandSink final : public overseer::CommandSink {
   core::Ask ask_for(const overseer::Command& command);
 
   RunSteering steering_;
-  Courier courier_;
+  CommandClient client_;
   const overseer::ShapeStore& shapes_;
   PartFinder part_finder_;
   /// Until all nodes listen (an overseer that has just begun is not heard by all), or a mesh has been taken apart.

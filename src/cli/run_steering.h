@@ -22,7 +22,7 @@ class RunSteering {
   bool is_there();
   bool is_paused();
 
-  /// Sends a command that takes effect as soon as all nodes can have heard of it; returns what was sent.
+  /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
   /// Does every live node show the effect of `command`?

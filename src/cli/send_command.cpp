@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "cli/command_client.h"
 #include "cli/commands.h"
-#include "cli/courier.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
@@ -62,7 +62,7 @@ core::Pose pose(const Arguments& a) {
   return pose;
 }
 
-core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, Courier& courier) {
+core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClient& client) {
   std::variant<core::TriangleMesh, std::string> mesh =
       config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
   if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
@@ -70,31 +70,31 @@ core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, Courier& co
   if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
   const auto& triangles = std::get<core::TriangleMesh>(mesh);
   const std::uint64_t hash = config::content_hash(triangles);
-  courier.bring(hash, triangles);
+  client.bring(hash, triangles);
   return {hash, use};
 }
 
-core::ClientShape shape(const Arguments& a, core::MeshUse use, Courier& courier) {
-  if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, courier);
+core::ClientShape shape(const Arguments& a, core::MeshUse use, CommandClient& client) {
+  if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, client);
   if (a.size.size() == 3) return core::Box{vector(a.size) / 2};
   if (a.radius_m > 0 && a.height_m > 0) return core::Capsule{a.radius_m, a.height_m};
   if (a.radius_m > 0) return core::Sphere{a.radius_m};
   fail("which shape? --size X Y Z, --radius R [--height H] or --mesh FILE");
 }
 
-core::Ask ask_for(const Arguments& a, Courier& courier) {
+core::Ask ask_for(const Arguments& a, CommandClient& client) {
   if (a.what == "spawn") {
     core::NewBody body;
     body.prototype = a.prototype;
     const core::MeshUse use = a.in_parts ? core::MeshUse::kDecomposition : core::MeshUse::kHull;
-    if (a.prototype.empty()) body.shape = shape(a, use, courier);
+    if (a.prototype.empty()) body.shape = shape(a, use, client);
     body.mass_kg = a.mass_kg;
     body.pose = pose(a);
     body.v_WB = vector(a.v);
     body.w_WB = vector(a.w);
     return body;
   }
-  if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, courier), pose(a)};
+  if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, client), pose(a)};
   if (a.what == "remove" && a.is_static) return core::RemoveStatic{core::StaticId{a.fixed}};
   if (a.what == "remove") return core::RemoveBody{core::BodyId{a.body}};
   if (a.what == "impulse") {
@@ -136,17 +136,17 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 [[noreturn]] void carry(const Arguments& arguments, dds::Participant& participant, dds::ControlBus& control,
                         std::uint64_t agreement) {
-  Courier courier(participant, control, agreement);
+  CommandClient client(participant, control, agreement);
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
-  while (!courier.all_listen() && in_time()) courier.wait(20ms);
+  while (!client.all_listen() && in_time()) client.wait(20ms);
   core::Command command;
   command.at_step = arguments.at_step;
-  command.ask = ask_for(arguments, courier);
-  courier.send(std::move(command));
+  command.ask = ask_for(arguments, client);
+  client.send(std::move(command));
   while (in_time()) {
-    courier.wait(20ms);
-    for (const Delivery& delivery : courier.take()) print(delivery);
+    client.wait(20ms);
+    for (const Delivery& delivery : client.take()) print(delivery);
   }
   fail("no answer");
 }

@@ -27,7 +27,7 @@ struct AuraRules {
   double frame_s = 0.015;          ///< T_F
   double latency_s = 0.002;        ///< T_L
   double uncertainty = 0.5;        ///< U: share of its speed by which a body may leave its predicted path
-  double contact_margin_m = 0.03;  ///< contacts begin at 0.02 (physics/), shapes are said to 1 mm, and a little more
+  double contact_margin_m = 0.03;  ///< contacts begin at 0.02 (physics/), shapes are given to 1 mm, and a little more
   double reach_scale = 1;          ///< tests only: auras that are a little too small must fail
   Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
 };
@@ -43,7 +43,7 @@ struct Path {
   double age_steps = 0;     ///< how long ago the state was known, seen from now
   double unborn_steps = 0;  ///< the body appears this many steps from now
   double speed_m_s = 0;     ///< top speed that it may come to have, for the uncertainty
-  double blur_m = 0;        ///< its surface may be this far from where it seems: it was said in few bytes
+  double blur_m = 0;        ///< its surface may be this far from where it seems: it was sent in few bytes
 };
 
 /// The path of one of our own bodies from its state now.

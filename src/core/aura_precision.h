@@ -1,16 +1,17 @@
-// Auras travel rounded (dds/aura_codec.cpp), so a receiver allows for a body that is not quite where it was said to be.
+// Auras travel rounded (dds/aura_codec.cpp), so a receiver allows for a body that is not quite where it was published
+// to be.
 #pragma once
 
 namespace aurasim::core {
 
-/// Positions are said in multiples of this: a power of two, so that doubles hold them exactly. Metres.
+/// Positions are sent in multiples of this: a power of two, so that doubles hold them exactly. Metres.
 inline constexpr double kPositionGrain_m = 1.0 / 4096;
 
-/// A rotation is said within this angle (radians).
+/// A rotation is sent within this angle (radians).
 inline constexpr double kRotationError_rad = 1e-5;
 
 /// How far a point of a body's surface can be from where its aura says. Half a grain along each axis is 0.87 grains;
 /// the rest holds what single precision takes from the velocities (at 1,000 m/s and for 0.1 s: 6 um).
-inline constexpr double said_within_m(double radius_m) { return kPositionGrain_m + kRotationError_rad * radius_m; }
+inline constexpr double rounded_within_m(double radius_m) { return kPositionGrain_m + kRotationError_rad * radius_m; }
 
 }  // namespace aurasim::core

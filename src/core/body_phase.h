@@ -8,7 +8,7 @@ namespace aurasim::core {
 
 enum class Phase : std::uint8_t {
   kInjected,              ///< received or created, not yet looked at
-  kHostRegion,            ///< far from every boundary: nobody is told
+  kHostRegion,            ///< far from every boundary: nothing is published
   kIntersectingBoundary,  ///< in a zone: projects its aura
   kBoundaryTraversed,     ///< wholly outside its host's region: projects its aura, goes home as soon as it is an island
   kSent,                  ///< in the hand-off buffer

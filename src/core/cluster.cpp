@@ -82,7 +82,7 @@ void Clusters::start_pushes(std::uint32_t i) {
     if (!started_[j]) starting_.push_back(j);
     started_[j] = 1;
   });
-  pushes_.form_trains(starting_);
+  pushes_.form_moving_groups(starting_);
   for (const std::uint32_t j : starting_) pushes_.start(j);
 }
 
@@ -157,7 +157,7 @@ void Clusters::complete(std::uint32_t i) {
   look_on();
 }
 
-void Clusters::hit(std::uint32_t i, const Strike& foreign) {
+void Clusters::hit(std::uint32_t i, const Impact& foreign) {
   if (!pushes_.hit(i, foreign)) return;
   raised_.push_back(i);
   take_raised();

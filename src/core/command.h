@@ -1,4 +1,4 @@
-// What clients ask for, before it has a place in time (core/order.h), and what they are told.
+// What clients ask for, before it has a place in time (core/order.h), and what is replied.
 #pragma once
 
 #include <cstdint>

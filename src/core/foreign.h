@@ -19,7 +19,7 @@ struct Foreign {
   RegionId host{};
   bool ghost = false;
   bool born = true;  ///< in the state that its aura describes
-  Strike strike;     ///< what it may do to whom it hits
+  Impact impact;     ///< what it may do to whom it hits
 };
 
 /// Some bodies of one host, near each other, all of them slow or all of them fast. They are asked about together: what
@@ -33,7 +33,7 @@ struct ForeignBlock {
 class ForeignBodies {
  public:
   void clear();
-  /// What `aura` says of a body, seen in state `now`; the last word of its source is of state `known`.
+  /// What `aura` says of a body, seen in state `now`; the last batch of its source is of state `known`.
   void add(const AuraRecord& aura, Step known, Step now, const Aura& rules);
   /// Call once after the last add() and before any question about who is near.
   void build();

@@ -36,7 +36,7 @@ class DepartureLedger {
   std::deque<HandOff> open_;
 };
 
-/// The receiver's side: tells first copies from later ones, and remembers adoptions for a while.
+/// The receiver's side: distinguishes first copies from later ones, and remembers adoptions for a while.
 class ArrivalLedger {
  public:
   /// True for the first copy of a hand-off from `source`.

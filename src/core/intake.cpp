@@ -55,7 +55,7 @@ void Intake::accept(Inbox& inbox) {
   });
   for (const PeerEvent& event : inbox.peers) accept(event);
   inbox.peers.clear();
-  hear_of_deaths();
+  receive_deaths();
 }
 
 void Intake::accept(HandOff& hand_off) {
@@ -75,27 +75,27 @@ void Intake::accept(HandOff& hand_off) {
 
 void Intake::accept(const PeerEvent& event) {
   Neighbour* neighbour = find(event.region);
-  if (neighbour && neighbour->alive() && event.change == PeerChange::kLost) bury(*neighbour);
+  if (neighbour && neighbour->alive() && event.change == PeerChange::kLost) mark_dead(*neighbour);
 }
 
-void Intake::bury(Neighbour& neighbour) {
-  neighbour.bury();
+void Intake::mark_dead(Neighbour& neighbour) {
+  neighbour.mark_dead();
   std::erase_if(waiting_, [&](const HandOff& h) { return h.source == neighbour.id(); });
   for (HandOff& open : departures_.take_open(neighbour.id())) to_reclaim_.push_back(std::move(open));
 }
 
 /// What one neighbour holds for dead, all hold for dead: half a cluster may not wait for a region that the other half
 /// has given up.
-void Intake::hear_of_deaths() {
+void Intake::receive_deaths() {
   for (bool changed = true; changed;) {
     changed = false;
-    for (const Neighbour& speaker : neighbours_) {
-      if (!speaker.alive()) continue;
-      for (const RegionId dead : speaker.dead()) {
+    for (const Neighbour& witness : neighbours_) {
+      if (!witness.alive()) continue;
+      for (const RegionId dead : witness.dead()) {
         if (dead == vicinity_.self) fenced_ = true;
         Neighbour* neighbour = find(dead);
         if (neighbour && neighbour->alive()) {
-          bury(*neighbour);
+          mark_dead(*neighbour);
           changed = true;
         }
       }
@@ -215,8 +215,8 @@ std::vector<RegionId> Intake::dead_regions() const {
 std::vector<Order> Intake::take_orders() {
   std::vector<Order> orders;
   for (Neighbour& neighbour : neighbours_) {
-    const std::vector<Order> heard = neighbour.take_orders();
-    orders.insert(orders.end(), heard.begin(), heard.end());
+    const std::vector<Order> received = neighbour.take_orders();
+    orders.insert(orders.end(), received.begin(), received.end());
   }
   return orders;
 }

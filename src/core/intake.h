@@ -1,4 +1,4 @@
-// The hearing half of the protocol: sorts what arrives, says when the next state may be computed, which bodies join
+// The receiving half of the protocol: sorts what arrives, says when the next state may be computed, which bodies join
 // before it, and what becomes of bodies that were on their way to a region that died.
 #pragma once
 
@@ -20,7 +20,7 @@ struct IntakeSettings {
   Generation generation = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
-  Step start = 0;                     ///< the first state that anybody speaks of
+  Step start = 0;                     ///< the first state that anybody publishes
   Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
 };
 
@@ -30,7 +30,7 @@ struct Adoption {
   Step stamp = 0;
   std::uint64_t sequence = 0;
   HandOffReason reason{};
-  bool reclaimed = false;  ///< it had been sent to a region that died before it said that it adopted
+  bool reclaimed = false;  ///< it had been sent to a region that died before it acknowledged
   ClusterState cluster;
 };
 
@@ -74,8 +74,8 @@ class Intake {
   bool belongs(RegionId source, Generation generation, std::uint64_t map_version);
   void accept(HandOff& hand_off);
   void accept(const PeerEvent& event);
-  void bury(Neighbour& neighbour);
-  void hear_of_deaths();
+  void mark_dead(Neighbour& neighbour);
+  void receive_deaths();
   void adopt_due(Step limit, Step n, ViolationLog& violations);
   void adopt(HandOff& hand_off, Step n, bool reclaimed);
   void reclaim(Step n, ViolationLog& violations);

@@ -1,4 +1,4 @@
-// What nodes say to each other (docs/design.md, "On the wire"). Plain values: the transport decides how they travel.
+// What nodes send each other (docs/design.md, "On the wire"). Plain values: the transport decides how they travel.
 // Every message carries the step it describes (its stamp) and the generation of the run.
 #pragma once
 
@@ -48,7 +48,7 @@ struct BodyEpoch {
   Epoch epoch = 0;
 };
 
-/// One per node and step, even when nothing changed: it also says "this step is done".
+/// One per node and step, even when nothing changed: it also means "this step is done".
 struct AuraBatch {
   RegionId source{};
   Generation generation = 0;
@@ -65,7 +65,7 @@ struct AuraBatch {
   std::vector<HandOffMark> hand_offs;
   std::vector<RegionId> dead;     ///< regions that the source holds for dead
   std::vector<BodyEpoch> claims;  ///< bodies adopted from regions now dead, so that nobody takes them back
-  std::vector<Order> orders;      ///< heard since the last batch, in sequence
+  std::vector<Order> orders;      ///< received since the last batch, in sequence
 };
 
 enum class HandOffReason : std::uint8_t {
@@ -112,7 +112,7 @@ struct Inbox {
   void clear();
 };
 
-/// What one step of one node says. The aura batch goes to every neighbour, the rest to its destination.
+/// What one step of one node publishes. The aura batch goes to every neighbour, the rest to its destination.
 struct Outbox {
   AuraBatch aura;
   std::vector<HandOff> hand_offs;

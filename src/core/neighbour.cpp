@@ -79,7 +79,7 @@ std::uint64_t Neighbour::hand_offs_until(Step stamp) const {
 
 std::vector<Order> Neighbour::take_orders() { return std::exchange(orders_, {}); }
 
-void Neighbour::bury() {
+void Neighbour::mark_dead() {
   alive_ = false;
   auras_.clear();
   waiting_.clear();

@@ -1,4 +1,4 @@
-// What one neighbour has told us: its aura batches in order of stamp, and the auras that they add up to.
+// What one neighbour has published: its aura batches in order of stamp, and the auras that they add up to.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace aurasim::core {
 
 class Neighbour {
  public:
-  /// `start`: the first state that it speaks of.
+  /// `start`: the first state that it publishes.
   Neighbour(RegionId id, RegionId self, Step start = 0)
       : id_(id), self_(self), received_(start - 1), applied_(start - 1) {}
 
@@ -32,8 +32,8 @@ class Neighbour {
   /// Sequence of its last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
   std::uint64_t hand_offs_until(Step stamp) const;
 
-  /// It died: nothing that it said holds any longer.
-  void bury();
+  /// It died: nothing that it published holds any longer.
+  void mark_dead();
 
   const std::vector<AuraRecord>& auras() const { return auras_; }  ///< ascending id
   double top_speed_m_s() const { return top_speed_m_s_; }

@@ -1,5 +1,5 @@
 // What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence
-// and obeys each one in the state that it names, so a run with orders is as repeatable as one without.
+// and applies each one in the state that it names, so a run with orders is as repeatable as one without.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@ struct MeshRef {
   MeshUse use = MeshUse::kHull;
 };
 
-/// The scene's shapes get one more. Holds from when it is heard.
+/// The scene's shapes get one more. Holds from when it is received.
 struct DefineShape {
   std::variant<Sphere, Box, Capsule, Cylinder, MeshRef> shape;
 };
-/// The scene's prototypes get one more. Holds from when it is heard.
+/// The scene's prototypes get one more. Holds from when it is received.
 struct DefinePrototype {
   std::uint32_t shape = 0;
   double mass_kg = 1;

@@ -8,7 +8,7 @@ namespace aurasim::core {
 void OrderLog::add(const Order& order) {
   last_ = order.sequence;
   news_.push_back(order);
-  to_say_.push_back(order);
+  to_publish_.push_back(order);
 }
 
 const Order& OrderLog::announce(Order order) {
@@ -17,7 +17,7 @@ const Order& OrderLog::announce(Order order) {
   return news_.back();
 }
 
-void OrderLog::hear(std::span<const Order> orders) {
+void OrderLog::receive(std::span<const Order> orders) {
   for (const Order& order : orders) {
     if (order.sequence == last_ + 1) add(order);
   }
@@ -25,7 +25,7 @@ void OrderLog::hear(std::span<const Order> orders) {
 
 std::vector<Order> OrderLog::take_news() { return std::exchange(news_, {}); }
 
-std::vector<Order> OrderLog::take_to_say() { return std::exchange(to_say_, {}); }
+std::vector<Order> OrderLog::take_to_publish() { return std::exchange(to_publish_, {}); }
 
 int hops_across(const RegionMap& map, double neighbour_distance_m) {
   std::vector<std::vector<RegionId>> neighbours;

@@ -1,5 +1,6 @@
-// How orders spread: each node says once, in its next aura batch, what it has heard. Batches are in step and in order,
-// so after as many hops as two regions can be apart everybody knows, and nobody knows an order but not the one before.
+// How orders spread: each node publishes once, in its next aura batch, what it has received. Batches are in step and in
+// order, so after as many hops as two regions can be apart everybody knows, and nobody knows an order but not the one
+// before.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +19,20 @@ class OrderLog {
   /// Our own: gives it the next number.
   const Order& announce(Order order);
   /// From a neighbour's batch. Copies and anything out of sequence are left out.
-  void hear(std::span<const Order> orders);
+  void receive(std::span<const Order> orders);
 
   std::uint64_t last() const { return last_; }
-  /// Heard or announced since the last take_news(), in sequence.
+  /// Received or announced since the last take_news(), in sequence.
   std::vector<Order> take_news();
-  /// What the next batch has to say, given out once.
-  std::vector<Order> take_to_say();
+  /// What the next batch has to publish, given out once.
+  std::vector<Order> take_to_publish();
 
  private:
   void add(const Order& order);
 
   std::uint64_t last_;
   std::vector<Order> news_;
-  std::vector<Order> to_say_;
+  std::vector<Order> to_publish_;
 };
 
 /// How many times a message is passed on from region to region, at most, until all have it.

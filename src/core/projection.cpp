@@ -3,20 +3,22 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/fetch.h"
+#include "core/prefetch.h"
 
 namespace aurasim::core {
 namespace {
 
-/// Is there anything in `now` that the others could not know from `said`?
-bool has_news(const AuraRecord& said, const AuraRecord& now) {
+/// Is there anything in `now` that the others could not know from `published`?
+bool has_news(const AuraRecord& published, const AuraRecord& now) {
   const bool asleep = (now.flags & kAuraAsleep) != 0;
-  return !asleep || said.flags != now.flags || said.speed_m_s != now.speed_m_s || said.pushed_m_s != now.pushed_m_s ||
-         said.pushed_kg_m_s != now.pushed_kg_m_s || said.epoch != now.epoch || said.pose.p_WB != now.pose.p_WB;
+  return !asleep || published.flags != now.flags || published.speed_m_s != now.speed_m_s ||
+         published.pushed_m_s != now.pushed_m_s || published.pushed_kg_m_s != now.pushed_kg_m_s ||
+         published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB;
 }
 
-/// What has been said lies all over the memory, and physics has been there since: waiting for it was most of its cost.
-constexpr std::size_t kFetchedAhead = 8;
+/// What has been published lies all over the memory, and physics has been there since: waiting for it was most of its
+/// cost.
+constexpr std::size_t kPrefetchDistance = 8;
 
 }  // namespace
 
@@ -95,28 +97,28 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
   return aura;
 }
 
-void Projection::say(Track& track, const AuraRecord& aura, AuraBatch& batch) {
-  if (track.projected() && !has_news(track.said->newest, aura)) return;
+void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch) {
+  if (track.projected() && !has_news(track.published->newest, aura)) return;
   ++(track.projected() ? counters_.updated : counters_.created);
-  if (!track.projected()) track.said = std::make_unique<Track::Said>(aura, aura);
-  track.said->newest = aura;
+  if (!track.projected()) track.published = std::make_unique<Track::Published>(aura, aura);
+  track.published->newest = aura;
   batch.updates.push_back(aura);
 }
 
-void Projection::classify(const Snapshot& snapshot, const Gathering& gathering) {
+void Projection::classify(const Snapshot& snapshot, const InterestMatching& matching) {
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    move(tracks_[i], gathering.outside(i)             ? PhaseEvent::kOutside
-                     : gathering.must_be_announced(i) ? PhaseEvent::kNearBoundary
-                                                      : PhaseEvent::kFarFromBoundary);
+    move(tracks_[i], matching.outside(i)             ? PhaseEvent::kOutside
+                     : matching.must_be_announced(i) ? PhaseEvent::kNearBoundary
+                                                     : PhaseEvent::kFarFromBoundary);
   }
 }
 
-void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, AuraBatch& batch,
-                       ViolationLog& violations) {
+void Projection::publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch,
+                         ViolationLog& violations) {
   projecting_ = 0;
   for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
-    if (i + kFetchedAhead < tracks_.size() && tracks_[i + kFetchedAhead].projected()) {
-      fetch(tracks_[i + kFetchedAhead].said.get(), sizeof(Track::Said));
+    if (i + kPrefetchDistance < tracks_.size() && tracks_[i + kPrefetchDistance].projected()) {
+      prefetch(tracks_[i + kPrefetchDistance].published.get(), sizeof(Track::Published));
     }
     Track& track = tracks_[i];
     if (track.phase == Phase::kSent) continue;
@@ -126,10 +128,10 @@ void Projection::speak(const Snapshot& snapshot, const Gathering& gathering, Aur
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
-      say(track, describe(body, i, gathering.clusters(), snapshot.step), batch);
+      publish(track, describe(body, i, matching.clusters(), snapshot.step), batch);
     } else if (track.projected()) {
       ++counters_.deleted;
-      track.said.reset();
+      track.published.reset();
       batch.deletes.push_back(track.id);
     }
   }
@@ -178,10 +180,11 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   });
 }
 
-/// After 2K steps the body has to be within what its aura said then: the path, with or without its fall, plus U v age.
+/// After 2K steps the body has to be within what its aura promised then: the path, with or without its fall, plus U v
+/// age.
 void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
   if (!track.projected() || aura_.rules().kind != AuraKind::kSwept) return;
-  const AuraRecord& promise = track.said->promise;
+  const AuraRecord& promise = track.published->promise;
   const auto age = static_cast<double>(now - promise.stamp);
   if (age < 2 * aura_.rules().lookahead) return;
   Path path;
@@ -197,7 +200,7 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
     allowed += (aura_.ahead(path, age).p_WB - path.pose.p_WB).norm();
   }
   if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
-  track.said->promise = track.said->newest;
+  track.published->promise = track.published->newest;
 }
 
 void Projection::check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations) {

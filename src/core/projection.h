@@ -1,5 +1,5 @@
-// The speaking half of the protocol: follows every body through the phases of thesis 4.4 and turns what changed into
-// aura creations (OBC), updates (OBU) and deletions (OBE). Checks that what was said came true.
+// The publishing half of the protocol: follows every body through the phases of thesis 4.4 and turns what changed into
+// aura creations (OBC), updates (OBU) and deletions (OBE). Checks that what was published came true.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 #include "core/aura.h"
 #include "core/body_phase.h"
-#include "core/gathering.h"
+#include "core/interest_matching.h"
 #include "core/messages.h"
 #include "core/vicinity.h"
 #include "core/violation.h"
@@ -24,12 +24,12 @@ struct Track {
   bool too_fast = false;     ///< already counted
   bool out_of_span = false;  ///< already counted
   Step island_since = -1;    ///< first of the states in a row in which its cluster was an island; -1: is none
-  struct Said {
+  struct Published {
     AuraRecord newest;
     AuraRecord promise;  ///< an older one, kept until what it promised can be checked
   };
-  std::unique_ptr<Said> said;  ///< its auras, while the other regions have one
-  bool projected() const { return said != nullptr; }
+  std::unique_ptr<Published> published;  ///< its auras, while the other regions have one
+  bool projected() const { return published != nullptr; }
 };
 
 /// Counted since the start; one per aura and message.
@@ -52,10 +52,10 @@ class Projection {
   const Track* find(BodyId id) const;
 
   /// Moves every body to the phase that its place asks for.
-  void classify(const Snapshot& snapshot, const Gathering& gathering);
+  void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
   /// Writes creations, updates and deletions of the bodies that stay into `batch`.
-  void speak(const Snapshot& snapshot, const Gathering& gathering, AuraBatch& batch, ViolationLog& violations);
+  void publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch, ViolationLog& violations);
 
   /// Body i leaves for `destination`: the others keep its last aura, as a ghost, for 2K steps.
   void depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination, PhaseEvent why,
@@ -67,7 +67,7 @@ class Projection {
 
  private:
   void move(Track& track, PhaseEvent event);
-  void say(Track& track, const AuraRecord& aura, AuraBatch& batch);
+  void publish(Track& track, const AuraRecord& aura, AuraBatch& batch);
   void note_gone(const Track& track);
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();

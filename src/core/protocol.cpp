@@ -9,7 +9,7 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       map_version_(map.version()),
       aura_(settings.aura, clearance),
       intake_({settings.generation, settings.sync, settings.aura.lookahead, settings.start}, vicinity_, departures_),
-      gathering_(aura_, vicinity_),
+      matching_(aura_, vicinity_),
       projection_(aura_, vicinity_),
       orders_(settings.last_order),
       claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
@@ -23,10 +23,10 @@ const Changes& Protocol::receive(Step n) {
   std::vector<Adoption> arrived = intake_.receive(n, violations_);
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
-  hear_violations();
-  orders_.hear(intake_.take_orders());
+  receive_violations();
+  orders_.receive(intake_.take_orders());
   changes_.orders = orders_.take_news();
-  for (Order& order : changes_.orders) obey_late(order, n);
+  for (Order& order : changes_.orders) apply_late(order, n);
   return changes_;
 }
 
@@ -61,15 +61,15 @@ void Protocol::let_go(BodyId id) {
   changes_.let_go.push_back(id);
 }
 
-void Protocol::hear_violations() {
-  std::uint64_t heard = 0;
-  for (const Neighbour& neighbour : intake_.neighbours()) heard += neighbour.violations();
-  if (heard != violations_heard_) {
+void Protocol::receive_violations() {
+  std::uint64_t received = 0;
+  for (const Neighbour& neighbour : intake_.neighbours()) received += neighbour.violations();
+  if (received != violations_received_) {
     Step newest = violations_.last_step();
     for (const Neighbour& neighbour : intake_.neighbours()) newest = std::max(newest, neighbour.applied());
     last_violation_step_ = std::max(last_violation_step_, newest);
   }
-  violations_heard_ = heard;
+  violations_received_ = received;
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
 }
 
@@ -79,11 +79,11 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
   rank(snapshot.step);
-  gathering_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
-  projection_.classify(snapshot, gathering_);
+  matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
+  projection_.classify(snapshot, matching_);
   decide(snapshot);
-  claimer_.reconsider(snapshot.step, {largest_cluster_, guest_heap_}, ranks_);
-  projection_.speak(snapshot, gathering_, outbox_.aura, violations_);
+  claimer_.reconsider(snapshot.step, {largest_cluster_, largest_guest_}, ranks_);
+  projection_.publish(snapshot, matching_, outbox_.aura, violations_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
   return departing_;
@@ -98,18 +98,18 @@ void Protocol::rank(Step now) {
 
 void Protocol::decide(const Snapshot& snapshot) {
   decided_.assign(snapshot.bodies.size(), 0);
-  largest_cluster_ = guest_heap_ = 0;
+  largest_cluster_ = largest_guest_ = 0;
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (aura_.rules().kind == AuraKind::kNone) {
       decide_naively(i, snapshot);
       continue;
     }
-    const std::uint32_t cluster = gathering_.clusters().of(i);
-    if (!gathering_.clusters().is_complete(i) || decided_[cluster]) continue;
+    const std::uint32_t cluster = matching_.clusters().of(i);
+    if (!matching_.clusters().is_complete(i) || decided_[cluster]) continue;
     decided_[cluster] = 1;
-    const std::size_t size = gathering_.clusters().size(i);
+    const std::size_t size = matching_.clusters().size(i);
     largest_cluster_ = std::max(largest_cluster_, size);
-    if (size >= RankClaimer::kLeastBodies && size > guest_heap_ && is_abroad(i)) guest_heap_ = size;
+    if (size >= RankClaimer::kLeastBodies && size > largest_guest_ && is_abroad(i)) largest_guest_ = size;
     decide_for_cluster(i, snapshot);
   }
 }
@@ -117,13 +117,13 @@ void Protocol::decide(const Snapshot& snapshot) {
 /// Two thirds of body i's cluster, or more, are outside our region.
 bool Protocol::is_abroad(std::uint32_t i) const {
   std::size_t outside = 0;
-  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += gathering_.outside(j) ? 1 : 0; });
-  return 3 * outside >= 2 * gathering_.clusters().size(i);
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += matching_.outside(j) ? 1 : 0; });
+  return 3 * outside >= 2 * matching_.clusters().size(i);
 }
 
 /// AC before BT: a touched cluster is never an island.
 void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
-  const RegionId pulled_to = gathering_.pulled_to(i);
+  const RegionId pulled_to = matching_.pulled_to(i);
   if (pulled_to != vicinity_.self) {
     depart(i, pulled_to, HandOffReason::kAuraCollision, snapshot);
   } else if (settles_elsewhere(i, snapshot.step)) {
@@ -145,12 +145,12 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
 
 /// Has the cluster of body i been an island for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
-  bool island = !gathering_.touched(i) && !gathering_.expected(i);
+  bool island = !matching_.touched(i) && !matching_.expected(i);
   if (island) {
-    gathering_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && gathering_.outside(j); });
+    matching_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && matching_.outside(j); });
   }
   Step since = 0;
-  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
     Track& track = projection_.track(j);
     if (!island) {
       track.island_since = -1;
@@ -164,8 +164,8 @@ bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
 
 RegionId Protocol::lowest_owner(std::uint32_t i) const {
   RegionId lowest{~0u};
-  gathering_.clusters().for_each_member(
-      i, [&](std::uint32_t j) { lowest = std::min(lowest, vicinity_.map.owner(gathering_.path(j).pose.p_WB)); });
+  matching_.clusters().for_each_member(
+      i, [&](std::uint32_t j) { lowest = std::min(lowest, vicinity_.map.owner(matching_.path(j).pose.p_WB)); });
   return lowest;
 }
 
@@ -174,9 +174,9 @@ void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reaso
   departure.destination = destination;
   departure.reason = reason;
   const bool collision = reason == HandOffReason::kAuraCollision;
-  gathering_.clusters().for_each_member(i, [&](std::uint32_t j) {
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
     departure.bodies.push_back(snapshot.bodies[j].id);
-    projection_.depart(snapshot.bodies[j], j, gathering_.clusters(), destination,
+    projection_.depart(snapshot.bodies[j], j, matching_.clusters(), destination,
                        collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
   });
   std::sort(departure.bodies.begin(), departure.bodies.end());
@@ -205,27 +205,27 @@ void Protocol::fill_header() {
   batch.generation = settings_.generation;
   batch.map_version = map_version_;
   batch.full = batch.stamp == settings_.start;
-  batch.top_speed_m_s = gathering_.top_speed();
-  batch.top_radius_m = gathering_.top_radius();
+  batch.top_speed_m_s = matching_.top_speed();
+  batch.top_radius_m = matching_.top_radius();
   batch.violations = violations_.warnings();
   batch.ranks = claimer_.claims();
   std::sort(batch.updates.begin(), batch.updates.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
   intake_.fill(outbox_, batch.stamp);
-  batch.orders = orders_.take_to_say();
+  batch.orders = orders_.take_to_publish();
 }
 
 /// Only where nodes do not wait for each other can an order come after its time.
-void Protocol::obey_late(Order& order, Step n) {
+void Protocol::apply_late(Order& order, Step n) {
   if (order.at_step >= n) return;
   violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});
   order.at_step = n;
 }
 
 Step Protocol::earliest_effect() const {
-  const Step said = outbox_.aura.stamp + 1;
-  return said + hops_across_ * aura_.rules().lookahead + birth_notice(aura_.rules().lookahead) + 1;
+  const Step published = outbox_.aura.stamp + 1;
+  return published + hops_across_ * aura_.rules().lookahead + birth_notice(aura_.rules().lookahead) + 1;
 }
 
 void Protocol::report_frame(Step step, double frame_s) {
@@ -238,7 +238,7 @@ std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules,
   std::vector<RegionId> hosts(scene.bodies.size());
   for (std::size_t i = 0; i < hosts.size(); ++i) hosts[i] = map.owner(scene.bodies[i].pose.p_WB);
   if (rules.kind == AuraKind::kNone || map.size() == 1) return hosts;
-  // For the first 2K steps nobody hears of anybody: the clusters of state 0 have to look that much further ahead.
+  // For the first 2K steps nobody has received anything: the clusters of state 0 have to look that much further ahead.
   AuraRules early = rules;
   early.lookahead = 4 * rules.lookahead;
   const Aura aura(early, clearance);

@@ -1,4 +1,4 @@
-// Aura Projection on one node: what it hears from its neighbours, what it tells them, which bodies go where.
+// Aura Projection on one node: what it receives from its neighbours, what it publishes, which bodies go where.
 // No clock, thread, socket or physics in here: time, messages and snapshots are passed in, so a whole cluster of
 // nodes can run inside one test. One step of a node (docs/design.md, "One step"):
 //   receive(n)         ->  bodies to adopt or to let go          [physics computes state n]
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/aura.h"
-#include "core/gathering.h"
 #include "core/handoff.h"
 #include "core/intake.h"
+#include "core/interest_matching.h"
 #include "core/messages.h"
 #include "core/order_log.h"
 #include "core/projection.h"
@@ -31,7 +31,7 @@ struct ProtocolSettings {
   AuraRules aura;
   double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other
   Step start = 0;                   ///< the first state that it looks at
-  std::uint64_t last_order = 0;     ///< orders up to this one have been heard
+  std::uint64_t last_order = 0;     ///< orders up to this one have been received
   Step resend_after_steps = 120;    ///< an unacknowledged hand-off is sent again every so often
   Step shuffle_ranks_steps = 0;     ///< tests only: another rank every so many steps
 };
@@ -39,7 +39,7 @@ struct ProtocolSettings {
 struct Changes {
   std::vector<Adoption> adoptions;  ///< in the order in which they join
   std::vector<BodyId> let_go;       ///< another node has a higher epoch of these: take them out first
-  std::vector<Order> orders;        ///< heard since the last step, in sequence; before anything else
+  std::vector<Order> orders;        ///< received since the last step, in sequence; before anything else
 };
 
 /// A cluster that has to leave: release it from physics and give it to hand_over().
@@ -81,18 +81,18 @@ class Protocol {
   /// Looks at a state and says who has to leave. Valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);
 
-  /// Numbers an order of our own and says it with the next step; receive() gives it out like those of others. Only on
-  /// the one node that takes orders.
+  /// Numbers an order of our own and publishes it with the next step; receive() gives it out like those of others. Only
+  /// on the one node that takes orders.
   const Order& announce(Order order) { return orders_.announce(std::move(order)); }
   std::uint64_t last_order() const { return orders_.last(); }
-  /// The earliest state in which an order announced now can take effect: all nodes have heard of it, and of the body
+  /// The earliest state in which an order announced now can take effect: all nodes know of it, and of the body
   /// that it brings or the kick that it gives, before.
   Step earliest_effect() const;
 
   /// The physics of a departure; once for each, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
 
-  /// What the step says: complete after the last hand_over().
+  /// What the step publishes: complete after the last hand_over().
   const Outbox& outbox() const { return outbox_; }
 
   /// The node's clock says that computing `step` took `frame_s`.
@@ -102,7 +102,7 @@ class Protocol {
   bool fenced() const { return intake_.fenced(); }
 
   const Intake& intake() const { return intake_; }
-  const Gathering& gathering() const { return gathering_; }
+  const InterestMatching& matching() const { return matching_; }
   const Projection& projection() const { return projection_; }
   const DepartureLedger& departures() const { return departures_; }
   const ProtocolCounters& counters() const { return counters_; }
@@ -116,7 +116,7 @@ class Protocol {
   void take_if_newer(Adoption& adoption);
   void let_go_of_what_others_own();
   void let_go(BodyId id);
-  void obey_late(Order& order, Step n);
+  void apply_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   bool is_abroad(std::uint32_t i) const;
@@ -126,7 +126,7 @@ class Protocol {
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
   void rank(Step now);
   void fill_header();
-  void hear_violations();
+  void receive_violations();
 
   ProtocolSettings settings_;
   Vicinity vicinity_;
@@ -134,7 +134,7 @@ class Protocol {
   Aura aura_;
   DepartureLedger departures_;
   Intake intake_;
-  Gathering gathering_;
+  InterestMatching matching_;
   Projection projection_;
   OrderLog orders_;
   RankClaimer claimer_;
@@ -146,10 +146,10 @@ class Protocol {
   Outbox outbox_;
   ProtocolCounters counters_;
   ViolationLog violations_;
-  std::uint64_t violations_heard_ = 0;
+  std::uint64_t violations_received_ = 0;
   Step last_violation_step_ = -1'000'000;
   std::size_t largest_cluster_ = 0;
-  std::size_t guest_heap_ = 0;  ///< RankClaimer::Heaps::guests
+  std::size_t largest_guest_ = 0;  ///< RankClaimer::LargeClusters::guests
 };
 
 /// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.

@@ -34,8 +34,8 @@ void Pushes::begin(std::span<const double> own_m_s, std::span<const BodyTraits> 
   }
   first_link_.assign(n, kNone);
   links_.clear();
-  train_.assign(n, kNone);
-  trains_.resize(n);
+  group_.assign(n, kNone);
+  groups_.resize(n);
 }
 
 void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
@@ -45,13 +45,13 @@ void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
   }
 }
 
-std::uint32_t Pushes::train_of(std::uint32_t i) {
-  while (train_[i] != i) i = train_[i] = train_[train_[i]];
+std::uint32_t Pushes::group_of(std::uint32_t i) {
+  while (group_[i] != i) i = group_[i] = group_[group_[i]];
   return i;
 }
 
-/// Whoever touches body i, itself or through others, and is at least half as fast pushes on when i strikes something.
-void Pushes::form_trains(std::span<std::uint32_t> members) {
+/// Whoever touches body i, itself or through others, and is at least half as fast pushes on when i hits something.
+void Pushes::form_moving_groups(std::span<std::uint32_t> members) {
   std::sort(members.begin(), members.end(), [&](auto a, auto b) { return own_m_s_[a] > own_m_s_[b]; });
   const auto unfelt =
       std::find_if(members.begin(), members.end(), [&](auto i) { return own_m_s_[i] <= Push::kUnfelt_m_s; });
@@ -59,21 +59,21 @@ void Pushes::form_trains(std::span<std::uint32_t> members) {
   for (const std::uint32_t i : std::span(members.begin(), unfelt)) {
     if (first_link_[i] == kNone) continue;
     for (; next != unfelt && own_m_s_[*next] >= 0.5 * own_m_s_[i]; ++next) {
-      train_[*next] = *next;
+      group_[*next] = *next;
       const double kg = traits_[*next].mass_kg;
-      trains_[*next] = {kg, kg * own_m_s_[*next]};
+      groups_[*next] = {kg, kg * own_m_s_[*next]};
       for (std::uint32_t at = first_link_[*next]; at != kNone; at = links_[at].next) {
-        if (train_[links_[at].to] == kNone) continue;
-        const std::uint32_t a = train_of(*next), b = train_of(links_[at].to);
+        if (group_[links_[at].to] == kNone) continue;
+        const std::uint32_t a = group_of(*next), b = group_of(links_[at].to);
         if (a == b) continue;
-        train_[b] = a;
-        trains_[a].kg += trains_[b].kg;
-        trains_[a].kg_m_s += trains_[b].kg_m_s;
+        group_[b] = a;
+        groups_[a].kg += groups_[b].kg;
+        groups_[a].kg_m_s += groups_[b].kg_m_s;
       }
     }
     const double share = own_[i].speed_m_s / own_m_s_[i];
-    const Train& train = trains_[train_of(i)];
-    own_[i] = {share * std::max(own_m_s_[i], train.kg_m_s / train.kg), share * train.kg_m_s};
+    const MovingGroup& group = groups_[group_of(i)];
+    own_[i] = {share * std::max(own_m_s_[i], group.kg_m_s / group.kg), share * group.kg_m_s};
   }
 }
 
@@ -93,9 +93,9 @@ void Pushes::start(std::uint32_t i) {
   }
 }
 
-bool Pushes::hit(std::uint32_t i, const Strike& strike) {
-  if (!feels(strike, i)) return false;
-  received_[i] = received_[i].joined_with(strike.on(traits_[i]));
+bool Pushes::hit(std::uint32_t i, const Impact& impact) {
+  if (!feels(impact, i)) return false;
+  received_[i] = received_[i].joined_with(impact.on(traits_[i]));
   start(i);
   return true;
 }

@@ -1,6 +1,6 @@
 // How fast can contacts make a body while messages about it are under way? A push goes from body to body, and whatever
 // lies between is dragged along: what a chain of bodies that do not bounce gains is the momentum of what hit it, shared
-// by all of their masses. So a faller makes its heap fast where it lands, not everywhere.
+// by all of their masses. So a faller makes its pile fast where it lands, not everywhere.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct Push {
 };
 
 /// What a body may do to whom it hits: by itself, and by what pushes it.
-struct Strike {
+struct Impact {
   Push own;
   Push received;
 
@@ -55,7 +55,7 @@ struct Strike {
   }
   /// Nothing gets faster by it, however light.
   double most_m_s() const { return std::max(own.speed_m_s, received.speed_m_s); }
-  Strike times(double share) const { return {own.times(share), received.times(share)}; }
+  Impact times(double share) const { return {own.times(share), received.times(share)}; }
 };
 
 /// Pushes of all bodies of a node along contacts, joints, and pairs that may touch.
@@ -66,18 +66,18 @@ class Pushes {
 
   /// Two bodies touch, may touch, or are jointed (`rigid`): what pushes one pushes the other.
   void add(std::uint32_t a, std::uint32_t b, bool rigid);
-  /// Of `members`, those that move as one strike as one. Once all that touch one of them are members, and before
+  /// Of `members`, those that move as one hit as one. Once all that touch one of them are members, and before
   /// anybody who may touch one is added. Sorts them.
-  void form_trains(std::span<std::uint32_t> members);
+  void form_moving_groups(std::span<std::uint32_t> members);
   /// What pushes body `i` is to be passed on by the next spread().
   void start(std::uint32_t i);
-  /// Would such a strike make body `i` faster than it is known to become?
-  bool feels(const Strike& strike, std::uint32_t i) const {
-    if (strike.most_m_s() <= speed(i) + Push::kUnfelt_m_s) return false;
-    return strike.on(traits_[i]).speed_m_s > speed(i) + Push::kUnfelt_m_s;
+  /// Would such an impact make body `i` faster than it is known to become?
+  bool feels(const Impact& impact, std::uint32_t i) const {
+    if (impact.most_m_s() <= speed(i) + Push::kUnfelt_m_s) return false;
+    return impact.on(traits_[i]).speed_m_s > speed(i) + Push::kUnfelt_m_s;
   }
   /// Something else may hit body `i`. True if it feels that.
-  bool hit(std::uint32_t i, const Strike& strike);
+  bool hit(std::uint32_t i, const Impact& impact);
   /// Passes on what pushes the bodies that have been started, and whoever is pushed by them. Whoever gets faster is
   /// appended to `raised`, some more than once.
   void spread(std::vector<std::uint32_t>& raised);
@@ -87,18 +87,18 @@ class Pushes {
   /// How fast it may leave its path, m/s: pushed by others, or because it hits something itself, be it the ground. That
   /// changes its own speed by as much as it gives to the lightest of bodies.
   double off_path_m_s(std::uint32_t i) const { return std::max(alone(i).speed_m_s, received_[i].speed_m_s); }
-  /// What others push it with, if that takes it further off its path, or makes its strike harder, than it can alone.
+  /// What others push it with, if that takes it further off its path, or makes its impact harder, than it can alone.
   std::optional<Push> pushed(std::uint32_t i) const;
   /// What it may do to whom it hits.
-  Strike strike(std::uint32_t i) const { return {own_[i], received_[i]}; }
+  Impact impact(std::uint32_t i) const { return {own_[i], received_[i]}; }
   /// Would a contact make body `to` much faster than it is known to become? What pushes one reaches the other through
-  /// contacts, too, where both are in one heap, and speeds are stated with room (Push::of).
+  /// contacts, too, where both are in one pile, and speeds are stated with room (Push::of).
   bool raises(std::uint32_t from, std::uint32_t to) const {
-    return strike(from).on(traits_[to]).speed_m_s > kMuch * speed(to) + Push::kUnfelt_m_s;
+    return impact(from).on(traits_[to]).speed_m_s > kMuch * speed(to) + Push::kUnfelt_m_s;
   }
   /// Bodies that are pushed that much are not raised by body `i`, m/s.
   double raises_none_above(std::uint32_t i) const {
-    return (strike(i).on(lightest_).speed_m_s - Push::kUnfelt_m_s) / kMuch;
+    return (impact(i).on(lightest_).speed_m_s - Push::kUnfelt_m_s) / kMuch;
   }
 
  private:
@@ -107,7 +107,7 @@ class Pushes {
     std::uint32_t next;  ///< of the same body
     bool rigid;
   };
-  struct Train {
+  struct MovingGroup {
     double kg;
     double kg_m_s;
   };
@@ -117,19 +117,19 @@ class Pushes {
   /// A lever may give its end more than its centre gets: jointed bodies pass on all that they get.
   Push along(std::uint32_t from, const Link& link) const {
     if (link.rigid) return {speed(from), std::max(own_[from].momentum_kg_m_s, received_[from].momentum_kg_m_s)};
-    return strike(from).on(traits_[link.to]);
+    return impact(from).on(traits_[link.to]);
   }
 
   Push alone(std::uint32_t i) const { return Push::of(own_m_s_[i], traits_[i], uncertainty_); }
-  std::uint32_t train_of(std::uint32_t i);
+  std::uint32_t group_of(std::uint32_t i);
 
   double uncertainty_ = 1;
   std::vector<double> own_m_s_;
   std::vector<Push> own_, received_;
   std::span<const BodyTraits> traits_;
   BodyTraits lightest_;               ///< nothing takes less of a push
-  std::vector<std::uint32_t> train_;  ///< towards a member that stands for all, kNone: not in any
-  std::vector<Train> trains_;         ///< by that member
+  std::vector<std::uint32_t> group_;  ///< towards a member that stands for all, kNone: not in any
+  std::vector<MovingGroup> groups_;   ///< by that member
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
   std::priority_queue<std::pair<double, std::uint32_t>> to_do_;  ///< fastest first, so that most are done once

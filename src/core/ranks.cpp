@@ -7,13 +7,13 @@ namespace aurasim::core {
 namespace {
 
 /// Each step of weight is twice as many bodies. Whoever is below another node takes its place with four times as many:
-/// two heaps that are about as large do not change places each time one of them grows.
+/// two clusters that are about as large do not change places each time one of them grows.
 constexpr int kMuchMore = 2;
 /// So many steps without a cluster of a quarter of its size, and the claim is given up.
 constexpr Step kPatience = 1200;
 /// Guests may stay so many steps.
 constexpr Step kHospitality = 10;
-/// Once they are gone, whoever has stepped back for them waits until their host has claimed, or for so long.
+/// Once they are gone, whoever has yielded to them waits until their host has claimed, or for so long.
 constexpr Step kHumility = 120;
 
 std::size_t least_bodies(std::uint8_t weight) {
@@ -51,7 +51,7 @@ const RankClaim& Ranks::claim(const Node& node, Step n) const {
   return n >= node.claims.next.stamp + rank_notice(lookahead_) ? node.claims.next : node.claims.held;
 }
 
-/// Of equal weights the older claim is higher: two heaps of one size do not change places all the time.
+/// Of equal weights the older claim is higher: two clusters of one size do not change places all the time.
 bool Ranks::outranks(const Node& a, const Node& b, Step n) const {
   const RankClaim& of_a = claim(a, n);
   const RankClaim& of_b = claim(b, n);
@@ -92,35 +92,35 @@ std::uint8_t Ranks::most_of_others() const {
   return most;
 }
 
-std::uint8_t RankClaimer::wanted_weight(Step now, const Heaps& heaps, const Ranks& ranks) {
+std::uint8_t RankClaimer::wanted_weight(Step now, const LargeClusters& large, const Ranks& ranks) {
   if (shuffle_steps_ > 0) {
     const auto turn = static_cast<std::uint64_t>(now / shuffle_steps_);
     const auto run = static_cast<std::uint64_t>(shuffle_steps_);
     if (turn == 0) return RankClaim::kNothing;
     return static_cast<std::uint8_t>(scrambled((run << 40) + (turn << 16) + value_of(self_)) % 4);
   }
-  if (steps_back(now, heaps.guests, ranks)) return RankClaim::kStepsBack;
-  const std::uint8_t weight = weight_of(heaps.near);
+  if (yields(now, large.guests, ranks)) return RankClaim::kYields;
+  const std::uint8_t weight = weight_of(large.near);
   const std::uint8_t claimed = std::max(claims_.next.weight, RankClaim::kNothing);
   const bool claims = claimed > RankClaim::kNothing;
-  if (claims && 4 * heaps.near >= least_bodies(claimed)) last_large_ = now;
+  if (claims && 4 * large.near >= least_bodies(claimed)) last_large_ = now;
   if (weight <= claimed) return claims && now - last_large_ > kPatience ? weight : claimed;
   const std::uint8_t others = ranks.most_of_others();
   const bool first = others <= RankClaim::kNothing || ranks.on_top();
   return first || weight >= others + kMuchMore ? weight : claimed;
 }
 
-/// Not where K is larger than one: the wider look while ranks change then joins the guests with the heap at home, and
-/// all of it goes to the other node, where most of it is a guest again (docs/decisions/0016-ranks.md).
-bool RankClaimer::steps_back(Step now, std::size_t guests, const Ranks& ranks) {
+/// Not where K is larger than one: the wider look while ranks change then joins the guests with the cluster at home,
+/// and all of it goes to the other node, where most of it is a guest again (docs/decisions/0016-ranks.md).
+bool RankClaimer::yields(Step now, std::size_t guests, const Ranks& ranks) {
   const bool has_guests = lookahead_ == 1 && guests >= kLeastBodies;
   (has_guests ? last_guests_ : alone_) = now;
-  if (claims_.next.weight != RankClaim::kStepsBack) return now - alone_ >= kHospitality;
+  if (claims_.next.weight != RankClaim::kYields) return now - alone_ >= kHospitality;
   return has_guests || (now - last_guests_ <= kHumility && ranks.most_of_others() <= RankClaim::kNothing);
 }
 
-void RankClaimer::reconsider(Step now, const Heaps& heaps, const Ranks& ranks) {
-  const std::uint8_t weight = wanted_weight(now, heaps, ranks);
+void RankClaimer::reconsider(Step now, const LargeClusters& large, const Ranks& ranks) {
+  const std::uint8_t weight = wanted_weight(now, large, ranks);
   if (weight == claims_.next.weight) return;
   // One change at a time: everybody remembers two claims.
   if (claimed_ && now < claims_.next.stamp + rank_notice(lookahead_) + 2 * lookahead_) return;

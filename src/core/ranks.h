@@ -1,5 +1,5 @@
 // Of two hosts whose bodies may meet, the one that ranks higher keeps its own and gets the other's. The thesis ranks by
-// region alone; here a node whose bodies hang together in a large heap ranks higher, because moving the heap costs more
+// region alone; here a node whose bodies hang together in a large cluster ranks higher, because moving that costs more
 // than moving what it meets (docs/decisions/0016-ranks.md). Ranks are claimed long before they count, so that all nodes
 // change them in the same state.
 #pragma once
@@ -13,8 +13,9 @@
 namespace aurasim::core {
 
 struct RankClaim {
-  /// Of a node that steps back: it hosts a heap of somebody else's region, which can only go home to a higher node.
-  static constexpr std::uint8_t kStepsBack = 0;
+  /// Of a node that yields: it hosts a large cluster of somebody else's region, which can only go home to a higher
+  /// node.
+  static constexpr std::uint8_t kYields = 0;
   /// Of a node that claims nothing.
   static constexpr std::uint8_t kNothing = 1;
 
@@ -30,7 +31,7 @@ struct RankClaims {
   RankClaim next;
 };
 
-/// Steps between a claim and the state from which on it counts: everyone has heard of it, and has looked further ahead
+/// Steps between a claim and the state from which on it counts: everyone has received it, and has looked further ahead
 /// for as long as a pull can take.
 constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
 
@@ -77,7 +78,7 @@ class Ranks {
 class RankClaimer {
  public:
   /// The largest clusters of a node, in bodies.
-  struct Heaps {
+  struct LargeClusters {
     std::size_t near = 0;    ///< others could pull it
     std::size_t guests = 0;  ///< most of it is outside our region
   };
@@ -89,13 +90,13 @@ class RankClaimer {
       : self_(self), lookahead_(lookahead), shuffle_steps_(shuffle_steps) {}
 
   const RankClaims& claims() const { return claims_; }
-  /// Claims anew if our heaps ask for it: if they are much larger than what anyone who is above us has claimed. Where
-  /// K = 1, steps back if a heap of guests stays.
-  void reconsider(Step now, const Heaps& heaps, const Ranks& ranks);
+  /// Claims anew if our clusters ask for it: if they are much larger than what anyone who is above us has claimed.
+  /// Where K = 1, yields if a large cluster of guests stays.
+  void reconsider(Step now, const LargeClusters& large, const Ranks& ranks);
 
  private:
-  std::uint8_t wanted_weight(Step now, const Heaps& heaps, const Ranks& ranks);
-  bool steps_back(Step now, std::size_t guests, const Ranks& ranks);
+  std::uint8_t wanted_weight(Step now, const LargeClusters& large, const Ranks& ranks);
+  bool yields(Step now, std::size_t guests, const Ranks& ranks);
 
   RegionId self_;
   int lookahead_;
@@ -103,7 +104,7 @@ class RankClaimer {
   RankClaims claims_;
   bool claimed_ = false;  ///< ever
   Step last_large_ = 0;   ///< when the largest cluster last was nearly as large as claimed
-  Step alone_ = 0;        ///< when no heap of guests was here last
+  Step alone_ = 0;        ///< when no large cluster of guests was here last
   Step last_guests_ = 0;  ///< when one was
 };
 

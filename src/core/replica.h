@@ -1,5 +1,5 @@
-// What a node tells observers: which bodies it hosts, where they are, and where those that left went. Observers only
-// watch: nothing that they are told, or not told, changes what is computed.
+// What a node publishes for observers: which bodies it hosts, where they are, and where those that left went. Observers
+// only watch: nothing that they receive, or do not, changes what is computed.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ struct Replica {
   Generation generation = 0;
   Step stamp = 0;
   std::uint64_t map_version = 0;
-  /// Counts the ticks that the source has told in this generation, from 1; a number that is left out was lost. A key
-  /// frame has the number of the tick with which it was told.
+  /// Counts the ticks that the source has published in this generation, from 1; a number that is left out was lost. A
+  /// key frame has the number of the tick with which it was published.
   std::uint64_t sequence = 0;
   bool key_frame = false;
   std::vector<ReplicaBody> bodies;  ///< ascending id

@@ -13,7 +13,7 @@ enum class ViolationKind : std::uint8_t {
   kSpeed,    ///< a body is faster than the promised V (value and allowed in m/s)
   kLatency,  ///< a message took effect later than K steps after its stamp (steps)
   kFrame,    ///< a step took longer than T_F (s)
-  kPromise,  ///< a body is not where its last aura said it could be (m)
+  kPromise,  ///< a body is not where its last aura promised it would be (m)
   kSpan,     ///< a body is near a region that does not listen to its host (m: distance between the two regions)
 };
 inline constexpr int kViolationKinds = 5;

@@ -11,18 +11,18 @@
 #include "dds/random_id.h"
 
 namespace aurasim::dds {
-struct CommandDoor::Impl {
+struct CommandServerEndpoint::Impl {
   Impl(Participant& participant_in, core::RegionId region_in, std::uint64_t map_version_in)
       : participant(participant_in),
         region(region_in),
         map_version(map_version_in),
-        commands(participant.domain(), in_world(TopicId::kCommand), bell),
-        replies(participant.domain(), in_world(TopicId::kCommandReply), bell) {}
+        commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
+        replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup) {}
 
   Participant& participant;
   core::RegionId region;
   std::uint64_t map_version;
-  Bell bell;
+  Wakeup wakeup;
   Reader commands;
   Writer replies;
   wire::Command command;  // reused
@@ -31,14 +31,14 @@ struct CommandDoor::Impl {
   WireErrors refused;
 };
 
-CommandDoor::CommandDoor(Participant& participant, core::RegionId region, std::uint64_t map_version)
+CommandServerEndpoint::CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version)
     : impl_(std::make_unique<Impl>(participant, region, map_version)) {}
 
-CommandDoor::~CommandDoor() = default;
+CommandServerEndpoint::~CommandServerEndpoint() = default;
 
-void CommandDoor::use_map(std::uint64_t map_version) { impl_->map_version = map_version; }
+void CommandServerEndpoint::use_map(std::uint64_t map_version) { impl_->map_version = map_version; }
 
-std::vector<core::Command> CommandDoor::take() {
+std::vector<core::Command> CommandServerEndpoint::take() {
   std::vector<core::Command> commands;
   Expected expected;
   expected.map_version = impl_->map_version;
@@ -59,24 +59,24 @@ std::vector<core::Command> CommandDoor::take() {
   return commands;
 }
 
-void CommandDoor::reply(core::CommandReply reply) {
+void CommandServerEndpoint::reply(core::CommandReply reply) {
   reply.source = impl_->region;
   encode(reply, impl_->map_version, impl_->reply);
   impl_->replies.write(&impl_->reply);
 }
 
-const WireErrors& CommandDoor::refused() const { return impl_->refused; }
+const WireErrors& CommandServerEndpoint::refused() const { return impl_->refused; }
 
-struct CommandClient::Impl {
+struct CommandClientEndpoint::Impl {
   explicit Impl(Participant& participant_in)
       : participant(participant_in),
-        commands(participant.domain(), in_world(TopicId::kCommand), bell),
-        replies(participant.domain(), in_world(TopicId::kCommandReply), bell),
-        shapes(participant.domain(), in_world(TopicId::kShape), bell) {}
+        commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
+        replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup),
+        shapes(participant.domain(), in_world(TopicId::kShape), wakeup) {}
 
   Participant& participant;
   std::uint64_t sender = draw_id();
-  Bell bell;
+  Wakeup wakeup;
   Writer commands;
   Reader replies;
   Writer shapes;
@@ -86,15 +86,15 @@ struct CommandClient::Impl {
   std::set<std::uint64_t> brought;
 };
 
-CommandClient::CommandClient(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+CommandClientEndpoint::CommandClientEndpoint(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
 
-CommandClient::~CommandClient() = default;
+CommandClientEndpoint::~CommandClientEndpoint() = default;
 
-std::size_t CommandClient::listeners() const {
+std::size_t CommandClientEndpoint::listeners() const {
   return std::min(impl_->commands.foreign_reader_count(), impl_->replies.watch().writers().size());
 }
 
-std::uint64_t CommandClient::send(core::Command command, std::uint64_t map_version) {
+std::uint64_t CommandClientEndpoint::send(core::Command command, std::uint64_t map_version) {
   if (command.request == 0) command.request = draw_id();
   encode(command, impl_->sender, map_version, impl_->command);
   if (impl_->commands.write(&impl_->command) == WriteResult::kFailed) {
@@ -103,7 +103,7 @@ std::uint64_t CommandClient::send(core::Command command, std::uint64_t map_versi
   return command.request;
 }
 
-std::vector<core::CommandReply> CommandClient::take() {
+std::vector<core::CommandReply> CommandClientEndpoint::take() {
   std::vector<core::CommandReply> replies;
   while (impl_->replies.take(&impl_->reply)) {
     auto decoded = decode(impl_->reply, {});
@@ -112,15 +112,15 @@ std::vector<core::CommandReply> CommandClient::take() {
   return replies;
 }
 
-void CommandClient::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
+void CommandClientEndpoint::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
   if (!impl_->brought.insert(hash).second) return;
   encode(NamedMesh{hash, mesh}, impl_->shape);
   impl_->shapes.write(&impl_->shape);
 }
 
-void CommandClient::wait(std::chrono::nanoseconds time_out) {
+void CommandClientEndpoint::wait(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
-  impl_->bell.wait(time_out);
+  impl_->wakeup.wait(time_out);
 }
 
 }  // namespace aurasim::dds

@@ -1,4 +1,4 @@
-// Topics command, command_reply and shape: what clients ask of a run, what they are told, the meshes that they bring.
+// Topics command, command_reply and shape: what clients ask of a run, the replies, the meshes that they bring.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,11 @@
 namespace aurasim::dds {
 
 /// The end of a node. Used by one thread. The participant must outlive it.
-class CommandDoor {
+class CommandServerEndpoint {
  public:
   /// Commands for other maps are refused and counted, until the map changes.
-  CommandDoor(Participant& participant, core::RegionId region, std::uint64_t map_version);
-  ~CommandDoor();
+  CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version);
+  ~CommandServerEndpoint();
 
   void use_map(std::uint64_t map_version);
   /// New ones, in order of arrival; each request once.
@@ -33,10 +33,10 @@ class CommandDoor {
 };
 
 /// The end of a client. Used by one thread. The participant must outlive it.
-class CommandClient {
+class CommandClientEndpoint {
  public:
-  explicit CommandClient(Participant& participant);
-  ~CommandClient();
+  explicit CommandClientEndpoint(Participant& participant);
+  ~CommandClientEndpoint();
 
   /// How many nodes take commands and can answer.
   std::size_t listeners() const;

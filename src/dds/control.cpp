@@ -36,7 +36,7 @@ struct ControlBus::Impl {
   Participant& participant;
   ControlSettings settings;
   std::uint64_t sender = draw_id();
-  Bell bell;
+  Wakeup wakeup;
   std::optional<Writer> status_writer;
   Reader status_reader;
   Writer map_writer;
@@ -56,14 +56,15 @@ struct ControlBus::Impl {
 ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& settings_in)
     : participant(participant_in),
       settings(settings_in),
-      status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, bell),
-      map_writer(participant.domain(), in_world(TopicId::kRegionMap), bell),
-      map_reader(participant.domain(), in_world(TopicId::kRegionMap), bell),
-      command_writer(participant.domain(), in_world(TopicId::kRunControl), bell),
-      command_reader(participant.domain(), in_world(TopicId::kRunControl), bell) {
+      status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, wakeup),
+      map_writer(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
+      map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
+      command_writer(participant.domain(), in_world(TopicId::kRunControl), wakeup),
+      command_reader(participant.domain(), in_world(TopicId::kRunControl), wakeup) {
   if (settings.region) {
     status_writer.emplace(participant.domain(),
-                          EndpointSpec{TopicId::kNodeStatus, {partition_of(*settings.region)}, settings.region}, bell);
+                          EndpointSpec{TopicId::kNodeStatus, {partition_of(*settings.region)}, settings.region},
+                          wakeup);
   }
 }
 
@@ -168,7 +169,7 @@ std::vector<RunCommand> ControlBus::take_commands() {
 
 void ControlBus::wait(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
-  impl_->bell.wait(time_out);
+  impl_->wakeup.wait(time_out);
   impl_->participant.progress();
 }
 

@@ -21,13 +21,13 @@ namespace {
 
 /// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
 struct Link {
-  Link(Domain& domain, RegionId self, RegionId neighbour, Bell& bell)
+  Link(Domain& domain, RegionId self, RegionId neighbour, Wakeup& wakeup)
       : region(neighbour),
-        aura_reader(domain, {TopicId::kAura, {partition_of(neighbour)}, self}, bell),
-        migration_reader(domain, {TopicId::kMigration, {partition_of(neighbour, self)}, self}, bell),
-        migration_writer(domain, {TopicId::kMigration, {partition_of(self, neighbour)}, self}, bell),
-        ack_reader(domain, {TopicId::kMigrationAck, {partition_of(neighbour, self)}, self}, bell),
-        ack_writer(domain, {TopicId::kMigrationAck, {partition_of(self, neighbour)}, self}, bell) {}
+        aura_reader(domain, {TopicId::kAura, {partition_of(neighbour)}, self}, wakeup),
+        migration_reader(domain, {TopicId::kMigration, {partition_of(neighbour, self)}, self}, wakeup),
+        migration_writer(domain, {TopicId::kMigration, {partition_of(self, neighbour)}, self}, wakeup),
+        ack_reader(domain, {TopicId::kMigrationAck, {partition_of(neighbour, self)}, self}, wakeup),
+        ack_writer(domain, {TopicId::kMigrationAck, {partition_of(self, neighbour)}, self}, wakeup) {}
 
   RegionId region;
   Reader aura_reader;
@@ -114,7 +114,7 @@ struct DdsTransport::Impl {
   TransportSettings settings;
   Expected expected;
   Participant& participant;
-  Bell bell;
+  Wakeup wakeup;
   Writer aura_writer;
   std::vector<std::unique_ptr<Link>> links;  ///< in the order of settings.neighbours
   wire::AuraBatch aura;                      // reused for every sample
@@ -127,9 +127,9 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
     : settings(settings_in),
       expected(expected_of(settings_in)),
       participant(participant_in),
-      aura_writer(participant.domain(), {TopicId::kAura, {partition_of(settings.region)}, settings.region}, bell) {
+      aura_writer(participant.domain(), {TopicId::kAura, {partition_of(settings.region)}, settings.region}, wakeup) {
   for (const RegionId neighbour : settings.neighbours) {
-    links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, bell));
+    links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, wakeup));
   }
 }
 
@@ -232,7 +232,7 @@ void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {
           fmt::format("region {} has waited in vain for {}", value_of(impl_->settings.region), fmt::join(texts, ", ")),
           regions);
     }
-    impl_->bell.wait(std::min<std::chrono::nanoseconds>(left, std::chrono::seconds(1)));
+    impl_->wakeup.wait(std::min<std::chrono::nanoseconds>(left, std::chrono::seconds(1)));
   }
 }
 
@@ -243,7 +243,7 @@ bool DdsTransport::all_matched() const {
 
 void DdsTransport::take(core::Inbox& inbox) {
   impl_->participant.progress();
-  impl_->bell.quiet();
+  impl_->wakeup.clear();
   TransportCounters& counters = impl_->counters;
   for (const auto& link : impl_->links) {
     Expected expected = impl_->expected;
@@ -268,7 +268,7 @@ void DdsTransport::send(const core::Outbox& outbox) {
 
 void DdsTransport::wait_for_arrival(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
-  impl_->bell.wait(time_out);
+  impl_->wakeup.wait(time_out);
   impl_->participant.progress();
 }
 

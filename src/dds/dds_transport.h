@@ -81,7 +81,7 @@ class DdsTransport final : public transport::Transport {
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
 
   /// Stops sending hand-offs and acks to `region` and waiting for it. Its return (kJoined) undoes it. Regions reported
-  /// as kLost are dropped without being told.
+  /// as kLost are dropped without notice.
   void drop(core::RegionId region);
 
   const TransportCounters& counters() const;

@@ -39,7 +39,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"command_reply", "aurasim::wire::CommandReply"},
     {"shape", "aurasim::wire::MeshShape"},
     {"orders", "aurasim::wire::AuraBatch"},
-    {"bonds", "aurasim::wire::Bonds"},
+    {"cluster_graph", "aurasim::wire::ClusterGraph"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -75,7 +75,7 @@ Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
         settings.domain, settings.profiles.string()));
   }
   register_types();
-  pulse_ = std::make_unique<Pulse>(settings.hang_limit);
+  liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit);
 }
 
 Domain::~Domain() = default;
@@ -103,7 +103,7 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::CommandPubSubType>()),
       TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
       TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
-      TypeSupport(new GuardedType<wire::BondsPubSubType>()),
+      TypeSupport(new GuardedType<wire::ClusterGraphPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -13,8 +13,8 @@
 #include <fastdds/dds/topic/Topic.hpp>
 
 #include "dds/delay_line.h"
+#include "dds/liveliness_asserter.h"
 #include "dds/profiles.h"
-#include "dds/pulse.h"
 #include "dds/settings.h"
 #include "dds/watch.h"
 
@@ -34,7 +34,7 @@ enum class TopicId : std::uint8_t {
   kCommandReply,
   kShape,
   kOrders,
-  kBonds
+  kClusterGraph
 };
 inline constexpr std::size_t kTopicCount = 13;
 /// "aura", "migration", ...: also the first part of the profile names.
@@ -63,7 +63,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::chrono::nanoseconds lease() const;
   /// Nothing leaves this host.
   bool loopback_only() const { return loopback_only_; }
-  Pulse& pulse() { return *pulse_; }
+  LivelinessAsserter& liveliness() { return *liveliness_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
 
@@ -84,7 +84,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
     void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
   };
   std::unique_ptr<eprosima::fastdds::dds::DomainParticipant, Leave> participant_;
-  std::unique_ptr<Pulse> pulse_;  // last: stops first
+  std::unique_ptr<LivelinessAsserter> liveliness_;  // last: stops first
 };
 
 }  // namespace aurasim::dds

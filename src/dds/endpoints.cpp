@@ -37,7 +37,7 @@ std::string profile_of(const EndpointSpec& spec, const char* kind) {
 
 }  // namespace
 
-Writer::Writer(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(domain), watch_(bell) {
+Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domain_(domain), watch_(wakeup) {
   PublisherQos publisher_qos;
   set_partitions(publisher_qos.partition(), spec.partitions);
   publisher_ = domain.participant().create_publisher(publisher_qos);
@@ -56,12 +56,12 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(d
     domain.directory().add(writer_->guid(), *spec.region);
   }
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
-    domain.pulse().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()));
+    domain.liveliness().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()));
   }
 }
 
 Writer::~Writer() {
-  domain_.pulse().remove(writer_);
+  domain_.liveliness().remove(writer_);
   writer_->set_listener(nullptr);
   publisher_->delete_datawriter(writer_);
   domain_.participant().delete_publisher(publisher_);
@@ -87,7 +87,7 @@ std::size_t Writer::foreign_reader_count() const {
       readers, [&](const Guid& reader) { return reader.guidPrefix != writer_->guid().guidPrefix; }));
 }
 
-Reader::Reader(Domain& domain, const EndpointSpec& spec, Bell& bell) : domain_(domain), watch_(bell) {
+Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domain_(domain), watch_(wakeup) {
   SubscriberQos subscriber_qos;
   set_partitions(subscriber_qos.partition(), spec.partitions);
   subscriber_ = domain.participant().create_subscriber(subscriber_qos);

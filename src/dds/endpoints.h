@@ -30,10 +30,10 @@ inline EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, 
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
 /// QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the
-/// domain's pulse.
+/// domain's liveliness asserter.
 class Writer {
  public:
-  Writer(Domain& domain, const EndpointSpec& spec, Bell& bell);
+  Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -58,7 +58,7 @@ class Writer {
 /// QoS by profile `<topic>_reader`, or as the spec says.
 class Reader {
  public:
-  Reader(Domain& domain, const EndpointSpec& spec, Bell& bell);
+  Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

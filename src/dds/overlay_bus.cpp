@@ -1,7 +1,7 @@
 #include "dds/overlay_bus.h"
 
 #include "aurasim.h"
-#include "dds/bonds_codec.h"
+#include "dds/cluster_graph_codec.h"
 #include "dds/observing.h"
 
 namespace aurasim::dds {
@@ -13,7 +13,7 @@ class Glance {
  public:
   Glance(Participant& participant, const ObserverSettings& settings, TopicId topic, const char* profile)
       : expected_(expected_of(settings)),
-        reader_(participant.domain(), {topic, {kEveryRegionPartition}, {}, profile}, bell_) {}
+        reader_(participant.domain(), {topic, {kEveryRegionPartition}, {}, profile}, wakeup_) {}
 
   std::vector<Message> take() {
     std::vector<Message> messages;
@@ -23,7 +23,7 @@ class Glance {
 
  private:
   Expected expected_;
-  Bell bell_;
+  Wakeup wakeup_;
   Reader reader_;
   WireMessage sample_;  // reused
   WireErrors refused_;
@@ -31,37 +31,37 @@ class Glance {
 
 }  // namespace
 
-struct BondsWriter::Impl {
+struct ClusterGraphWriter::Impl {
   Impl(Participant& participant, core::RegionId region)
-      : writer(participant.domain(), {TopicId::kBonds, {partition_of(region)}, region, {}}, bell) {}
+      : writer(participant.domain(), {TopicId::kClusterGraph, {partition_of(region)}, region, {}}, wakeup) {}
 
-  Bell bell;
+  Wakeup wakeup;
   Writer writer;
-  wire::Bonds sample;  // reused
+  wire::ClusterGraph sample;  // reused
 };
 
-BondsWriter::BondsWriter(Participant& participant, core::RegionId region)
+ClusterGraphWriter::ClusterGraphWriter(Participant& participant, core::RegionId region)
     : impl_(std::make_unique<Impl>(participant, region)) {}
 
-BondsWriter::~BondsWriter() = default;
+ClusterGraphWriter::~ClusterGraphWriter() = default;
 
-bool BondsWriter::anybody_listens() const { return impl_->writer.reader_count() > 0; }
+bool ClusterGraphWriter::anybody_listens() const { return impl_->writer.reader_count() > 0; }
 
-void BondsWriter::send(const core::Bonds& bonds) {
-  encode(bonds, impl_->sample);
+void ClusterGraphWriter::send(const core::ClusterGraph& graph) {
+  encode(graph, impl_->sample);
   impl_->writer.write(&impl_->sample);
 }
 
-struct BondsWatch::Impl : Glance<wire::Bonds, core::Bonds> {
+struct ClusterGraphWatch::Impl : Glance<wire::ClusterGraph, core::ClusterGraph> {
   using Glance::Glance;
 };
 
-BondsWatch::BondsWatch(Participant& participant, const ObserverSettings& settings)
-    : impl_(std::make_unique<Impl>(participant, settings, TopicId::kBonds, "bonds_reader")) {}
+ClusterGraphWatch::ClusterGraphWatch(Participant& participant, const ObserverSettings& settings)
+    : impl_(std::make_unique<Impl>(participant, settings, TopicId::kClusterGraph, "cluster_graph_reader")) {}
 
-BondsWatch::~BondsWatch() = default;
+ClusterGraphWatch::~ClusterGraphWatch() = default;
 
-std::vector<core::Bonds> BondsWatch::take() { return impl_->take(); }
+std::vector<core::ClusterGraph> ClusterGraphWatch::take() { return impl_->take(); }
 
 struct AuraWatch::Impl : Glance<wire::AuraBatch, core::AuraBatch> {
   using Glance::Glance;

@@ -1,11 +1,11 @@
-// What pages draw over the bodies: auras as the nodes tell each other, and topic bonds, which a node writes only while
-// somebody listens.
+// What pages draw over the bodies: auras as the nodes publish them, and topic cluster_graph, which a node writes only
+// while somebody listens.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "core/bonds.h"
+#include "core/cluster_graph.h"
 #include "core/messages.h"
 #include "dds/participant.h"
 #include "dds/replica_bus.h"
@@ -13,27 +13,27 @@
 namespace aurasim::dds {
 
 /// Used by one thread. The participant must outlive it.
-class BondsWriter {
+class ClusterGraphWriter {
  public:
-  BondsWriter(Participant& participant, core::RegionId region);
-  ~BondsWriter();
+  ClusterGraphWriter(Participant& participant, core::RegionId region);
+  ~ClusterGraphWriter();
 
   bool anybody_listens() const;
-  /// What cannot be sent at once is not sent: the next tick tells all anew.
-  void send(const core::Bonds& bonds);
+  /// What cannot be sent at once is not sent: the next tick sends all anew.
+  void send(const core::ClusterGraph& graph);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// The bonds of all regions: some may be missed. The participant must outlive it.
-class BondsWatch {
+/// The cluster graphs of all regions: some may be missed. The participant must outlive it.
+class ClusterGraphWatch {
  public:
-  BondsWatch(Participant& participant, const ObserverSettings& settings);
-  ~BondsWatch();
+  ClusterGraphWatch(Participant& participant, const ObserverSettings& settings);
+  ~ClusterGraphWatch();
 
-  std::vector<core::Bonds> take();
+  std::vector<core::ClusterGraph> take();
 
  private:
   struct Impl;

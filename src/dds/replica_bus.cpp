@@ -7,10 +7,10 @@
 namespace aurasim::dds {
 struct ReplicaWriter::Impl {
   Impl(Participant& participant, core::RegionId region)
-      : deltas(participant.domain(), {TopicId::kReplica, {partition_of(region)}, region, {}}, bell),
-        keys(participant.domain(), {TopicId::kReplicaKey, {partition_of(region)}, region, {}}, bell) {}
+      : deltas(participant.domain(), {TopicId::kReplica, {partition_of(region)}, region, {}}, wakeup),
+        keys(participant.domain(), {TopicId::kReplicaKey, {partition_of(region)}, region, {}}, wakeup) {}
 
-  Bell bell;
+  Wakeup wakeup;
   Writer deltas;
   Writer keys;
   wire::Replica sample;  // reused
@@ -37,12 +37,12 @@ struct ReplicaReader::Impl {
   Impl(Participant& participant_in, const ObserverSettings& settings)
       : participant(participant_in),
         expected(expected_of(settings)),
-        deltas(participant.domain(), {TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, bell),
-        keys(participant.domain(), {TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, bell) {}
+        deltas(participant.domain(), {TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, wakeup),
+        keys(participant.domain(), {TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, wakeup) {}
 
   Participant& participant;
   Expected expected;
-  Bell bell;
+  Wakeup wakeup;
   Reader deltas;
   Reader keys;
   wire::Replica sample;  // reused
@@ -57,7 +57,7 @@ ReplicaReader::~ReplicaReader() = default;
 
 std::vector<core::Replica> ReplicaReader::take() {
   impl_->participant.progress();
-  impl_->bell.quiet();
+  impl_->wakeup.clear();
   std::vector<core::Replica> replicas;
   drain(impl_->deltas, impl_->sample, impl_->expected, replicas, impl_->refused);
   drain(impl_->keys, impl_->sample, impl_->expected, replicas, impl_->refused);
@@ -67,7 +67,7 @@ std::vector<core::Replica> ReplicaReader::take() {
 
 void ReplicaReader::wait(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
-  impl_->bell.wait(time_out);
+  impl_->wakeup.wait(time_out);
 }
 
 const WireErrors& ReplicaReader::refused() const { return impl_->refused; }

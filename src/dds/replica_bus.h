@@ -1,4 +1,4 @@
-// Topics replica and replica_key: a node tells, observers listen. An observer never holds up a node: what it is too
+// Topics replica and replica_key: a node publishes, observers listen. An observer never holds up a node: what it is too
 // slow for is overwritten.
 #pragma once
 

@@ -106,7 +106,7 @@ std::vector<std::string> topic_names() {
 struct TopicEcho::Impl {
   Impl(Participant& participant_in, TopicId topic, const std::string& partition)
       : participant(participant_in),
-        reader(participant.domain(), watching(topic, partition), bell),
+        reader(participant.domain(), watching(topic, partition), wakeup),
         type(participant.domain().participant().find_type(participant.domain().topic(topic).get_type_name())),
         sample(type.create_data()),
         dynamic(dynamic_type(type.get_type_name())),
@@ -133,7 +133,7 @@ struct TopicEcho::Impl {
   }
 
   Participant& participant;
-  Bell bell;
+  Wakeup wakeup;
   Reader reader;
   TypeSupport type;
   void* sample;  ///< of the generated type
@@ -149,14 +149,14 @@ TopicEcho::~TopicEcho() = default;
 
 std::optional<Json> TopicEcho::take() {
   impl_->participant.progress();
-  impl_->bell.quiet();
+  impl_->wakeup.clear();
   if (!impl_->reader.take(impl_->sample)) return std::nullopt;
   return impl_->sample_as_json();
 }
 
 void TopicEcho::wait(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
-  impl_->bell.wait(time_out);
+  impl_->wakeup.wait(time_out);
 }
 
 }  // namespace aurasim::dds

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxLost = 1000;
 
 }  // namespace
 
-void ReaderWatch::on_data_available(eprosima::fastdds::dds::DataReader*) { bell_.ring(); }
+void ReaderWatch::on_data_available(eprosima::fastdds::dds::DataReader*) { wakeup_.notify(); }
 
 void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
                                           const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
@@ -38,7 +38,7 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
       forget_all_but_newest_lost();
     }
   }
-  bell_.ring();
+  wakeup_.notify();
 }
 
 void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
@@ -56,7 +56,7 @@ void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
       writer->silent_since = std::chrono::steady_clock::now();
     }
   }
-  bell_.ring();
+  wakeup_.notify();
 }
 
 std::vector<RemoteWriter> ReaderWatch::writers() const {
@@ -111,7 +111,7 @@ void WriterWatch::on_publication_matched(eprosima::fastdds::dds::DataWriter*,
       ++matches_;
     }
   }
-  bell_.ring();
+  wakeup_.notify();
 }
 
 std::uint64_t WriterWatch::matches() const {

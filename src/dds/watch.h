@@ -1,5 +1,5 @@
 // Who is at the other end of an endpoint. The listeners run in DDS threads with DDS locks held: they note what happened
-// and ring the owner's bell, nothing else.
+// and wake the owner, nothing else.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 #include <fastdds/rtps/common/Guid.h>
 
 #include "core/ids.h"
-#include "dds/bell.h"
+#include "dds/wakeup.h"
 
 namespace aurasim::dds {
 
@@ -39,7 +39,7 @@ struct RemoteWriter {
 /// load). A process that takes its leave is unmatched at once: that needs no grace.
 class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
  public:
-  explicit ReaderWatch(Bell& bell) : bell_(bell) {}
+  explicit ReaderWatch(Wakeup& wakeup) : wakeup_(wakeup) {}
 
   /// Before the reader exists. At least two proofs of life must fit into it.
   void set_grace(std::chrono::nanoseconds grace) { grace_ = grace; }
@@ -62,7 +62,7 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   /// A copy that says whether it is lost by now.
   RemoteWriter judged(RemoteWriter writer) const;
 
-  Bell& bell_;
+  Wakeup& wakeup_;
   std::chrono::nanoseconds grace_{0};
   mutable std::mutex mutex_;
   std::vector<RemoteWriter> writers_;
@@ -72,7 +72,7 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
 /// Listener of a writer. Thread-safe.
 class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
  public:
-  explicit WriterWatch(Bell& bell) : bell_(bell) {}
+  explicit WriterWatch(Wakeup& wakeup) : wakeup_(wakeup) {}
 
   void on_publication_matched(eprosima::fastdds::dds::DataWriter* writer,
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
@@ -82,7 +82,7 @@ class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
   std::uint64_t matches() const;
 
  private:
-  Bell& bell_;
+  Wakeup& wakeup_;
   mutable std::mutex mutex_;
   std::vector<Guid> readers_;
   std::uint64_t matches_ = 0;

@@ -71,10 +71,10 @@ void agree_with(const Campaign& campaign, const std::filesystem::path& directory
 }
 
 /// Gives out jobs, takes their rows, writes them in order.
-class Desk {
+class JobQueue {
  public:
-  Desk(const Campaign& campaign, const std::filesystem::path& file, std::size_t done,
-       const std::function<void(const Progress&)>& show)
+  JobQueue(const Campaign& campaign, const std::filesystem::path& file, std::size_t done,
+           const std::function<void(const Progress&)>& show)
       : out_(file, std::ios::app), next_(done), written_(done), begin_(Clock::now()), show_(show) {
     for (const Job& job : campaign.jobs) work_.push_back(work_of(campaign, job));
     for (std::size_t i = 0; i < work_.size(); ++i) (i < done ? done_before_ : to_do_) += work_[i];
@@ -111,13 +111,13 @@ class Desk {
   const std::function<void(const Progress&)>& show_;
 };
 
-void work(const Campaign& campaign, const JobRunner& run, Desk& desk, const std::atomic<bool>& stop) {
+void work(const Campaign& campaign, const JobRunner& run, JobQueue& jobs, const std::atomic<bool>& stop) {
   while (!stop) {
-    const std::size_t i = desk.take();
+    const std::size_t i = jobs.take();
     if (i >= campaign.jobs.size()) return;
     std::string rows;
     for (const Trial& trial : run(campaign, campaign.jobs[i])) rows += trial_row(trial);
-    desk.give(i, std::move(rows));
+    jobs.give(i, std::move(rows));
   }
 }
 
@@ -184,8 +184,8 @@ bool run_campaign(const Campaign& campaign, const std::filesystem::path& directo
   agree_with(campaign, directory);
   const std::filesystem::path file = directory / "collisions.csv";
   const std::size_t done = keep_whole_blocks(file, campaign.rows_per_job());
-  Desk desk(campaign, file, done, show);
-  on_threads(threads, [&] { work(campaign, run, desk, stop); });
+  JobQueue jobs(campaign, file, done, show);
+  on_threads(threads, [&] { work(campaign, run, jobs, stop); });
   return !stop;
 }
 

@@ -103,9 +103,9 @@ void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
 /// awake already, so it is the motion that tells.
 std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::uint32_t j,
                                                         const core::Snapshot& snapshot,
-                                                        const core::Gathering& gathering) const {
-  const core::Path& a = gathering.path(i);
-  const core::Path& b = gathering.path(j);
+                                                        const core::InterestMatching& matching) const {
+  const core::Path& a = matching.path(i);
+  const core::Path& b = matching.path(j);
   if (!stands_still(a) || !stands_still(b) || touch(snapshot, i, j)) return std::nullopt;
   if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m) return std::nullopt;
   const double clearance = clearance_.clearance(a.prototype, a.pose, b.prototype, b.pose, kSlop);
@@ -116,17 +116,17 @@ std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::ui
   return seen.late ? std::optional(seen) : std::nullopt;
 }
 
-void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::Gathering& gathering,
+void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::InterestMatching& matching,
                                     core::Step last_violation, std::vector<SeenCollision>& out) {
   std::sort(joined_.begin(), joined_.end(), [](const Joined& a, const Joined& b) { return a.id < b.id; });
   forget_parted(snapshot);
   for (const Joined& arrival : joined_) {
     const std::optional<std::uint32_t> here = index_of(snapshot, arrival.id);
     if (!here) continue;
-    const core::Path& path = gathering.path(*here);
-    gathering.clusters().near().for_each_near(path.pose.p_WB, path.radius_m, 0, 0, [&](std::uint32_t other) {
+    const core::Path& path = matching.path(*here);
+    matching.clusters().near().for_each_near(path.pose.p_WB, path.radius_m, 0, 0, [&](std::uint32_t other) {
       if (other == *here) return;
-      std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, gathering);
+      std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, matching);
       if (!seen || !untouching_.insert({seen->collision.a, seen->collision.b}).second) return;
       if (!came_together({seen->collision.a, seen->collision.b})) report(*seen, last_violation, out);
     });
@@ -134,7 +134,7 @@ void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::
   joined_.clear();
 }
 
-void CollisionWatch::remember(const core::Snapshot& snapshot, const core::Gathering& gathering) {
+void CollisionWatch::remember(const core::Snapshot& snapshot, const core::InterestMatching& matching) {
   State state{snapshot.step, {}};
   if (states_.size() > static_cast<std::size_t>(2 * lookahead_ + 2)) {
     state.bodies = std::move(states_.front().bodies);
@@ -143,7 +143,7 @@ void CollisionWatch::remember(const core::Snapshot& snapshot, const core::Gather
   }
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     const bool born = snapshot.bodies[i].birth <= snapshot.step;
-    if (born && gathering.noticed(i)) state.bodies.push_back({snapshot.bodies[i].id, snapshot.bodies[i].pose});
+    if (born && matching.noticed(i)) state.bodies.push_back({snapshot.bodies[i].id, snapshot.bodies[i].pose});
   }
   states_.push_back(std::move(state));
 }
@@ -158,13 +158,13 @@ const core::Pose* CollisionWatch::remembered(core::Step step, core::BodyId id) c
   return nullptr;
 }
 
-void CollisionWatch::compare(const core::Snapshot& snapshot, const core::Gathering& gathering,
+void CollisionWatch::compare(const core::Snapshot& snapshot, const core::InterestMatching& matching,
                              core::Step last_violation, std::vector<SeenCollision>& out) {
-  remember(snapshot, gathering);
-  for (const core::Gathering::Pair& pair : gathering.pairs()) {
-    const core::Foreign& foreign = gathering.foreign(pair.foreign);
+  remember(snapshot, matching);
+  for (const core::InterestMatching::Pair& pair : matching.pairs()) {
+    const core::Foreign& foreign = matching.foreign(pair.foreign);
     if (foreign.ghost || !foreign.born) continue;
-    const core::Path& own = gathering.path(pair.own);
+    const core::Path& own = matching.path(pair.own);
     const core::Step stamp = snapshot.step - static_cast<core::Step>(foreign.path.age_steps);
     const core::Pose* pose = remembered(stamp, snapshot.bodies[pair.own].id);
     if (!pose) continue;

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/clearance.h"
-#include "core/gathering.h"
 #include "core/ids.h"
 #include "core/intake.h"
+#include "core/interest_matching.h"
 #include "physics/region_world.h"
 
 namespace aurasim::node {
@@ -43,11 +43,11 @@ class CollisionWatch {
 
   /// Judges overlaps without a contact of the bodies that have joined. Bullet makes none between two that sleep:
   /// nothing would be seen until something wakes them, long after the promise was broken that let it come to this.
-  void judge_arrivals(const core::Snapshot& snapshot, const core::Gathering& gathering, core::Step last_violation,
+  void judge_arrivals(const core::Snapshot& snapshot, const core::InterestMatching& matching, core::Step last_violation,
                       std::vector<SeenCollision>& out);
 
   /// Compares foreign auras with where our own bodies were in the auras' states.
-  void compare(const core::Snapshot& snapshot, const core::Gathering& gathering, core::Step last_violation,
+  void compare(const core::Snapshot& snapshot, const core::InterestMatching& matching, core::Step last_violation,
                std::vector<SeenCollision>& out);
 
   std::uint64_t late() const { return late_; }
@@ -80,9 +80,9 @@ class CollisionWatch {
   bool came_together(const Pair& pair) const;
   void forget_parted(const core::Snapshot& snapshot);
   std::optional<SeenCollision> overlap_of(std::uint32_t i, std::uint32_t j, const core::Snapshot& snapshot,
-                                          const core::Gathering& gathering) const;
+                                          const core::InterestMatching& matching) const;
   void report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out);
-  void remember(const core::Snapshot& snapshot, const core::Gathering& gathering);
+  void remember(const core::Snapshot& snapshot, const core::InterestMatching& matching);
 
   double step_s_;
   double gravity_m_s2_;

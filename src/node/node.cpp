@@ -4,7 +4,7 @@
 #include <ctime>
 #include <utility>
 
-#include "node/scene_growth.h"
+#include "node/scene_additions.h"
 
 namespace aurasim::node {
 namespace {
@@ -56,7 +56,7 @@ const StepReport& Node::start() {
   return report_;
 }
 
-/// Bodies of state 0, and those born so soon after it that nobody could be told in time.
+/// Bodies of state 0, and those born so soon after it that nobody could know of them in time.
 void Node::host_initial_bodies() {
   std::vector<core::BodyRecord> records;
   for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
@@ -131,7 +131,7 @@ void Node::announce_spawns(core::Step birth) {
     world_.add({&record, 1});
     watch_.newborn(record.id, record.birth);
     report_.births.push_back({record.id, record.birth});
-    report_.obeyed.push_back(order.request);
+    report_.applied.push_back(order.request);
     return true;
   });
 }
@@ -139,8 +139,8 @@ void Node::announce_spawns(core::Step birth) {
 void Node::note_removals() {
   report_.removals = world_.take_removed();
   for (const physics::Removal& removal : report_.removals) touched_.erase(removal.body);
-  const std::vector<std::uint64_t> obeyed = world_.take_obeyed();
-  report_.obeyed.insert(report_.obeyed.end(), obeyed.begin(), obeyed.end());
+  const std::vector<std::uint64_t> applied = world_.take_applied();
+  report_.applied.insert(report_.applied.end(), applied.begin(), applied.end());
 }
 
 void Node::take_mail() {
@@ -192,7 +192,7 @@ void Node::clear_report() {
   report_.births.clear();
   report_.removals.clear();
   report_.orders.clear();
-  report_.obeyed.clear();
+  report_.applied.clear();
 }
 
 const StepReport& Node::step() {
@@ -246,7 +246,7 @@ void Node::note_arrivals(const core::Adoption& adoption) {
   watch_.join(adoption);
 }
 
-/// The second half of a step: look at the state, tell the others, let go.
+/// The second half of a step: look at the state, publish, let go.
 void Node::finish_state() {
   const core::Snapshot* snapshot = nullptr;
   {
@@ -263,11 +263,11 @@ void Node::finish_state() {
   {
     const Timed timed(report_.durations.watch_s, setup_.clock);
     watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
-    watch_.judge_arrivals(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
-    watch_.compare(*snapshot, protocol_->gathering(), protocol_->last_violation_step(), report_.collisions);
+    watch_.judge_arrivals(*snapshot, protocol_->matching(), protocol_->last_violation_step(), report_.collisions);
+    watch_.compare(*snapshot, protocol_->matching(), protocol_->last_violation_step(), report_.collisions);
     note_contacts(*snapshot);
   }
-  report_.foreign_auras = protocol_->gathering().foreign_auras();
+  report_.foreign_auras = protocol_->matching().foreign_auras();
   report_.projecting = protocol_->projection().projecting();
   report_.largest_cluster = protocol_->largest_cluster();
   for (const core::Departure& departure : *departures) release(departure);

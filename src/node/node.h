@@ -80,8 +80,8 @@ struct StepReport {
   std::size_t largest_cluster = 0;
   std::vector<Birth> births;               ///< bodies that this node has announced or taken over at the start
   std::vector<physics::Removal> removals;  ///< bodies that orders took out
-  std::vector<core::Order> orders;         ///< heard
-  std::vector<std::uint64_t> obeyed;       ///< requests that bodies here have obeyed
+  std::vector<core::Order> orders;         ///< received
+  std::vector<std::uint64_t> applied;      ///< requests that were applied to bodies here
   std::vector<HandOffRow> departures;
   std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
   std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
@@ -95,7 +95,7 @@ class Node {
   /// Map and transport outlive the node. The scene is copied: orders add to it.
   Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map, transport::Transport& transport);
 
-  /// Takes the bodies of state 0 that are this region's and tells the neighbours. Once, before anything else.
+  /// Takes the bodies of state 0 that are this region's and publishes them. Once, before anything else.
   const StepReport& start();
 
   /// Takes in the mail. True when the next state may be computed.
@@ -104,7 +104,7 @@ class Node {
   /// Computes the next state. Only when ready().
   const StepReport& step();
 
-  /// Orders the world to do something, as soon as all nodes can have heard of it, or in state `at_step` if that is
+  /// Orders the world to do something, as soon as all nodes can have received it, or in state `at_step` if that is
   /// later. Only on the one node that takes orders.
   const core::Order& order(const core::Action& action, std::uint64_t request, core::Step at_step = 0);
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }

@@ -6,8 +6,8 @@
 namespace aurasim::node {
 namespace {
 
-// A body that has moved less than this since it was told last has not moved: far below what can be seen, far above the
-// jitter of a body at rest that has not fallen asleep yet.
+// A body that has moved less than this since it was published last has not moved: far below what can be seen, far above
+// the jitter of a body at rest that has not fallen asleep yet.
 constexpr double kStillM = 1e-4;
 constexpr float kStillQuaternion = 2e-4F;
 
@@ -48,17 +48,17 @@ void ReplicaFeed::note(const StepReport& report) {
     row.epoch = report.departures[i].epoch;
     left_.insert_or_assign(body.id, Left{row, body.birth});
   }
-  // Whoever has the higher epoch speaks for it; here it is forgotten without a word.
-  for (const core::BodyId id : report.let_go) told_.erase(id);
+  // Whoever has the higher epoch publishes it; here it is forgotten without a message.
+  for (const core::BodyId id : report.let_go) published_.erase(id);
 }
 
 bool ReplicaFeed::is_news(const core::BodyState& body) const {
-  const auto found = told_.find(body.id);
-  if (found == told_.end()) return true;
-  const Told& told = found->second;
-  return told.epoch != body.epoch || told.asleep == body.awake ||
-         (told.p_WB - body.pose.p_WB).cwiseAbs().maxCoeff() > kStillM ||
-         (told.q_WB.coeffs() - body.pose.q_WB.cast<float>().coeffs()).cwiseAbs().maxCoeff() > kStillQuaternion;
+  const auto found = published_.find(body.id);
+  if (found == published_.end()) return true;
+  const Published& published = found->second;
+  return published.epoch != body.epoch || published.asleep == body.awake ||
+         (published.p_WB - body.pose.p_WB).cwiseAbs().maxCoeff() > kStillM ||
+         (published.q_WB.coeffs() - body.pose.q_WB.cast<float>().coeffs()).cwiseAbs().maxCoeff() > kStillQuaternion;
 }
 
 void ReplicaFeed::begin(core::Replica& replica, core::Step stamp, bool key_frame) const {
@@ -72,47 +72,48 @@ void ReplicaFeed::begin(core::Replica& replica, core::Step stamp, bool key_frame
   replica.removed.clear();
 }
 
-const core::Replica& ReplicaFeed::tell_changes(const core::Snapshot& snapshot) {
+const core::Replica& ReplicaFeed::compose_changes(const core::Snapshot& snapshot) {
   ++sequence_;
   begin(changes_, snapshot.step, false);
   for (const core::BodyState& body : snapshot.bodies) {
     if (body.birth > snapshot.step || !is_news(body)) continue;
     changes_.bodies.push_back(row_of(body, self_));
     const core::ReplicaBody& row = changes_.bodies.back();
-    told_.insert_or_assign(body.id, Told{row.epoch, row.asleep, row.p_WB, row.q_WB});
+    published_.insert_or_assign(body.id, Published{row.epoch, row.asleep, row.p_WB, row.q_WB});
     left_.erase(body.id);  // it has come back
   }
-  tell_departures();
-  tell_removals(snapshot);
+  compose_departures();
+  compose_removals(snapshot);
   changed_since_key_frame_ = changed_since_key_frame_ || !changes_.bodies.empty() || !changes_.removed.empty();
   return changes_;
 }
 
-void ReplicaFeed::tell_departures() {
+void ReplicaFeed::compose_departures() {
   if (left_.empty()) return;
   std::erase_if(left_, [this](const auto& entry) {
     const auto& [id, left] = entry;
     if (left.birth > changes_.stamp) return false;
-    told_.erase(id);
+    published_.erase(id);
     changes_.bodies.push_back(left.row);
     return true;
   });
   std::sort(changes_.bodies.begin(), changes_.bodies.end(), ascending);
 }
 
-void ReplicaFeed::tell_removals(const core::Snapshot& snapshot) {
+void ReplicaFeed::compose_removals(const core::Snapshot& snapshot) {
   const auto born = std::count_if(snapshot.bodies.begin(), snapshot.bodies.end(),
                                   [&](const core::BodyState& body) { return body.birth <= snapshot.step; });
-  if (told_.size() == static_cast<std::size_t>(born)) return;
-  for (const auto& [id, told] : told_) {
-    if (!is_here(snapshot, id)) changes_.removed.push_back({id, told.epoch});
+  if (published_.size() == static_cast<std::size_t>(born)) return;
+  for (const auto& [id, published] : published_) {
+    if (!is_here(snapshot, id)) changes_.removed.push_back({id, published.epoch});
   }
   std::sort(changes_.removed.begin(), changes_.removed.end(),
             [](const core::RemovedBody& a, const core::RemovedBody& b) { return a.id < b.id; });
-  for (const core::RemovedBody& body : changes_.removed) told_.erase(body.id);
+  for (const core::RemovedBody& body : changes_.removed) published_.erase(body.id);
 }
 
-const core::Replica& ReplicaFeed::tell_all(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way) {
+const core::Replica& ReplicaFeed::compose_key_frame(const core::Snapshot& snapshot,
+                                                    const std::deque<core::HandOff>& under_way) {
   begin(all_, snapshot.step, true);
   for (const core::BodyState& body : snapshot.bodies) {
     if (body.birth <= snapshot.step) all_.bodies.push_back(row_of(body, self_));
@@ -137,7 +138,7 @@ const core::Replica& ReplicaFeed::tell_all(const core::Snapshot& snapshot, const
 }
 
 void ReplicaFeed::forget() {
-  told_.clear();
+  published_.clear();
   left_.clear();
   changed_since_key_frame_ = true;
 }

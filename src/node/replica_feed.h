@@ -1,5 +1,5 @@
-// What a node tells observers (core/replica.h): at each tick what has changed since the last one, and key frames with
-// everything. Knows neither clock nor wire.
+// What a node publishes for observers (core/replica.h): at each tick what has changed since the last one, and key
+// frames with everything. Knows neither clock nor wire.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace aurasim::node {
 
-/// Steps between two ticks. Every node tells the states whose number is a multiple of it, so an observer can put states
-/// of all regions together.
+/// Steps between two ticks. Every node publishes the states whose number is a multiple of it, so an observer can put
+/// states of all regions together.
 core::Step tick_steps(double step_hz, double tick_hz);
 
 class ReplicaFeed {
@@ -27,38 +27,38 @@ class ReplicaFeed {
 
   /// What has changed since the last tick, for a tick at `snapshot`, which is the state after the departures of its
   /// step. Valid until the next call.
-  const core::Replica& tell_changes(const core::Snapshot& snapshot);
+  const core::Replica& compose_changes(const core::Snapshot& snapshot);
 
-  /// Everything: the bodies of the same state, and those on their way from here. After tell_changes. Valid until the
+  /// Everything: the bodies of the same state, and those on their way from here. After compose_changes. Valid until the
   /// next call.
-  const core::Replica& tell_all(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way);
+  const core::Replica& compose_key_frame(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way);
 
-  /// Something was told since the last key frame.
+  /// Something was published since the last key frame.
   bool changed_since_key_frame() const { return changed_since_key_frame_; }
 
-  /// Nobody listens any more: whoever comes next is told everything anew.
+  /// Nobody listens any more: whoever comes next gets everything anew.
   void forget();
 
  private:
-  struct Told {
+  struct Published {
     core::Epoch epoch = 0;
     bool asleep = false;
     core::Vec3 p_WB;
     Eigen::Quaternionf q_WB;
   };
   bool is_news(const core::BodyState& body) const;
-  void tell_departures();
-  void tell_removals(const core::Snapshot& snapshot);
+  void compose_departures();
+  void compose_removals(const core::Snapshot& snapshot);
   void begin(core::Replica& replica, core::Step stamp, bool key_frame) const;
 
   core::RegionId self_;
   core::Generation generation_;
   std::uint64_t map_version_;
   std::uint64_t sequence_ = 0;
-  std::unordered_map<core::BodyId, Told> told_;
+  std::unordered_map<core::BodyId, Published> published_;
   struct Left {
     core::ReplicaBody row;  ///< under the new epoch
-    core::Step birth = 0;   ///< told from then on
+    core::Step birth = 0;   ///< published from then on
   };
   std::map<core::BodyId, Left> left_;  ///< since the last tick
   core::Replica changes_;

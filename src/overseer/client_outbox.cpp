@@ -9,7 +9,7 @@ constexpr std::size_t kMostReplies = 256;
 
 }  // namespace
 
-void ClientOutbox::tell(Notice notice, SharedText text) {
+void ClientOutbox::publish(Notice notice, SharedText text) {
   notices_[static_cast<std::size_t>(notice)] = std::move(text);
 }
 

@@ -1,4 +1,4 @@
-// What waits to be sent to one page. However slow the page, this does not grow: of everything that can be said anew
+// What waits to be sent to one page. However slow the page, this does not grow: of everything that can be sent anew
 // only the latest is kept, frames are merged (frame_codec.h), and replies are limited.
 #pragma once
 
@@ -27,7 +27,7 @@ struct Message {
 
 class ClientOutbox {
  public:
-  void tell(Notice notice, SharedText text);
+  void publish(Notice notice, SharedText text);
   /// False: there are too many already; the page does not read.
   bool reply(std::string text);
   void note(const WorldFrame& frame) { frames_.note(frame); }

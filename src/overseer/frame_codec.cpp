@@ -18,7 +18,7 @@ constexpr std::uint8_t kOverlays = 2;
 constexpr std::uint8_t kKeyFrame = 1;
 constexpr std::uint16_t kAsleep = 1, kUnderWay = 2, kHandedOver = 4;
 
-// What a client knows of a slot, and what it has to be told.
+// What a client knows of a slot, and what it has to be sent.
 constexpr std::uint8_t kKnown = 1;     ///< it has the body that is there
 constexpr std::uint8_t kOutlived = 2;  ///< it has a body that is there no more
 constexpr std::uint8_t kHostNews = 4;

@@ -28,16 +28,16 @@ void OverlayView::look(dds::Participant& participant, const dds::ObserverSetting
     auras_ = std::make_unique<dds::AuraWatch>(participant, settings);
   }
   if (!wanted.links && !wanted.contacts) {
-    bonds_.reset();
-    bonds_of_.clear();
-  } else if (!bonds_) {
-    bonds_ = std::make_unique<dds::BondsWatch>(participant, settings);
+    graphs_.reset();
+    graph_of_.clear();
+  } else if (!graphs_) {
+    graphs_ = std::make_unique<dds::ClusterGraphWatch>(participant, settings);
   }
   if (auras_) look_at_auras(scene, view);
-  if (!bonds_) return;
-  for (core::Bonds& bonds : bonds_->take()) {
-    const core::RegionId source = bonds.source;
-    bonds_of_.insert_or_assign(source, std::move(bonds));
+  if (!graphs_) return;
+  for (core::ClusterGraph& graph : graphs_->take()) {
+    const core::RegionId source = graph.source;
+    graph_of_.insert_or_assign(source, std::move(graph));
   }
 }
 
@@ -62,9 +62,9 @@ void OverlayView::look_at_auras(const core::Scene& scene, const WorldView& view)
 
 void OverlayView::forget() {
   auras_.reset();
-  bonds_.reset();
+  graphs_.reset();
   aura_of_.clear();
-  bonds_of_.clear();
+  graph_of_.clear();
 }
 
 Bytes OverlayView::encode(const WorldView& view, double ahead_s) const {
@@ -74,10 +74,10 @@ Bytes OverlayView::encode(const WorldView& view, double ahead_s) const {
     if (const ViewBody* body = view.find(id)) discs.push_back({body->slot, reach_m});
   }
   std::vector<SlotPair> links, contacts;
-  for (const auto& [source, bonds] : bonds_of_) {
-    if (bonds.generation != view.generation()) continue;
-    std::ranges::copy(slots_of(bonds.links, view), std::back_inserter(links));
-    std::ranges::copy(slots_of(bonds.contacts, view), std::back_inserter(contacts));
+  for (const auto& [source, graph] : graph_of_) {
+    if (graph.generation != view.generation()) continue;
+    std::ranges::copy(slots_of(graph.links, view), std::back_inserter(links));
+    std::ranges::copy(slots_of(graph.contacts, view), std::back_inserter(contacts));
   }
   return encode_overlays(discs, links, contacts);
 }

@@ -16,13 +16,13 @@ namespace aurasim::overseer {
 
 class OverlayView {
  public:
-  /// Takes in what the nodes have told. `wanted`: by any page.
+  /// Takes in what the nodes have published. `wanted`: by any page.
   void look(dds::Participant& participant, const dds::ObserverSettings& settings, const Show& wanted,
             const core::Scene& scene, const WorldView& view);
   /// Another map or scene: what was known is of another world.
   void forget();
 
-  /// Bodies that the view does not know are left out. `ahead_s`: for how long an aura speaks, seconds.
+  /// Bodies that the view does not know are left out. `ahead_s`: for how long an aura holds, seconds.
   Bytes encode(const WorldView& view, double ahead_s) const;
 
  private:
@@ -33,9 +33,9 @@ class OverlayView {
   void look_at_auras(const core::Scene& scene, const WorldView& view);
 
   std::unique_ptr<dds::AuraWatch> auras_;
-  std::unique_ptr<dds::BondsWatch> bonds_;
+  std::unique_ptr<dds::ClusterGraphWatch> graphs_;
   std::map<core::BodyId, Aura> aura_of_;
-  std::map<core::RegionId, core::Bonds> bonds_of_;
+  std::map<core::RegionId, core::ClusterGraph> graph_of_;
 };
 
 }  // namespace aurasim::overseer

@@ -8,7 +8,7 @@
 
 #include "config/launch_variants.h"
 #include "config/meshes.h"
-#include "node/scene_growth.h"
+#include "node/scene_additions.h"
 #include "overseer/ray_regions.h"
 #include "overseer/replay.h"
 
@@ -55,7 +55,7 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
       sink_(sink),
       observer_settings_{launch.regions.version(), static_cast<std::uint32_t>(launch.regions.size()),
                          static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients)},
-      growth_reader_(participant),
+      additions_reader_(participant),
       meshes_(participant),
       scene_(launch.scene),
       view_settings_{.region_count = launch.regions.size(),
@@ -67,9 +67,9 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
   hello.step_s = launch.step_s();
   hello.tick_hz = launch.observe.tick_hz;
   hello.token_needed = token_needed;
-  web_.tell(Notice::kHello, hello_message(hello));
-  tell_scene();
-  web_.tell(Notice::kMap, map_message(launch.regions));
+  web_.publish(Notice::kHello, hello_message(hello));
+  publish_scene();
+  web_.publish(Notice::kMap, map_message(launch.regions));
 }
 
 void Overseer::record(const std::filesystem::path& file) {
@@ -100,30 +100,30 @@ void Overseer::write_down(const WorldFrame& frame) {
   keep_recording([&](RecordingWriter& recording, double time_s) { recording.write(frame, time_s); });
 }
 
-void Overseer::tell_scene() {
+void Overseer::publish_scene() {
   const std::string text = scene_text();
-  web_.tell(Notice::kScene, text);
+  web_.publish(Notice::kScene, text);
   write_down(ChunkKind::kScene, text);
 }
 
-std::string Overseer::scene_text() const { return scene_message(scene_, told_generation_, removed_statics_); }
+std::string Overseer::scene_text() const { return scene_message(scene_, published_generation_, removed_statics_); }
 
 /// What clients have added to the scene, once the run shows that generation.
 void Overseer::grow() {
-  if (std::optional<dds::Growth> newest = growth_reader_.take()) growth_ = std::move(newest);
-  if (!growth_ || growth_->generation != told_generation_) return;
+  if (std::optional<dds::SceneAdditions> newest = additions_reader_.take()) additions_ = std::move(newest);
+  if (!additions_ || additions_->generation != published_generation_) return;
   const auto mesh = [this](const core::MeshRef& ref) -> std::optional<core::Shape> {
     const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
     return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
   };
   scene_ = launch_.scene;
   removed_statics_.clear();
-  for (const core::Order& order : growth_->orders) {
+  for (const core::Order& order : additions_->orders) {
     node::extend(scene_, order.action, mesh);
     if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) removed_statics_.insert(removed->id);
   }
-  growth_.reset();
-  tell_scene();
+  additions_.reset();
+  publish_scene();
 }
 
 double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
@@ -136,7 +136,7 @@ void Overseer::turn() {
   grow();
   compose_frames();
   serve_commands();
-  tell_status();
+  publish_status();
 }
 
 /// The same regions under other processes: the world of the old ones is gone.
@@ -183,8 +183,8 @@ void Overseer::look_at_map() {
   replicas_.emplace(participant_, observer_settings_);
   overlays_.forget();
   view_.emplace(view_settings_);
-  scene_is_told_ = false;  // also when bodies of this generation have come before the map
-  web_.tell(Notice::kMap, map_message(launch_.regions));
+  scene_is_published_ = false;  // also when bodies of this generation have come before the map
+  web_.publish(Notice::kMap, map_message(launch_.regions));
   write_down(ChunkKind::kMap, map_message(launch_.regions));
 }
 
@@ -192,12 +192,12 @@ void Overseer::compose_frames() {
   bool any = false;
   while (const WorldFrame* frame = view_->compose(now_s())) {
     any = true;
-    if (!scene_is_told_ || frame->generation != told_generation_) {
-      told_generation_ = frame->generation;
-      scene_is_told_ = true;
+    if (!scene_is_published_ || frame->generation != published_generation_) {
+      published_generation_ = frame->generation;
+      scene_is_published_ = true;
       scene_ = launch_.scene;
       removed_statics_.clear();
-      tell_scene();
+      publish_scene();
       grow();
     }
     web_.show(*frame);
@@ -269,12 +269,12 @@ RunStatus Overseer::status() {
   return status;
 }
 
-void Overseer::tell_status() {
+void Overseer::publish_status() {
   if (Clock::now() < next_status_) return;
   next_status_ = Clock::now() + kStatusPeriod;
   const RunStatus now = status();
   const std::string message = status_message(now);
-  web_.tell(Notice::kStatus, message);
+  web_.publish(Notice::kStatus, message);
   write_down(ChunkKind::kStatus, message);
   const ViewCounters& view = view_->counters();
   std::string text = node_metrics(now);

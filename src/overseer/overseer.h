@@ -1,5 +1,5 @@
-// The gateway between a run and the pages that watch it: puts the world together from what the nodes tell over DDS, and
-// hands frames, texts and commands to and fro. Listens only: the nodes do not notice whether it is there.
+// The gateway between a run and the pages that watch it: puts the world together from what the nodes publish over DDS,
+// and hands frames, texts and commands to and fro. Listens only: the nodes do not notice whether it is there.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@
 
 #include "config/launch.h"
 #include "dds/control.h"
-#include "dds/growth_bus.h"
 #include "dds/replica_bus.h"
+#include "dds/scene_additions_bus.h"
 #include "overseer/commands.h"
 #include "overseer/overlay_view.h"
 #include "overseer/page_messages.h"
@@ -31,7 +31,7 @@ class Overseer {
   Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, WebServer& web,
            CommandSink& sink, bool token_needed);
 
-  /// From now on writes down what pages are told. Throws BadRecording when the file cannot be written.
+  /// From now on writes down what is published to pages. Throws BadRecording when the file cannot be written.
   void record(const std::filesystem::path& file);
 
   /// One round: waits a few milliseconds for news and passes on what there is.
@@ -41,7 +41,7 @@ class Overseer {
   using Clock = std::chrono::steady_clock;
 
   double now_s() const;
-  void tell_scene();
+  void publish_scene();
   std::string scene_text() const;
   void grow();
   void write_down(ChunkKind kind, const std::string& text);
@@ -55,7 +55,7 @@ class Overseer {
   void compose_frames();
   void show_overlays();
   void serve_commands();
-  void tell_status();
+  void publish_status();
   RunStatus status();
   std::string state_of_run() const;
   void measure_hand_offs();
@@ -68,17 +68,17 @@ class Overseer {
   CommandSink& sink_;
   dds::ObserverSettings observer_settings_;
   std::optional<dds::ReplicaReader> replicas_;
-  dds::GrowthReader growth_reader_;
+  dds::SceneAdditionsReader additions_reader_;
   dds::MeshReader meshes_;
   core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
-  std::optional<dds::Growth> growth_;  ///< waits until its generation is shown
+  std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown
   OverlayView overlays_;
   ViewSettings view_settings_;
   std::optional<WorldView> view_;
   core::Generation map_generation_ = 0;
-  core::Generation told_generation_ = 0;
-  bool scene_is_told_ = true;  ///< that of told_generation_ and the newest map
+  core::Generation published_generation_ = 0;
+  bool scene_is_published_ = true;  ///< that of published_generation_ and the newest map
   std::optional<RecordingWriter> recording_;
   double recording_began_s_ = 0;
   std::map<core::RegionId, dds::SeenStatus> nodes_;

@@ -16,7 +16,7 @@ struct Segment {
 };
 
 /// Those that the segment crosses, or passes within `margin_m`, and the hosts of bodies that it may meet, wherever they
-/// are. Ascending. `margin_m`: as far as a body may have moved since the view was told.
+/// are. Ascending. `margin_m`: as far as a body may have moved since the view was updated.
 std::vector<core::RegionId> regions_for_ray(const Segment& ray, const core::RegionMap& map, const WorldView& view,
                                             const core::Scene& scene, double margin_m);
 

@@ -79,7 +79,7 @@ Replay::Replay(const std::filesystem::path& file) : reader_(file) {
   position_ = static_cast<double>(first->step);
 }
 
-void Replay::obey(const ReplayControl& control) {
+void Replay::apply(const ReplayControl& control) {
   using Action = ReplayControl::Action;
   switch (control.action) {
     case Action::kPlay:

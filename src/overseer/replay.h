@@ -30,7 +30,7 @@ class Replay {
   core::Step first_step() const { return first_step_; }
   core::Step last_step() const { return last_step_; }
 
-  void obey(const ReplayControl& control);
+  void apply(const ReplayControl& control);
 
   struct Output {
     std::vector<WorldFrame> frames;

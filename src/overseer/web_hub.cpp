@@ -41,7 +41,7 @@ void WebHub::join(const std::shared_ptr<PageConnection>& page) {
   pages_.emplace(page->id, page);
   clients_ = pages_.size();
   for (std::size_t i = 0; i < kNotices; ++i) {
-    if (notices_[i]) page->outbox.tell(static_cast<Notice>(i), notices_[i]);
+    if (notices_[i]) page->outbox.publish(static_cast<Notice>(i), notices_[i]);
   }
   page->outbox.note(
       {.generation = table_.generation(), .stamp = table_.stamp(), .restart = true, .deleted = {}, .changed = {}});
@@ -75,11 +75,11 @@ void WebHub::read(PageConnection& page, std::string_view text) {
     ++refused_;
     reply(page, {page.id, bad->request, false, bad->why, nullptr});
   } else {
-    obey(page, std::get<PageMessage>(read));
+    handle(page, std::get<PageMessage>(read));
   }
 }
 
-void WebHub::obey(PageConnection& page, PageMessage& message) {
+void WebHub::handle(PageConnection& page, PageMessage& message) {
   std::visit(Overloaded{[&](const Show& show) {
                           page.show = show;
                           note_wanted();
@@ -144,27 +144,27 @@ void WebHub::watch(PageConnection& page, const Watch& watch) {
   page.watched.reset();
   const ViewBody* body = watch.slot ? table_.body(*watch.slot) : nullptr;
   if (body != nullptr) page.watched = body->id;
-  tell_watched(page);
+  publish_watched(page);
   page.pump();
 }
 
-void WebHub::tell_watched(PageConnection& page) {
+void WebHub::publish_watched(PageConnection& page) {
   if (!page.watched) return;
   for (Slot slot = 0; slot < table_.slot_count(); ++slot) {
     const ViewBody* body = table_.body(slot);
     if (body == nullptr || body->id != *page.watched) continue;
-    page.outbox.tell(Notice::kBody, std::make_shared<const std::string>(body_message(*body)));
+    page.outbox.publish(Notice::kBody, std::make_shared<const std::string>(body_message(*body)));
     return;
   }
-  page.outbox.tell(Notice::kBody, std::make_shared<const std::string>(body_gone_message(*page.watched)));
+  page.outbox.publish(Notice::kBody, std::make_shared<const std::string>(body_gone_message(*page.watched)));
   page.watched.reset();
 }
 
-void WebHub::tell(Notice notice, SharedText text) {
+void WebHub::publish(Notice notice, SharedText text) {
   notices_[static_cast<std::size_t>(notice)] = text;
   for (const auto& [id, page] : std::map(pages_)) {
-    page->outbox.tell(notice, text);
-    if (notice == Notice::kStatus) tell_watched(*page);
+    page->outbox.publish(notice, text);
+    if (notice == Notice::kStatus) publish_watched(*page);
     page->pump();
   }
 }

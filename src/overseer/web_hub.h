@@ -57,7 +57,7 @@ class WebHub {
   bool knows_token(std::string_view token) const;
 
   // -- for the server
-  void tell(Notice notice, SharedText text);
+  void publish(Notice notice, SharedText text);
   void show(const WorldFrame& frame);
   void show_overlays(const SharedBytes& overlays);
   void set_metrics(std::string text) { metrics_ = std::move(text); }
@@ -77,11 +77,11 @@ class WebHub {
   void count_sent(const Message& message, std::size_t bytes);
 
  private:
-  void obey(PageConnection& page, PageMessage& message);
+  void handle(PageConnection& page, PageMessage& message);
   void take_command(PageConnection& page, CommandMessage& message);
   void reply(PageConnection& page, const Reply& reply);
   void watch(PageConnection& page, const Watch& watch);
-  void tell_watched(PageConnection& page);
+  void publish_watched(PageConnection& page);
   void note_wanted();
   bool enqueue(PageRequest request);
   std::string metrics() const;

@@ -105,9 +105,10 @@ WebServer::~WebServer() = default;
 
 std::uint16_t WebServer::port() const { return impl_->port; }
 
-void WebServer::tell(Notice notice, std::string json) {
-  impl_->post(
-      [this, notice, text = std::make_shared<const std::string>(std::move(json))] { impl_->hub.tell(notice, text); });
+void WebServer::publish(Notice notice, std::string json) {
+  impl_->post([this, notice, text = std::make_shared<const std::string>(std::move(json))] {
+    impl_->hub.publish(notice, text);
+  });
 }
 
 void WebServer::show(const WorldFrame& frame) {

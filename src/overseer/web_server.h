@@ -63,7 +63,7 @@ class WebServer {
   std::uint16_t port() const;
 
   /// To every page, also to those that come later.
-  void tell(Notice notice, std::string json);
+  void publish(Notice notice, std::string json);
   void show(const WorldFrame& frame);
   /// To the pages that want them.
   void show_overlays(Bytes overlays);

@@ -19,7 +19,7 @@ struct ViewBody {
   core::RegionId host{};
   core::PrototypeId prototype{};
   bool asleep = false;
-  bool under_way = false;  ///< its last host has handed it to `host`, which has not said yet that it has it
+  bool under_way = false;  ///< its last host has handed it to `host`, which has not published it yet
   core::Vec3 p_WB = core::Vec3::Zero();
   Eigen::Quaternionf q_WB = Eigen::Quaternionf::Identity();
   Eigen::Vector3f v_WB = Eigen::Vector3f::Zero();

@@ -26,7 +26,7 @@ void WorldView::begin_generation(core::Generation generation) {
   stamp_ = -1;
   restart_ = true;
   for (Source& source : sources_) {
-    source.said = -1;
+    source.published = -1;
     source.sequence = 0;
     source.pending.clear();
   }
@@ -45,7 +45,7 @@ void WorldView::accept(Replica replica, double now_s) {
   if (replica.generation > generation_) begin_generation(replica.generation);
   Source& source = sources_[index];
   // A key frame may have overtaken ticks that are still to come.
-  if (!replica.key_frame) source.said = std::max(source.said, replica.stamp);
+  if (!replica.key_frame) source.published = std::max(source.published, replica.stamp);
   const auto later = [](const Replica& a, const Replica& b) {
     return a.stamp != b.stamp ? a.stamp < b.stamp : a.key_frame < b.key_frame;
   };
@@ -71,7 +71,7 @@ bool WorldView::is_ready(Step stamp, double now_s) {
   bool complete = true;
   bool waited_enough = false;
   for (const Source& source : sources_) {
-    complete = complete && (source.state != RegionState::kLive || source.said >= stamp);
+    complete = complete && (source.state != RegionState::kLive || source.published >= stamp);
     waited_enough = waited_enough || source.pending.size() > kMostPending;
     if (!source.pending.empty() && source.pending.front().replica.stamp <= stamp)
       waited_enough = waited_enough || now_s - source.pending.front().came_s >= settings_.wait_s;
@@ -133,7 +133,7 @@ void WorldView::apply_row(const ReplicaBody& row, const Replica& replica) {
   const bool hosted = row.host == replica.source;
   bool newer = row.epoch > body.epoch;
   // Under one epoch there is one host. That it has the body counts for more than that it was sent to it.
-  if (row.epoch == body.epoch && hosted && row.host == body.host) newer = body.under_way || replica.stamp >= body.told;
+  if (row.epoch == body.epoch && hosted && row.host == body.host) newer = body.under_way || replica.stamp >= body.stamp;
   if (newer) {
     take_row(body, row, replica);
   } else if (row.epoch == body.epoch && body.under_way) {
@@ -158,7 +158,7 @@ void WorldView::take_row(Body& body, const ReplicaBody& row, const Replica& repl
   body.q_WB = row.q_WB;
   body.v_WB = row.v_WB;
   body.w_WB = row.w_WB;
-  body.told = replica.stamp;
+  body.stamp = replica.stamp;
   body.unclaimed_since = -1;
   if (under_way) doubt(body, replica.stamp);
   if (!host_changed && !moved) return;
@@ -191,7 +191,7 @@ void WorldView::apply_removal(const core::RemovedBody& removed) {
 
 void WorldView::doubt_missing(const Replica& key_frame) {
   for (Body& body : bodies_) {
-    if (!body.alive || body.host != key_frame.source || body.under_way || body.told >= key_frame.stamp) continue;
+    if (!body.alive || body.host != key_frame.source || body.under_way || body.stamp >= key_frame.stamp) continue;
     const auto place = std::lower_bound(key_frame.bodies.begin(), key_frame.bodies.end(), body.id,
                                         [](const ReplicaBody& row, BodyId wanted) { return row.id < wanted; });
     const bool named = place != key_frame.bodies.end() && place->id == body.id;

@@ -1,7 +1,7 @@
-// One world from what its regions tell of their parts (core/replica.h). No clock, no thread, no wire: the caller passes
-// replicas and the time.
+// One world from what its regions publish of their parts (core/replica.h). No clock, no thread, no wire: the caller
+// passes replicas and the time.
 //
-// The highest epoch owns a body. One that its host has handed over keeps its last pose until the new host tells of it,
+// The highest epoch owns a body. One that its host has handed over keeps its last pose until the new host publishes it,
 // so it neither vanishes nor doubles. A key frame corrects what was missed.
 #pragma once
 
@@ -20,7 +20,7 @@ struct ViewSettings {
   std::size_t region_count = 1;
   /// A body that nobody claims for so long is gone: its host died, or its removal was missed.
   core::Step unclaimed_patience = 180;
-  /// How long a tick waits for regions that have not told theirs.
+  /// How long a tick waits for regions that have not published theirs.
   double wait_s = 0.3;
 };
 
@@ -44,8 +44,8 @@ class WorldView {
   enum class RegionState : std::uint8_t { kAbsent, kLive, kDead };
   void set_region(core::RegionId region, RegionState state);
 
-  /// The next frame, if every live region has told its tick or the wait is over; null otherwise. Call until null. Valid
-  /// until the next call.
+  /// The next frame, if every live region has published its tick or the wait is over; null otherwise. Call until null.
+  /// Valid until the next call.
   const WorldFrame* compose(double now_s);
 
   core::Generation generation() const { return generation_; }
@@ -64,7 +64,7 @@ class WorldView {
  private:
   struct Body : ViewBody {
     bool alive = false;
-    core::Step told = 0;                                                             ///< state that the pose is of
+    core::Step stamp = 0;                                                            ///< state that the pose is of
     core::Step unclaimed_since = -1;                                                 ///< -1: its host claims it
     bool created = false, host_changed = false, moved = false, handed_over = false;  ///< since the last frame
   };
@@ -74,7 +74,7 @@ class WorldView {
   };
   struct Source {
     RegionState state = RegionState::kAbsent;
-    core::Step said = -1;
+    core::Step published = -1;
     std::uint64_t sequence = 0;
     std::deque<Pending> pending;  ///< by stamp; deltas before key frames
   };

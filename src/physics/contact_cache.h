@@ -4,8 +4,8 @@
 // Columns of one row (world frame, metres, newton seconds; A is the manifold's body0, B its body1):
 //    0- 2  point on A in A's frame                28  applied impulse, along the normal
 //    3- 5  point on B in B's frame                29  right-hand side of the last solve
-//    6- 8  point on B                             30  creep, m, along the first of two directions
-//    9-11  point on A                             31  creep along the second (creep.h)
+//    6- 8  point on B                             30  slip, m, along the first of two directions
+//    9-11  point on A                             31  slip along the second (friction_anchors.h)
 //   12-14  normal on B, towards A                 32  contact motion, first lateral direction
 //   15-17  first lateral direction of friction    33  contact motion, second lateral direction
 //   18-20  second lateral direction               34  constraint force mixing (or contact stiffness)

@@ -10,7 +10,7 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
-#include "physics/fetch.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {

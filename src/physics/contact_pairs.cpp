@@ -2,7 +2,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
-#include "physics/fetch.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -12,20 +12,20 @@ constexpr int kLeaving = 0;
 
 bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilterMask == kLeaving; }
 
-void fetch_pair(const btBroadphasePair& pair) {
-  fetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
-  fetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
-  if (pair.m_algorithm != nullptr) fetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
+void prefetch_pair(const btBroadphasePair& pair) {
+  prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
+  prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
+  if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
 }
 
 /// Of a pair that is here itself.
-void fetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
-  fetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
-  fetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
+void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
+  prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
   if (pair.m_algorithm == nullptr) return;
   manifolds.resizeNoInitialize(0);
   pair.m_algorithm->getAllContactManifolds(manifolds);
-  for (int i = 0; i < manifolds.size(); ++i) fetch_head(*manifolds[i]);
+  for (int i = 0; i < manifolds.size(); ++i) prefetch_head(*manifolds[i]);
 }
 
 }  // namespace
@@ -34,8 +34,8 @@ void fetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
 void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher*, const btDispatcherInfo&) {
   btBroadphasePairArray& pairs = getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
-    if (i + kFetchedAhead < pairs.size()) fetch_pair(pairs[i + kFetchedAhead]);
-    if (i + kFetchedAhead / 2 < pairs.size()) fetch_parts(pairs[i + kFetchedAhead / 2], manifolds_);
+    if (i + kPrefetchDistance < pairs.size()) prefetch_pair(pairs[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance / 2 < pairs.size()) prefetch_parts(pairs[i + kPrefetchDistance / 2], manifolds_);
     callback->processOverlap(pairs[i]);
   }
 }

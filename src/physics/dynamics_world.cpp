@@ -12,8 +12,8 @@
 #include "physics/contact_islands.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
-#include "physics/fetch.h"
 #include "physics/free_rotation.h"
+#include "physics/prefetch.h"
 #include "physics/solvers.h"
 
 namespace aurasim::physics {

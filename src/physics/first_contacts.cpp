@@ -8,7 +8,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include "physics/fetch.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {

@@ -10,7 +10,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// A body that arrives later than this many states after an order does not obey it.
+/// A body that arrives later than this many states after an order does not apply it.
 constexpr core::Step kOrderMemory = 3600;
 
 }  // namespace
@@ -75,11 +75,11 @@ std::vector<Removal> RegionWorld::take_removed() {
   return removed;
 }
 
-std::vector<std::uint64_t> RegionWorld::take_obeyed() {
-  std::vector<std::uint64_t> obeyed = impl_->simulation.take_obeyed();
-  const std::vector<std::uint64_t> on_the_way = impl_->scratch.take_obeyed();
-  obeyed.insert(obeyed.end(), on_the_way.begin(), on_the_way.end());
-  return obeyed;
+std::vector<std::uint64_t> RegionWorld::take_applied() {
+  std::vector<std::uint64_t> applied = impl_->simulation.take_applied();
+  const std::vector<std::uint64_t> on_the_way = impl_->scratch.take_applied();
+  applied.insert(applied.end(), on_the_way.begin(), on_the_way.end());
+  return applied;
 }
 
 RayHit RegionWorld::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {

@@ -105,12 +105,12 @@ class RegionWorld {
   /// The same record of bodies that stay (tests, key frames, state hash).
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
 
-  /// An order to obey in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
+  /// An order to apply in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
   /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
   void schedule(const core::Order& order);
-  /// What orders took out, and the requests that bodies here have obeyed, since the last call.
+  /// What orders took out, and the requests that were applied to bodies here, since the last call.
   std::vector<Removal> take_removed();
-  std::vector<std::uint64_t> take_obeyed();
+  std::vector<std::uint64_t> take_applied();
 
   /// The nearest body or static between two points, in the present state.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;

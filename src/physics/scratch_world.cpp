@@ -10,8 +10,8 @@ std::vector<Removal> ScratchWorld::take_removed() {
   return simulation_ ? simulation_->take_removed() : std::vector<Removal>{};
 }
 
-std::vector<std::uint64_t> ScratchWorld::take_obeyed() {
-  return simulation_ ? simulation_->take_obeyed() : std::vector<std::uint64_t>{};
+std::vector<std::uint64_t> ScratchWorld::take_applied() {
+  return simulation_ ? simulation_->take_applied() : std::vector<std::uint64_t>{};
 }
 
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,

@@ -21,7 +21,7 @@ class ScratchWorld {
                               const CatchUpListener& caught_up, std::vector<Collision>& collisions);
 
   std::vector<Removal> take_removed();
-  std::vector<std::uint64_t> take_obeyed();
+  std::vector<std::uint64_t> take_applied();
 
  private:
   const core::Scene* scene_;

@@ -11,7 +11,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
-#include "physics/fetch.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -304,7 +304,7 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 
 void Simulation::step() {
   world_.first_contacts().clear();
-  obey(step_ + 1);
+  apply_orders(step_ + 1);
   for (int i = 0; i < settings_.substeps; ++i) {
     world_.step(settings_.step_s / settings_.substeps);
     joints_.remove_broken(world_);

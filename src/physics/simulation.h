@@ -48,9 +48,9 @@ class Simulation {
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
 
-  /// Bodies that orders took out, and the requests that bodies obeyed, since the last call.
+  /// Bodies that orders took out, and the requests that were applied to bodies, since the last call.
   std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
-  std::vector<std::uint64_t> take_obeyed() { return std::exchange(obeyed_, {}); }
+  std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
 
   /// The nearest body or static on the way from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
@@ -58,7 +58,7 @@ class Simulation {
  private:
   void make_statics();
   void insert_born();
-  void obey(core::Step n);
+  void apply_orders(core::Step n);
   void kick(btRigidBody& body, const core::Order& order);
   void take_out(core::BodyId id);
   void show_statics(core::Step n);
@@ -95,7 +95,7 @@ class Simulation {
   std::uint64_t severed_contacts_ = 0;
   std::vector<Collision> collisions_;
   std::vector<Removal> removed_;
-  std::vector<std::uint64_t> obeyed_;
+  std::vector<std::uint64_t> applied_;
 
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

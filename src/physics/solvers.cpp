@@ -8,8 +8,8 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
-#include "physics/creep.h"
-#include "physics/fetch.h"
+#include "physics/friction_anchors.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -56,10 +56,10 @@ class Refined : public BulletSolver {
  protected:
   void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override {
     // Bullet makes the rows of one manifold after the other.
-    constexpr int kAtOnce = kFetchedAhead / 2;
+    constexpr int kAtOnce = kPrefetchDistance / 2;
     for (int i = 0; i < count; i += kAtOnce) {
-      for (int j = i + 2 * kAtOnce; j < std::min(i + 3 * kAtOnce, count); ++j) fetch_head(*manifolds[j]);
-      for (int j = i + kAtOnce; j < std::min(i + 2 * kAtOnce, count); ++j) fetch_points(*manifolds[j]);
+      for (int j = i + 2 * kAtOnce; j < std::min(i + 3 * kAtOnce, count); ++j) prefetch_head(*manifolds[j]);
+      for (int j = i + kAtOnce; j < std::min(i + 2 * kAtOnce, count); ++j) prefetch_points(*manifolds[j]);
       BulletSolver::convertContacts(manifolds + i, std::min(kAtOnce, count - i), info);
     }
     for (int i = 0; i < this->m_tmpSolverContactConstraintPool.size(); ++i) {
@@ -67,14 +67,14 @@ class Refined : public BulletSolver {
       let_bounce(row, this->m_tmpSolverBodyPool[row.m_solverBodyIdA], this->m_tmpSolverBodyPool[row.m_solverBodyIdB],
                  info);
     }
-    creep_.pull_back(rows(), info);
+    friction_anchors_.pull_back(rows(), info);
   }
 
   btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int count,
                                          const btContactSolverInfo& info) override {
-    creep_.measure(rows(), info);
+    friction_anchors_.measure(rows(), info);
     const btScalar residual = BulletSolver::solveGroupCacheFriendlyFinish(bodies, count, info);
-    creep_.remember();
+    friction_anchors_.remember();
     return residual;
   }
 
@@ -84,7 +84,7 @@ class Refined : public BulletSolver {
             this->m_tmpSolverBodyPool};
   }
 
-  Creep creep_;
+  FrictionAnchors friction_anchors_;
 };
 
 /// A base, so that it outlives the solver that points at it.

@@ -1,5 +1,5 @@
 // Bullet's constraint solvers, with two changes: a contact that bounces neither gains nor loses energy by it, and one
-// that sticks does not creep (creep.h).
+// that sticks does not creep (friction_anchors.h).
 //
 // Bullet gives a contact that bounces the sum of three speeds: that of the bounce, that which pushes overlapping bodies
 // apart (a fifth of the overlap per substep, and it stays), and, before they touch, that which brings them together by

@@ -1,5 +1,5 @@
 // What orders do to a world, and when: shared by a region's world and the scratch world in which late bodies make up
-// steps, so that both obey alike.
+// steps, so that both apply them alike.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Timeline {
   /// Any static that does not stand for ever?
   bool statics_change() const { return !lives_.empty(); }
 
-  /// Orders about bodies that are obeyed before state `step` is computed, in sequence.
+  /// Orders about bodies that are applied before state `step` is computed, in sequence.
   std::span<const core::Order> due(core::Step step) const;
   /// Those due later than `step`.
   std::span<const core::Order> coming(core::Step step) const;

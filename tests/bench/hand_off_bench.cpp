@@ -51,8 +51,8 @@ void hand_off(benchmark::State& state) {
   state.counters["manifolds"] = static_cast<double>(cluster.manifolds.size());
 }
 
-/// A heap of five layers, loosely dropped, `side` boxes wide, at x = `x_m`.
-void add_heap(Scene& scene, std::size_t side, double x_m) {
+/// A pile of five layers, loosely dropped, `side` boxes wide, at x = `x_m`.
+void add_pile(Scene& scene, std::size_t side, double x_m) {
   for (std::size_t i = 0; i < 5 * side * side; ++i) {
     InitialBody body;
     body.id = BodyId{scene.bodies.size()};
@@ -63,23 +63,23 @@ void add_heap(Scene& scene, std::size_t side, double x_m) {
   }
 }
 
-/// A heap of 5 side^2 bodies joins a world that hosts three times as many.
-void adopt_heap(benchmark::State& state) {
+/// A pile of 5 side^2 bodies joins a world that hosts three times as many.
+void adopt_pile(benchmark::State& state) {
   const auto side = static_cast<std::size_t>(state.range(0));
   const auto late = static_cast<int>(state.range(1));
   Scene scene = stack(0);
-  for (int k = 0; k < 4; ++k) add_heap(scene, side, 2.0 * k * static_cast<double>(side));
+  for (int k = 0; k < 4; ++k) add_pile(scene, side, 2.0 * k * static_cast<double>(side));
   physics::Settings settings;
   settings.substeps = 1;
   physics::RegionWorld from(scene, settings), to(scene, settings);
-  std::vector<BodyRecord> heap, others;
+  std::vector<BodyRecord> pile, others;
   std::vector<BodyId> ids;
   for (const InitialBody& body : scene.bodies) {
-    const bool leaves = heap.size() < 5 * side * side;
-    (leaves ? heap : others).push_back(initial_record(body));
+    const bool leaves = pile.size() < 5 * side * side;
+    (leaves ? pile : others).push_back(initial_record(body));
     if (leaves) ids.push_back(body.id);
   }
-  from.add(heap);
+  from.add(pile);
   to.add(others);
   for (int i = 0; i < 30; ++i) from.step();
   const ClusterState cluster = from.peek(ids);
@@ -94,7 +94,7 @@ void adopt_heap(benchmark::State& state) {
   state.counters["manifolds"] = static_cast<double>(cluster.manifolds.size());
 }
 
-BENCHMARK(adopt_heap)->ArgNames({"side", "steps_late"})->ArgsProduct({{8, 17}, {0, 1}})->Unit(benchmark::kMillisecond);
+BENCHMARK(adopt_pile)->ArgNames({"side", "steps_late"})->ArgsProduct({{8, 17}, {0, 1}})->Unit(benchmark::kMillisecond);
 
 BENCHMARK(hand_off)
     ->ArgNames({"bodies", "steps_late"})

@@ -1,5 +1,5 @@
-// What looking at one state costs the protocol: sparse and heaped bodies, half of them near a border, with tight and
-// with swept auras. The heap is a pile with contacts; the neighbour mirrors it on the other side of the border.
+// What looking at one state costs the protocol: sparse and piled bodies, half of them near a border, with tight and
+// with swept auras. The pile has contacts; the neighbour mirrors it on the other side of the border.
 #include <cmath>
 #include <random>
 
@@ -21,13 +21,13 @@ Scene shapes() {
   return scene;
 }
 
-/// `count` bodies at x > 0, the nearest at the border x = 0: in a heap 0.7 m apart and in contact, or 4 m apart.
-Snapshot bodies(std::size_t count, bool heaped) {
+/// `count` bodies at x > 0, the nearest at the border x = 0: in a pile 0.7 m apart and in contact, or 4 m apart.
+Snapshot bodies(std::size_t count, bool piled) {
   Snapshot snapshot;
   std::mt19937_64 random(7);
   const auto u = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
-  const double spacing = heaped ? 0.7 : 4;
-  const std::size_t layers = heaped ? 3 : 1;
+  const double spacing = piled ? 0.7 : 4;
+  const std::size_t layers = piled ? 3 : 1;
   const auto side =
       static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(layers))));
   for (std::size_t i = 0; i < count; ++i) {
@@ -37,9 +37,9 @@ Snapshot bodies(std::size_t count, bool heaped) {
     body.prototype = PrototypeId{static_cast<std::uint32_t>(i % 3)};
     body.pose.p_WB = {spacing * (0.5 + static_cast<double>(cell / side)), spacing * static_cast<double>(cell % side),
                       0.3 + spacing * static_cast<double>(i % layers)};
-    body.v_WB = Vec3(u(), u(), u()) * (heaped ? 0.3 : 8.0);
+    body.v_WB = Vec3(u(), u(), u()) * (piled ? 0.3 : 8.0);
     snapshot.bodies.push_back(body);
-    if (heaped && i % layers != 0)
+    if (piled && i % layers != 0)
       snapshot.contacts.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i)});
   }
   return snapshot;
@@ -69,7 +69,7 @@ AuraBatch mirrored(const Snapshot& snapshot, const Aura& aura, std::uint64_t map
 }
 
 void observe(benchmark::State& state) {
-  const bool heaped = state.range(1) != 0;
+  const bool piled = state.range(1) != 0;
   const Scene scene = shapes();
   const auto clearance = physics::make_clearance_query(scene);
   const RegionMap map = RegionMap::columns(2, 200);
@@ -78,7 +78,7 @@ void observe(benchmark::State& state) {
   settings.aura.kind = state.range(2) != 0 ? AuraKind::kSwept : AuraKind::kTight;
   settings.aura.substeps = 4;
   Protocol protocol(settings, map, *clearance);
-  Snapshot snapshot = bodies(static_cast<std::size_t>(state.range(0)), heaped);
+  Snapshot snapshot = bodies(static_cast<std::size_t>(state.range(0)), piled);
   Inbox inbox;
   inbox.auras.push_back(mirrored(snapshot, protocol.aura(), map.version()));
   protocol.accept(inbox);
@@ -89,12 +89,12 @@ void observe(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(state.range(0)) * 1e-6,
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["projecting"] = static_cast<double>(protocol.projection().projecting());
-  state.counters["foreign"] = static_cast<double>(protocol.gathering().foreign_auras());
+  state.counters["foreign"] = static_cast<double>(protocol.matching().foreign_auras());
   state.counters["largest_cluster"] = static_cast<double>(protocol.largest_cluster());
 }
 
 BENCHMARK(observe)
-    ->ArgNames({"bodies", "heaped", "swept"})
+    ->ArgNames({"bodies", "piled", "swept"})
     ->ArgsProduct({{1000, 5000, 20000}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 

@@ -1,4 +1,4 @@
-// What the equal bits cost: one step of a heap in a RegionWorld against the same heap in Bullet as it comes. The two
+// What the equal bits cost: one step of a pile in a RegionWorld against the same pile in Bullet as it comes. The two
 // worlds take turns, so that a busy machine slows both: look at the ratio.
 #include <chrono>
 #include <memory>
@@ -20,7 +20,7 @@ constexpr int kSubsteps = 4;
 constexpr double kStep_s = 1.0 / 60;
 
 /// Boxes, spheres and capsules that rain onto a floor and never sleep.
-Scene heap(std::size_t count) {
+Scene pile(std::size_t count) {
   Scene scene;
   scene.shapes = {
       {"box", Box{{0.4, 0.3, 0.5}}}, {"ball", Sphere{0.4}}, {"pill", Capsule{0.3, 0.5}}, {"floor", Plane{}}};
@@ -86,9 +86,9 @@ class PlainBullet {
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// The heap has settled for 5 s when the clock starts. Iteration time: one step of ours.
+/// The pile has settled for 5 s when the clock starts. Iteration time: one step of ours.
 void equal_bits_against_plain_bullet(benchmark::State& state) {
-  const Scene scene = heap(static_cast<std::size_t>(state.range(0)));
+  const Scene scene = pile(static_cast<std::size_t>(state.range(0)));
   PlainBullet plain(scene);
   physics::Settings settings;
   settings.substeps = kSubsteps;

@@ -97,7 +97,7 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
       outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
   }
   for (const physics::Removal& removal : report.removals) removed_.insert(removal.body);
-  outcome_.obeyed += report.obeyed.size();
+  outcome_.applied += report.applied.size();
   outcome_.largest_cluster = std::max(outcome_.largest_cluster, report.largest_cluster);
   moves.insert(moves.end(), report.departures.begin(), report.departures.end());
   outcome_.hand_offs += report.departures.size();
@@ -134,7 +134,7 @@ void ClusterSim::maybe_crash(Member& member) {
   }
 }
 
-/// Every message that is under way arrives; nothing new is said.
+/// Every message that is under way arrives; nothing new is published.
 void ClusterSim::settle() {
   outcome_.slowest_s = network_->now_s();
   network_->advance_to(network_->now_s() + 1e6);

@@ -61,7 +61,7 @@ struct Outcome {
   std::uint64_t with_dead = 0;
   std::uint64_t reclaimed = 0;
   std::uint64_t removed = 0;  ///< by orders
-  std::uint64_t obeyed = 0;   ///< orders, by bodies
+  std::uint64_t applied = 0;  ///< orders, by bodies
   std::uint64_t severed = 0;  ///< contacts cut by a hand-off
   std::uint64_t bad_phases = 0;
   std::size_t largest_cluster = 0;

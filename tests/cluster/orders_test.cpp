@@ -1,4 +1,4 @@
-// Orders of clients on whole simulated clusters: every node obeys each one in the state that it names, so a run with
+// Orders of clients on whole simulated clusters: every node applies each one in the state that it names, so a run with
 // orders has the bits of the same run in one world.
 #include <algorithm>
 #include <random>
@@ -93,8 +93,8 @@ TEST_P(OrdersCluster, HaveTheSameEffectAsInOneWorld) {
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
     EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
                                          << first.first - o.hash.begin();
-    EXPECT_EQ(o.obeyed, central.obeyed);
-    EXPECT_GE(o.obeyed, 30u);
+    EXPECT_EQ(o.applied, central.applied);
+    EXPECT_GE(o.applied, 30u);
     EXPECT_EQ(o.removed, central.removed);
     EXPECT_GE(o.removed, 3u);
     EXPECT_EQ(o.late + o.missed + o.lost + o.doubled + o.thrashed + o.severed + o.bad_phases, 0u);
@@ -130,7 +130,7 @@ TEST(Orders, AKickIsForeseenByTheNeighbours) {
   options.orders = {{150, core::SetVelocity{BodyId{1}, {20, 0, 0}, {}}},
                     {150, core::SetVelocity{BodyId{2}, {-20, 0, 0}, {}}}};
   const Outcome o = ClusterSim(scene, options).run(kSteps);
-  EXPECT_EQ(o.obeyed, 2u);
+  EXPECT_EQ(o.applied, 2u);
   EXPECT_EQ(o.late + o.missed, 0u);
   EXPECT_EQ(o.contacts.size(), 1u);
   EXPECT_GT(o.hand_offs, 0u);

@@ -153,7 +153,7 @@ TEST_F(ClusterTest, ThatTurnsOutFasterLooksFurther) {
   EXPECT_TRUE(together(slow, other));
 }
 
-TEST_F(ClusterTest, WhatHitsAHeapMakesItFastWhereItHits) {
+TEST_F(ClusterTest, WhatHitsAPileMakesItFastWhereItHits) {
   constexpr std::uint32_t kBalls = 12;
   for (std::uint32_t i = 0; i < kBalls; ++i) place(clay, Vec3(0.8 * i, 0, 0), Vec3::Zero());
   for (std::uint32_t i = 0; i + 1 < kBalls; ++i) contact(i, i + 1);

@@ -26,7 +26,7 @@ class AForeignBody : public ::testing::Test {
     aura.speed_m_s = speed_m_s;
     return aura;
   }
-  const Foreign& hear(const AuraRecord& aura_record, Step known = kNow - 1) {
+  const Foreign& receive(const AuraRecord& aura_record, Step known = kNow - 1) {
     bodies.clear();
     bodies.add(aura_record, known, kNow, aura);
     bodies.build();
@@ -42,27 +42,27 @@ class AForeignBody : public ::testing::Test {
 };
 
 TEST_F(AForeignBody, IsAsOldAsItsAura) {
-  EXPECT_EQ(hear(aura_at(Vec3::Zero())).path.age_steps, 3);
+  EXPECT_EQ(receive(aura_at(Vec3::Zero())).path.age_steps, 3);
   EXPECT_EQ(bodies.oldest_steps(), 3);
 }
 
 TEST_F(AForeignBody, AsleepIsAsOldAsTheLastWordOfItsSource) {
   AuraRecord sleeper = aura_at(Vec3::Zero());
   sleeper.flags = kAuraAsleep;
-  EXPECT_EQ(hear(sleeper).path.age_steps, 1);
-  EXPECT_FALSE(hear(sleeper).path.moves);
+  EXPECT_EQ(receive(sleeper).path.age_steps, 1);
+  EXPECT_FALSE(receive(sleeper).path.moves);
   sleeper.flags |= kAuraGhost;  // out of its source's sight since
-  EXPECT_EQ(hear(sleeper).path.age_steps, 3);
+  EXPECT_EQ(receive(sleeper).path.age_steps, 3);
 }
 
 TEST_F(AForeignBody, IsNotBornBeforeItsBirth) {
   AuraRecord coming = aura_at(Vec3::Zero());
   coming.birth = kNow + 4;
-  EXPECT_FALSE(hear(coming).born);
+  EXPECT_FALSE(receive(coming).born);
   EXPECT_EQ(bodies[0].path.unborn_steps, 4);
   EXPECT_EQ(bodies[0].path.age_steps, 0);
   coming.birth = kNow - 1;
-  EXPECT_EQ(hear(coming).path.age_steps, 1);
+  EXPECT_EQ(receive(coming).path.age_steps, 1);
 }
 
 TEST_F(AForeignBody, IsInOneBlockWithOthersOfItsHostAndPace) {

@@ -13,20 +13,20 @@ using ::testing::IsEmpty;
 using Death = IntakeTest;
 
 TEST_F(Death, IsToldToTheOthers) {
-  EXPECT_THAT(speak().aura.dead, IsEmpty());
+  EXPECT_THAT(publish().aura.dead, IsEmpty());
   lose(2);
   EXPECT_THAT(intake->dead_regions(), ElementsAre(region(2)));
-  EXPECT_THAT(speak().aura.dead, ElementsAre(region(2)));
+  EXPECT_THAT(publish().aura.dead, ElementsAre(region(2)));
 }
 
 TEST_F(Death, WhomOneNeighbourHoldsForDeadIsDead) {
-  hear_of_death(1, 2);
+  receive_death(1, 2);
   EXPECT_THAT(intake->dead_regions(), ElementsAre(region(2)));
   EXPECT_FALSE(intake->fenced());
 }
 
 TEST_F(Death, WhoIsHeldForDeadItselfIsFenced) {
-  hear_of_death(1, 0);
+  receive_death(1, 0);
   EXPECT_TRUE(intake->fenced());
   EXPECT_THAT(intake->dead_regions(), IsEmpty());
 }
@@ -48,15 +48,15 @@ TEST_F(Death, IsForGood) {
 }
 
 TEST_F(Death, BodiesUnderWayComeBackOnlyWhenEveryLiveNeighbourKnows) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
   lose(2);
   EXPECT_EQ(departures.open_bodies(), 0u);
   EXPECT_EQ(intake->to_reclaim().size(), 1u);
   EXPECT_THAT(receive(6), IsEmpty());
-  hear(batch(1, 6));
+  receive(batch(1, 6));
   EXPECT_THAT(receive(7), IsEmpty());
-  hear_of_death(1, 2);
+  receive_death(1, 2);
   const std::vector<Adoption> back = receive(8);
   EXPECT_EQ(ids_of(back), std::vector<std::uint64_t>{1});
   EXPECT_TRUE(back[0].reclaimed);
@@ -68,7 +68,7 @@ TEST_F(Death, BodiesUnderWayComeBackOnlyWhenEveryLiveNeighbourKnows) {
 }
 
 TEST_F(Death, BodiesComeBackAtOnceWhenNobodyElseIsAlive) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
   lose(1);
   lose(2);
@@ -76,48 +76,48 @@ TEST_F(Death, BodiesComeBackAtOnceWhenNobodyElseIsAlive) {
 }
 
 TEST_F(Death, WhatWasAdoptedBeforeTheDeathDoesNotComeBack) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
-  hear_ack(2, 1);
+  receive_ack(2, 1);
   lose(2);
-  hear_of_death(1, 2);
+  receive_death(1, 2);
   EXPECT_THAT(receive(7), IsEmpty());
 }
 
 TEST_F(Death, WhatANeighbourClaimsDoesNotComeBack) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3), record_of(2, 1)});
   lose(2);
-  hear_of_death(1, 2, {{body(1), 4}});
+  receive_death(1, 2, {{body(1), 4}});
   EXPECT_EQ(ids_of(receive(7)), std::vector<std::uint64_t>{2});
 }
 
 TEST_F(Death, AnOlderClaimDoesNotCount) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
   lose(2);
-  hear_of_death(1, 2, {{body(1), 3}});
+  receive_death(1, 2, {{body(1), 3}});
   EXPECT_EQ(ids_of(receive(7)), std::vector<std::uint64_t>{1});
 }
 
 TEST_F(Death, WhatCameBackFromTheDeadByItselfIsNotTakenBackAgain) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
-  hear(hand_off(2, 0, 5, {record_of(1, 4)}), 1);
+  receive(hand_off(2, 0, 5, {record_of(1, 4)}), 1);
   EXPECT_EQ(ids_of(receive(6)), std::vector<std::uint64_t>{1});
   lose(2);
-  hear_of_death(1, 2);
+  receive_death(1, 2);
   EXPECT_THAT(receive(7), IsEmpty());
 }
 
 TEST_F(Death, ThoseAdoptedFromTheDeadAreClaimed) {
-  hear_all_until(5);
-  hear(hand_off(2, 0, 5, {record_of(1, 4)}), 1);
+  receive_all_until(5);
+  receive(hand_off(2, 0, 5, {record_of(1, 4)}), 1);
   receive(6);
-  EXPECT_THAT(speak().aura.claims, IsEmpty());
+  EXPECT_THAT(publish().aura.claims, IsEmpty());
   lose(2);
   for (int i = 0; i < 2; ++i) {
-    const std::vector<BodyEpoch> claims = speak().aura.claims;
+    const std::vector<BodyEpoch> claims = publish().aura.claims;
     ASSERT_EQ(claims.size(), 1u) << "claims are repeated";
     EXPECT_EQ(claims[0].id, body(1));
     EXPECT_EQ(claims[0].epoch, 4u);
@@ -125,25 +125,25 @@ TEST_F(Death, ThoseAdoptedFromTheDeadAreClaimed) {
 }
 
 TEST_F(Death, AReclaimedBodyIsClaimedFromThenOn) {
-  hear_all_until(5);
+  receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
   lose(2);
-  hear_of_death(1, 2);
+  receive_death(1, 2);
   receive(7);
-  const std::vector<BodyEpoch> claims = speak().aura.claims;
+  const std::vector<BodyEpoch> claims = publish().aura.claims;
   ASSERT_EQ(claims.size(), 1u);
   EXPECT_EQ(claims[0].epoch, 4u);
 }
 
 TEST_F(Death, AContactBetweenAReclaimedBodyAndOneThatStaysAwayIsForgotten) {
-  hear_all_until(5);
+  receive_all_until(5);
   HandOff h = ours(hand_off(0, 2, 5, {record_of(1, 3), record_of(2, 3), record_of(3, 3)}));
   h.cluster.manifolds = {{.object0 = ref_of(body(1)), .object1 = ref_of(body(2))},
                          {.object0 = ref_of(body(2)), .object1 = ref_of(body(3))},
                          {.object0 = ref_of(body(3)), .object1 = ref_of(StaticId{0})}};
   departures.record(h);
   lose(2);
-  hear_of_death(1, 2, {{body(1), 5}});
+  receive_death(1, 2, {{body(1), 5}});
   const std::vector<Adoption> back = receive(7);
   EXPECT_THAT(ids_of(back), ElementsAre(2, 3));
   ASSERT_EQ(back[0].cluster.manifolds.size(), 2u);

@@ -1,4 +1,4 @@
-// One node's hearing, region 0 of three columns that all listen to each other, and what tests say to it.
+// The intake of one node, region 0 of three columns that all listen to each other, and what tests feed it.
 #pragma once
 
 #include <optional>
@@ -25,33 +25,33 @@ class IntakeTest : public ::testing::Test {
     if constexpr (requires { message.map_version; }) message.map_version = map.version();
     return message;
   }
-  void hear(AuraBatch b) {
+  void receive(AuraBatch b) {
     inbox.auras.push_back(ours(std::move(b)));
     intake->accept(inbox);
   }
-  void hear(HandOff h, std::uint64_t sequence) {
+  void receive(HandOff h, std::uint64_t sequence) {
     h.sequence = sequence;
     inbox.hand_offs.push_back(ours(std::move(h)));
     intake->accept(inbox);
   }
-  void hear_ack(std::uint32_t from, std::uint64_t sequence) {
+  void receive_ack(std::uint32_t from, std::uint64_t sequence) {
     inbox.acks.push_back(ours(HandOffAck{region(from), region(0), 0, 0, sequence}));
     intake->accept(inbox);
   }
-  /// `from` has said all its batches up to `stamp`.
-  void hear_until(std::uint32_t from, Step stamp) {
-    for (Step s = intake->neighbours()[from - 1].received() + 1; s <= stamp; ++s) hear(batch(from, s));
+  /// `from` has published all its batches up to `stamp`.
+  void receive_until(std::uint32_t from, Step stamp) {
+    for (Step s = intake->neighbours()[from - 1].received() + 1; s <= stamp; ++s) receive(batch(from, s));
   }
-  void hear_all_until(Step stamp) {
-    hear_until(1, stamp);
-    hear_until(2, stamp);
+  void receive_all_until(Step stamp) {
+    receive_until(1, stamp);
+    receive_until(2, stamp);
   }
-  /// In its next batch, `from` says whom it holds for dead, and whom it has adopted from them.
-  void hear_of_death(std::uint32_t from, std::uint32_t dead, std::vector<BodyEpoch> claims = {}) {
+  /// In its next batch, `from` publishes whom it holds for dead, and whom it has adopted from them.
+  void receive_death(std::uint32_t from, std::uint32_t dead, std::vector<BodyEpoch> claims = {}) {
     AuraBatch b = batch(from, intake->neighbours()[from - 1].received() + 1);
     b.dead = {region(dead)};
     b.claims = std::move(claims);
-    hear(b);
+    receive(b);
   }
   void lose(std::uint32_t neighbour) {
     inbox.peers.push_back({region(neighbour), PeerChange::kLost});
@@ -62,7 +62,7 @@ class IntakeTest : public ::testing::Test {
   }
 
   std::vector<Adoption> receive(Step n) { return intake->receive(n, violations); }
-  Outbox speak(Step stamp = 0) {
+  Outbox publish(Step stamp = 0) {
     Outbox outbox;
     intake->fill(outbox, stamp);
     return outbox;
@@ -76,7 +76,7 @@ class IntakeTest : public ::testing::Test {
   }
   std::vector<std::uint64_t> acknowledged() {
     std::vector<std::uint64_t> sequences;
-    for (const HandOffAck& ack : speak().acks) sequences.push_back(ack.sequence);
+    for (const HandOffAck& ack : publish().acks) sequences.push_back(ack.sequence);
     return sequences;
   }
 

@@ -28,38 +28,38 @@ TEST_F(Gate, IsOpenForTheFirstStates) {
 
 TEST_F(Gate, WaitsForEveryNeighboursStampOfKStepsAgo) {
   listen(SyncMode::kBounded, 2);
-  hear_until(1, 8);
+  receive_until(1, 8);
   EXPECT_THAT(intake->missing(10), ElementsAre(region(2)));
-  hear_until(2, 7);
+  receive_until(2, 7);
   EXPECT_FALSE(intake->ready(10));
-  hear_until(2, 8);
+  receive_until(2, 8);
   EXPECT_TRUE(intake->ready(10));
   EXPECT_THAT(intake->missing(11), ElementsAre(region(1), region(2)));
 }
 
 TEST_F(Gate, WaitsForTheHandOffsOfKStepsAgo) {
   listen(SyncMode::kDeterministic, 1);
-  hear_until(1, 4);
-  hear_until(2, 9);
+  receive_until(1, 4);
+  receive_until(2, 9);
   AuraBatch b = batch(1, 5);
   b.hand_offs = {{region(0), 2}, {region(2), 7}};
-  hear(b);
+  receive(b);
   EXPECT_TRUE(intake->ready(5));
   EXPECT_THAT(intake->missing(6), ElementsAre(region(1)));
-  hear(hand_off(1, 0, 5, {record_of(2, 1)}), 2);
+  receive(hand_off(1, 0, 5, {record_of(2, 1)}), 2);
   EXPECT_FALSE(intake->ready(6)) << "the first one has not come";
-  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
   EXPECT_TRUE(intake->ready(6));
 }
 
 TEST_F(Gate, ANewerHandOffThatIsUnderWayKeepsNobodyWaiting) {
   listen(SyncMode::kBounded, 2);
-  hear_all_until(7);
+  receive_all_until(7);
   AuraBatch b = batch(1, 8);
   b.hand_offs = {{region(0), 1}};
-  hear(b);
+  receive(b);
   EXPECT_TRUE(intake->ready(9));
-  hear_until(2, 8);
+  receive_until(2, 8);
   EXPECT_FALSE(intake->ready(10));
 }
 
@@ -70,7 +70,7 @@ TEST_F(Gate, IsAlwaysOpenWhenFreeRunning) {
 
 TEST_F(Gate, DoesNotWaitForTheDead) {
   listen(SyncMode::kBounded, 1);
-  hear_until(1, 9);
+  receive_until(1, 9);
   EXPECT_FALSE(intake->ready(10));
   lose(2);
   EXPECT_TRUE(intake->ready(10));
@@ -79,8 +79,8 @@ TEST_F(Gate, DoesNotWaitForTheDead) {
 TEST_F(Effect, IsExactlyKStepsAfterTheStampInDeterministicMode) {
   for (const int lookahead : {1, 2, 3}) {
     listen(SyncMode::kDeterministic, lookahead);
-    hear_all_until(20);
-    hear(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
+    receive_all_until(20);
+    receive(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
     const Step due = 10 + lookahead;
     EXPECT_THAT(receive(due - 1), IsEmpty());
     EXPECT_EQ(intake->neighbours()[0].applied(), 9);
@@ -97,8 +97,8 @@ TEST_F(Effect, IsExactlyKStepsAfterTheStampInDeterministicMode) {
 
 TEST_F(Effect, IsAsSoonAsPossibleInBoundedModeButNotBeforeTheStateAfterTheStamp) {
   listen(SyncMode::kBounded, 3);
-  hear_all_until(20);
-  hear(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
+  receive_all_until(20);
+  receive(hand_off(1, 0, 10, {record_of(1, 1)}), 1);
   EXPECT_THAT(receive(10), IsEmpty());
   EXPECT_EQ(intake->neighbours()[0].applied(), 9);
   EXPECT_EQ(ids_of(receive(11)), std::vector<std::uint64_t>{1});
@@ -116,16 +116,16 @@ TEST_F(Effect, IsInOrderOfStampSourceAndNumberWhateverTheArrival) {
   for (int run = 0; run < 50; ++run) {
     std::shuffle(sent.begin(), sent.end(), random.bits());
     listen(SyncMode::kDeterministic, 1);
-    hear_all_until(9);
+    receive_all_until(9);
     for (const Sent& s : sent)
-      hear(hand_off(s.source, 0, s.stamp, {record_of(100 * s.source + s.sequence, 1)}), s.sequence);
+      receive(hand_off(s.source, 0, s.stamp, {record_of(100 * s.source + s.sequence, 1)}), s.sequence);
     EXPECT_THAT(ids_of(receive(10)), ElementsAre(101, 201, 202, 102, 103, 203));
   }
 }
 
 TEST_F(Effect, AMessageLaterThanKStepsIsAViolation) {
   listen(SyncMode::kFreeRunning, 2);
-  hear_all_until(8);
+  receive_all_until(8);
   receive(10);
   EXPECT_EQ(violations.total(), 0u);
   receive(11);
@@ -136,20 +136,20 @@ TEST_F(Effect, AMessageLaterThanKStepsIsAViolation) {
 
 TEST_F(Effect, AHandOffLaterThanKStepsIsAViolationAndStillAdopted) {
   listen(SyncMode::kFreeRunning, 2);
-  hear_all_until(10);
-  hear(hand_off(1, 0, 7, {record_of(1, 1)}), 1);
+  receive_all_until(10);
+  receive(hand_off(1, 0, 7, {record_of(1, 1)}), 1);
   EXPECT_EQ(ids_of(receive(11)), std::vector<std::uint64_t>{1});
   EXPECT_EQ(violations.count(ViolationKind::kLatency), 1u);
 }
 
 TEST_F(Copies, OfBatchesAndHandOffsTakeNoEffect) {
   listen(SyncMode::kBounded, 1);
-  hear(batch(1, 0));
-  hear(batch(1, 0));
-  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
-  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  receive(batch(1, 0));
+  receive(batch(1, 0));
+  receive(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  receive(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
   EXPECT_EQ(ids_of(receive(1)), std::vector<std::uint64_t>{1});
-  hear(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
+  receive(hand_off(1, 0, 0, {record_of(1, 1)}), 1);
   EXPECT_THAT(receive(2), IsEmpty());
   EXPECT_EQ(intake->counters().copies, 3u);
   EXPECT_EQ(intake->counters().adopted, 1u);
@@ -157,13 +157,13 @@ TEST_F(Copies, OfBatchesAndHandOffsTakeNoEffect) {
 
 TEST_F(Copies, AHandOffIsAcknowledgedWhenItIsAdoptedAndNotBefore) {
   listen(SyncMode::kDeterministic, 2);
-  hear_all_until(9);
-  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  receive_all_until(9);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
   EXPECT_THAT(acknowledged(), IsEmpty());
   receive(6);
   EXPECT_THAT(acknowledged(), IsEmpty());
   receive(7);
-  const Outbox outbox = speak(7);
+  const Outbox outbox = publish(7);
   ASSERT_EQ(outbox.acks.size(), 1u);
   EXPECT_EQ(outbox.acks[0].sequence, 1u);
   EXPECT_EQ(outbox.acks[0].stamp, 7);
@@ -175,23 +175,23 @@ TEST_F(Copies, AHandOffIsAcknowledgedWhenItIsAdoptedAndNotBefore) {
 
 TEST_F(Copies, AreAcknowledgedAgainOnlyAfterTheAdoption) {
   listen(SyncMode::kDeterministic, 2);
-  hear_all_until(9);
-  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
-  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  receive_all_until(9);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
   EXPECT_THAT(acknowledged(), IsEmpty());
   receive(7);
   EXPECT_THAT(acknowledged(), ElementsAre(1));
-  hear(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
   EXPECT_THAT(acknowledged(), ElementsAre(1));
 }
 
 TEST_F(Copies, OfAcknowledgementsAreCounted) {
   listen(SyncMode::kBounded, 1);
   send(1, 3, {record_of(1, 1)});
-  hear_ack(1, 1);
+  receive_ack(1, 1);
   EXPECT_EQ(departures.open_bodies(), 0u);
   EXPECT_EQ(intake->counters().copies, 0u);
-  hear_ack(1, 1);
+  receive_ack(1, 1);
   EXPECT_EQ(intake->counters().copies, 1u);
 }
 
@@ -218,26 +218,26 @@ TEST_F(Strangers, OfAnotherMapAreRefused) {
 }
 
 TEST_F(Strangers, WhoAreNoNeighboursAreRefused) {
-  hear(batch(7, 0));
-  hear(batch(0, 0));
-  hear(hand_off(7, 0, 0, {record_of(1, 1)}), 1);
-  hear_ack(7, 1);
+  receive(batch(7, 0));
+  receive(batch(0, 0));
+  receive(hand_off(7, 0, 0, {record_of(1, 1)}), 1);
+  receive_ack(7, 1);
   EXPECT_EQ(intake->counters().strangers, 4u);
 }
 
 TEST_F(Strangers, TheDeadAreNotHeardAnyMore) {
-  hear_until(1, 3);
-  hear(hand_off(1, 0, 3, {record_of(1, 1)}), 1);
+  receive_until(1, 3);
+  receive(hand_off(1, 0, 3, {record_of(1, 1)}), 1);
   lose(1);
-  hear(batch(1, 4));
-  hear(hand_off(1, 0, 4, {record_of(2, 1)}), 2);
+  receive(batch(1, 4));
+  receive(hand_off(1, 0, 4, {record_of(2, 1)}), 2);
   EXPECT_EQ(intake->counters().strangers, 2u);
   EXPECT_THAT(receive(4), IsEmpty()) << "what came from the dead and has no effect yet never will have";
 }
 
 TEST_F(Strangers, MessagesToOthersAreIgnored) {
-  hear(hand_off(1, 2, 0, {record_of(1, 1)}), 1);
-  hear_until(1, 3);
+  receive(hand_off(1, 2, 0, {record_of(1, 1)}), 1);
+  receive_until(1, 3);
   EXPECT_THAT(receive(4), IsEmpty());
 }
 

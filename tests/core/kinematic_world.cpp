@@ -35,7 +35,7 @@ KinematicWorld::KinematicWorld(const RegionMap& map, const AuraRules& rules, con
     node.protocol = std::make_unique<Protocol>(settings, map_, shapes_);
     node.listeners = map_.neighbours(settings.self, neighbour_distance_m);
   }
-  said_.assign(static_cast<std::size_t>(rules.lookahead) + 1, std::vector<Outbox>(map.size()));
+  published_.assign(static_cast<std::size_t>(rules.lookahead) + 1, std::vector<Outbox>(map.size()));
 }
 
 void KinematicWorld::place(Traveller traveller) {
@@ -105,12 +105,12 @@ std::uint64_t KinematicWorld::broken() const {
 }
 
 void KinematicWorld::deliver(Step stamp) {
-  const std::vector<Outbox>& said = said_[static_cast<std::size_t>(stamp) % said_.size()];
+  const std::vector<Outbox>& published = published_[static_cast<std::size_t>(stamp) % published_.size()];
   std::vector<Inbox> inboxes(nodes_.size());
   for (std::size_t from = 0; from < nodes_.size(); ++from) {
-    for (const RegionId to : nodes_[from].listeners) inboxes[value_of(to)].auras.push_back(said[from].aura);
-    for (const HandOff& h : said[from].hand_offs) inboxes[value_of(h.destination)].hand_offs.push_back(h);
-    for (const HandOffAck& ack : said[from].acks) inboxes[value_of(ack.destination)].acks.push_back(ack);
+    for (const RegionId to : nodes_[from].listeners) inboxes[value_of(to)].auras.push_back(published[from].aura);
+    for (const HandOff& h : published[from].hand_offs) inboxes[value_of(h.destination)].hand_offs.push_back(h);
+    for (const HandOffAck& ack : published[from].acks) inboxes[value_of(ack.destination)].acks.push_back(ack);
   }
   for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].protocol->accept(inboxes[r]);
 }
@@ -164,7 +164,7 @@ void KinematicWorld::observe(Node& node) {
     node.protocol->hand_over(departure, std::move(cluster));
   }
   const Outbox& outbox = node.protocol->outbox();
-  said_[static_cast<std::size_t>(now_) % said_.size()][value_of(outbox.aura.source)] = outbox;
+  published_[static_cast<std::size_t>(now_) % published_.size()][value_of(outbox.aura.source)] = outbox;
 }
 
 Pose KinematicWorld::pose_of(const Body& body, std::size_t instant) const {

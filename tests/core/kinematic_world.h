@@ -1,6 +1,6 @@
 // Nodes without physics: bodies follow tracks that were fixed beforehand and pass through each other, but every node
-// runs the real protocol, in lock step, and hears its neighbours exactly K steps late. What is checked is who hosts
-// what: two bodies that overlap at a substep instant must be computed by one node in that step.
+// runs the real protocol, in lock step, and receives from its neighbours exactly K steps late. What is checked is who
+// hosts what: two bodies that overlap at a substep instant must be computed by one node in that step.
 #pragma once
 
 #include <cstdint>
@@ -56,8 +56,8 @@ class KinematicWorld {
   Epoch epoch(BodyId id) const { return bodies_.at(id).epoch; }
   const Protocol& protocol(RegionId region) const { return *nodes_[value_of(region)].protocol; }
   std::size_t regions() const { return nodes_.size(); }
-  /// What a region said about the newest state.
-  const Outbox& said(RegionId region) const { return protocol(region).outbox(); }
+  /// What a region published about the newest state.
+  const Outbox& published(RegionId region) const { return protocol(region).outbox(); }
 
   /// Watched pairs that overlapped, and those of them that did so at an instant for which no node computed both.
   std::size_t met() const { return met_.size(); }
@@ -99,7 +99,7 @@ class KinematicWorld {
   std::map<BodyId, Body> bodies_;
   std::map<BodyId, RegionId> wished_hosts_;
   std::vector<Pair> watched_;
-  std::vector<std::vector<Outbox>> said_;  ///< by stamp modulo K + 1, region
+  std::vector<std::vector<Outbox>> published_;  ///< by stamp modulo K + 1, region
   Step now_ = 0;
   std::int64_t flights_ = 1'000'000;
   std::set<Pair> met_, late_;

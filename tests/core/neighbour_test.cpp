@@ -17,11 +17,11 @@ using ::testing::IsEmpty;
 
 class ANeighbour : public ::testing::Test {
  protected:
-  /// Says batches 0 to `last`, all empty.
+  /// Publishes batches 0 to `last`, all empty.
   void say_nothing_until(Step last) {
     for (Step s = neighbour.received() + 1; s <= last; ++s) ASSERT_TRUE(neighbour.accept(batch(1, s)));
   }
-  bool say(Step stamp, std::vector<AuraRecord> updates, std::vector<BodyId> deletes = {}, bool full = false) {
+  bool publish(Step stamp, std::vector<AuraRecord> updates, std::vector<BodyId> deletes = {}, bool full = false) {
     AuraBatch b = batch(1, stamp);
     b.updates = std::move(updates);
     b.deletes = std::move(deletes);
@@ -49,27 +49,27 @@ TEST_F(ANeighbour, HasSaidNothingAtFirst) {
 }
 
 TEST_F(ANeighbour, IsUnderstoodUpToTheFirstBatchThatIsMissing) {
-  say(0, {});
-  say(2, {});
-  say(3, {});
+  publish(0, {});
+  publish(2, {});
+  publish(3, {});
   EXPECT_EQ(neighbour.received(), 0);
-  say(1, {});
+  publish(1, {});
   EXPECT_EQ(neighbour.received(), 3);
 }
 
 TEST_F(ANeighbour, CopiesOfABatchAreRefused) {
-  EXPECT_TRUE(say(0, {aura(1)}));
-  EXPECT_FALSE(say(0, {aura(2)}));
-  EXPECT_TRUE(say(2, {}));
-  EXPECT_FALSE(say(2, {}));
+  EXPECT_TRUE(publish(0, {aura(1)}));
+  EXPECT_FALSE(publish(0, {aura(2)}));
+  EXPECT_TRUE(publish(2, {}));
+  EXPECT_FALSE(publish(2, {}));
   neighbour.apply_until(0);
-  EXPECT_FALSE(say(0, {aura(2)}));
+  EXPECT_FALSE(publish(0, {aura(2)}));
   EXPECT_THAT(known(), ElementsAre(1));
 }
 
 TEST_F(ANeighbour, ABatchTakesEffectInItsTurnAndNotBefore) {
-  say(0, {aura(1)});
-  say(1, {aura(2)});
+  publish(0, {aura(1)});
+  publish(1, {aura(2)});
   EXPECT_THAT(known(), IsEmpty());
   neighbour.apply_until(0);
   EXPECT_EQ(neighbour.applied(), 0);
@@ -79,30 +79,30 @@ TEST_F(ANeighbour, ABatchTakesEffectInItsTurnAndNotBefore) {
 }
 
 TEST_F(ANeighbour, ABatchAfterAGapDoesNotTakeEffect) {
-  say(0, {aura(1)});
-  say(2, {aura(2)});
+  publish(0, {aura(1)});
+  publish(2, {aura(2)});
   neighbour.apply_until(5);
   EXPECT_EQ(neighbour.applied(), 0);
   EXPECT_THAT(known(), ElementsAre(1));
 }
 
 TEST_F(ANeighbour, UpdatesReplaceAndDeletesRemove) {
-  say(0, {aura(5), aura(1), aura(3)});
-  say(1, {aura(3, 7)}, {body(5)});
+  publish(0, {aura(5), aura(1), aura(3)});
+  publish(1, {aura(3, 7)}, {body(5)});
   neighbour.apply_until(1);
   EXPECT_THAT(known(), ElementsAre(1, 3));
   EXPECT_EQ(neighbour.auras()[1].epoch, 7u);
 }
 
 TEST_F(ANeighbour, ADeleteOfWhatIsNotKnownDoesNothing) {
-  say(0, {aura(1)}, {body(0), body(2)});
+  publish(0, {aura(1)}, {body(0), body(2)});
   neighbour.apply_until(0);
   EXPECT_THAT(known(), ElementsAre(1));
 }
 
 TEST_F(ANeighbour, AFullBatchForgetsWhatWasBefore) {
-  say(0, {aura(1), aura(2)});
-  say(1, {aura(2), aura(3)}, {}, true);
+  publish(0, {aura(1), aura(2)});
+  publish(1, {aura(2), aura(3)}, {}, true);
   neighbour.apply_until(1);
   EXPECT_THAT(known(), ElementsAre(2, 3));
 }
@@ -160,10 +160,10 @@ TEST_F(ANeighbour, NewsOfADeathDoNotWaitForTheirTurn) {
 }
 
 TEST_F(ANeighbour, ADeadOnesAurasAndUnheardBatchesAreForgotten) {
-  say(0, {aura(1)});
-  say(1, {aura(2)});
+  publish(0, {aura(1)});
+  publish(1, {aura(2)});
   neighbour.apply_until(0);
-  neighbour.bury();
+  neighbour.mark_dead();
   neighbour.apply_until(5);
   EXPECT_FALSE(neighbour.alive());
   EXPECT_THAT(known(), IsEmpty());
@@ -213,9 +213,9 @@ TEST(Neighbours, BatchesInAnyOrderWithCopiesAddUpToTheSame) {
       neighbour.accept(b);
       if (random.chance(0.5)) neighbour.apply_until(neighbour.received());
       if (neighbour.applied() < 0) continue;
-      Book heard;
-      for (const AuraRecord& a : neighbour.auras()) heard[value_of(a.id)] = a.epoch;
-      ASSERT_EQ(heard, books[static_cast<std::size_t>(neighbour.applied())]);
+      Book received;
+      for (const AuraRecord& a : neighbour.auras()) received[value_of(a.id)] = a.epoch;
+      ASSERT_EQ(received, books[static_cast<std::size_t>(neighbour.applied())]);
     }
     EXPECT_EQ(neighbour.received(), 39);
   }

@@ -1,4 +1,4 @@
-// When auras are said, and when hand-offs happen, told by what the nodes of a small world say.
+// When auras are published, and when hand-offs happen, seen from what the nodes of a small world publish.
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -43,17 +43,17 @@ class ProjectionTest : public ::testing::TestWithParam<int> {
   }
 
   const AuraRecord* update_of(BodyId id, RegionId by) const {
-    for (const AuraRecord& a : world->said(by).aura.updates) {
+    for (const AuraRecord& a : world->published(by).aura.updates) {
       if (a.id == id) return &a;
     }
     return nullptr;
   }
   bool deleted(BodyId id, RegionId by) const {
-    const std::vector<BodyId>& deletes = world->said(by).aura.deletes;
+    const std::vector<BodyId>& deletes = world->published(by).aura.deletes;
     return std::find(deletes.begin(), deletes.end(), id) != deletes.end();
   }
   const HandOff* hand_off_of(RegionId by) const {
-    return world->said(by).hand_offs.empty() ? nullptr : &world->said(by).hand_offs.front();
+    return world->published(by).hand_offs.empty() ? nullptr : &world->published(by).hand_offs.front();
   }
   const ProjectionCounters& counters(RegionId by) const { return world->protocol(by).projection().counters(); }
   std::set<BodyId> known_to(RegionId listener) const {
@@ -86,11 +86,11 @@ TEST_P(ProjectionTest, AnAuraIsCreatedInTheZoneUpdatedEachStepAndDeletedOnLeavin
   Step created = -1, gone = -1;
   while (world->now() < kSteps && gone < 0) {
     world->step();
-    const bool said = update_of(kBody, kLeft) != nullptr;
-    if (said && created < 0) created = world->now();
-    if (created >= 0 && !said) gone = world->now();
+    const bool published = update_of(kBody, kLeft) != nullptr;
+    if (published && created < 0) created = world->now();
+    if (created >= 0 && !published) gone = world->now();
     EXPECT_EQ(deleted(kBody, kLeft), gone >= 0);
-    EXPECT_EQ(said, created >= 0 && gone < 0);
+    EXPECT_EQ(published, created >= 0 && gone < 0);
   }
   ASSERT_GT(created, 0);
   ASSERT_GT(gone, created);
@@ -127,7 +127,7 @@ TEST_P(ProjectionTest, ASleepingBodyIsSilent) {
     world->step();
     EXPECT_FALSE(update_of(kBody, kLeft));
     EXPECT_FALSE(deleted(kBody, kLeft));
-    EXPECT_EQ(world->said(kLeft).aura.stamp, world->now()) << "the batch is sent all the same";
+    EXPECT_EQ(world->published(kLeft).aura.stamp, world->now()) << "the batch is sent all the same";
   }
   EXPECT_THAT(known_to(kRight), ElementsAre(kBody));
   world->set_awake(kBody, true);
@@ -189,9 +189,9 @@ TEST_P(ProjectionTest, AHandOffRaisesTheEpochByOneAndIsAdoptedKStepsLater) {
   EXPECT_EQ(hand_off_of(kLeft)->sequence, 1u);
   ASSERT_EQ(hand_off_of(kLeft)->cluster.bodies.size(), 1u);
   EXPECT_EQ(hand_off_of(kLeft)->cluster.bodies[0].epoch, 1u);
-  ASSERT_EQ(world->said(kLeft).aura.hand_offs.size(), 1u);
-  EXPECT_EQ(world->said(kLeft).aura.hand_offs[0].last_sequence, 1u);
-  EXPECT_EQ(world->said(kLeft).aura.hand_offs[0].destination, kRight);
+  ASSERT_EQ(world->published(kLeft).aura.hand_offs.size(), 1u);
+  EXPECT_EQ(world->published(kLeft).aura.hand_offs[0].last_sequence, 1u);
+  EXPECT_EQ(world->published(kLeft).aura.hand_offs[0].destination, kRight);
   for (int i = 1; i < k(); ++i) {
     world->step();
     EXPECT_EQ(world->host(kBody), std::nullopt);

@@ -1,4 +1,4 @@
-// One node, told by hand what it hosts and hears.
+// One node, given by hand what it hosts and receives.
 #include "core/protocol.h"
 
 #include <algorithm>
@@ -56,13 +56,13 @@ class ProtocolTest : public ::testing::Test {
     }
     return departures;
   }
-  void hear(AuraBatch b) {
+  void receive(AuraBatch b) {
     b.generation = settings.generation;
     b.map_version = map->version();
     inbox.auras.push_back(std::move(b));
     protocol->accept(inbox);
   }
-  void hear(HandOff h, std::uint64_t sequence) {
+  void receive(HandOff h, std::uint64_t sequence) {
     h.generation = settings.generation;
     h.map_version = map->version();
     h.sequence = sequence;
@@ -76,17 +76,17 @@ class ProtocolTest : public ::testing::Test {
     a.pose.p_WB = p;
     return a;
   }
-  /// Region 1 says its next batch, with these auras.
-  void hear_next(std::vector<AuraRecord> auras = {}) {
+  /// Region 1 publishes its next batch, with these auras.
+  void receive_next(std::vector<AuraRecord> auras = {}) {
     AuraBatch b = batch(1, protocol->intake().neighbours()[0].received() + 1);
     for (AuraRecord& a : auras) a.stamp = b.stamp;
     b.updates = std::move(auras);
-    hear(std::move(b));
+    receive(std::move(b));
   }
   const Changes& receive_next() { return protocol->receive(++now); }
-  /// One state in which nothing is heard but region 1's steps.
+  /// One state in which nothing is received but region 1's steps.
   void pass_step() {
-    hear_next();
+    receive_next();
     receive_next();
     observe();
   }
@@ -102,14 +102,14 @@ class ProtocolTest : public ::testing::Test {
   Step now = 0;
 };
 
-TEST_F(ProtocolTest, ABatchIsSaidForEveryStateEvenWhenThereIsNothingToSay) {
+TEST_F(ProtocolTest, ABatchIsPublishedForEveryStateEvenAnEmptyOne) {
   start(0);
-  const AuraBatch& said = protocol->outbox().aura;
-  EXPECT_EQ(said.stamp, 0);
-  EXPECT_TRUE(said.full);
-  EXPECT_EQ(said.generation, 3u);
-  EXPECT_EQ(said.source, region(0));
-  EXPECT_EQ(said.map_version, map->version());
+  const AuraBatch& published = protocol->outbox().aura;
+  EXPECT_EQ(published.stamp, 0);
+  EXPECT_TRUE(published.full);
+  EXPECT_EQ(published.generation, 3u);
+  EXPECT_EQ(published.source, region(0));
+  EXPECT_EQ(published.map_version, map->version());
   pass_step();
   EXPECT_EQ(protocol->outbox().aura.stamp, 1);
   EXPECT_FALSE(protocol->outbox().aura.full);
@@ -129,13 +129,13 @@ TEST_F(ProtocolTest, ABodyNearALargeForeignOneProjectsFromFurtherAway) {
   host(1, Vec3(-4, 0, 0));
   start(0);
   AuraBatch b = batch(1, 0);
-  hear(b);
+  receive(b);
   receive_next();
   observe();
   EXPECT_THAT(protocol->outbox().aura.updates, IsEmpty());
   b = batch(1, 1);
   b.top_radius_m = 4;
-  hear(b);
+  receive(b);
   receive_next();
   observe();
   EXPECT_EQ(protocol->outbox().aura.updates.size(), 1u);
@@ -145,7 +145,7 @@ TEST_F(ProtocolTest, ABodyNearAForeignOneProjectsWhereverItIs) {
   settings.aura.kind = AuraKind::kTight;
   host(1, Vec3(-40, 0, 0));
   start(0);
-  hear_next({foreign(9, Vec3(-38.9, 0, 0))});
+  receive_next({foreign(9, Vec3(-38.9, 0, 0))});
   receive_next();
   observe();
   ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
@@ -155,8 +155,8 @@ TEST_F(ProtocolTest, ABodyNearAForeignOneProjectsWhereverItIs) {
 TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   start(0);
-  hear_next();
-  hear(hand_off(1, 0, 0, {record_of(1, 2), record_of(5, 1)}), 1);
+  receive_next();
+  receive(hand_off(1, 0, 0, {record_of(1, 2), record_of(5, 1)}), 1);
   const Changes& changes = receive_next();
   ASSERT_EQ(changes.adoptions.size(), 1u);
   ASSERT_EQ(changes.adoptions[0].cluster.bodies.size(), 1u);
@@ -170,8 +170,8 @@ TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
 TEST_F(ProtocolTest, AnArrivalWithAHigherEpochReplacesTheBodyHere) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   start(0);
-  hear_next();
-  hear(hand_off(1, 0, 0, {record_of(1, 3)}), 1);
+  receive_next();
+  receive(hand_off(1, 0, 0, {record_of(1, 3)}), 1);
   const Changes& changes = receive_next();
   EXPECT_EQ(changes.adoptions.size(), 1u);
   EXPECT_THAT(changes.let_go, ElementsAre(body(1)));
@@ -181,7 +181,7 @@ TEST_F(ProtocolTest, ABodyThatAnotherNodeOwnsUnderAHigherEpochIsLetGo) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   host(2, Vec3(-50, 9, 0)).epoch = 2;
   start(0);
-  hear_next({foreign(1, Vec3(1, 0, 0), 3), foreign(2, Vec3(1, 9, 0), 2)});
+  receive_next({foreign(1, Vec3(1, 0, 0), 3), foreign(2, Vec3(1, 9, 0), 2)});
   EXPECT_THAT(receive_next().let_go, ElementsAre(body(1)));
   EXPECT_EQ(protocol->counters().let_go, 1u);
 }
@@ -191,7 +191,7 @@ TEST_F(ProtocolTest, AnotherNodesGhostOfABodyOfOursDoesNotTakeItAway) {
   start(0);
   AuraRecord ghost = foreign(1, Vec3(-50, 0, 0), 3, 0);
   ghost.flags = kAuraGhost;
-  hear_next({ghost});
+  receive_next({ghost});
   EXPECT_THAT(receive_next().let_go, IsEmpty());
 }
 
@@ -202,13 +202,13 @@ TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
     AuraBatch b = batch(from, 0);
     b.updates = {foreign(9, Vec3(0, 0.9, 0), 0, from)};
     if (from == 0) b.updates.clear();
-    hear(b);
+    receive(b);
   }
   receive_next();
   EXPECT_THAT(observe(), IsEmpty());
   AuraBatch b = batch(0, 1);
   b.updates = {foreign(8, Vec3(0, -0.9, 0), 0, 0)};
-  hear(b);
+  receive(b);
   receive_next();
   const std::vector<Departure>& departures = observe();
   ASSERT_EQ(departures.size(), 1u);
@@ -222,7 +222,7 @@ TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
   for (const std::uint32_t from : {0u, 1u}) {
     AuraBatch b = batch(from, 0);
     b.updates = {foreign(9 + from, Vec3(10, from ? 0.9 : -0.9, 0), 0, from)};
-    hear(b);
+    receive(b);
   }
   receive_next();
   ASSERT_EQ(observe().size(), 1u);
@@ -234,7 +234,7 @@ TEST_F(ProtocolTest, TheDeadPullNobody) {
   start(1, RegionMap::columns(2, 10));
   AuraBatch b = batch(0, 0);
   b.updates = {foreign(9, Vec3(0, 0.9, 0), 0, 0)};
-  hear(b);
+  receive(b);
   inbox.peers.push_back({region(0), PeerChange::kLost});
   protocol->accept(inbox);
   receive_next();
@@ -268,7 +268,7 @@ TEST_F(ProtocolTest, ABodyFasterThanPromisedIsAViolationCountedOnceAndAWarningIn
   pass_step();
   EXPECT_EQ(protocol->violations().count(ViolationKind::kSpeed), 1u);
   EXPECT_EQ(protocol->last_violation_step(), 1) << "it goes on: what it spoils is found long after it began";
-  EXPECT_EQ(protocol->outbox().aura.violations, 2u) << "the others are told";
+  EXPECT_EQ(protocol->outbox().aura.violations, 2u) << "it is published";
   snapshot.bodies[0].v_WB = Vec3(1, 0, 0);
   pass_step();
   EXPECT_EQ(protocol->last_violation_step(), 1);
@@ -296,22 +296,22 @@ TEST_F(ProtocolTest, ASlowFrameIsAViolation) {
   EXPECT_EQ(protocol->violations().count(ViolationKind::kFrame), 1u);
 }
 
-TEST_F(ProtocolTest, ANeighboursViolationIsHeard) {
+TEST_F(ProtocolTest, ANeighboursViolationIsReceived) {
   start(0);
   for (int i = 0; i < 5; ++i) pass_step();
   EXPECT_LT(protocol->last_violation_step(), 0);
   AuraBatch b = batch(1, 5);
   b.violations = 1;
-  hear(b);
+  receive(b);
   receive_next();
   EXPECT_EQ(protocol->last_violation_step(), 5);
 }
 
-/// Region 0 hosts a heap of region 1, beside which a ball of region 1 lies.
+/// Region 0 hosts a large cluster of region 1, beside which a ball of region 1 lies.
 class Guests : public ProtocolTest {
  protected:
   /// Starts with a square of `side` balls in each row.
-  void start_with_heap(std::uint32_t side) {
+  void start_with_large_cluster(std::uint32_t side) {
     for (std::uint32_t i = 0; i < side * side; ++i) {
       host(i, Vec3(20 + 0.9 * (i % side), 0.9 * (i / side), 0));
       if (i > 0) snapshot.contacts.push_back({i - 1, i});
@@ -322,7 +322,7 @@ class Guests : public ProtocolTest {
   Step goes_within(Step steps) {
     const std::size_t all = snapshot.bodies.size();
     while (now < steps) {
-      hear_next({foreign(10'000, Vec3(20, -0.95, 0))});
+      receive_next({foreign(10'000, Vec3(20, -0.95, 0))});
       receive_next();
       const std::vector<Departure>& departures = observe();
       if (departures.empty()) continue;
@@ -334,15 +334,15 @@ class Guests : public ProtocolTest {
   }
 };
 
-TEST_F(Guests, GoHomeInAHeapAlthoughItIsTouchedAllTheTime) {
-  start_with_heap(17);
+TEST_F(Guests, GoHomeInALargeClusterAlthoughItIsTouchedAllTheTime) {
+  start_with_large_cluster(17);
   const Step gone = goes_within(100);
   EXPECT_GE(gone, 10 + rank_notice(settings.aura.lookahead)) << "not before everybody knows";
   EXPECT_LE(gone, 12 + rank_notice(settings.aura.lookahead));
 }
 
 TEST_F(Guests, StayWhileTheyAreFewAndTouched) {
-  start_with_heap(15);
+  start_with_large_cluster(15);
   EXPECT_EQ(goes_within(100), -1);
   EXPECT_EQ(protocol->outbox().aura.ranks.next.weight, RankClaim::kNothing);
 }

@@ -22,7 +22,7 @@ class PushesTest : public ::testing::Test {
     for (std::uint32_t i = 0; i + 1 < own_m_s.size(); ++i) pushes.add(i, i + 1, rigid);
     std::vector<std::uint32_t> all(own_m_s.size());
     std::iota(all.begin(), all.end(), 0U);
-    pushes.form_trains(all);
+    pushes.form_moving_groups(all);
     for (std::uint32_t i = 0; i < own_m_s.size(); ++i) pushes.start(i);
     pushes.spread(raised);
   }
@@ -60,8 +60,8 @@ TEST_F(PushesTest, BodiesThatBounceFullyPassOnEverything) {
 }
 
 /// Two masses that meet, restitution e: what is at rest leaves with (1 + e) m / (m + M) of the speed.
-TEST_F(PushesTest, OneStrikeIsWhatMechanicsSays) {
-  Random random("strike");
+TEST_F(PushesTest, OneImpactIsWhatMechanicsSays) {
+  Random random("impact");
   for (int run = 0; run < 200; ++run) {
     const double e = random.between(0, 1), m = random.between(0.1, 50), other = random.between(0.1, 50);
     chain({10, 0}, {BodyTraits{m, e}, BodyTraits{other, e}});
@@ -69,8 +69,8 @@ TEST_F(PushesTest, OneStrikeIsWhatMechanicsSays) {
   }
 }
 
-/// Bodies that fly as one: the last of them strikes with the momentum of all.
-TEST_F(PushesTest, ATrainStrikesAsOne) {
+/// Bodies that fly as one: the last of them hits with the momentum of all.
+TEST_F(PushesTest, AMovingGroupHitsAsOne) {
   chain({10, 10, 9, 8, 0}, std::vector(5, kPlastic));
   EXPECT_GE(kUncertainty * pushes.speed(4), (10 + 10 + 9 + 8) / 5.0 - 1e-9);
   const double alone = (chain({0, 0, 0, 8, 0}, std::vector(5, kPlastic)), pushes.speed(4));
@@ -79,15 +79,15 @@ TEST_F(PushesTest, ATrainStrikesAsOne) {
   EXPECT_NEAR(pushes.speed(4), alone, 1e-9) << "who is slow does not push on";
 }
 
-TEST_F(PushesTest, AForeignStrikeIsFeltAndPassedOn) {
+TEST_F(PushesTest, AForeignImpactIsFeltAndPassedOn) {
   chain({0, 0, 0}, std::vector(3, kPlastic));
-  const Strike strike{Push::of(20, kPlastic, kUncertainty), {}};
-  EXPECT_TRUE(pushes.feels(strike, 0));
-  EXPECT_TRUE(pushes.hit(0, strike));
+  const Impact impact{Push::of(20, kPlastic, kUncertainty), {}};
+  EXPECT_TRUE(pushes.feels(impact, 0));
+  EXPECT_TRUE(pushes.hit(0, impact));
   pushes.spread(raised);
   EXPECT_NEAR(pushes.speed(0), 20, 1e-9);
   EXPECT_NEAR(pushes.speed(2), 10, 1e-9);
-  EXPECT_FALSE(pushes.hit(0, strike.times(0.5))) << "known already";
+  EXPECT_FALSE(pushes.hit(0, impact.times(0.5))) << "known already";
 }
 
 TEST_F(PushesTest, WhoIsNotPushedSaysNothing) {

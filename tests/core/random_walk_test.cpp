@@ -17,23 +17,23 @@ struct Walk {
   int lookahead;
 };
 
-/// What a region has told the others: nothing may be taken back that was not said.
+/// What a region has published: nothing may be taken back that was not published.
 class Listener {
  public:
-  void hear(const AuraBatch& batch) {
-    for (const BodyId id : batch.deletes) unheard_deletes += heard_.erase(id) == 0;
-    for (const AuraRecord& update : batch.updates) heard_.insert(update.id);
+  void receive(const AuraBatch& batch) {
+    for (const BodyId id : batch.deletes) unmatched_deletes += received_.erase(id) == 0;
+    for (const AuraRecord& update : batch.updates) received_.insert(update.id);
     std::set<BodyId> once;
-    for (const AuraRecord& update : batch.updates) said_twice += !once.insert(update.id).second;
-    for (const BodyId id : batch.deletes) said_twice += !once.insert(id).second;
+    for (const AuraRecord& update : batch.updates) published_twice += !once.insert(update.id).second;
+    for (const BodyId id : batch.deletes) published_twice += !once.insert(id).second;
   }
-  const std::set<BodyId>& heard() const { return heard_; }
+  const std::set<BodyId>& received() const { return received_; }
 
-  int unheard_deletes = 0;
-  int said_twice = 0;
+  int unmatched_deletes = 0;
+  int published_twice = 0;
 
  private:
-  std::set<BodyId> heard_;
+  std::set<BodyId> received_;
 };
 
 class RandomWalk : public ::testing::TestWithParam<Walk> {
@@ -84,17 +84,17 @@ class RandomWalk : public ::testing::TestWithParam<Walk> {
 TEST_P(RandomWalk, NothingIsDeletedThatWasNotCreated) {
   std::map<std::uint32_t, Listener> listeners;
   for (Step n = 0;; ++n) {
-    for (std::uint32_t r = 0; r < 4; ++r) listeners[r].hear(world->said(RegionId{r}).aura);
+    for (std::uint32_t r = 0; r < 4; ++r) listeners[r].receive(world->published(RegionId{r}).aura);
     if (n == kSteps) break;
     world->step();
   }
   std::uint64_t created = 0;
   for (std::uint32_t r = 0; r < 4; ++r) {
-    EXPECT_EQ(listeners[r].unheard_deletes, 0) << "region " << r;
-    EXPECT_EQ(listeners[r].said_twice, 0) << "region " << r;
+    EXPECT_EQ(listeners[r].unmatched_deletes, 0) << "region " << r;
+    EXPECT_EQ(listeners[r].published_twice, 0) << "region " << r;
     const Projection& projection = world->protocol(RegionId{r}).projection();
     created += projection.counters().created;
-    EXPECT_EQ(listeners[r].heard().size(), projection.projecting() + projection.ghosts().size()) << "region " << r;
+    EXPECT_EQ(listeners[r].received().size(), projection.projecting() + projection.ghosts().size()) << "region " << r;
   }
   EXPECT_GT(created, 50u);
 }
@@ -104,7 +104,7 @@ TEST_P(RandomWalk, HitsSendOnlyToLowerRegionsAndHomewardOnlyToOthers) {
   for (Step n = 0; n < kSteps; ++n) {
     world->step();
     for (std::uint32_t r = 0; r < 4; ++r) {
-      for (const HandOff& h : world->said(RegionId{r}).hand_offs) {
+      for (const HandOff& h : world->published(RegionId{r}).hand_offs) {
         EXPECT_NE(h.destination, RegionId{r});
         if (h.reason == HandOffReason::kAuraCollision) {
           EXPECT_LT(h.destination, RegionId{r});

@@ -43,11 +43,11 @@ TEST(Ranks, MoreWeightIsHigherAndOfEqualOnesTheOlderClaim) {
   EXPECT_FALSE(seen_by(kFirst, late, {once(RankClaim::kNothing, 9), {}, {}}).pulls(kSecond)) << "as if it had not";
 }
 
-TEST(Ranks, WhoeverStepsBackIsBelowThoseWhoClaimNothing) {
-  const RankClaims back = once(RankClaim::kStepsBack, 5);
+TEST(Ranks, WhoeverYieldsIsBelowThoseWhoClaimNothing) {
+  const RankClaims back = once(RankClaim::kYields, 5);
   EXPECT_TRUE(seen_by(kFirst, 1000, {back, {}, {}}).pulls(kThird));
   EXPECT_FALSE(seen_by(kSecond, 1000, {back, {}, {}}).pulls(kFirst));
-  EXPECT_TRUE(seen_by(kSecond, 1000, {back, once(RankClaim::kStepsBack, 3), {}}).pulls(kFirst)) << "both do";
+  EXPECT_TRUE(seen_by(kSecond, 1000, {back, once(RankClaim::kYields, 3), {}}).pulls(kFirst)) << "both do";
 }
 
 TEST(Ranks, TwoNodesNeverPullFromEachOther) {
@@ -85,19 +85,19 @@ TEST(Ranks, ChangeIsKnownToAllBeforeItMatters) {
 
 class Claimer : public ::testing::Test {
  protected:
-  using Heaps = RankClaimer::Heaps;
-  static constexpr std::uint8_t kNothing = RankClaim::kNothing, kStepsBack = RankClaim::kStepsBack;
+  using LargeClusters = RankClaimer::LargeClusters;
+  static constexpr std::uint8_t kNothing = RankClaim::kNothing, kYields = RankClaim::kYields;
   RankClaimer claimer_{kSecond, kLookahead, 0}, near_sighted_{kSecond, 1, 0};
   RankClaims of_first_;
-  std::uint8_t weight_after(Step now, const Heaps& heaps) { return weight_after(claimer_, now, heaps); }
-  std::uint8_t weight_after(RankClaimer& claimer, Step now, const Heaps& heaps) const {
-    claimer.reconsider(now, heaps, seen_by(kSecond, now, {of_first_, claimer.claims()}));
+  std::uint8_t weight_after(Step now, const LargeClusters& large) { return weight_after(claimer_, now, large); }
+  std::uint8_t weight_after(RankClaimer& claimer, Step now, const LargeClusters& large) const {
+    claimer.reconsider(now, large, seen_by(kSecond, now, {of_first_, claimer.claims()}));
     return claimer.claims().next.weight;
   }
   /// Guests that stay from one step to another, where K = 1.
-  std::uint8_t weight_with_guests(Step first, Step last, const Heaps& heaps) {
-    for (Step now = first; now < last; ++now) weight_after(near_sighted_, now, heaps);
-    return weight_after(near_sighted_, last, heaps);
+  std::uint8_t weight_with_guests(Step first, Step last, const LargeClusters& large) {
+    for (Step now = first; now < last; ++now) weight_after(near_sighted_, now, large);
+    return weight_after(near_sighted_, last, large);
   }
 };
 
@@ -144,31 +144,31 @@ TEST_F(Claimer, GivesUpOnlyWhatItHasNotHadForLong) {
   EXPECT_EQ(weight_after(2201, {10, 0}), kNothing);
 }
 
-TEST_F(Claimer, StepsBackWhenGuestsStay) {
+TEST_F(Claimer, YieldsWhenGuestsStay) {
   EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
   EXPECT_EQ(weight_with_guests(100, 105, {1400, 1400}), 4) << "they may go by themselves";
   EXPECT_EQ(weight_with_guests(106, 107, {1400, 255}), 4) << "as most of them did";
   EXPECT_EQ(weight_with_guests(108, 116, {1400, 1400}), 4);
-  EXPECT_EQ(weight_with_guests(117, 117, {1400, 1400}), kStepsBack);
-  EXPECT_EQ(weight_with_guests(118, 300, {1400, 1400}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(117, 117, {1400, 1400}), kYields);
+  EXPECT_EQ(weight_with_guests(118, 300, {1400, 1400}), kYields);
 }
 
-TEST_F(Claimer, ThatHasSteppedBackWaitsUntilTheOtherHasClaimed) {
+TEST_F(Claimer, ThatHasYieldedWaitsUntilTheOtherHasClaimed) {
   EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
-  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
-  EXPECT_EQ(weight_with_guests(151, 200, {1400, 0}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kYields);
+  EXPECT_EQ(weight_with_guests(151, 200, {1400, 0}), kYields);
   of_first_ = once(4, 198);
   EXPECT_EQ(weight_with_guests(201, 201, {1400, 0}), kNothing) << "it has no more than the other";
 }
 
-TEST_F(Claimer, DoesNotStepBackWhereKIsLarger) {
+TEST_F(Claimer, DoesNotYieldWhereKIsLarger) {
   for (Step now = 0; now < 100; ++now) EXPECT_EQ(weight_after(now, {1400, now < 50 ? 0u : 1400u}), 4) << now;
 }
 
-TEST_F(Claimer, ThatHasSteppedBackDoesNotWaitForEver) {
+TEST_F(Claimer, ThatHasYieldedDoesNotWaitForEver) {
   EXPECT_EQ(weight_with_guests(0, 99, {1400, 0}), 4);
-  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kStepsBack);
-  EXPECT_EQ(weight_with_guests(151, 270, {10, 0}), kStepsBack);
+  EXPECT_EQ(weight_with_guests(100, 150, {1400, 1400}), kYields);
+  EXPECT_EQ(weight_with_guests(151, 270, {10, 0}), kYields);
   EXPECT_EQ(weight_with_guests(271, 271, {10, 0}), kNothing);
 }
 

@@ -54,7 +54,7 @@ class AnyRegionMap : public ::testing::TestWithParam<NamedMap> {
   }
 
   /// Every edge of every region, the floating-point numbers next to it, and places far out.
-  std::vector<double> telling_places(double Rectangle::*low, double Rectangle::*high) const {
+  std::vector<double> sample_places(double Rectangle::*low, double Rectangle::*high) const {
     std::vector<double> places = {-1e300, -1e9, 0, -0.0, 1e9, 1e300};
     for (std::uint32_t i = 0; i < map().size(); ++i) {
       for (const double edge : {map().region(r(i)).*low, map().region(r(i)).*high}) {
@@ -72,8 +72,8 @@ TEST_P(AnyRegionMap, EveryRandomPointHasExactlyOneOwner) {
 }
 
 TEST_P(AnyRegionMap, PointsOnEdgesAndCornersAndFarOutHaveExactlyOneOwner) {
-  for (const double x : telling_places(&Rectangle::x0, &Rectangle::x1)) {
-    for (const double y : telling_places(&Rectangle::y0, &Rectangle::y1)) expect_one_owner(x, y);
+  for (const double x : sample_places(&Rectangle::x0, &Rectangle::x1)) {
+    for (const double y : sample_places(&Rectangle::y0, &Rectangle::y1)) expect_one_owner(x, y);
   }
 }
 
@@ -96,8 +96,8 @@ TEST_P(AnyRegionMap, NeighboursAreMutual) {
 }
 
 TEST_P(AnyRegionMap, RegionsThatShareAPointAreNeighbours) {
-  for (const double x : telling_places(&Rectangle::x0, &Rectangle::x1)) {
-    for (const double y : telling_places(&Rectangle::y0, &Rectangle::y1)) {
+  for (const double x : sample_places(&Rectangle::x0, &Rectangle::x1)) {
+    for (const double y : sample_places(&Rectangle::y0, &Rectangle::y1)) {
       std::vector<RegionId> meeting;
       for (std::uint32_t i = 0; i < map().size(); ++i) {
         if (map().region(r(i)).distance(x, y) == 0) meeting.push_back(r(i));

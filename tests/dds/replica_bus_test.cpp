@@ -1,4 +1,4 @@
-// Nodes tell, observers listen. Domains 124 and 128.
+// Nodes publish, observers listen. Domains 124 and 128.
 #include "dds/replica_bus.h"
 
 #include <gtest/gtest.h>

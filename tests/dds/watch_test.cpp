@@ -31,8 +31,8 @@ class Watched : public ::testing::Test {
     watch_.on_liveliness_changed(nullptr, status);
   }
 
-  Bell bell_;
-  ReaderWatch watch_{bell_};
+  Wakeup wakeup_;
+  ReaderWatch watch_{wakeup_};
 };
 
 TEST_F(Watched, AWriterIsNeitherAliveNorLostBeforeItsFirstProofOfLife) {
@@ -43,7 +43,7 @@ TEST_F(Watched, AWriterIsNeitherAliveNorLostBeforeItsFirstProofOfLife) {
   EXPECT_FALSE(watch_.latest().alive);
   EXPECT_FALSE(watch_.latest().lost);
   EXPECT_TRUE(watch_.any_matched());
-  EXPECT_TRUE(bell_.wait(0ns));
+  EXPECT_TRUE(wakeup_.wait(0ns));
 }
 
 TEST_F(Watched, SilenceIsBelievedAfterTheGraceTime) {

@@ -1,4 +1,4 @@
-// What observers are told: all that changed, once, and everything in a key frame.
+// What is published for observers: all that changed, once, and everything in a key frame.
 #include "node/replica_feed.h"
 
 #include <map>
@@ -31,13 +31,13 @@ class Feed : public ::testing::Test {
     for (const auto& [id, body] : bodies_) snapshot_.bodies.push_back(body);
     return snapshot_;
   }
-  const core::Replica& tell() {
+  const core::Replica& publish() {
     step_ += 3;
-    return feed_.tell_changes(snapshot());
+    return feed_.compose_changes(snapshot());
   }
-  std::vector<std::uint64_t> told() {
+  std::vector<std::uint64_t> published() {
     std::vector<std::uint64_t> ids;
-    for (const core::ReplicaBody& body : tell().bodies) ids.push_back(core::value_of(body.id));
+    for (const core::ReplicaBody& body : publish().bodies) ids.push_back(core::value_of(body.id));
     return ids;
   }
   /// Takes it out of the world, as a hand-off does.
@@ -63,35 +63,35 @@ class Feed : public ::testing::Test {
 
 TEST_F(Feed, SaysFromWhomAndWhenAndCountsItsTicks) {
   place(3, 0);
-  const core::Replica& first = tell();
+  const core::Replica& first = publish();
   EXPECT_EQ(first.source, RegionId{1});
   EXPECT_EQ(first.generation, 4U);
   EXPECT_EQ(first.map_version, 77U);
   EXPECT_EQ(first.stamp, 3);
   EXPECT_EQ(first.sequence, 1U);
   EXPECT_FALSE(first.key_frame);
-  EXPECT_EQ(tell().sequence, 2U);
+  EXPECT_EQ(publish().sequence, 2U);
 }
 
 TEST_F(Feed, TellsOnlyWhatChanged) {
   place(1, 0);
   place(2, 5);
-  EXPECT_THAT(told(), ElementsAre(1, 2));
-  EXPECT_THAT(told(), IsEmpty());
+  EXPECT_THAT(published(), ElementsAre(1, 2));
+  EXPECT_THAT(published(), IsEmpty());
   body(2).pose.p_WB.x() = 5.1;
-  EXPECT_THAT(told(), ElementsAre(2));
+  EXPECT_THAT(published(), ElementsAre(2));
   body(1).awake = false;
-  EXPECT_THAT(told(), ElementsAre(1));
-  EXPECT_THAT(told(), IsEmpty());
+  EXPECT_THAT(published(), ElementsAre(1));
+  EXPECT_THAT(published(), IsEmpty());
 }
 
 TEST_F(Feed, JitterIsNoNewsButCreepingIs) {
   place(1, 0);
-  tell();
+  publish();
   std::size_t times = 0;
   for (int i = 1; i <= 100; ++i) {
     body(1).pose.p_WB.x() = 3e-5 * i;
-    times += told().size();
+    times += published().size();
   }
   EXPECT_GT(times, 10U);
   EXPECT_LT(times, 50U);
@@ -100,37 +100,37 @@ TEST_F(Feed, JitterIsNoNewsButCreepingIs) {
 TEST_F(Feed, BodiesAreToldOnceTheyAreBorn) {
   place(1, 0);
   body(1).birth = 5;
-  EXPECT_THAT(told(), IsEmpty());
-  EXPECT_THAT(told(), ElementsAre(1));
+  EXPECT_THAT(published(), IsEmpty());
+  EXPECT_THAT(published(), ElementsAre(1));
 }
 
 TEST_F(Feed, ABodyThatLeftIsToldWithItsNewHostAndEpochAndItsLastPose) {
   place(1, 0, 6);
-  tell();
+  publish();
   body(1).pose.p_WB.x() = 2;
   send_away(1, 3);
-  const core::Replica& replica = tell();
+  const core::Replica& replica = publish();
   ASSERT_EQ(replica.bodies.size(), 1U);
   EXPECT_EQ(replica.bodies[0].host, RegionId{3});
   EXPECT_EQ(replica.bodies[0].epoch, 7U);
   EXPECT_EQ(replica.bodies[0].p_WB.x(), 2);
   EXPECT_THAT(replica.removed, IsEmpty());
-  EXPECT_THAT(told(), IsEmpty());
+  EXPECT_THAT(published(), IsEmpty());
 }
 
 TEST_F(Feed, ABodyThatCameAndLeftBetweenTwoTicksIsToldToo) {
-  tell();
+  publish();
   place(8, 1, 2);
   send_away(8, 0);
-  EXPECT_THAT(told(), ElementsAre(8));
+  EXPECT_THAT(published(), ElementsAre(8));
 }
 
 TEST_F(Feed, ABodyThatLeftAndCameBackBetweenTwoTicksIsHere) {
   place(1, 0, 2);
-  tell();
+  publish();
   send_away(1, 0);
   place(1, 0, 4);
-  const core::Replica& replica = tell();
+  const core::Replica& replica = publish();
   ASSERT_EQ(replica.bodies.size(), 1U);
   EXPECT_EQ(replica.bodies[0].host, RegionId{1});
   EXPECT_EQ(replica.bodies[0].epoch, 4U);
@@ -139,24 +139,24 @@ TEST_F(Feed, ABodyThatLeftAndCameBackBetweenTwoTicksIsHere) {
 TEST_F(Feed, ABodyThatIsNoMoreIsRemovedWithItsEpoch) {
   place(1, 0, 5);
   place(2, 0);
-  tell();
+  publish();
   bodies_.erase(1);
-  const core::Replica& replica = tell();
+  const core::Replica& replica = publish();
   EXPECT_THAT(replica.bodies, IsEmpty());
   ASSERT_EQ(replica.removed.size(), 1U);
   EXPECT_EQ(replica.removed[0].id, BodyId{1});
   EXPECT_EQ(replica.removed[0].epoch, 5U);
-  EXPECT_THAT(tell().removed, IsEmpty());
+  EXPECT_THAT(publish().removed, IsEmpty());
 }
 
 TEST_F(Feed, ABodyThatGaveWayToAnotherCopyIsNotRemoved) {
   place(1, 0);
-  tell();
+  publish();
   bodies_.erase(1);
   StepReport report;
   report.let_go = {BodyId{1}};
   feed_.note(report);
-  const core::Replica& replica = tell();
+  const core::Replica& replica = publish();
   EXPECT_THAT(replica.bodies, IsEmpty());
   EXPECT_THAT(replica.removed, IsEmpty());
 }
@@ -165,7 +165,7 @@ TEST_F(Feed, AKeyFrameHasAllThatIsHereAndAllThatIsOnItsWayFromHere) {
   place(1, 0);
   place(4, 0);
   body(4).awake = false;
-  tell();
+  publish();
   core::HandOff hand_off;
   hand_off.destination = RegionId{2};
   hand_off.stamp = 3;
@@ -173,7 +173,7 @@ TEST_F(Feed, AKeyFrameHasAllThatIsHereAndAllThatIsOnItsWayFromHere) {
   record.id = BodyId{3};
   record.epoch = 9;
   hand_off.cluster.bodies = {record};
-  const core::Replica& key = feed_.tell_all(snapshot(), {hand_off});
+  const core::Replica& key = feed_.compose_key_frame(snapshot(), {hand_off});
   EXPECT_TRUE(key.key_frame);
   EXPECT_EQ(key.sequence, 1U);
   ASSERT_EQ(key.bodies.size(), 3U);
@@ -185,22 +185,22 @@ TEST_F(Feed, AKeyFrameHasAllThatIsHereAndAllThatIsOnItsWayFromHere) {
 
 TEST_F(Feed, WantsAKeyFrameOnlyWhenSomethingWasTold) {
   place(1, 0);
-  tell();
+  publish();
   EXPECT_TRUE(feed_.changed_since_key_frame());
-  feed_.tell_all(snapshot(), {});
+  feed_.compose_key_frame(snapshot(), {});
   EXPECT_FALSE(feed_.changed_since_key_frame());
-  tell();
+  publish();
   EXPECT_FALSE(feed_.changed_since_key_frame());
   body(1).pose.p_WB.x() = 1;
-  tell();
+  publish();
   EXPECT_TRUE(feed_.changed_since_key_frame());
 }
 
 TEST_F(Feed, AfterAPauseInWhichNobodyListenedEverythingIsToldAnew) {
   place(1, 0);
-  tell();
+  publish();
   feed_.forget();
-  EXPECT_THAT(told(), ElementsAre(1));
+  EXPECT_THAT(published(), ElementsAre(1));
 }
 
 TEST(TickSteps, AreWholeAndAtLeastOne) {

@@ -22,7 +22,7 @@ class RayRegions : public ::testing::Test {
     body.id = core::BodyId{id};
     body.host = RegionId{host};
     body.p_WB = p;
-    told_[host].push_back(body);
+    published_[host].push_back(body);
   }
   std::vector<RegionId> asked(const core::Vec3& from, const core::Vec3& to, double margin_m = 0.1) {
     WorldView view{{.region_count = 4, .unclaimed_patience = 30, .wait_s = 0.3}};
@@ -32,7 +32,7 @@ class RayRegions : public ::testing::Test {
       replica.source = RegionId{r};
       replica.stamp = 3;
       replica.sequence = 1;
-      replica.bodies = told_[r];
+      replica.bodies = published_[r];
       view.accept(std::move(replica), 0);
     }
     while (view.compose(0) != nullptr) {
@@ -41,7 +41,7 @@ class RayRegions : public ::testing::Test {
   }
 
   core::Scene scene_;
-  std::array<std::vector<core::ReplicaBody>, 4> told_;
+  std::array<std::vector<core::ReplicaBody>, 4> published_;
 };
 
 TEST_F(RayRegions, AreThoseThatItCrosses) {

@@ -98,12 +98,12 @@ TEST_F(Recording, PlaysInItsTimeToItsEnd) {
 TEST_F(Recording, CanBePausedAndSpedUp) {
   Replay replay(file_);
   play(replay, 1);
-  replay.obey({Action::kPause, 0});
+  replay.apply({Action::kPause, 0});
   const core::Step at = replay.step();
   play(replay, 5);
   EXPECT_EQ(replay.step(), at);
-  replay.obey({Action::kPlay, 0});
-  replay.obey({Action::kSpeed, 10});
+  replay.apply({Action::kPlay, 0});
+  replay.apply({Action::kSpeed, 10});
   play(replay, 0.5);
   EXPECT_NEAR(static_cast<double>(replay.step()), static_cast<double>(at) + 300, 15);
 }
@@ -111,15 +111,15 @@ TEST_F(Recording, CanBePausedAndSpedUp) {
 TEST_F(Recording, ShowsAnyStepThatIsSought) {
   Replay replay(file_);
   play(replay, 0.1);
-  replay.obey({Action::kPause, 0});
+  replay.apply({Action::kPause, 0});
   std::mt19937 random(4);
   for (int i = 0; i < 50; ++i) {
     const auto step = static_cast<core::Step>(random() % (kLast + 1));
-    replay.obey({Action::kSeek, static_cast<double>(step)});
+    replay.apply({Action::kSeek, static_cast<double>(step)});
     play(replay, 0.02);
     expect_world_of(step / 3 * 3);
   }
-  replay.obey({Action::kSeek, 1e12});
+  replay.apply({Action::kSeek, 1e12});
   play(replay, 0.02);
   expect_world_of(kLast);
 }
@@ -154,7 +154,7 @@ TEST_F(Recording, SpoiltBytesDoNoHarm) {
     std::ofstream(file_, std::ios::binary) << bytes;
     try {
       Replay replay(file_);
-      replay.obey({Action::kSpeed, 100});
+      replay.apply({Action::kSpeed, 100});
       play(replay, 0.2);
     } catch (const BadRecording&) {
     }

@@ -43,8 +43,8 @@ class Web : public ::testing::Test {
 
   void serve() {
     server_.emplace(settings_, shapes_);
-    server_->tell(Notice::kHello, R"({"type":"hello"})");
-    server_->tell(Notice::kScene, R"({"type":"scene"})");
+    server_->publish(Notice::kHello, R"({"type":"hello"})");
+    server_->publish(Notice::kScene, R"({"type":"scene"})");
   }
   std::uint16_t port() const { return server_->port(); }
 
@@ -144,7 +144,7 @@ TEST_F(Web, APageGetsHelloThenTheSceneThenAKeyFrame) {
   show(5);
   ASSERT_TRUE(page.wait_until([&] { return page.world.stamp == 9; }));
   EXPECT_EQ(page.world.key_frames, 1);
-  server_->tell(Notice::kStatus, R"({"type":"status"})");
+  server_->publish(Notice::kStatus, R"({"type":"status"})");
   EXPECT_TRUE(page.wait_until([&] { return page.has("status"); }));
 }
 
@@ -285,7 +285,7 @@ TEST_F(Web, AWatchedBodyIsToldWithEachStatusUntilItIsGone) {
   frame.stamp = 9;
   frame.deleted = {2};
   server_->show(frame);
-  server_->tell(Notice::kStatus, R"({"type":"status"})");
+  server_->publish(Notice::kStatus, R"({"type":"status"})");
   EXPECT_TRUE(page.wait_until([&] { return page.latest["body"].contains("gone"); }));
 }
 

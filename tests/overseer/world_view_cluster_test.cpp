@@ -34,7 +34,7 @@ struct Wire {
   double loses_until_s = 1e9;  ///< after that the wire is good
 };
 
-/// What the nodes of a simulated cluster tell, and an observer that puts it together.
+/// What the nodes of a simulated cluster publish, and an observer that puts it together.
 class Observed {
  public:
   Observed(const core::Scene& scene, const test::ClusterOptions& options, const Wire& wire, std::uint64_t seed)
@@ -51,7 +51,7 @@ class Observed {
     }
     if (options.crash) crash_ = *options.crash;
     sim_.on_state = [this](node::Node& node, const node::StepReport& report, double now_s) {
-      tell(node, report, now_s);
+      publish(node, report, now_s);
       if (crash_ && node.region() == crash_->region && report.step >= crash_->step) crashed_s_ = now_s;
       look(now_s);
     };
@@ -90,7 +90,7 @@ class Observed {
 
   double chance() { return std::uniform_real_distribution<double>(0, 1)(random_); }
 
-  void tell(node::Node& node, const node::StepReport& report, double now_s) {
+  void publish(node::Node& node, const node::StepReport& report, double now_s) {
     const std::size_t r = core::value_of(node.region());
     node::ReplicaFeed& feed = feeds_[r];
     if (now_s < wire_.joins_s) {
@@ -103,11 +103,11 @@ class Observed {
     for (const core::BodyState& body : snapshot.bodies) {
       if (body.birth <= snapshot.step) truth_[snapshot.step][core::value_of(body.id)] = body.pose.p_WB;
     }
-    send(feed.tell_changes(snapshot), r, now_s, wire_.delta_loss);
+    send(feed.compose_changes(snapshot), r, now_s, wire_.delta_loss);
     const bool first = !joined_[r];
     joined_[r] = true;
     if (!first && (report.step % 60 != 0 || !feed.changed_since_key_frame())) return;
-    send(feed.tell_all(snapshot, node.protocol().departures().open()), r, now_s, first ? 0 : wire_.key_loss);
+    send(feed.compose_key_frame(snapshot, node.protocol().departures().open()), r, now_s, first ? 0 : wire_.key_loss);
   }
 
   void send(const core::Replica& replica, std::size_t r, double now_s, double loss) {

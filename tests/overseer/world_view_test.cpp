@@ -25,8 +25,8 @@ class View : public ::testing::Test {
   View() {
     for (std::uint32_t r = 0; r < 3; ++r) view_.set_region(RegionId{r}, State::kLive);
   }
-  void tell(std::uint32_t source, core::Step stamp, std::vector<core::ReplicaBody> bodies, bool key = false,
-            std::vector<core::RemovedBody> removed = {}) {
+  void publish(std::uint32_t source, core::Step stamp, std::vector<core::ReplicaBody> bodies, bool key = false,
+               std::vector<core::RemovedBody> removed = {}) {
     core::Replica replica;
     replica.source = RegionId{source};
     replica.generation = generation_;
@@ -37,9 +37,9 @@ class View : public ::testing::Test {
     replica.removed = std::move(removed);
     view_.accept(std::move(replica), now_s_);
   }
-  /// Regions that have nothing to say at this tick.
+  /// Regions that have nothing to publish at this tick.
   void quiet(core::Step stamp, std::initializer_list<std::uint32_t> regions) {
-    for (const std::uint32_t region : regions) tell(region, stamp, {});
+    for (const std::uint32_t region : regions) publish(region, stamp, {});
   }
   const WorldFrame* compose() { return view_.compose(now_s_); }
   const ViewBody& seen(std::uint64_t id) {
@@ -54,10 +54,10 @@ class View : public ::testing::Test {
 };
 
 TEST_F(View, AFrameIsComposedOnceEveryLiveRegionHasToldItsTick) {
-  tell(0, 3, {body(1, 0, 0)});
-  tell(1, 3, {body(2, 1, 0)});
+  publish(0, 3, {body(1, 0, 0)});
+  publish(1, 3, {body(2, 1, 0)});
   EXPECT_EQ(compose(), nullptr);
-  tell(2, 3, {});
+  publish(2, 3, {});
   const WorldFrame* frame = compose();
   ASSERT_NE(frame, nullptr);
   EXPECT_EQ(frame->stamp, 3);
@@ -67,8 +67,8 @@ TEST_F(View, AFrameIsComposedOnceEveryLiveRegionHasToldItsTick) {
 }
 
 TEST_F(View, ARegionAheadOfTheOthersIsShownWhenTheyAreThere) {
-  tell(0, 3, {body(1, 0, 0, 0.1)});
-  tell(0, 6, {body(1, 0, 0, 0.2)});
+  publish(0, 3, {body(1, 0, 0, 0.1)});
+  publish(0, 6, {body(1, 0, 0, 0.2)});
   quiet(3, {1, 2});
   ASSERT_EQ(compose()->stamp, 3);
   EXPECT_EQ(seen(1).p_WB.x(), 0.1);
@@ -78,7 +78,7 @@ TEST_F(View, ARegionAheadOfTheOthersIsShownWhenTheyAreThere) {
 }
 
 TEST_F(View, ASlowRegionIsNotWaitedForForEver) {
-  tell(0, 3, {body(1, 0, 0)});
+  publish(0, 3, {body(1, 0, 0)});
   now_s_ = 0.31;
   ASSERT_NE(compose(), nullptr);
   EXPECT_EQ(view_.counters().incomplete, 1U);
@@ -87,22 +87,22 @@ TEST_F(View, ASlowRegionIsNotWaitedForForEver) {
 TEST_F(View, ARegionThatIsNotThereIsNotWaitedFor) {
   view_.set_region(RegionId{1}, State::kAbsent);
   view_.set_region(RegionId{2}, State::kDead);
-  tell(0, 3, {body(1, 0, 0)});
+  publish(0, 3, {body(1, 0, 0)});
   EXPECT_NE(compose(), nullptr);
 }
 
 TEST_F(View, ABodyOnItsWayKeepsItsLastPoseUntilItsNewHostTellsOfIt) {
-  tell(0, 3, {body(1, 0, 0, 1.0)});
+  publish(0, 3, {body(1, 0, 0, 1.0)});
   quiet(3, {1, 2});
   compose();
-  tell(0, 6, {body(1, 2, 1, 1.5)});
+  publish(0, 6, {body(1, 2, 1, 1.5)});
   quiet(6, {1, 2});
   ASSERT_EQ(compose()->changed.size(), 1U);
   EXPECT_TRUE(seen(1).under_way);
   EXPECT_EQ(seen(1).host, RegionId{2});
   EXPECT_EQ(seen(1).p_WB.x(), 1.5);
   quiet(9, {0, 1});
-  tell(2, 9, {body(1, 2, 1, 2.0)});
+  publish(2, 9, {body(1, 2, 1, 2.0)});
   const WorldFrame* frame = compose();
   ASSERT_EQ(frame->changed.size(), 1U);
   EXPECT_TRUE(frame->changed[0].handed_over);
@@ -111,10 +111,10 @@ TEST_F(View, ABodyOnItsWayKeepsItsLastPoseUntilItsNewHostTellsOfIt) {
 }
 
 TEST_F(View, TheOrderInWhichTwoRegionsTellOfAHandOffDoesNotMatter) {
-  tell(2, 3, {body(1, 2, 1, 2.0)});
+  publish(2, 3, {body(1, 2, 1, 2.0)});
   quiet(3, {0, 1});
   compose();
-  tell(0, 6, {body(1, 2, 1, 1.5)});
+  publish(0, 6, {body(1, 2, 1, 1.5)});
   quiet(6, {1, 2});
   compose();
   EXPECT_FALSE(seen(1).under_way);
@@ -122,9 +122,9 @@ TEST_F(View, TheOrderInWhichTwoRegionsTellOfAHandOffDoesNotMatter) {
 }
 
 TEST_F(View, TheHighestEpochOwns) {
-  tell(0, 3, {body(1, 0, 5, 5)});
-  tell(1, 3, {body(1, 1, 4, 4)});
-  tell(2, 3, {body(1, 2, 3, 3)});
+  publish(0, 3, {body(1, 0, 5, 5)});
+  publish(1, 3, {body(1, 1, 4, 4)});
+  publish(2, 3, {body(1, 2, 3, 3)});
   compose();
   EXPECT_EQ(view_.body_count(), 1U);
   EXPECT_EQ(seen(1).host, RegionId{0});
@@ -132,32 +132,32 @@ TEST_F(View, TheHighestEpochOwns) {
 }
 
 TEST_F(View, ARemovedBodyIsGoneAndAnOlderWordDoesNotBringItBack) {
-  tell(0, 3, {body(1, 0, 2)});
+  publish(0, 3, {body(1, 0, 2)});
   quiet(3, {1, 2});
   compose();
-  tell(0, 6, {}, false, {{BodyId{1}, 2}});
-  tell(1, 6, {body(1, 0, 2)});  // its sender, late
+  publish(0, 6, {}, false, {{BodyId{1}, 2}});
+  publish(1, 6, {body(1, 0, 2)});  // its sender, late
   quiet(6, {2});
   EXPECT_EQ(compose()->deleted.size(), 1U);
   EXPECT_EQ(view_.body_count(), 0U);
 }
 
 TEST_F(View, ARemovalDoesNotTouchACopyWithAHigherEpoch) {
-  tell(0, 3, {body(1, 0, 2)});
-  tell(1, 3, {body(1, 1, 3)});
-  tell(2, 3, {});
+  publish(0, 3, {body(1, 0, 2)});
+  publish(1, 3, {body(1, 1, 3)});
+  publish(2, 3, {});
   compose();
-  tell(0, 6, {}, false, {{BodyId{1}, 2}});
+  publish(0, 6, {}, false, {{BodyId{1}, 2}});
   quiet(6, {1, 2});
   compose();
   EXPECT_EQ(seen(1).host, RegionId{1});
 }
 
 TEST_F(View, AKeyFrameBringsWhatWasMissedAndItsSilenceIsDoubt) {
-  tell(0, 3, {body(1, 0, 0), body(2, 0, 0)});
+  publish(0, 3, {body(1, 0, 0), body(2, 0, 0)});
   quiet(3, {1, 2});
   compose();
-  tell(0, 6, {body(2, 0, 0, 7), body(3, 0, 0)}, true);
+  publish(0, 6, {body(2, 0, 0, 7), body(3, 0, 0)}, true);
   quiet(6, {0, 1, 2});
   compose();
   EXPECT_EQ(seen(2).p_WB.x(), 7);
@@ -170,10 +170,10 @@ TEST_F(View, AKeyFrameBringsWhatWasMissedAndItsSilenceIsDoubt) {
 }
 
 TEST_F(View, AnOldKeyFrameDoesNotUndoWhatIsKnownBetter) {
-  tell(0, 9, {body(1, 0, 0, 9), body(2, 0, 0, 9)});
+  publish(0, 9, {body(1, 0, 0, 9), body(2, 0, 0, 9)});
   quiet(9, {1, 2});
   compose();
-  tell(0, 6, {body(1, 0, 0, 6)}, true);
+  publish(0, 6, {body(1, 0, 0, 6)}, true);
   compose();
   EXPECT_EQ(seen(1).p_WB.x(), 9);
   quiet(60, {0, 1, 2});
@@ -182,14 +182,14 @@ TEST_F(View, AnOldKeyFrameDoesNotUndoWhatIsKnownBetter) {
 }
 
 TEST_F(View, WhatADeadRegionHostedIsGoneUnlessOthersClaimIt) {
-  tell(0, 3, {body(1, 0, 0), body(2, 0, 0)});
+  publish(0, 3, {body(1, 0, 0), body(2, 0, 0)});
   quiet(3, {1, 2});
   compose();
   view_.set_region(RegionId{0}, State::kDead);
   quiet(6, {1, 2});
   compose();
   EXPECT_EQ(view_.body_count(), 2U);
-  tell(1, 9, {body(2, 1, 1)});
+  publish(1, 9, {body(2, 1, 1)});
   quiet(9, {2});
   compose();
   quiet(60, {1, 2});
@@ -199,13 +199,13 @@ TEST_F(View, WhatADeadRegionHostedIsGoneUnlessOthersClaimIt) {
 }
 
 TEST_F(View, ANewGenerationBeginsAnew) {
-  tell(0, 30, {body(1, 0, 0)});
+  publish(0, 30, {body(1, 0, 0)});
   quiet(30, {1, 2});
   compose();
   generation_ = 1;
-  tell(0, 0, {body(5, 0, 0)});
+  publish(0, 0, {body(5, 0, 0)});
   generation_ = 0;
-  tell(1, 33, {body(6, 1, 0)});  // of the old world, late
+  publish(1, 33, {body(6, 1, 0)});  // of the old world, late
   generation_ = 1;
   quiet(0, {1, 2});
   const WorldFrame* frame = compose();
@@ -217,8 +217,8 @@ TEST_F(View, ANewGenerationBeginsAnew) {
 }
 
 TEST_F(View, GapsAreCounted) {
-  tell(0, 3, {});
-  tell(0, 12, {});
+  publish(0, 3, {});
+  publish(0, 12, {});
   quiet(12, {1, 2});
   while (compose() != nullptr) {
   }

@@ -17,7 +17,7 @@ TEST_F(Domains, TwoDomainsDoNotSeeEachOther) {
   for (const char* name : {"here", "there"}) {
     expect_all_bodies_accounted_for(report_of(name));
     EXPECT_EQ(report_of(name).count("steps"), 180);
-    for (const auto& node : report_of(name).entry("nodes")) EXPECT_EQ(node.at("messages_of_strangers"), 0);
+    for (const auto& node : report_of(name).entry("nodes")) EXPECT_EQ(node.at("messages_of_non_neighbours"), 0);
   }
 }
 

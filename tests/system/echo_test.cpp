@@ -39,7 +39,7 @@ TEST_F(Echo, PrintsEveryTopic) {
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 1));
   std::map<std::string, Process*> echoes;
   for (const char* topic : {"node_status", "region_map", "replica", "replica_key", "migration", "migration_ack",
-                            "run_control", "command", "command_reply", "shape", "orders", "bonds"}) {
+                            "run_control", "command", "command_reply", "shape", "orders", "cluster_graph"}) {
     echoes[topic] = &echo(topic, {"--count", "1"});
   }
   Process& auras = echo("aura", {"--count", "30", "--partition", "region/2"});

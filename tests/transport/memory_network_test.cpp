@@ -23,7 +23,7 @@ class MemoryNetworkTest : public ::testing::Test {
   void connect(const Faults& faults) {
     network = std::make_unique<MemoryNetwork>(std::vector<std::vector<RegionId>>{{kB}, {kA, kC}, {kB}}, faults, kSeed);
   }
-  void say(RegionId from, Step stamp) {
+  void publish(RegionId from, Step stamp) {
     core::Outbox outbox;
     outbox.aura.source = from;
     outbox.aura.stamp = stamp;
@@ -44,7 +44,7 @@ class MemoryNetworkTest : public ::testing::Test {
     network->endpoint(region).take(inbox);
     return inbox;
   }
-  std::vector<Step> heard(RegionId region) {
+  std::vector<Step> received(RegionId region) {
     std::vector<Step> stamps;
     for (const core::AuraBatch& batch : take(region).auras) stamps.push_back(batch.stamp);
     return stamps;
@@ -61,35 +61,35 @@ Faults slow(double latency_s) {
 
 TEST_F(MemoryNetworkTest, ABatchReachesAllListenersAndNobodyElse) {
   connect(slow(0.1));
-  say(kB, 1);
-  say(kA, 2);
+  publish(kB, 1);
+  publish(kA, 2);
   network->advance_to(0.2);
-  EXPECT_THAT(heard(kA), ElementsAre(1));
-  EXPECT_THAT(heard(kB), ElementsAre(2));
-  EXPECT_THAT(heard(kC), ElementsAre(1));
+  EXPECT_THAT(received(kA), ElementsAre(1));
+  EXPECT_THAT(received(kB), ElementsAre(2));
+  EXPECT_THAT(received(kC), ElementsAre(1));
 }
 
 TEST_F(MemoryNetworkTest, AMessageArrivesWhenItsTimeHasComeAndIsTakenOnce) {
   connect(slow(0.1));
   network->advance_to(1);
-  say(kA, 7);
-  EXPECT_THAT(heard(kB), IsEmpty());
+  publish(kA, 7);
+  EXPECT_THAT(received(kB), IsEmpty());
   network->advance_to(1.09);
-  EXPECT_THAT(heard(kB), IsEmpty());
+  EXPECT_THAT(received(kB), IsEmpty());
   network->advance_to(1.11);
-  EXPECT_THAT(heard(kB), ElementsAre(7));
-  EXPECT_THAT(heard(kB), IsEmpty());
+  EXPECT_THAT(received(kB), ElementsAre(7));
+  EXPECT_THAT(received(kB), IsEmpty());
   EXPECT_EQ(network->now_s(), 1.11);
 }
 
 TEST_F(MemoryNetworkTest, TheFrameTimeOfTheSenderCounts) {
   connect(slow(0.1));
   network->set_send_delay(0.5);
-  say(kA, 7);
+  publish(kA, 7);
   network->advance_to(0.55);
-  EXPECT_THAT(heard(kB), IsEmpty());
+  EXPECT_THAT(received(kB), IsEmpty());
   network->advance_to(0.65);
-  EXPECT_THAT(heard(kB), ElementsAre(7));
+  EXPECT_THAT(received(kB), ElementsAre(7));
 }
 
 TEST_F(MemoryNetworkTest, HandOffsAndAcknowledgementsReachOnlyTheirDestination) {
@@ -114,8 +114,8 @@ TEST_F(MemoryNetworkTest, TheSameSeedGivesTheSameRun) {
     std::vector<Step> all;
     for (Step s = 0; s < 300; ++s) {
       network->advance_to(0.01 * static_cast<double>(s));
-      say(kA, s);
-      for (const Step stamp : heard(kB)) all.push_back(stamp);
+      publish(kA, s);
+      for (const Step stamp : received(kB)) all.push_back(stamp);
     }
     return all;
   };
@@ -129,45 +129,45 @@ TEST_F(MemoryNetworkTest, NothingIsLostHoweverBadTheLink) {
   faults.jitter_s = 0.05;
   faults.loss = 0.5;
   connect(faults);
-  for (Step s = 0; s < 500; ++s) say(kA, s);
+  for (Step s = 0; s < 500; ++s) publish(kA, s);
   network->advance_to(1000);
   std::vector<Step> all(500);
   for (Step s = 0; s < 500; ++s) all[static_cast<std::size_t>(s)] = s;
-  EXPECT_EQ(heard(kB), all);
+  EXPECT_EQ(received(kB), all);
 }
 
 TEST_F(MemoryNetworkTest, ACutHoldsMessagesUntilItEnds) {
   connect(slow(0.01));
   network->faults().cut(kA, kB, 1, 2);
   network->advance_to(1.5);
-  say(kA, 7);
-  say(kB, 8);
+  publish(kA, 7);
+  publish(kB, 8);
   network->advance_to(1.9);
-  EXPECT_THAT(heard(kB), IsEmpty());
-  EXPECT_THAT(heard(kA), IsEmpty());
-  EXPECT_THAT(heard(kC), ElementsAre(8));
+  EXPECT_THAT(received(kB), IsEmpty());
+  EXPECT_THAT(received(kA), IsEmpty());
+  EXPECT_THAT(received(kC), ElementsAre(8));
   network->advance_to(2.1);
-  EXPECT_THAT(heard(kB), ElementsAre(7));
-  EXPECT_THAT(heard(kA), ElementsAre(8));
+  EXPECT_THAT(received(kB), ElementsAre(7));
+  EXPECT_THAT(received(kA), ElementsAre(8));
 }
 
 TEST_F(MemoryNetworkTest, ACrashSilencesARegion) {
   connect(slow(0.01));
-  say(kA, 1);
+  publish(kA, 1);
   network->crash(kB, 0.2);
   network->advance_to(1);
-  say(kB, 2);
+  publish(kB, 2);
   network->advance_to(2);
-  EXPECT_THAT(heard(kA), IsEmpty());
-  EXPECT_THAT(heard(kB), IsEmpty()) << "it takes nothing either";
+  EXPECT_THAT(received(kA), IsEmpty());
+  EXPECT_THAT(received(kB), IsEmpty()) << "it takes nothing either";
 }
 
 TEST_F(MemoryNetworkTest, WhatWasSentBeforeTheCrashStillArrives) {
   connect(slow(0.1));
-  say(kB, 1);
+  publish(kB, 1);
   network->crash(kB, 0.2);
   network->advance_to(0.15);
-  EXPECT_THAT(heard(kA), ElementsAre(1));
+  EXPECT_THAT(received(kA), ElementsAre(1));
 }
 
 TEST_F(MemoryNetworkTest, ACrashIsReportedAfterTheLeaseToThoseWhoListened) {

@@ -1,9 +1,9 @@
-// What keeps piles from creeping: contacts that stick remember how far they have slid all the same, and friction pulls
-// them back.
+// Friction anchors keep piles from creeping: contacts that stick remember how far they have slid all the same, and
+// friction pulls them back.
 //
 // A solver that stops after a few iterations leaves a little speed at every contact, always in the same direction where
 // a load leans. Bullet's friction looks at speeds only, so a pile that never sleeps walks away from under its load.
-// Bullet's own answer (friction anchors) keeps the first point of contact, which stops balls that should roll; here the
+// Bullet's own friction anchors keep the first point of contact, which stops balls that should roll; here the
 // way is counted from the speed at the contact, so that rolling adds nothing to it.
 #pragma once
 
@@ -25,7 +25,7 @@ struct ContactRows {
 };
 
 /// The way is kept in the contact points (contact_cache.h, columns 30 and 31), so it moves with a hand-off.
-class Creep {
+class FrictionAnchors {
  public:
   /// Once the rows are made.
   void pull_back(const ContactRows& rows, const btContactSolverInfo& info);

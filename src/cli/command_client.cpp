@@ -1,4 +1,4 @@
-#include "cli/courier.h"
+#include "cli/command_client.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,16 +12,16 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 6s;
-constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it has obeyed
+constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it is done
 constexpr auto kPatienceForChanges = 20s;
 constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
 
 }  // namespace
 
-Courier::Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
-    : control_(control), agreement_(agreement), client_(participant) {}
+CommandClient::CommandClient(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
+    : control_(control), agreement_(agreement), endpoint_(participant) {}
 
-std::vector<const dds::Status*> Courier::live_nodes() {
+std::vector<const dds::Status*> CommandClient::live_nodes() {
   std::vector<const dds::Status*> live;
   for (const auto& [region, seen] : control_.statuses()) {
     if (seen.is_live() && seen.status.agreement == agreement_) live.push_back(&seen.status);
@@ -29,12 +29,12 @@ std::vector<const dds::Status*> Courier::live_nodes() {
   return live;
 }
 
-bool Courier::all_listen() {
+bool CommandClient::all_listen() {
   const std::size_t live = live_nodes().size();
-  return live > 0 && client_.listeners() >= live;
+  return live > 0 && endpoint_.listeners() >= live;
 }
 
-std::uint64_t Courier::send(core::Command command) {
+std::uint64_t CommandClient::send(core::Command command) {
   UnderWay under_way;
   under_way.subject = core::body_of(command.ask);
   under_way.has_time = command.at_step > 0;
@@ -45,13 +45,13 @@ std::uint64_t Courier::send(core::Command command) {
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
   // Any map: there is one run in a domain, and its map may be changing just now.
-  const std::uint64_t request = client_.send(std::move(command), 0);
+  const std::uint64_t request = endpoint_.send(std::move(command), 0);
   under_way.delivery.request = request;
   under_way_.emplace(request, std::move(under_way));
   return request;
 }
 
-void Courier::note(const core::CommandReply& reply, UnderWay& under_way) {
+void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   switch (reply.outcome) {
     case core::Outcome::kAccepted:
@@ -82,7 +82,7 @@ void Courier::note(const core::CommandReply& reply, UnderWay& under_way) {
   }
 }
 
-bool Courier::has_ended(UnderWay& under_way) {
+bool CommandClient::has_ended(UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   const bool late = Clock::now() >= under_way.deadline;
   if (delivery.is_ray) {
@@ -121,8 +121,8 @@ bool Courier::has_ended(UnderWay& under_way) {
   return true;
 }
 
-std::vector<Delivery> Courier::take() {
-  for (const core::CommandReply& reply : client_.take()) {
+std::vector<Delivery> CommandClient::take() {
+  for (const core::CommandReply& reply : endpoint_.take()) {
     const auto found = under_way_.find(reply.request);
     if (found != under_way_.end()) note(reply, found->second);
   }

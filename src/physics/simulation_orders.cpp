@@ -5,7 +5,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
-#include "physics/fetch.h"
+#include "physics/prefetch.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -42,12 +42,12 @@ btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const Lo
 }  // namespace
 
 /// Before state `n` is computed.
-void Simulation::obey(core::Step n) {
+void Simulation::apply_orders(core::Step n) {
   if (timeline_.statics_change()) show_statics(n);
   for (const core::Order& order : timeline_.due(n)) {
     HostedBody* const body = table_.find(*core::body_of(order.action));
     if (body == nullptr) continue;
-    obeyed_.push_back(order.request);
+    applied_.push_back(order.request);
     if (std::holds_alternative<core::RemoveBody>(order.action)) {
       take_out(body->id);
     } else if (body->born) {

@@ -1,5 +1,5 @@
-// The seeing half of the protocol: which of our bodies belong together, which of them are touched by auras from
-// elsewhere, and which have to be announced. Looks at one state; remembers nothing but its buffers.
+// The matching half of the protocol (interest matching): which of our bodies belong together, which of them are touched
+// by auras from elsewhere, and which have to be announced. Looks at one state; remembers nothing but its buffers.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace aurasim::core {
 
-class Gathering {
+class InterestMatching {
  public:
   /// A foreign body and one of ours that may meet: indices of foreign() and path().
   struct Pair {
@@ -24,9 +24,9 @@ class Gathering {
     std::uint32_t own;
   };
 
-  Gathering(const Aura& aura, const Vicinity& vicinity);
+  InterestMatching(const Aura& aura, const Vicinity& vicinity);
 
-  /// Looks at a state, given what the neighbours have said and our own ghosts (bodies just sent away).
+  /// Looks at a state, given what the neighbours have published and our own ghosts (bodies just sent away).
   void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts,
             const Ranks& ranks);
 
@@ -80,7 +80,7 @@ class Gathering {
   void notice_grown();
   void notice_again(std::uint32_t own);
   void note(std::uint32_t own, std::uint64_t region);
-  void hear_news();
+  void take_news();
   void find_pairs();
   void find_pairs(const ForeignBlock& block);
   bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;

@@ -1,4 +1,4 @@
-#include "core/gathering.h"
+#include "core/interest_matching.h"
 
 #include <algorithm>
 #include <bit>
@@ -19,10 +19,11 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
 
 }  // namespace
 
-Gathering::Gathering(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
+InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity)
+    : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
 
-void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
-                     std::span<const AuraRecord> ghosts, const Ranks& ranks) {
+void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
+                            std::span<const AuraRecord> ghosts, const Ranks& ranks) {
   const int hops_each = ranks.changing() ? 2 : 1;
   fewer_steps_ = ranks.changing() ? 1 : 0;  // 2 h K - 1 are enough (docs/decisions/0016-ranks.md)
   measure(snapshot);
@@ -35,7 +36,7 @@ void Gathering::look(const Snapshot& snapshot, std::span<const Neighbour> neighb
   judge(ranks);
 }
 
-void Gathering::measure(const Snapshot& snapshot) {
+void InterestMatching::measure(const Snapshot& snapshot) {
   const auto n = snapshot.bodies.size();
   ids_.resize(n);
   paths_.resize(n);
@@ -50,8 +51,8 @@ void Gathering::measure(const Snapshot& snapshot) {
   }
 }
 
-void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
-                               std::span<const AuraRecord> ghosts) {
+void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
+                                      std::span<const AuraRecord> ghosts) {
   foreign_.clear();
   live_.clear();
   others_top_speed_ = others_top_radius_ = 0;
@@ -73,12 +74,12 @@ void Gathering::gather_foreign(const Snapshot& snapshot, std::span<const Neighbo
   foreign_.build();
 }
 
-double Gathering::band(double speed_m_s, int hops) const {
+double InterestMatching::band(double speed_m_s, int hops) const {
   return aura_.zone(speed_m_s, hops, std::max(others_top_speed_, speed_m_s), others_top_radius_);
 }
 
 /// Which regions are in reach of each body. Where several are, pulls can chain, and the reach grows with them.
-void Gathering::mark_regions(int hops_each) {
+void InterestMatching::mark_regions(int hops_each) {
   const auto n = paths_.size();
   regions_.assign(n, 0);
   near_.clear();
@@ -103,19 +104,19 @@ void Gathering::mark_regions(int hops_each) {
   }
 }
 
-void Gathering::complete_near_boundaries() {
+void InterestMatching::complete_near_boundaries() {
   for (const std::uint32_t i : near_) clusters_.complete(i);
 }
 
 /// Foreign auras and our bodies near them. A cluster that is completed here, or hit, may turn out faster, and then
 /// reach further: whatever has grown is looked at again, until nothing does.
-void Gathering::pair_up() {
+void InterestMatching::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
   clusters_.take_grown(grown_);  // seen below as they are now
   changed_.clear();
   for (const ForeignBlock& block : foreign_.blocks()) notice(block);
-  hear_news();
+  take_news();
   notice_grown();
   find_pairs();
   for (std::size_t looked = 0; looked < pairs_.size();) {
@@ -128,7 +129,7 @@ void Gathering::pair_up() {
   }
 }
 
-void Gathering::hear_news() {
+void InterestMatching::take_news() {
   for (const News& news : news_) {
     clusters_.add_regions(news.own, news.region);
     clusters_.complete(news.own);
@@ -136,26 +137,26 @@ void Gathering::hear_news() {
   news_.clear();
 }
 
-void Gathering::notice_grown() {
+void InterestMatching::notice_grown() {
   for (clusters_.take_grown(grown_); !grown_.empty(); clusters_.take_grown(grown_)) {
     changed_.insert(changed_.end(), grown_.begin(), grown_.end());
     for (const std::uint32_t own : grown_) notice_again(own);
-    hear_news();
+    take_news();
   }
 }
 
 /// Of the pairs from the `first` on; returns how many pairs there are. What is hit has to be known as that fast before
 /// it is, or whoever stands behind it learns of it too late: others act upon our auras when they are K states old, and
 /// look that much further ahead.
-std::size_t Gathering::take_hits(std::size_t first) {
+std::size_t InterestMatching::take_hits(std::size_t first) {
   if (aura_.rules().kind != AuraKind::kSwept) return pairs_.size();
   for (; first < pairs_.size(); ++first) {
     const Pair& pair = pairs_[first];
     const Foreign& f = foreign_[pair.foreign];
-    if (!clusters_.feels(f.strike, pair.own)) continue;
+    if (!clusters_.feels(f.impact, pair.own)) continue;
     const int hops = clusters_.hops(pair.own) + kHomewardHops;
     const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops, fewer_steps_);
-    if (when) clusters_.hit(pair.own, f.strike.times(1 - *when / ((hops + 2) * aura_.rules().lookahead)));
+    if (when) clusters_.hit(pair.own, f.impact.times(1 - *when / ((hops + 2) * aura_.rules().lookahead)));
   }
   return first;
 }
@@ -163,8 +164,8 @@ std::size_t Gathering::take_hits(std::size_t first) {
 /// Fills ranges_ with range_of(body, hops) of all bodies of the block, and says how far own bodies of at most so many
 /// m/s have to be looked for.
 template <class RangeOf>
-Gathering::Reach Gathering::take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s,
-                                        RangeOf&& range_of) {
+InterestMatching::Reach InterestMatching::take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s,
+                                                      RangeOf&& range_of) {
   const int most_hops = clusters_.most_hops() + kHomewardHops;
   Reach reach;
   ranges_.clear();
@@ -178,13 +179,13 @@ Gathering::Reach Gathering::take_ranges(const ForeignBlock& block, double slow_m
 }
 
 /// Of the k-th body of the block, after take_ranges().
-bool Gathering::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
+bool InterestMatching::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
   const double range = ranges_[k * ranges_each_ + own.hops].at(own.speed_m_s);
   return is_within(foreign_[block.bodies[k]].path, own.p_WB, own.radius_m, range);
 }
 
-/// Which of our bodies have to be announced because of foreign ones? In a heap most of them are already.
-void Gathering::notice(const ForeignBlock& block) {
+/// Which of our bodies have to be announced because of foreign ones? In a pile most of them are already.
+void InterestMatching::notice(const ForeignBlock& block) {
   const std::uint64_t region = vicinity_.bit_of(block.host);
   const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
   const Reach reach = take_ranges(block, NearIndex::kSlow, top_speed(), [&](const Path& path, int hops) {
@@ -203,20 +204,20 @@ void Gathering::notice(const ForeignBlock& block) {
   }
 }
 
-void Gathering::note(std::uint32_t own, std::uint64_t region) {
+void InterestMatching::note(std::uint32_t own, std::uint64_t region) {
   noticed_[own] = 1;
   noticed_by_[own] |= region;
   news_.push_back({own, region});
 }
 
-Gathering::Candidate Gathering::candidate(std::uint32_t own, double speed_m_s) const {
+InterestMatching::Candidate InterestMatching::candidate(std::uint32_t own, double speed_m_s) const {
   const auto hops = static_cast<std::size_t>(clusters_.hops(own) + kHomewardHops);
   return {paths_[own].pose.p_WB, paths_[own].radius_m, speed_m_s, hops, own};
 }
 
 /// Calls `visit(index)` for at least every foreign body that notices our body `own`.
 template <class Visit>
-void Gathering::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
+void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
   const auto range = [&](double speed_m_s) {
@@ -227,7 +228,7 @@ void Gathering::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
 }
 
 /// One of ours is faster, or has more hops, than when the foreign bodies noticed it.
-void Gathering::notice_again(std::uint32_t own) {
+void InterestMatching::notice_again(std::uint32_t own) {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
   for_each_foreign_near(own, [&](std::uint32_t f) {
@@ -240,12 +241,12 @@ void Gathering::notice_again(std::uint32_t own) {
 }
 
 /// Who may meet whom. Whoever does has been noticed: meeting looks less far.
-void Gathering::find_pairs() {
+void InterestMatching::find_pairs() {
   pairs_.clear();
   for (const ForeignBlock& block : foreign_.blocks()) find_pairs(block);
 }
 
-void Gathering::find_pairs(const ForeignBlock& block) {
+void InterestMatching::find_pairs(const ForeignBlock& block) {
   const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
   const Reach reach = take_ranges(block, drift * NearIndex::kSlow, drift * top_speed(),
                                   [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
@@ -261,7 +262,7 @@ void Gathering::find_pairs(const ForeignBlock& block) {
 }
 
 /// One of ours has grown since: its pairs, those that were found before as well.
-void Gathering::pair_again(std::uint32_t own) {
+void InterestMatching::pair_again(std::uint32_t own) {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
   for_each_foreign_near(own, [&](std::uint32_t f) {
@@ -271,19 +272,19 @@ void Gathering::pair_again(std::uint32_t own) {
   });
 }
 
-void Gathering::judge(const Ranks& ranks) {
+void InterestMatching::judge(const Ranks& ranks) {
   touched_.assign(paths_.size(), 0);
   expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
   for (const Pair& pair : pairs_) judge(pair, ranks);
 }
 
-bool Gathering::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {
+bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {
   return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops, fewer_steps)
                        : aura_.meets(foreign.path, own, hops, fewer_steps);
 }
 
-void Gathering::judge(const Pair& pair, const Ranks& ranks) {
+void InterestMatching::judge(const Pair& pair, const Ranks& ranks) {
   const Foreign& f = foreign_[pair.foreign];
   const Path& own = paths_[pair.own];
   const std::uint32_t cluster = clusters_.of(pair.own);
@@ -298,7 +299,7 @@ void Gathering::judge(const Pair& pair, const Ranks& ranks) {
   expected_[cluster] = meets(f, own, hops + kHomewardHops) ? 1 : 0;
 }
 
-bool Gathering::must_be_announced(std::uint32_t i) const {
+bool InterestMatching::must_be_announced(std::uint32_t i) const {
   if (aura_.rules().kind == AuraKind::kNone) return false;
   if (noticed_[i]) return true;
   const Path& path = paths_[i];
@@ -307,7 +308,7 @@ bool Gathering::must_be_announced(std::uint32_t i) const {
   return !vicinity_.deep_inside(path.pose.p_WB, reach);
 }
 
-bool Gathering::outside(std::uint32_t i) const {
+bool InterestMatching::outside(std::uint32_t i) const {
   const Vec3& p = paths_[i].pose.p_WB;
   if (aura_.rules().kind == AuraKind::kNone) return !vicinity_.home().contains(p.x(), p.y());
   return vicinity_.home().distance(p.x(), p.y()) > paths_[i].radius_m;

@@ -1,4 +1,4 @@
-#include "physics/creep.h"
+#include "physics/friction_anchors.h"
 
 #include <cmath>
 
@@ -39,7 +39,7 @@ btScalar speed_along(const btSolverConstraint& row, btAlignedObjectArray<btSolve
 }  // namespace
 
 /// The point's own directions turn with the sliding velocity.
-void Creep::pull_back(const ContactRows& rows, const btContactSolverInfo& info) {
+void FrictionAnchors::pull_back(const ContactRows& rows, const btContactSolverInfo& info) {
   const btScalar per_s = kShare / info.m_timeStep;
   contacts_.resize(static_cast<std::size_t>(rows.contacts.size()));
   for (int i = 0; i < rows.contacts.size(); ++i) {
@@ -54,7 +54,7 @@ void Creep::pull_back(const ContactRows& rows, const btContactSolverInfo& info) 
   }
 }
 
-void Creep::measure(const ContactRows& rows, const btContactSolverInfo& info) {
+void FrictionAnchors::measure(const ContactRows& rows, const btContactSolverInfo& info) {
   for (int i = 0; i < rows.contacts.size(); ++i) {
     Of& of = contacts_[static_cast<std::size_t>(i)];
     const btScalar limit = rows.contacts[i].m_friction * static_cast<btScalar>(rows.contacts[i].m_appliedImpulse);
@@ -73,7 +73,7 @@ void Creep::measure(const ContactRows& rows, const btContactSolverInfo& info) {
   }
 }
 
-void Creep::remember() {
+void FrictionAnchors::remember() {
   for (const Of& of : contacts_) {
     of.point->m_appliedImpulseLateral1 = of.way.dot(of.first);
     of.point->m_appliedImpulseLateral2 = of.way.dot(of.second);

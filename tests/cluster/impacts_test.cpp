@@ -1,4 +1,4 @@
-// A body that is struck strikes the next: whoever is faster than it seemed a moment ago, because of what a body of
+// A body that is hit hits the next: whoever is faster than it seemed a moment ago, because of what a body of
 // another node has done to it, has the bits of one world all the same.
 #include <cstdint>
 #include <numbers>
@@ -17,11 +17,11 @@ using core::Vec3;
 constexpr double kBall_m = 0.3;
 constexpr core::PrototypeId kBall{0}, kBar{1}, kLightBall{2}, kHeavyBall{3};
 
-/// Weightless, so that nothing but strikes moves what rests.
-class StrikeScene {
+/// Weightless, so that nothing but impacts moves what rests.
+class ImpactScene {
  public:
-  explicit StrikeScene(std::uint64_t seed) : random_(seed) {
-    scene_.name = "strikes";
+  explicit ImpactScene(std::uint64_t seed) : random_(seed) {
+    scene_.name = "impacts";
     scene_.gravity = Vec3::Zero();
     scene_.shapes = {{"ball", core::Sphere{kBall_m}}, {"bar", core::Capsule{0.15, 1.7}}};
     core::Material material;
@@ -53,7 +53,7 @@ class StrikeScene {
 };
 
 /// Balls in a row over the border, a little apart; another one flies into one end of it, some when all are asleep.
-void add_row(StrikeScene& scene, double y_m) {
+void add_row(ImpactScene& scene, double y_m) {
   const double side = scene.chance() ? 1 : -1;
   double x = -2.5;
   while (x < 2.5) {
@@ -67,7 +67,7 @@ void add_row(StrikeScene& scene, double y_m) {
 }
 
 /// A bar that turns on the spot, and balls that its ends throw over the border, or at other balls there.
-void add_spinner(StrikeScene& scene, double y_m) {
+void add_spinner(ImpactScene& scene, double y_m) {
   core::InitialBody& bar = scene.put(kBar, {scene.between(-1.2, 1.2), y_m, 0});
   bar.pose.q_WB = core::Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
   bar.w_WB = {0, 0, (scene.chance() ? 1 : -1) * scene.between(5, 25)};
@@ -81,10 +81,10 @@ void add_spinner(StrikeScene& scene, double y_m) {
   }
 }
 
-class Strikes : public testing::Test {
+class Impacts : public testing::Test {
  protected:
-  void run(const StrikeScene& strikes, std::uint64_t seed, core::Step steps) {
-    const core::Scene& scene = strikes.scene();
+  void run(const ImpactScene& impacts, std::uint64_t seed, core::Step steps) {
+    const core::Scene& scene = impacts.scene();
     ClusterOptions options;
     options.map = core::RegionMap::columns(2, 100);
     options.sync = core::SyncMode::kDeterministic;
@@ -104,12 +104,12 @@ class Strikes : public testing::Test {
   std::uint64_t hand_offs_ = 0;
 };
 
-/// Without what foreign bodies strike, 2 of 5 runs differ. Of 200, 3 still do: in them a whole row that flies with gaps
+/// Without what foreign bodies hit, 2 of 5 runs differ. Of 200, 3 still do: in them a whole row that flies with gaps
 /// in it, or that overlaps so far that being pushed apart counts, is faster than any push of one body makes it. Such a
 /// broken promise is counted, and nothing is late without it.
-TEST_F(Strikes, GoThroughARowAcrossTheBorder) {
+TEST_F(Impacts, GoThroughARowAcrossTheBorder) {
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
-    StrikeScene scene(static_cast<std::uint64_t>(seed));
+    ImpactScene scene(static_cast<std::uint64_t>(seed));
     for (int row = 0; row < 12; ++row) add_row(scene, 4.0 * row - 24);
     run(scene, static_cast<std::uint64_t>(seed), 300);
   }
@@ -117,9 +117,9 @@ TEST_F(Strikes, GoThroughARowAcrossTheBorder) {
   EXPECT_GT(hand_offs_, 0u);
 }
 
-TEST_F(Strikes, MayComeFromABodyThatOnlyTurns) {
+TEST_F(Impacts, MayComeFromABodyThatOnlyTurns) {
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
-    StrikeScene scene(static_cast<std::uint64_t>(seed));
+    ImpactScene scene(static_cast<std::uint64_t>(seed));
     for (int i = 0; i < 12; ++i) add_spinner(scene, 7.0 * i - 42);
     run(scene, static_cast<std::uint64_t>(seed), 240);
   }

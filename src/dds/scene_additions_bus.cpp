@@ -1,4 +1,4 @@
-#include "dds/growth_bus.h"
+#include "dds/scene_additions_bus.h"
 
 #include <utility>
 #include <variant>
@@ -9,45 +9,45 @@
 #include "dds/endpoints.h"
 
 namespace aurasim::dds {
-struct GrowthWriter::Impl {
+struct SceneAdditionsWriter::Impl {
   Impl(Participant& participant, core::RegionId region_in)
-      : region(region_in), writer(participant.domain(), in_world(TopicId::kOrders), bell) {}
+      : region(region_in), writer(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
 
   core::RegionId region;
-  Bell bell;
+  Wakeup wakeup;
   Writer writer;
   wire::AuraBatch sample;  // reused
 };
 
-GrowthWriter::GrowthWriter(Participant& participant, core::RegionId region)
+SceneAdditionsWriter::SceneAdditionsWriter(Participant& participant, core::RegionId region)
     : impl_(std::make_unique<Impl>(participant, region)) {}
 
-GrowthWriter::~GrowthWriter() = default;
+SceneAdditionsWriter::~SceneAdditionsWriter() = default;
 
-void GrowthWriter::send(const Growth& growth) {
+void SceneAdditionsWriter::send(const SceneAdditions& additions) {
   core::AuraBatch batch;
   batch.source = impl_->region;
-  batch.generation = growth.generation;
-  batch.orders = growth.orders;
-  batch.stamp = static_cast<core::Step>(growth.orders.size());
+  batch.generation = additions.generation;
+  batch.orders = additions.orders;
+  batch.stamp = static_cast<core::Step>(additions.orders.size());
   encode(batch, impl_->sample);
   impl_->writer.write(&impl_->sample);
 }
 
-struct GrowthReader::Impl {
-  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kOrders), bell) {}
+struct SceneAdditionsReader::Impl {
+  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
 
-  Bell bell;
+  Wakeup wakeup;
   Reader reader;
   wire::AuraBatch sample;  // reused
 };
 
-GrowthReader::GrowthReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+SceneAdditionsReader::SceneAdditionsReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
 
-GrowthReader::~GrowthReader() = default;
+SceneAdditionsReader::~SceneAdditionsReader() = default;
 
-std::optional<Growth> GrowthReader::take() {
-  std::optional<Growth> newest;
+std::optional<SceneAdditions> SceneAdditionsReader::take() {
+  std::optional<SceneAdditions> newest;
   const auto is_newer = [&newest](const core::AuraBatch& batch) {
     return !newest ||
            std::pair(batch.generation, batch.orders.size()) >= std::pair(newest->generation, newest->orders.size());
@@ -55,15 +55,15 @@ std::optional<Growth> GrowthReader::take() {
   while (impl_->reader.take(&impl_->sample)) {
     auto decoded = decode(impl_->sample, {});
     auto* const batch = std::get_if<core::AuraBatch>(&decoded);
-    if (batch != nullptr && is_newer(*batch)) newest = Growth{batch->generation, std::move(batch->orders)};
+    if (batch != nullptr && is_newer(*batch)) newest = SceneAdditions{batch->generation, std::move(batch->orders)};
   }
   return newest;
 }
 
 struct MeshReader::Impl {
-  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kShape), bell) {}
+  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kShape), wakeup) {}
 
-  Bell bell;
+  Wakeup wakeup;
   Reader reader;
   wire::MeshShape sample;  // reused
   std::map<std::uint64_t, core::TriangleMesh> meshes;

@@ -29,19 +29,19 @@ struct Delivery {
   std::vector<core::RegionId> silent;  ///< regions that did not answer: there may be something nearer
 };
 
-class Courier {
+class CommandClient {
  public:
   /// Both outlive it. `agreement`: of the run that is meant.
-  Courier(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement);
+  CommandClient(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement);
 
   /// All nodes that are alive hear us, and we them.
   bool all_listen();
   /// Returns the request's id.
   std::uint64_t send(core::Command command);
-  void bring(std::uint64_t hash, const core::TriangleMesh& mesh) { client_.bring(hash, mesh); }
+  void bring(std::uint64_t hash, const core::TriangleMesh& mesh) { endpoint_.bring(hash, mesh); }
   /// What has come to an end since the last call.
   std::vector<Delivery> take();
-  void wait(std::chrono::nanoseconds time_out) { client_.wait(time_out); }
+  void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -62,7 +62,7 @@ class Courier {
 
   dds::ControlBus& control_;
   std::uint64_t agreement_;
-  dds::CommandClient client_;
+  dds::CommandClientEndpoint endpoint_;
   std::map<std::uint64_t, UnderWay> under_way_;
 };
 

@@ -1,4 +1,4 @@
-#include "dds/bonds_codec.h"
+#include "dds/cluster_graph_codec.h"
 
 #include <optional>
 
@@ -11,10 +11,10 @@ namespace {
 
 using core::BodyId;
 using core::BodyPair;
-using core::Bonds;
+using core::ClusterGraph;
 using Ids = std::vector<std::uint64_t>;
 
-std::optional<WireError> check(const wire::Bonds& in, const Expected& expected) {
+std::optional<WireError> check(const wire::ClusterGraph& in, const Expected& expected) {
   if (const auto error = check_header(in, expected)) return error;
   if (const auto error = check_source(in, expected)) return error;
   if (std::max(in.link_a().size(), in.contact_a().size()) > kMaxRows) return WireError::kTooLarge;
@@ -40,24 +40,24 @@ void put(const std::vector<BodyPair>& pairs, Ids& a, Ids& b) {
 
 }  // namespace
 
-void encode(const Bonds& bonds, wire::Bonds& out) {
-  out.source(core::value_of(bonds.source));
+void encode(const ClusterGraph& graph, wire::ClusterGraph& out) {
+  out.source(core::value_of(graph.source));
   out.version(kProtocolVersion);
-  out.generation(bonds.generation);
-  out.stamp(bonds.stamp);
-  out.map_version(bonds.map_version);
-  put(bonds.links, out.link_a(), out.link_b());
-  put(bonds.contacts, out.contact_a(), out.contact_b());
+  out.generation(graph.generation);
+  out.stamp(graph.stamp);
+  out.map_version(graph.map_version);
+  put(graph.links, out.link_a(), out.link_b());
+  put(graph.contacts, out.contact_a(), out.contact_b());
 }
 
-Decoded<Bonds> decode(const wire::Bonds& in, const Expected& expected) {
+Decoded<ClusterGraph> decode(const wire::ClusterGraph& in, const Expected& expected) {
   if (const auto error = check(in, expected)) return *error;
-  return Bonds{static_cast<core::RegionId>(in.source()),
-               in.generation(),
-               in.stamp(),
-               in.map_version(),
-               pairs_of(in.link_a(), in.link_b()),
-               pairs_of(in.contact_a(), in.contact_b())};
+  return ClusterGraph{static_cast<core::RegionId>(in.source()),
+                      in.generation(),
+                      in.stamp(),
+                      in.map_version(),
+                      pairs_of(in.link_a(), in.link_b()),
+                      pairs_of(in.contact_a(), in.contact_b())};
 }
 
 }  // namespace aurasim::dds

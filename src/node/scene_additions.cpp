@@ -1,4 +1,4 @@
-#include "node/scene_growth.h"
+#include "node/scene_additions.h"
 
 namespace aurasim::node {
 namespace {

@@ -14,7 +14,7 @@ struct BodyPair {
 };
 
 /// The pairs of one node in state `stamp`.
-struct Bonds {
+struct ClusterGraph {
   RegionId source{};
   Generation generation = 0;
   Step stamp = 0;

@@ -8,33 +8,33 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
-#include "core/fetch.h"
+#include "core/prefetch.h"
 
 namespace aurasim::physics {
 
 /// So many objects ahead; their parts half as many. 8 to 16 do alike.
-inline constexpr int kFetchedAhead = 16;
+inline constexpr int kPrefetchDistance = 16;
 
-using core::fetch;
+using core::prefetch;
 
 /// What a manifold is between and how many points it has: all of it but the points.
-inline void fetch_head(const btPersistentManifold& manifold) {
+inline void prefetch_head(const btPersistentManifold& manifold) {
   const auto* const end = reinterpret_cast<const char*>(&manifold + 1);
   const auto* const points_end = reinterpret_cast<const char*>(&manifold.getContactPoint(0) + MANIFOLD_CACHE_SIZE);
-  fetch(points_end, static_cast<std::size_t>(end - points_end));
+  prefetch(points_end, static_cast<std::size_t>(end - points_end));
 }
 
 /// Of a manifold whose head is here.
-inline void fetch_points(const btPersistentManifold& manifold) {
+inline void prefetch_points(const btPersistentManifold& manifold) {
   const int count = manifold.getNumContacts();
-  if (count > 0) fetch(&manifold.getContactPoint(0), static_cast<std::size_t>(count) * sizeof(btManifoldPoint));
+  if (count > 0) prefetch(&manifold.getContactPoint(0), static_cast<std::size_t>(count) * sizeof(btManifoldPoint));
 }
 
 /// Calls `visit(manifold)` for each that has a point.
 template <class Visit>
 void for_each_touching(std::span<btPersistentManifold* const> manifolds, Visit&& visit) {
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (i + kFetchedAhead < manifolds.size()) fetch_head(*manifolds[i + kFetchedAhead]);
+    if (i + kPrefetchDistance < manifolds.size()) prefetch_head(*manifolds[i + kPrefetchDistance]);
     if (manifolds[i]->getNumContacts() > 0) visit(*manifolds[i]);
   }
 }

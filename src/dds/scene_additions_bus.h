@@ -15,17 +15,17 @@
 namespace aurasim::dds {
 
 /// Additions in sequence: all of one generation.
-struct Growth {
+struct SceneAdditions {
   core::Generation generation = 0;
   std::vector<core::Order> orders;
 };
 
-/// One per node; only the one that leads the run speaks. Used by one thread. The participant must outlive it.
-class GrowthWriter {
+/// One per node; only the one that leads the run publishes. Used by one thread. The participant must outlive it.
+class SceneAdditionsWriter {
  public:
-  GrowthWriter(Participant& participant, core::RegionId region);
-  ~GrowthWriter();
-  void send(const Growth& growth);
+  SceneAdditionsWriter(Participant& participant, core::RegionId region);
+  ~SceneAdditionsWriter();
+  void send(const SceneAdditions& additions);
 
  private:
   struct Impl;
@@ -33,12 +33,12 @@ class GrowthWriter {
 };
 
 /// Used by one thread. The participant must outlive it.
-class GrowthReader {
+class SceneAdditionsReader {
  public:
-  explicit GrowthReader(Participant& participant);
-  ~GrowthReader();
+  explicit SceneAdditionsReader(Participant& participant);
+  ~SceneAdditionsReader();
   /// The newest that came since the last call.
-  std::optional<Growth> take();
+  std::optional<SceneAdditions> take();
 
  private:
   struct Impl;

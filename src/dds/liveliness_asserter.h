@@ -1,5 +1,5 @@
-// Proof of life: renews the liveliness of writers while their owner makes progress. So a long frame is not a death, but
-// a process that hangs is.
+// Asserts the liveliness of a process: renews that of its writers while their owner makes progress. So a long frame is
+// not a death, but a process that hangs is.
 #pragma once
 
 #include <atomic>
@@ -16,10 +16,10 @@ class DataWriter;
 
 namespace aurasim::dds {
 
-class Pulse {
+class LivelinessAsserter {
  public:
-  explicit Pulse(std::chrono::nanoseconds hang_limit);
-  ~Pulse();
+  explicit LivelinessAsserter(std::chrono::nanoseconds hang_limit);
+  ~LivelinessAsserter();
 
   /// Renews `writer` every `lease` / 4 from now on.
   void add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease);

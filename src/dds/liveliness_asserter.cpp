@@ -1,4 +1,4 @@
-#include "dds/pulse.h"
+#include "dds/liveliness_asserter.h"
 
 #include <algorithm>
 
@@ -6,10 +6,10 @@
 
 namespace aurasim::dds {
 
-Pulse::Pulse(std::chrono::nanoseconds hang_limit)
+LivelinessAsserter::LivelinessAsserter(std::chrono::nanoseconds hang_limit)
     : hang_limit_(hang_limit), last_progress_ns_(now_ns()), thread_([this] { run(); }) {}
 
-Pulse::~Pulse() {
+LivelinessAsserter::~LivelinessAsserter() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -18,7 +18,7 @@ Pulse::~Pulse() {
   thread_.join();
 }
 
-void Pulse::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease) {
+void LivelinessAsserter::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease) {
   progress();
   {
     const std::lock_guard lock(mutex_);
@@ -28,14 +28,14 @@ void Pulse::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanosec
   condition_.notify_one();
 }
 
-void Pulse::remove(eprosima::fastdds::dds::DataWriter* writer) {
+void LivelinessAsserter::remove(eprosima::fastdds::dds::DataWriter* writer) {
   const std::lock_guard lock(mutex_);
   std::erase(writers_, writer);
 }
 
-void Pulse::progress() { last_progress_ns_.store(now_ns(), std::memory_order_relaxed); }
+void LivelinessAsserter::progress() { last_progress_ns_.store(now_ns(), std::memory_order_relaxed); }
 
-void Pulse::run() {
+void LivelinessAsserter::run() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     if (!owner_hangs()) {
@@ -50,17 +50,17 @@ void Pulse::run() {
   }
 }
 
-void Pulse::note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned) {
+void LivelinessAsserter::note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned) {
   const std::int64_t stall_ns = now_ns() - started_ns - planned.count();
   if (stall_ns > longest_stall_ns_.load()) {
     longest_stall_ns_.store(stall_ns);
   }
 }
 
-bool Pulse::owner_hangs() const {
+bool LivelinessAsserter::owner_hangs() const {
   return now_ns() - last_progress_ns_.load(std::memory_order_relaxed) > hang_limit_.count();
 }
 
-std::int64_t Pulse::now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+std::int64_t LivelinessAsserter::now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
 }  // namespace aurasim::dds

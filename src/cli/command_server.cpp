@@ -1,4 +1,4 @@
-#include "cli/command_desk.h"
+#include "cli/command_server.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +8,7 @@
 
 #include "cli/command_limits.h"
 #include "config/meshes.h"
-#include "node/scene_growth.h"
+#include "node/scene_additions.h"
 
 namespace aurasim::cli {
 namespace {
@@ -44,38 +44,38 @@ const core::MeshRef* mesh_in(const core::Ask& ask) {
 
 }  // namespace
 
-CommandDesk::CommandDesk(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
+CommandServer::CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
     : launch_(launch),
       region_(region),
-      door_(participant, region, launch.regions.version()),
+      endpoint_(participant, region, launch.regions.version()),
       mesh_reader_(participant),
-      growth_writer_(participant, region) {}
+      additions_writer_(participant, region) {}
 
-void CommandDesk::begin_generation(node::Node& node, core::Generation generation) {
-  growth_ = {generation, {}};
+void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
+  additions_ = {generation, {}};
   closed_ = false;
-  tell_all_done(0);
+  reply_all_done(0);
   own_shapes_.clear();
   own_kinds_.clear();
   shapes_ = prototypes_ = statics_ = 0;
   node.use_meshes([this](const core::MeshRef& mesh) { return make_mesh(mesh); });
 }
 
-void CommandDesk::change_map(core::Generation generation, core::Step step) {
-  door_.use_map(launch_.regions.version());
-  growth_.generation = generation;
-  tell_all_done(step);
-  if (leads_) growth_writer_.send(growth_);
+void CommandServer::change_map(core::Generation generation, core::Step step) {
+  endpoint_.use_map(launch_.regions.version());
+  additions_.generation = generation;
+  reply_all_done(step);
+  if (leads_) additions_writer_.send(additions_);
   closed_ = false;
 }
 
-void CommandDesk::serve(node::Node& node, const RunView& run) {
+void CommandServer::serve(node::Node& node, const RunView& run) {
   leads_ = run.leads;
   shapes_ = std::max(shapes_, node.scene().shapes.size());
   prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
   statics_ = std::max(statics_, node.scene().statics.size());
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
-  for (core::Command& command : door_.take()) asked.push_back({std::move(command), 0});
+  for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), 0});
   for (Asked& one : asked) {
     const auto* const mesh = mesh_in(one.command.ask);
     const bool has_it =
@@ -90,7 +90,7 @@ void CommandDesk::serve(node::Node& node, const RunView& run) {
   }
 }
 
-void CommandDesk::answer(const core::Command& command, const core::Ray& ray, const node::Node& node) {
+void CommandServer::answer(const core::Command& command, const core::Ray& ray, const node::Node& node) {
   const bool asked = ray.regions.empty() || std::ranges::find(ray.regions, region_) != ray.regions.end();
   if (!asked) return;
   const physics::RayHit hit = node.world().cast(ray.from_W, ray.to_W);
@@ -102,11 +102,11 @@ void CommandDesk::answer(const core::Command& command, const core::Ray& ray, con
   seen.p_W = hit.p_W;
   seen.normal_W = hit.normal_W;
   seen.distance_m = hit.distance_m;
-  door_.reply(std::move(seen));
+  endpoint_.reply(std::move(seen));
 }
 
 /// A mesh is on its way to all nodes; after some seconds it is not.
-void CommandDesk::wait_for_mesh(Asked asked) {
+void CommandServer::wait_for_mesh(Asked asked) {
   if (++asked.rounds > kRoundsForMesh) {
     refuse(asked.command, "not every node has got the mesh; was it sent to /api/shapes?");
   } else {
@@ -114,36 +114,36 @@ void CommandDesk::wait_for_mesh(Asked asked) {
   }
 }
 
-bool CommandDesk::has_mesh(std::uint64_t hash) {
+bool CommandServer::has_mesh(std::uint64_t hash) {
   if (std::ranges::find(meshes_, hash) != meshes_.end()) return true;
   if (mesh_reader_.mesh(hash) == nullptr) return false;
   meshes_.push_back(hash);
   return true;
 }
 
-void CommandDesk::refuse(const core::Command& command, std::string why) {
+void CommandServer::refuse(const core::Command& command, std::string why) {
   core::CommandReply reply;
   reply.request = command.request;
   reply.outcome = core::Outcome::kRefused;
   reply.text = std::move(why);
-  door_.reply(std::move(reply));
+  endpoint_.reply(std::move(reply));
 }
 
-void CommandDesk::accept(const core::Command& command, const core::Order& order,
-                         std::optional<core::ObjectRef> object) {
+void CommandServer::accept(const core::Command& command, const core::Order& order,
+                           std::optional<core::ObjectRef> object) {
   core::CommandReply reply;
   reply.request = command.request;
   reply.outcome = core::Outcome::kAccepted;
   reply.at_step = order.at_step;
   reply.object = object;
-  door_.reply(std::move(reply));
+  endpoint_.reply(std::move(reply));
   const bool of_a_body = core::body_of(order.action) || std::holds_alternative<core::Spawn>(order.action);
-  if (of_a_body) return;  // what bodies obey is told by their hosts
+  if (of_a_body) return;  // what was done to bodies is replied by their hosts
   // A change of the run is done when the run goes on after it.
   due_[command.request] = closed_ ? std::numeric_limits<core::Step>::max() : order.at_step;
 }
 
-void CommandDesk::decide(const core::Command& command, node::Node& node, const RunView& run) {
+void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
   const bool changes_the_run = core::changes_the_run(command.ask);
   if (closed_) return refuse(command, "the run is being changed; ask again in a moment");
   if (changes_the_run && !run.complete) return refuse(command, "a node has died: the run can only go on as it is");
@@ -166,21 +166,21 @@ void CommandDesk::decide(const core::Command& command, node::Node& node, const R
   accept(command, node.order(action, command.request, command.at_step));
 }
 
-void CommandDesk::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
+void CommandServer::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
   const core::PrototypeId prototype = prototype_id(body, command.request, node);
   const core::BodyId id{core::kFirstClientBody + node.protocol().last_order() + 1};
   const core::Spawn spawn{id, prototype, body.pose, body.v_WB, body.w_WB};
   accept(command, node.order(spawn, command.request, command.at_step), core::ref_of(id));
 }
 
-void CommandDesk::place(const core::Command& command, const core::NewStatic& fixed, node::Node& node) {
+void CommandServer::place(const core::Command& command, const core::NewStatic& fixed, node::Node& node) {
   const std::uint32_t shape = shape_index(fixed.shape, command.request, node);
   const core::StaticId id{static_cast<std::uint32_t>(statics_++)};
   accept(command, node.order(core::AddStatic{id, shape, fixed.pose}, command.request, command.at_step),
          core::ref_of(id));
 }
 
-std::uint32_t CommandDesk::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {
+std::uint32_t CommandServer::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {
   for (const OwnShape& known : own_shapes_) {
     if (std::visit(Same{}, known.shape, shape)) return known.index;
   }
@@ -189,7 +189,7 @@ std::uint32_t CommandDesk::shape_index(const core::ClientShape& shape, std::uint
   return own_shapes_.back().index;
 }
 
-core::PrototypeId CommandDesk::prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node) {
+core::PrototypeId CommandServer::prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node) {
   if (!body.shape) {
     const auto& known = node.scene().prototypes;
     const auto found = std::ranges::find(known, body.prototype, &core::Prototype::name);
@@ -204,7 +204,7 @@ core::PrototypeId CommandDesk::prototype_id(const core::NewBody& body, std::uint
   return own_kinds_.back().id;
 }
 
-std::optional<core::Shape> CommandDesk::make_shape(const core::ClientShape& shape) {
+std::optional<core::Shape> CommandServer::make_shape(const core::ClientShape& shape) {
   if (const auto* mesh = std::get_if<core::MeshRef>(&shape)) return make_mesh(*mesh);
   return std::visit(
       [](const auto& s) -> core::Shape {
@@ -217,38 +217,38 @@ std::optional<core::Shape> CommandDesk::make_shape(const core::ClientShape& shap
       shape);
 }
 
-std::optional<core::Shape> CommandDesk::make_mesh(const core::MeshRef& ref) {
+std::optional<core::Shape> CommandServer::make_mesh(const core::MeshRef& ref) {
   const core::TriangleMesh* const mesh = mesh_reader_.mesh(ref.hash);
   return mesh == nullptr ? std::nullopt : std::optional(config::shape_for(*mesh, ref.use));
 }
 
-/// Tells observers what the scene has got, when it has got something.
-void CommandDesk::tell_growth(const node::StepReport& report) {
-  const std::size_t before = growth_.orders.size();
+/// Publishes what the scene has got, when it has got something.
+void CommandServer::publish_additions(const node::StepReport& report) {
+  const std::size_t before = additions_.orders.size();
   for (const core::Order& order : report.orders) {
-    if (node::changes_scene(order.action)) growth_.orders.push_back(order);
+    if (node::changes_scene(order.action)) additions_.orders.push_back(order);
   }
-  if (growth_.orders.size() > before && leads_) growth_writer_.send(growth_);
+  if (additions_.orders.size() > before && leads_) additions_writer_.send(additions_);
 }
 
-void CommandDesk::tell_done(std::uint64_t request, core::Step step) {
+void CommandServer::reply_done(std::uint64_t request, core::Step step) {
   core::CommandReply done;
   done.request = request;
   done.outcome = core::Outcome::kDone;
   done.at_step = step;
-  door_.reply(std::move(done));
+  endpoint_.reply(std::move(done));
 }
 
-void CommandDesk::tell_all_done(core::Step step) {
-  for (const auto& [request, due] : std::exchange(due_, {})) tell_done(request, step);
+void CommandServer::reply_all_done(core::Step step) {
+  for (const auto& [request, due] : std::exchange(due_, {})) reply_done(request, step);
 }
 
-void CommandDesk::after_step(const node::StepReport& report) {
-  tell_growth(report);
-  for (const std::uint64_t request : report.obeyed) tell_done(request, report.step);
+void CommandServer::after_step(const node::StepReport& report) {
+  publish_additions(report);
+  for (const std::uint64_t request : report.applied) reply_done(request, report.step);
   std::erase_if(due_, [&](const auto& entry) {
     if (entry.second > report.step) return false;
-    tell_done(entry.first, report.step);
+    reply_done(entry.first, report.step);
     return true;
   });
 }

@@ -1,0 +1,16 @@
+// core/cluster_graph.h as a wire type, and back. As in codec.h.
+#pragma once
+
+#include "core/cluster_graph.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class ClusterGraph;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const core::ClusterGraph& graph, wire::ClusterGraph& out);
+Decoded<core::ClusterGraph> decode(const wire::ClusterGraph& in, const Expected& expected);
+
+}  // namespace aurasim::dds
