@@ -77,7 +77,7 @@ class ProtocolTest : public ::testing::Test {
     return a;
   }
   /// Region 1 publishes its next batch, with these auras.
-  void receive_next(std::vector<AuraRecord> auras = {}) {
+  void receive_batch_of_1(std::vector<AuraRecord> auras = {}) {
     AuraBatch b = batch(1, protocol->intake().neighbours()[0].received() + 1);
     for (AuraRecord& a : auras) a.stamp = b.stamp;
     b.updates = std::move(auras);
@@ -86,7 +86,7 @@ class ProtocolTest : public ::testing::Test {
   const Changes& receive_next() { return protocol->receive(++now); }
   /// One state in which nothing is received but region 1's steps.
   void pass_step() {
-    receive_next();
+    receive_batch_of_1();
     receive_next();
     observe();
   }
@@ -145,7 +145,7 @@ TEST_F(ProtocolTest, ABodyNearAForeignOneProjectsWhereverItIs) {
   settings.aura.kind = AuraKind::kTight;
   host(1, Vec3(-40, 0, 0));
   start(0);
-  receive_next({foreign(9, Vec3(-38.9, 0, 0))});
+  receive_batch_of_1({foreign(9, Vec3(-38.9, 0, 0))});
   receive_next();
   observe();
   ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
@@ -155,7 +155,7 @@ TEST_F(ProtocolTest, ABodyNearAForeignOneProjectsWhereverItIs) {
 TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   start(0);
-  receive_next();
+  receive_batch_of_1();
   receive(hand_off(1, 0, 0, {record_of(1, 2), record_of(5, 1)}), 1);
   const Changes& changes = receive_next();
   ASSERT_EQ(changes.adoptions.size(), 1u);
@@ -170,7 +170,7 @@ TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
 TEST_F(ProtocolTest, AnArrivalWithAHigherEpochReplacesTheBodyHere) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   start(0);
-  receive_next();
+  receive_batch_of_1();
   receive(hand_off(1, 0, 0, {record_of(1, 3)}), 1);
   const Changes& changes = receive_next();
   EXPECT_EQ(changes.adoptions.size(), 1u);
@@ -181,7 +181,7 @@ TEST_F(ProtocolTest, ABodyThatAnotherNodeOwnsUnderAHigherEpochIsLetGo) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   host(2, Vec3(-50, 9, 0)).epoch = 2;
   start(0);
-  receive_next({foreign(1, Vec3(1, 0, 0), 3), foreign(2, Vec3(1, 9, 0), 2)});
+  receive_batch_of_1({foreign(1, Vec3(1, 0, 0), 3), foreign(2, Vec3(1, 9, 0), 2)});
   EXPECT_THAT(receive_next().let_go, ElementsAre(body(1)));
   EXPECT_EQ(protocol->counters().let_go, 1u);
 }
@@ -191,7 +191,7 @@ TEST_F(ProtocolTest, AnotherNodesGhostOfABodyOfOursDoesNotTakeItAway) {
   start(0);
   AuraRecord ghost = foreign(1, Vec3(-50, 0, 0), 3, 0);
   ghost.flags = kAuraGhost;
-  receive_next({ghost});
+  receive_batch_of_1({ghost});
   EXPECT_THAT(receive_next().let_go, IsEmpty());
 }
 
@@ -322,7 +322,7 @@ class Guests : public ProtocolTest {
   Step goes_within(Step steps) {
     const std::size_t all = snapshot.bodies.size();
     while (now < steps) {
-      receive_next({foreign(10'000, Vec3(20, -0.95, 0))});
+      receive_batch_of_1({foreign(10'000, Vec3(20, -0.95, 0))});
       receive_next();
       const std::vector<Departure>& departures = observe();
       if (departures.empty()) continue;
