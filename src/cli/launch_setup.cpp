@@ -82,12 +82,9 @@ double listening_distance_m(const config::Launch& launch) {
   for (const core::Prototype& prototype : launch.scene.prototypes) {
     radius = std::max(radius, core::bounding_radius(launch.scene.shapes[prototype.shape].shape));
   }
-  // The widest band in which a body projects away from corners: its cluster as fast as promised, looking home as well.
-  const core::AuraRules rules = aura_rules(launch);
-  const double own_steps = 3.0 * rules.lookahead;
-  const double other_steps = 2.0 * rules.lookahead;
-  const double way = (1 + rules.uncertainty) * (own_steps + other_steps) * rules.step_s * rules.top_speed_m_s;
-  return std::max(launch.neighbour_distance_m, way + 2 * radius);
+  const core::NoShapes no_shapes;
+  const double zone_m = core::make_aura(aura_rules(launch), no_shapes)->listening_distance_m(radius);
+  return std::max(launch.neighbour_distance_m, zone_m);
 }
 
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/horizon.h"
 #include "node/pacer.h"
 
 namespace aurasim::cli {
@@ -56,7 +57,8 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
     command.at_step = std::max(command.at_step, seen.status.step);
     running = running || seen.status.state == dds::NodeState::kRunning;
   }
-  const auto notice = static_cast<core::Step>(kNoticeS * launch_.time.step_hz) + 2 * launch_.lookahead() + 1;
+  const auto notice =
+      static_cast<core::Step>(kNoticeS * launch_.time.step_hz) + core::horizon::command_notice(launch_.lookahead());
   if (running) command.at_step += notice;
   if (kind == Kind::kStep) command.at_step += count;
   const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);

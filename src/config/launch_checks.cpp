@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sphere_aura.h"
+
 namespace aurasim::config {
 namespace {
 
@@ -18,11 +20,14 @@ double largest_radius_m(const core::Scene& scene) {
   return radius;
 }
 
-/// Distance that a body at top speed makes in the steps of `multiple` K - 2 and the substeps.
-double way_m(const Launch& launch, int multiple) {
-  const double k = launch.lookahead();
-  const double s = launch.time.substeps;
-  return (multiple * k - 2 + 2 * (s - 1) / s) * launch.tolerances.speed_m_s * launch.step_s();
+core::TightAura top_speed_aura(const Launch& launch) {
+  static const core::NoShapes no_shapes;
+  core::AuraRules rules;
+  rules.step_s = launch.step_s();
+  rules.substeps = launch.time.substeps;
+  rules.lookahead = launch.lookahead();
+  rules.top_speed_m_s = launch.tolerances.speed_m_s;
+  return {rules, no_shapes};
 }
 
 void check_neighbour_count(const Field& regions, const Launch& launch) {
@@ -38,11 +43,13 @@ void check_neighbour_count(const Field& regions, const Launch& launch) {
 
 }  // namespace
 
-double reach_m(const Launch& launch) { return way_m(launch, 3) + 2 * largest_radius_m(launch.scene); }
+double reach_m(const Launch& launch) { return top_speed_aura(launch).reach(1) + 2 * largest_radius_m(launch.scene); }
 
-// A body projects near foreign bodies wherever they are, (5 K - 2) steps ahead; where pulls chain at a corner the
-// distances grow by K steps for each of two bodies (docs/design.md, "The aura and its reach").
-double zone_m(const Launch& launch) { return way_m(launch, 7) + 2 * largest_radius_m(launch.scene); }
+// A body projects near foreign bodies wherever they are, also where pulls chain through two regions
+// (docs/design.md, "The aura and its reach").
+double zone_m(const Launch& launch) {
+  return top_speed_aura(launch).foreign_reach(2) + 2 * largest_radius_m(launch.scene);
+}
 
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch) {
   if (launch.lookahead() > kLargestLookahead) {

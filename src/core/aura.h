@@ -1,8 +1,9 @@
 // The aura: how far ahead, and how far away, two bodies must know of each other so that they share a host before
-// they can touch. Distances and their derivation: docs/design.md, "The aura and its reach"; eq. 3.4 of A. Brown's
-// thesis for `kThesis`.
+// they can touch. Distances and their derivation: docs/design.md, "The aura and its reach". Each kind of aura is a
+// class of its own: none_aura.h, sphere_aura.h, swept_aura.h.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/body_state.h"
@@ -49,74 +50,99 @@ struct Path {
 /// The path of one of our own bodies from its state now.
 Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance);
 
+/// A distance that grows with a speed.
+struct Range {
+  double fixed_m = 0;
+  double per_speed_s = 0;
+  double at(double speed_m_s) const { return fixed_m + per_speed_s * speed_m_s; }
+};
+
 class Aura {
  public:
-  Aura(const AuraRules& rules, const ClearanceQuery& clearance)
-      : rules_(rules), gravity_m_s2_(rules.gravity.norm()), clearance_(clearance) {}
+  virtual ~Aura() = default;
+  Aura(const Aura&) = delete;
+  Aura& operator=(const Aura&) = delete;
 
   const AuraRules& rules() const { return rules_; }
   const ClearanceQuery& clearance() const { return clearance_; }
 
-  /// Reaches of docs/design.md, "The aura and its reach", for one top speed, beyond the bounding spheres, in metres.
-  /// `hops` is the number of regions through which a pull can chain (1 away from corners).
-  double reach(int hops) const;
-  double foreign_reach(int hops) const;
-  double cluster_reach(int hops) const;
+  /// Are others warned of bodies, and do bodies that may touch move together?
+  virtual bool warns() const { return true; }
+  /// Does each body have a path and a speed of its own, which others are sent and can rely on?
+  virtual bool predicts() const { return false; }
 
   /// How much faster than its own speed a body that nothing pushes may become: 0.1 m/s; 0.05 m/s asleep. What gravity
-  /// adds is in its path. For kThesis and kTight the promised V.
-  double calm_speed(bool awake) const;
+  /// adds is in its path. The promised V where one top speed is all that is known.
+  virtual double calm_speed(bool awake) const = 0;
   /// What it has besides, by itself, and can push others with: its own speed, and a kick that is on its way, m/s.
-  double own_speed_of(const BodyState& body) const;
+  virtual double own_speed_of(const BodyState& body) const = 0;
   /// Top speed that a body alone can have.
   double speed_of(const BodyState& body) const { return calm_speed(body.awake) + own_speed_of(body); }
 
-  /// Where a body of `path` is `steps` from now.
-  Pose ahead(const Path& path, double steps) const;
-
   /// Do two bodies have to share a host? A foreign body and one of ours, seen now, looking h K - `fewer_steps` ahead.
-  bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const;
-  /// In how many steps the paths of two bodies may meet first (kSwept); nothing if they do not within
+  /// `hops` is the number of regions through which a pull can chain (1 away from corners).
+  virtual bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const = 0;
+  /// In how many steps the paths of two bodies may meet first (where they are predicted); nothing if they do not within
   /// h K - `fewer_steps`.
-  std::optional<double> first_meeting(const Path& a, const Path& b, int hops, int fewer_steps = 0) const;
+  virtual std::optional<double> first_meeting(const Path&, const Path&, int /*hops*/, int /*fewer_steps*/ = 0) const {
+    return std::nullopt;
+  }
   /// Do two bodies of one host have to move together?
-  bool linked(const Path& a, const Path& b, int hops) const;
+  virtual bool linked(const Path& a, const Path& b, int hops) const = 0;
   /// A body sent away a moment ago and one of ours.
-  bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps = 0) const;
+  virtual bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps = 0) const = 0;
 
   /// A body whose surface is this near to another region's territory projects its aura (metres).
   /// `other_speed_m_s`, `other_radius_m`: the largest over there.
   double zone(double speed_m_s, int hops, double other_speed_m_s, double other_radius_m) const;
-
-  /// A distance that grows with a speed.
-  struct Range {
-    double fixed_m = 0;
-    double per_speed_s = 0;
-    double at(double speed_m_s) const { return fixed_m + per_speed_s * speed_m_s; }
-  };
-
   /// A body projects to the host of a foreign one when their bounding spheres are this near, wherever it is. For the
   /// body's own speed.
   Range notice(double foreign_speed_m_s, double foreign_age_steps, int hops) const;
-
   /// Beyond this distance between bounding spheres neither meets() nor meets_ghost() is true for a foreign body. For
   /// drift_m_s() of the own one.
   Range meet_range(const Path& foreign, int hops) const;
-  /// How fast a body may leave the place where it is: on its path, and off it.
-  double drift_m_s(const Path& path) const;
-
   /// Largest distance between bounding spheres at which linked() can be true. For the sum of both speeds.
   Range link_range(int hops) const;
+  /// How far apart two regions may be that have to listen to each other: the widest zone away from corners, also while
+  /// ranks change, where everything is as fast as promised.
+  double listening_distance_m(double largest_radius_m) const;
+
+  /// How fast a body may leave the place where it is: on its path, and off it.
+  double drift_m_s(const Path& path) const { return path.v_WB.norm() + rules_.uncertainty * path.speed_m_s; }
+  /// Where a body of `path` is `steps` from now.
+  Pose ahead(const Path& path, double steps) const;
+
+ protected:
+  /// Why two bodies are compared.
+  enum class Question { kZone, kNotice, kMeeting, kLink };
+  /// For how long each of the two is on its way before they have to share a host.
+  struct Steps {
+    double own = 0;
+    double other = 0;  ///< besides the age of what is known of it, where paths are predicted
+  };
+
+  Aura(const AuraRules& rules, const ClearanceQuery& clearance)
+      : rules_(rules), gravity_m_s2_(rules.gravity.norm()), clearance_(clearance) {}
+
+  virtual Steps steps(Question question, int hops) const = 0;
+  /// How far a body can come in so many steps, by its drift_m_s().
+  virtual Range span(double steps) const = 0;
+  /// One of the two may stand on something, and not fall as its span says.
+  virtual double unfallen_m(double /*steps*/) const { return 0; }
+
+  double gravity_m_s2() const { return gravity_m_s2_; }
 
  private:
-  bool spheres_within(const Path& a, const Path& b, double distance_m) const;
-  std::optional<double> paths_meet(const Path& a, const Path& b, int horizon_steps) const;
-  double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
-  double last_instant(int horizon_steps) const;  ///< at which paths_meet() looks, in steps from now
+  Range reach(const Steps& steps, double other_drift_m_s) const;
+  double most_drift(double speed_m_s) const { return (1 + rules_.uncertainty) * speed_m_s; }
+  Range by_speed(const Range& by_drift) const { return {by_drift.fixed_m, most_drift(by_drift.per_speed_s)}; }
 
   AuraRules rules_;
   double gravity_m_s2_;
   const ClearanceQuery& clearance_;
 };
+
+/// The aura of rules.kind. `clearance` outlives it.
+std::unique_ptr<const Aura> make_aura(const AuraRules& rules, const ClearanceQuery& clearance);
 
 }  // namespace aurasim::core

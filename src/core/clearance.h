@@ -1,6 +1,8 @@
 // What core/ asks of physics/ about a body's kind.
 #pragma once
 
+#include <limits>
+
 #include "core/body_state.h"
 #include "core/ids.h"
 
@@ -27,6 +29,15 @@ class ClearanceQuery {
 
   /// A body of which nothing is known passes on all that it gets.
   virtual BodyTraits traits(PrototypeId) const { return {}; }
+};
+
+/// Where every body is a point: reaches do not ask for shapes.
+class NoShapes final : public ClearanceQuery {
+ public:
+  double clearance(PrototypeId, const Pose&, PrototypeId, const Pose&, double) const override {
+    return std::numeric_limits<double>::infinity();
+  }
+  double bounding_radius(PrototypeId) const override { return 0; }
 };
 
 }  // namespace aurasim::core

@@ -4,14 +4,12 @@
 #include <bit>
 #include <numeric>
 
+#include "core/horizon.h"
+
 namespace aurasim::core {
 namespace {
 
-/// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead than that has
-/// made no difference in any run, and costs (docs/decisions/0006-hops.md).
-constexpr int kMostHops = 3;
-
-int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, kMostHops); }
+int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, horizon::kMostHops); }
 
 }  // namespace
 
@@ -30,7 +28,7 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   most_hops_ = hops_each;
   for (std::uint32_t i = 0; i < n; ++i) set_regions(i, regions[i]);
   link_ranges_.clear();
-  for (int hops = 0; hops <= kMostHops * hops_each; ++hops) link_ranges_.push_back(aura_.link_range(hops));
+  for (int hops = 0; hops <= horizon::kMostHops * hops_each; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
   started_.assign(n, 0);
   links_.clear();
@@ -40,7 +38,7 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   traits_.clear();
   for (const Path& path : paths) traits_.push_back(traits_of(path.prototype));
   pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
-  if (aura_.rules().kind != AuraKind::kNone) join(contacts, joints);
+  if (aura_.warns()) join(contacts, joints);
   // Those near a boundary will be asked for. What is known before the index is built costs less than what comes later.
   for (std::uint32_t i = 0; i < n; ++i) {
     if (regions[i] != 0) start_pushes(i);
@@ -150,7 +148,7 @@ void Clusters::ask_members(std::uint32_t i) {
 void Clusters::complete(std::uint32_t i) {
   if (complete_[of(i)]) return;
   complete_[of(i)] = 1;
-  if (aura_.rules().kind == AuraKind::kNone) return;
+  if (!aura_.warns()) return;
   start_pushes(i);
   take_raised();
   ask_members(i);
@@ -180,7 +178,7 @@ void Clusters::look_around(std::uint32_t i) {
   const int hops_here = hops(i);
   const double enough = pushes_.raises_none_above(i);
   const Path& path = paths_[i];
-  const Aura::Range& widest = link_ranges_[static_cast<std::size_t>(most_hops_)];
+  const Range& widest = link_ranges_[static_cast<std::size_t>(most_hops_)];
   linked_.clear();
   const auto ask = [&](std::uint32_t j) {
     if (of(j) == of(i) && (j == i || pushes_.speed(j) >= enough || !pushes_.raises(i, j))) return;

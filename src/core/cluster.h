@@ -86,7 +86,7 @@ class Clusters {
   int hops_each_ = 1;
   int most_hops_ = 1;
   std::vector<std::uint32_t> grown_;
-  std::vector<Aura::Range> link_ranges_;  ///< by hops
+  std::vector<Range> link_ranges_;  ///< by hops
   NearIndex near_;
   Pushes pushes_;
   std::vector<std::uint32_t> label_, next_, size_;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/horizon.h"
+
 namespace aurasim::core {
 
 namespace {
 
-/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead: that long, the
-/// others may act upon auras from before it left. So auras have to be known that much earlier, too.
-constexpr int kHomewardHops = 1;
+using horizon::kHomewardHops;
 
 /// Is the body's bounding sphere at most `distance_m` from the sphere of `radius_m` around `p`?
 bool is_within(const Path& body, const Vec3& p, double radius_m, double distance_m) {
@@ -24,8 +24,8 @@ InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity)
 
 void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                             std::span<const AuraRecord> ghosts, const Ranks& ranks) {
-  const int hops_each = ranks.changing() ? 2 : 1;
-  fewer_steps_ = ranks.changing() ? 1 : 0;  // 2 h K - 1 are enough (docs/decisions/0016-ranks.md)
+  const int hops_each = ranks.changing() ? horizon::kHopsEachWhileRanksChange : 1;
+  fewer_steps_ = ranks.changing() ? horizon::kFewerStepsWhileRanksChange : 0;
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions(hops_each);
@@ -149,14 +149,14 @@ void InterestMatching::notice_grown() {
 /// it is, or whoever stands behind it learns of it too late: others act upon our auras when they are K states old, and
 /// look that much further ahead.
 std::size_t InterestMatching::take_hits(std::size_t first) {
-  if (aura_.rules().kind != AuraKind::kSwept) return pairs_.size();
+  if (!aura_.predicts()) return pairs_.size();
   for (; first < pairs_.size(); ++first) {
     const Pair& pair = pairs_[first];
     const Foreign& f = foreign_[pair.foreign];
     if (!clusters_.feels(f.impact, pair.own)) continue;
     const int hops = clusters_.hops(pair.own) + kHomewardHops;
     const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops, fewer_steps_);
-    if (when) clusters_.hit(pair.own, f.impact.times(1 - *when / ((hops + 2) * aura_.rules().lookahead)));
+    if (when) clusters_.hit(pair.own, f.impact.times(1 - *when / horizon::impact(aura_.rules().lookahead, hops)));
   }
   return first;
 }
@@ -235,7 +235,7 @@ void InterestMatching::notice_again(std::uint32_t own) {
     const Foreign& foreign = foreign_[f];
     const std::uint64_t region = vicinity_.bit_of(foreign.host);
     if (noticed_[own] && (noticed_by_[own] & region) == region) return;
-    const Aura::Range range = aura_.notice(foreign.path.speed_m_s, foreign.path.age_steps, hops);
+    const Range range = aura_.notice(foreign.path.speed_m_s, foreign.path.age_steps, hops);
     if (is_within(foreign.path, path.pose.p_WB, path.radius_m, range.at(path.speed_m_s))) note(own, region);
   });
 }
@@ -300,7 +300,6 @@ void InterestMatching::judge(const Pair& pair, const Ranks& ranks) {
 }
 
 bool InterestMatching::must_be_announced(std::uint32_t i) const {
-  if (aura_.rules().kind == AuraKind::kNone) return false;
   if (noticed_[i]) return true;
   const Path& path = paths_[i];
   if (vicinity_.deep_inside(path.pose.p_WB, widest_band_m_ + path.radius_m)) return false;
@@ -310,7 +309,7 @@ bool InterestMatching::must_be_announced(std::uint32_t i) const {
 
 bool InterestMatching::outside(std::uint32_t i) const {
   const Vec3& p = paths_[i].pose.p_WB;
-  if (aura_.rules().kind == AuraKind::kNone) return !vicinity_.home().contains(p.x(), p.y());
+  if (!aura_.warns()) return !vicinity_.home().contains(p.x(), p.y());
   return vicinity_.home().distance(p.x(), p.y()) > paths_[i].radius_m;
 }
 

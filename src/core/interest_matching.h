@@ -106,7 +106,7 @@ class InterestMatching {
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;
   std::vector<Pair> pairs_;
-  std::vector<Aura::Range> ranges_;    ///< of the foreign bodies of a block, by body and hops
+  std::vector<Range> ranges_;          ///< of the foreign bodies of a block, by body and hops
   std::size_t ranges_each_ = 0;        ///< of one of them
   std::vector<Candidate> candidates_;  ///< ours that may be in range of a block
   struct News {

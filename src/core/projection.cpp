@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/horizon.h"
 #include "core/prefetch.h"
 
 namespace aurasim::core {
@@ -85,7 +86,7 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
   aura.stamp = stamp;
   aura.birth = body.birth;
   aura.pose = body.pose;
-  if (aura_.rules().kind == AuraKind::kSwept) {  // the others ask for places and sizes only
+  if (aura_.predicts()) {  // otherwise the others ask for places and sizes only
     aura.v_WB = body.v_WB;
     aura.w_WB = body.w_WB;
   }
@@ -124,7 +125,7 @@ void Projection::publish(const Snapshot& snapshot, const InterestMatching& match
     if (track.phase == Phase::kSent) continue;
     const BodyState& body = snapshot.bodies[i];
     check_speed(track, body, snapshot.step, violations);
-    if (projects(track.phase) && aura_.rules().kind != AuraKind::kNone) {
+    if (projects(track.phase) && aura_.warns()) {
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
@@ -147,7 +148,7 @@ void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& 
   ghost.host = destination;
   ghost.epoch = body.epoch + 1;
   ghost.flags |= kAuraGhost;
-  if (aura_.rules().kind == AuraKind::kNone) return;
+  if (!aura_.warns()) return;
   ++(track.projected() ? counters_.updated : counters_.created);
   ghosts_.push_back(ghost);
   batch.updates.push_back(ghost);
@@ -173,7 +174,7 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
       }
       return true;
     }
-    if (snapshot.step < ghost.stamp + 2 * aura_.rules().lookahead) return false;
+    if (snapshot.step < ghost.stamp + horizon::ghost(aura_.rules().lookahead)) return false;
     ++counters_.deleted;
     batch.deletes.push_back(ghost.id);
     return true;
@@ -183,10 +184,10 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
 /// After 2K steps the body has to be within what its aura promised then: the path, with or without its fall, plus U v
 /// age.
 void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
-  if (!track.projected() || aura_.rules().kind != AuraKind::kSwept) return;
+  if (!track.projected() || !aura_.predicts()) return;
   const AuraRecord& promise = track.published->promise;
   const auto age = static_cast<double>(now - promise.stamp);
-  if (age < 2 * aura_.rules().lookahead) return;
+  if (age < static_cast<double>(horizon::promise(aura_.rules().lookahead))) return;
   Path path;
   path.pose = promise.pose;
   path.v_WB = promise.v_WB;  // how it turns does not matter

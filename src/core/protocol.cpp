@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "core/horizon.h"
+
 namespace aurasim::core {
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)
     : settings_(settings),
       vicinity_(map, settings.self, settings.neighbour_distance_m),
       map_version_(map.version()),
-      aura_(settings.aura, clearance),
+      aura_(make_aura(settings.aura, clearance)),
       intake_({settings.generation, settings.sync, settings.aura.lookahead, settings.start}, vicinity_, departures_),
-      matching_(aura_, vicinity_),
-      projection_(aura_, vicinity_),
+      matching_(*aura_, vicinity_),
+      projection_(*aura_, vicinity_),
       orders_(settings.last_order),
       claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
       ranks_(settings.aura.lookahead),
@@ -100,7 +102,7 @@ void Protocol::decide(const Snapshot& snapshot) {
   decided_.assign(snapshot.bodies.size(), 0);
   largest_cluster_ = largest_guest_ = 0;
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    if (aura_.rules().kind == AuraKind::kNone) {
+    if (!aura_->warns()) {
       decide_naively(i, snapshot);
       continue;
     }
@@ -159,7 +161,7 @@ bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
     }
     since = std::max(since, track.island_since);
   });
-  return island && now - since >= 2 * aura_.rules().lookahead + 1;
+  return island && now - since >= horizon::homecoming(aura_->rules().lookahead);
 }
 
 RegionId Protocol::lowest_owner(std::uint32_t i) const {
@@ -225,31 +227,31 @@ void Protocol::apply_late(Order& order, Step n) {
 
 Step Protocol::earliest_effect() const {
   const Step published = outbox_.aura.stamp + 1;
-  return published + hops_across_ * aura_.rules().lookahead + birth_notice(aura_.rules().lookahead) + 1;
+  const int lookahead = aura_->rules().lookahead;
+  return published + hops_across_ * lookahead + horizon::birth_notice(lookahead) + 1;
 }
 
 void Protocol::report_frame(Step step, double frame_s) {
-  if (frame_s <= aura_.rules().frame_s) return;
-  violations_.add({ViolationKind::kFrame, step, vicinity_.self, {}, frame_s, aura_.rules().frame_s});
+  if (frame_s <= aura_->rules().frame_s) return;
+  violations_.add({ViolationKind::kFrame, step, vicinity_.self, {}, frame_s, aura_->rules().frame_s});
 }
 
 std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules, const ClearanceQuery& clearance,
                                    const Snapshot& scene) {
   std::vector<RegionId> hosts(scene.bodies.size());
   for (std::size_t i = 0; i < hosts.size(); ++i) hosts[i] = map.owner(scene.bodies[i].pose.p_WB);
-  if (rules.kind == AuraKind::kNone || map.size() == 1) return hosts;
-  // For the first 2K steps nobody has received anything: the clusters of state 0 have to look that much further ahead.
   AuraRules early = rules;
-  early.lookahead = 4 * rules.lookahead;
-  const Aura aura(early, clearance);
+  early.lookahead = horizon::lookahead_at_start(rules.lookahead);
+  const std::unique_ptr<const Aura> aura = make_aura(early, clearance);
+  if (!aura->warns() || map.size() == 1) return hosts;
   std::vector<Path> paths;
   std::vector<double> own_speeds;
   for (const BodyState& body : scene.bodies) {
     paths.push_back(path_of(body, scene.step, clearance));
-    own_speeds.push_back(aura.own_speed_of(body));
+    own_speeds.push_back(aura->own_speed_of(body));
   }
   const std::vector<std::uint64_t> no_regions(scene.bodies.size(), 0);
-  Clusters clusters(aura);
+  Clusters clusters(*aura);
   clusters.begin(paths, own_speeds, no_regions, scene.contacts, scene.joints);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -64,7 +65,7 @@ class Protocol {
   Protocol& operator=(const Protocol&) = delete;
 
   const Vicinity& vicinity() const { return vicinity_; }
-  const Aura& aura() const { return aura_; }
+  const Aura& aura() const { return *aura_; }
 
   /// Takes in what arrived, at any time; messages of a later generation stay in `inbox`.
   void accept(Inbox& inbox) { intake_.accept(inbox); }
@@ -131,7 +132,7 @@ class Protocol {
   ProtocolSettings settings_;
   Vicinity vicinity_;
   std::uint64_t map_version_;
-  Aura aura_;
+  std::unique_ptr<const Aura> aura_;
   DepartureLedger departures_;
   Intake intake_;
   InterestMatching matching_;
@@ -151,9 +152,6 @@ class Protocol {
   std::size_t largest_cluster_ = 0;
   std::size_t largest_guest_ = 0;  ///< RankClaimer::LargeClusters::guests
 };
-
-/// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.
-constexpr Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
 
 /// Who hosts which body in state 0, the same on every node: clusters of the whole scene, each on the lowest region
 /// that owns the centre of one of its members. `bodies` ascending by id; returns one region per body.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/horizon.h"
+
 namespace aurasim::core {
 namespace {
 
@@ -48,7 +50,7 @@ const Ranks::Node& Ranks::node(RegionId region) const {
 }
 
 const RankClaim& Ranks::claim(const Node& node, Step n) const {
-  return n >= node.claims.next.stamp + rank_notice(lookahead_) ? node.claims.next : node.claims.held;
+  return n >= node.claims.next.stamp + horizon::rank_notice(lookahead_) ? node.claims.next : node.claims.held;
 }
 
 /// Of equal weights the older claim is higher: two clusters of one size do not change places all the time.
@@ -62,7 +64,7 @@ bool Ranks::outranks(const Node& a, const Node& b, Step n) const {
 
 bool Ranks::pulls(RegionId host) const {
   const RegionId self = nodes_.front().region;
-  return outranks(host, self, now_) && outranks(host, self, now_ - (lookahead_ - 1));
+  return outranks(host, self, now_) && outranks(host, self, now_ - horizon::after_ranks_change(lookahead_));
 }
 
 /// Does the node's rank among the others change in state `from`?
@@ -73,9 +75,9 @@ bool Ranks::changes(const Node& node, Step from) const {
 
 bool Ranks::changing() const {
   return std::any_of(nodes_.begin(), nodes_.end(), [this](const Node& node) {
-    const Step from = node.claims.next.stamp + rank_notice(lookahead_);
-    // Three pulls in a row, the longest chain (docs/decisions/0006-hops.md), and all of it has to be announced before.
-    return now_ >= from - 4 * lookahead_ - 1 && now_ < from + lookahead_ && changes(node, from);
+    const Step from = node.claims.next.stamp + horizon::rank_notice(lookahead_);
+    return now_ >= from - horizon::before_ranks_change(lookahead_) &&
+           now_ <= from + horizon::after_ranks_change(lookahead_) && changes(node, from);
   });
 }
 
@@ -123,7 +125,7 @@ void RankClaimer::reconsider(Step now, const LargeClusters& large, const Ranks& 
   const std::uint8_t weight = wanted_weight(now, large, ranks);
   if (weight == claims_.next.weight) return;
   // One change at a time: everybody remembers two claims.
-  if (claimed_ && now < claims_.next.stamp + rank_notice(lookahead_) + 2 * lookahead_) return;
+  if (claimed_ && now < claims_.next.stamp + horizon::between_claims(lookahead_)) return;
   claims_ = {claims_.next, {weight, now}};
   claimed_ = true;
   last_large_ = now;

@@ -25,15 +25,11 @@ struct RankClaim {
   bool operator==(const RankClaim&) const = default;
 };
 
-/// The last two claims of a node: `next` counts from next.stamp + rank_notice on, `held` until then.
+/// The last two claims of a node: `next` counts from next.stamp + horizon::rank_notice on, `held` until then.
 struct RankClaims {
   RankClaim held;
   RankClaim next;
 };
-
-/// Steps between a claim and the state from which on it counts: everyone has received it, and has looked further ahead
-/// for as long as a pull can take.
-constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
 
 /// The ranks of a node and of its neighbours in one state.
 class Ranks {

@@ -1,6 +1,7 @@
 #include "experiment/aura_radius.h"
 
 #include <fstream>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -35,13 +36,13 @@ core::Path flying(double x_m, double v_m_s, double age_steps) {
 double head_on_reach_m(AuraChoice choice, const Conditions& conditions) {
   const core::AuraRules rules = rules_for(choice, conditions);
   const Spheres spheres;
-  const core::Aura aura(rules, spheres);
+  const std::unique_ptr<const core::Aura> aura = core::make_aura(rules, spheres);
   const double v = rules.top_speed_m_s;
   double near_m = 0, far_m = 1000;
   if (choice == AuraChoice::kNone) return 0;
   while (far_m - near_m > 1e-6) {
     const double gap_m = (near_m + far_m) / 2;
-    const bool meets = aura.meets(flying(gap_m + 2 * kRadius_m, -v, rules.lookahead), flying(0, v, 0), 1);
+    const bool meets = aura->meets(flying(gap_m + 2 * kRadius_m, -v, rules.lookahead), flying(0, v, 0), 1);
     (meets ? near_m : far_m) = gap_m;
   }
   return near_m;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "config/launch.h"
+#include "core/sphere_aura.h"
 
 namespace aurasim::experiment {
 namespace {
@@ -25,15 +26,6 @@ std::vector<double> steps_of(double first, double last, double increment) {
   return values;
 }
 
-/// Where every body is a point: reaches do not ask for shapes.
-class NoShapes final : public core::ClearanceQuery {
- public:
-  double bounding_radius(core::PrototypeId) const override { return 0; }
-  double clearance(core::PrototypeId, const core::Pose&, core::PrototypeId, const core::Pose&, double) const override {
-    return std::numeric_limits<double>::infinity();
-  }
-};
-
 core::AuraRules plain_rules(core::AuraKind kind, const Conditions& conditions) {
   core::AuraRules rules;
   rules.kind = kind;
@@ -48,8 +40,9 @@ core::AuraRules plain_rules(core::AuraKind kind, const Conditions& conditions) {
 }
 
 double reach_of(const core::AuraRules& rules) {
-  const NoShapes no_shapes;
-  return core::Aura(rules, no_shapes).reach(1);
+  const core::NoShapes no_shapes;
+  return rules.kind == core::AuraKind::kThesis ? core::ThesisAura(rules, no_shapes).reach(1)
+                                               : core::TightAura(rules, no_shapes).reach(1);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/horizon.h"
+
 namespace aurasim::experiment {
 namespace {
 
@@ -91,17 +93,17 @@ class RoundShapes final : public core::ClearanceQuery {
 /// Seconds before the meeting at which no aura of any kind links the bodies yet, not even in state 0, when clusters
 /// look four times as far ahead (core::assign_hosts), and from which on the nodes have 12 K steps to talk.
 double notice_s(PairKind kind, const Conditions& conditions, double v_a, double v_b, double closing_m_s) {
-  const int hops = kind == PairKind::kCorner ? 3 : 1;
+  const int hops = kind == PairKind::kCorner ? core::horizon::kMostHops : 1;
   const RoundShapes shapes;
   double far_m = 0;
   double swept_s = 0;
   for (const AuraChoice choice :
        {AuraChoice::kThesis, AuraChoice::kTight, AuraChoice::kTightAtThesisSize, AuraChoice::kSwept}) {
     core::AuraRules rules = rules_for(choice, conditions);
-    rules.lookahead *= 4;
-    const double range_m = core::Aura(rules, shapes).link_range(hops).at(v_a + v_b + 0.2) + 2 * kRadius_m;
+    rules.lookahead = core::horizon::lookahead_at_start(rules.lookahead);
+    const double range_m = core::make_aura(rules, shapes)->link_range(hops).at(v_a + v_b + 0.2) + 2 * kRadius_m;
     if (choice == AuraChoice::kSwept) {
-      swept_s = ((hops + 1) * rules.lookahead) * kStep_s;
+      swept_s = (core::horizon::announcing(rules.lookahead, hops)) * kStep_s;
       swept_s += rules.uncertainty * swept_s * (v_a + v_b + 0.2) / closing_m_s;
     } else {
       far_m = std::max(far_m, range_m);

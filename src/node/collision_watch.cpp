@@ -4,6 +4,8 @@
 #include <optional>
 #include <tuple>
 
+#include "core/horizon.h"
+
 namespace aurasim::node {
 namespace {
 
@@ -52,9 +54,8 @@ bool CollisionWatch::is_late(const physics::Collision& c) const {
   return c.penetration_m > one_step + kSlop && !was_just_born(c);
 }
 
-/// A broken promise can spoil what is decided until its messages are replaced: aura, hand-off, and both looks ahead.
 bool CollisionWatch::flagged(core::Step step, core::Step last_violation) const {
-  return step - last_violation <= 6 * lookahead_ + 2;
+  return step - last_violation <= core::horizon::blame(lookahead_);
 }
 
 void CollisionWatch::judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
@@ -136,7 +137,7 @@ void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::
 
 void CollisionWatch::remember(const core::Snapshot& snapshot, const core::InterestMatching& matching) {
   State state{snapshot.step, {}};
-  if (states_.size() > static_cast<std::size_t>(2 * lookahead_ + 2)) {
+  if (states_.size() > static_cast<std::size_t>(core::horizon::under_way(lookahead_))) {
     state.bodies = std::move(states_.front().bodies);
     state.bodies.clear();
     states_.pop_front();

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include "core/horizon.h"
 #include "node/scene_additions.h"
 
 namespace aurasim::node {
@@ -60,7 +61,7 @@ const StepReport& Node::start() {
 void Node::host_initial_bodies() {
   std::vector<core::BodyRecord> records;
   for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
-  const core::Step notice = core::birth_notice(setup_.protocol.aura.lookahead);
+  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
   for (const core::Injector& injector : scene_.injectors) {
     const std::uint64_t count = core::injected_count(injector, notice, setup_.physics.step_s);
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -85,7 +86,7 @@ void Node::host_initial_bodies() {
 
 /// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
 void Node::announce_births(core::Step state) {
-  const core::Step birth = state + core::birth_notice(setup_.protocol.aura.lookahead);
+  const core::Step birth = state + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
   announce_spawns(birth);
   for (std::size_t k = 0; k < scene_.injectors.size(); ++k) {
     const core::Injector& injector = scene_.injectors[k];

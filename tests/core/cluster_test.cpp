@@ -33,7 +33,7 @@ class ClusterTest : public ::testing::Test {
   void joint(std::uint32_t a, std::uint32_t b) { joints.push_back({std::min(a, b), std::max(a, b)}); }
 
   const Aura& aura() {
-    if (!aura_) aura_.emplace(rules, shapes);
+    if (!aura_) aura_ = make_aura(rules, shapes);
     return *aura_;
   }
   Clusters& begin() {
@@ -94,7 +94,7 @@ class ClusterTest : public ::testing::Test {
   std::optional<Clusters> clusters;
 
  private:
-  std::optional<Aura> aura_;
+  std::unique_ptr<const Aura> aura_;
 };
 
 TEST_F(ClusterTest, BodiesInContactMoveTogetherFromTheStart) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/horizon.h"
 #include "core/meetings.h"
 
 namespace aurasim::core::testing {
@@ -42,7 +43,7 @@ class Crowd : public ::testing::TestWithParam<std::tuple<int, AuraKind, Crowded>
       RoundShapes shapes;
       const PrototypeId kinds[] = {shapes.sphere(random.between(0.05, 1)), shapes.sphere(random.between(0.05, 1))};
       const Step shuffle_ranks =
-          ranks_change ? 2 + random.below(static_cast<std::uint32_t>(rank_notice(rules.lookahead))) : 0;
+          ranks_change ? 2 + random.below(static_cast<std::uint32_t>(horizon::rank_notice(rules.lookahead))) : 0;
       KinematicWorld world(std::get<2>(GetParam()).map, rules, shapes, 1e9, shuffle_ranks);
       const double spread = random.between(0.5, way);
       for (std::uint32_t i = 0; i < crowds_each * kBodies; ++i) {

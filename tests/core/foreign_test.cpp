@@ -2,6 +2,7 @@
 #include "core/foreign.h"
 
 #include <limits>
+#include <memory>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ class AForeignBody : public ::testing::Test {
   }
   const Foreign& receive(const AuraRecord& aura_record, Step known = kNow - 1) {
     bodies.clear();
-    bodies.add(aura_record, known, kNow, aura);
+    bodies.add(aura_record, known, kNow, *aura);
     bodies.build();
     return bodies[0];
   }
@@ -36,7 +37,7 @@ class AForeignBody : public ::testing::Test {
   RoundShapes shapes;
   PrototypeId ball = shapes.sphere(0.5);
   PrototypeId boulder = shapes.sphere(30);
-  Aura aura{AuraRules{}, shapes};
+  std::unique_ptr<const Aura> aura = make_aura(AuraRules{}, shapes);
   ForeignBodies bodies;
   std::uint64_t next_id = 1;
 };
@@ -73,7 +74,7 @@ TEST_F(AForeignBody, IsInOneBlockWithOthersOfItsHostAndPace) {
     for (std::uint32_t i = 0; i < count; ++i) {
       AuraRecord record = aura_at(random.in_box(30), random.chance(0.2) ? 20 : 0.5, RegionId{1 + random.below(3)});
       if (random.chance(0.02)) record.prototype = boulder;
-      bodies.add(record, kNow, kNow, aura);
+      bodies.add(record, kNow, kNow, *aura);
     }
     bodies.build();
     std::set<std::uint32_t> seen;
@@ -94,8 +95,8 @@ TEST_F(AForeignBody, IsInOneBlockWithOthersOfItsHostAndPace) {
 }
 
 TEST_F(AForeignBody, SharesItsBlockWithThoseBesideItAndNotWithThoseFarAway) {
-  for (int i = 0; i < 9; ++i) bodies.add(aura_at({0.3 + 0.1 * i, 0.5, 0}), kNow, kNow, aura);
-  for (int i = 0; i < 9; ++i) bodies.add(aura_at({50.3 + 0.1 * i, 0.5, 0}), kNow, kNow, aura);
+  for (int i = 0; i < 9; ++i) bodies.add(aura_at({0.3 + 0.1 * i, 0.5, 0}), kNow, kNow, *aura);
+  for (int i = 0; i < 9; ++i) bodies.add(aura_at({50.3 + 0.1 * i, 0.5, 0}), kNow, kNow, *aura);
   bodies.build();
   ASSERT_EQ(bodies.blocks().size(), 2u);
   EXPECT_EQ(bodies.blocks()[0].bodies.size(), 9u);
@@ -104,7 +105,7 @@ TEST_F(AForeignBody, SharesItsBlockWithThoseBesideItAndNotWithThoseFarAway) {
 TEST_F(AForeignBody, NowhereOrFarOutIsInABlockToo) {
   bodies.clear();
   for (const double x : {0.0, 1e300, -1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    bodies.add(aura_at({x, -x, 0}), kNow, kNow, aura);
+    bodies.add(aura_at({x, -x, 0}), kNow, kNow, *aura);
   }
   bodies.build();
   std::size_t in_blocks = 0;

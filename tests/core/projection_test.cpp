@@ -109,7 +109,7 @@ TEST_P(ProjectionTest, ABodyProjectsNoLaterThanTheTableAsks) {
   const AuraRecord& first = *update_of(kBody, kLeft);
   const double before = first.pose.p_WB.x() + 0.5 - 20 * rules.step_s;  // its surface one state earlier
   const Aura& aura = world->protocol(kLeft).aura();
-  EXPECT_LT(before, -(aura.reach(1) + 0.5));
+  EXPECT_LT(before, -aura.zone(20, 1, 20, 0.5));
   EXPECT_LT(-first.pose.p_WB.x(), 100.0 / 2);
 }
 

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/horizon.h"
 #include "core/letters.h"
 #include "core/round_shapes.h"
 
@@ -337,8 +338,8 @@ class Guests : public ProtocolTest {
 TEST_F(Guests, GoHomeInALargeClusterAlthoughItIsTouchedAllTheTime) {
   start_with_large_cluster(17);
   const Step gone = goes_within(100);
-  EXPECT_GE(gone, 10 + rank_notice(settings.aura.lookahead)) << "not before everybody knows";
-  EXPECT_LE(gone, 12 + rank_notice(settings.aura.lookahead));
+  EXPECT_GE(gone, 10 + horizon::rank_notice(settings.aura.lookahead)) << "not before everybody knows";
+  EXPECT_LE(gone, 12 + horizon::rank_notice(settings.aura.lookahead));
 }
 
 TEST_F(Guests, StayWhileTheyAreFewAndTouched) {

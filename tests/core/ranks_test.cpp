@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "core/horizon.h"
+
 namespace aurasim::core {
 namespace {
 
 constexpr RegionId kFirst{0}, kSecond{1}, kThird{2};
 constexpr int kLookahead = 3;
-constexpr Step kNotice = rank_notice(kLookahead);
+constexpr Step kNotice = horizon::rank_notice(kLookahead);
 
 RankClaims once(std::uint8_t weight, Step stamp) { return {{}, {weight, stamp}}; }
 
@@ -80,7 +82,7 @@ TEST(Ranks, AreChangingFromBeforeAClaimCountsUntilThePullsHaveTurned) {
 }
 
 TEST(Ranks, ChangeIsKnownToAllBeforeItMatters) {
-  for (int k = 1; k < 10; ++k) EXPECT_LE(k, rank_notice(k) - 4 * k - 1 - k);
+  for (int k = 1; k < 10; ++k) EXPECT_LE(k, horizon::rank_notice(k) - horizon::before_ranks_change(k) - k);
 }
 
 class Claimer : public ::testing::Test {

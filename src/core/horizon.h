@@ -1,0 +1,71 @@
+// Every horizon of the protocol in one place, in steps, by the lookahead K: how far ahead bodies are looked for, how
+// long before it counts something has to be known, and how long it is remembered. What a node knows of others is K
+// states old, and what it sends takes part in their world K states later: most of it follows from these two.
+#pragma once
+
+#include "core/ids.h"
+
+namespace aurasim::core::horizon {
+
+// Hops: the regions through which a chain of pulls can come (docs/design.md, "Who leaves").
+
+/// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead than that has
+/// made no difference in any run, and costs (docs/decisions/0006-hops.md).
+inline constexpr int kMostHops = 3;
+/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead: that long, the
+/// others may act upon auras from before it left. So auras have to be known that much earlier, too.
+inline constexpr int kHomewardHops = 1;
+/// While ranks change, a chain of pulls may have to come all the way back: each region counts twice. For meetings one
+/// step less is enough (docs/decisions/0016-ranks.md).
+inline constexpr int kHopsEachWhileRanksChange = 2;
+inline constexpr int kFewerStepsWhileRanksChange = 1;
+
+// Looking ahead.
+
+/// A foreign body and one of ours that meet before then have to share a host: our hand-off takes part K states from
+/// now, and each further hop takes K more.
+constexpr int meeting(int lookahead, int hops) { return hops * lookahead; }
+/// Bodies of one host that may touch before then have to move together. Whoever pulls one of them acts upon an aura
+/// that is K states old; the state in which it arrives is looked at again.
+constexpr int linking(int lookahead, int hops) { return (hops + 1) * lookahead - 1; }
+/// Others act upon our auras when these are K states old, and look as far ahead as a meeting.
+constexpr int announcing(int lookahead, int hops) { return meeting(lookahead, hops) + lookahead; }
+/// An impact so far ahead makes nobody faster yet: whoever could be hit in turn still learns of it from our auras. With
+/// the hops of the meeting that it is.
+constexpr int impact(int lookahead, int hops) { return announcing(lookahead, hops + kHomewardHops); }
+/// The lookahead with which hosts are assigned in state 0: for the first 2K steps nobody has received anything, and
+/// what is decided then takes effect 2K later.
+constexpr int lookahead_at_start(int lookahead) { return 4 * lookahead; }
+
+// Remembering.
+
+/// A body just sent away stays a ghost until the first aura of its new host can have come: there and back.
+constexpr Step ghost(int lookahead) { return 2 * lookahead; }
+/// An aura is acted upon until it is K states old, and what follows takes effect K states later: until then it binds.
+constexpr Step promise(int lookahead) { return 2 * lookahead; }
+/// So many states in a row a cluster has to be an island before it goes home: all that was sent because of where it
+/// was before has arrived, and has been seen.
+constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
+/// A broken promise can spoil what is decided until its messages are replaced: aura, hand-off, and both looks ahead.
+constexpr Step blame(int lookahead) { return 6 * lookahead + 2; }
+/// States that the collision watch keeps: those in which an arrival can have been under way.
+constexpr Step under_way(int lookahead) { return 2 * lookahead + 2; }
+
+// Saying it early enough.
+
+/// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.
+constexpr Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
+/// Between a command to a whole run and the state that it names: all nodes have received it, also those K ahead.
+constexpr Step command_notice(int lookahead) { return 2 * lookahead + 1; }
+/// Steps between a claim and the state from which on it counts: everyone has received it, and has looked further ahead
+/// for as long as a pull can take.
+constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
+/// Before that state everyone looks further ahead: three pulls in a row, the longest chain
+/// (docs/decisions/0006-hops.md), and all of it has to be announced before.
+constexpr Step before_ranks_change(int lookahead) { return (kMostHops + 1) * lookahead + 1; }
+/// After it, the last bodies that went the old way may be under way for so many states.
+constexpr Step after_ranks_change(int lookahead) { return lookahead - 1; }
+/// Between two claims of one node: everybody remembers two, and is done with the first when the third is made.
+constexpr Step between_claims(int lookahead) { return rank_notice(lookahead) + 2 * lookahead; }
+
+}  // namespace aurasim::core::horizon

@@ -1,0 +1,105 @@
+#include "core/swept_aura.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/horizon.h"
+
+namespace aurasim::core {
+namespace {
+
+constexpr double kRestSpeed = 0.05;  // m/s: a sleeping body may creep
+constexpr double kSpeedFloor = 0.1;  // m/s: contacts of slow bodies
+
+}  // namespace
+
+double SweptAura::calm_speed(bool awake) const { return awake ? kSpeedFloor : kRestSpeed; }
+
+double SweptAura::own_speed_of(const BodyState& body) const {
+  if (!body.awake) return 0;
+  // A kick that nobody else can foresee takes the body off its path by the kick's speed, of which U covers a share.
+  const double share = std::clamp(rules().uncertainty, 0.1, 1.0);
+  return body.v_WB.norm() + body.coming_kick_m_s / share;
+}
+
+bool SweptAura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const {
+  return first_meeting(foreign, own, hops, fewer_steps).has_value();
+}
+
+std::optional<double> SweptAura::first_meeting(const Path& a, const Path& b, int hops, int fewer_steps) const {
+  return paths_meet(a, b, horizon::meeting(rules().lookahead, hops) - fewer_steps);
+}
+
+bool SweptAura::linked(const Path& a, const Path& b, int hops) const {
+  return paths_meet(a, b, horizon::linking(rules().lookahead, hops)).has_value();
+}
+
+bool SweptAura::meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const {
+  return meets(ghost, own, hops, fewer_steps);
+}
+
+Aura::Steps SweptAura::steps(Question question, int hops) const {
+  const int k = rules().lookahead;
+  switch (question) {
+    case Question::kZone:
+      return {1.0 * horizon::announcing(k, hops), 1.0 * horizon::meeting(k, hops)};
+    case Question::kNotice:
+      return {1.0 * horizon::announcing(k, hops), 1.0 * horizon::announcing(k, hops)};
+    case Question::kMeeting: {
+      const double last = last_instant(horizon::meeting(k, hops));
+      return {last, last};
+    }
+    case Question::kLink:
+      break;
+  }
+  const double last = last_instant(horizon::linking(k, hops));
+  return {last, last};
+}
+
+Range SweptAura::span(double steps) const { return {drop_m(steps), rules().step_s * steps}; }
+
+double SweptAura::drop_m(double steps) const {
+  const double t = steps * rules().step_s;
+  return 0.5 * gravity_m_s2() * t * (t + rules().step_s);
+}
+
+double SweptAura::last_instant(int horizon_steps) const {
+  return std::max(0.0, horizon_steps - 1.0 / rules().substeps);
+}
+
+std::optional<double> SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
+  const int substeps = rules().substeps;
+  const double spread = rules().uncertainty * rules().step_s;
+  const double last = horizon_steps;
+  // The clearance shrinks at most this fast, in metres per step.
+  const double oldest = std::max(a.age_steps, b.age_steps);
+  const double fall = gravity_m_s2() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules().step_s;
+  const double closing =
+      rules().step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m + b.w_WB.norm() * b.radius_m +
+                        rules().uncertainty * (a.speed_m_s + b.speed_m_s));
+  for (int i = 0; i < horizon_steps * substeps;) {
+    const double k = static_cast<double>(i) / substeps;
+    if (k + 1e-9 < std::max(a.unborn_steps, b.unborn_steps)) {
+      ++i;
+      continue;
+    }
+    const Pose at = ahead(a, k);
+    const Pose bt = ahead(b, k);
+    // One of them may stand on something and not fall as its path says. If both do, that makes no difference.
+    const double unfallen = drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
+    const double allowed =
+        rules().reach_scale * (rules().contact_margin_m + a.blur_m + b.blur_m + unfallen +
+                               spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
+    double gap = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
+    if (gap <= allowed) {
+      const double limit = allowed + closing * (last - k);
+      gap = clearance().clearance(a.prototype, at, b.prototype, bt, limit);
+      if (gap <= allowed) return k;
+    }
+    const double free_steps = closing > 0 ? (gap - allowed) / closing : last;
+    i += std::max(1, static_cast<int>(std::min(free_steps, last) * substeps));
+  }
+  return std::nullopt;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,30 @@
+// The aura that asks the question itself: can the real shapes touch, on the paths that the bodies are expected to take,
+// and as far off them as each of them may come (docs/design.md, "Swept auras")?
+#pragma once
+
+#include "core/aura.h"
+
+namespace aurasim::core {
+
+class SweptAura final : public Aura {
+ public:
+  SweptAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
+
+  bool predicts() const override { return true; }
+  double calm_speed(bool awake) const override;
+  double own_speed_of(const BodyState& body) const override;
+  bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
+  std::optional<double> first_meeting(const Path& a, const Path& b, int hops, int fewer_steps) const override;
+  bool linked(const Path& a, const Path& b, int hops) const override;
+  bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;
+
+ private:
+  Steps steps(Question question, int hops) const override;
+  Range span(double steps) const override;
+  double unfallen_m(double steps) const override { return drop_m(steps); }
+  std::optional<double> paths_meet(const Path& a, const Path& b, int horizon_steps) const;
+  double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
+  double last_instant(int horizon_steps) const;  ///< at which paths_meet() looks, in steps from now
+};
+
+}  // namespace aurasim::core
