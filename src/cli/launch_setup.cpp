@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/aura.h"
+#include "core/make_aura.h"
 #include "node/local_origin.h"
 #include "physics/solver_names.h"
 

@@ -9,6 +9,7 @@
 
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
+#include "core/command.h"
 #include "node/durations.h"
 
 namespace aurasim::cli {
@@ -17,8 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// Prototypes and statics that clients may add: what names them can be heard of before they are.
-constexpr std::size_t kRoomForClients = 20'000;
 constexpr auto kStatusPeriod = 100ms;
 constexpr auto kLinger = 1500ms;
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
@@ -49,9 +48,9 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
   settings.neighbours = launch.regions.neighbours(region, listening_distance_m(launch));
   settings.map_version = launch.regions.version();
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
-  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients);
-  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + kRoomForClients);
-  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + kRoomForClients);
+  settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + core::kRoomForClients);
+  settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + core::kRoomForClients);
+  settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + core::kRoomForClients);
   return settings;
 }
 

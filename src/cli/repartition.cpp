@@ -10,6 +10,7 @@
 #include "cli/launch_setup.h"
 #include "core/protocol.h"
 #include "dds/replica_bus.h"
+#include "physics/clearance.h"
 
 namespace aurasim::cli {
 namespace {

@@ -3,9 +3,6 @@
 #include <algorithm>
 
 #include "core/horizon.h"
-#include "core/none_aura.h"
-#include "core/sphere_aura.h"
-#include "core/swept_aura.h"
 
 namespace aurasim::core {
 
@@ -19,20 +16,6 @@ Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance) {
   path.moves = body.awake;
   path.unborn_steps = static_cast<double>(std::max<Step>(0, body.birth - now));
   return path;
-}
-
-std::unique_ptr<const Aura> make_aura(const AuraRules& rules, const ClearanceQuery& clearance) {
-  switch (rules.kind) {
-    case AuraKind::kNone:
-      return std::make_unique<NoneAura>(rules, clearance);
-    case AuraKind::kThesis:
-      return std::make_unique<ThesisAura>(rules, clearance);
-    case AuraKind::kTight:
-      return std::make_unique<TightAura>(rules, clearance);
-    case AuraKind::kSwept:
-      break;
-  }
-  return std::make_unique<SweptAura>(rules, clearance);
 }
 
 /// The one reach: how far apart two bodies can be that come together. By the drift of the own one.

@@ -1,9 +1,8 @@
 // The aura: how far ahead, and how far away, two bodies must know of each other so that they share a host before
 // they can touch. Distances and their derivation: docs/design.md, "The aura and its reach". Each kind of aura is a
-// class of its own: none_aura.h, sphere_aura.h, swept_aura.h.
+// class of its own (make_aura.h).
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "core/body_state.h"
@@ -141,8 +140,5 @@ class Aura {
   double gravity_m_s2_;
   const ClearanceQuery& clearance_;
 };
-
-/// The aura of rules.kind. `clearance` outlives it.
-std::unique_ptr<const Aura> make_aura(const AuraRules& rules, const ClearanceQuery& clearance);
 
 }  // namespace aurasim::core

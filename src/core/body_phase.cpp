@@ -10,14 +10,13 @@ using Row = std::array<std::optional<Phase>, kPhaseEvents>;
 constexpr std::nullopt_t no = std::nullopt;
 
 // clang-format off
-// event:                        kFarFromBoundary  kNearBoundary             kOutside               kAuraHit  kIsland   kReleased
+// event:                        kFarFromBoundary  kNearBoundary             kOutside               kAuraHit  kIsland
 constexpr std::array<Row, kPhases> kTable = {{
-/* kInjected             */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, no,       no,       no},
-/* kHostRegion           */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no,       no},
-/* kIntersectingBoundary */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no,       no},
-/* kBoundaryTraversed    */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, P::kSent, no},
-/* kSent                 */ Row{no,                no,                       no,                    no,       no,       P::kDestroyed},
-/* kDestroyed            */ Row{no,                no,                       no,                    no,       no,       no},
+/* kInjected             */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, no,       no},
+/* kHostRegion           */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no},
+/* kIntersectingBoundary */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, no},
+/* kBoundaryTraversed    */ Row{P::kHostRegion,    P::kIntersectingBoundary, P::kBoundaryTraversed, P::kSent, P::kSent},
+/* kSent                 */ Row{no,                no,                       no,                    no,       no},
 }};
 // clang-format on
 

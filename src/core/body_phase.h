@@ -11,10 +11,9 @@ enum class Phase : std::uint8_t {
   kHostRegion,            ///< far from every boundary: nothing is published
   kIntersectingBoundary,  ///< in a zone: projects its aura
   kBoundaryTraversed,     ///< wholly outside its host's region: projects its aura, goes home as soon as it is an island
-  kSent,                  ///< in the hand-off buffer
-  kDestroyed,             ///< out of this host's world
+  kSent,                  ///< handed over, and out of this host's world
 };
-inline constexpr int kPhases = 6;
+inline constexpr int kPhases = 5;
 
 enum class PhaseEvent : std::uint8_t {
   kFarFromBoundary,  ///< no region or foreign body within reach
@@ -22,9 +21,8 @@ enum class PhaseEvent : std::uint8_t {
   kOutside,          ///< wholly outside its own region
   kAuraHit,          ///< AC: its cluster has met an aura of a region that outranks ours
   kIsland,           ///< BT: its cluster has been an island for long enough
-  kReleased,         ///< taken out of the world
 };
-inline constexpr int kPhaseEvents = 6;
+inline constexpr int kPhaseEvents = 5;
 
 /// The phase after `event`, or nothing where the thesis has no such transition.
 std::optional<Phase> next_phase(Phase phase, PhaseEvent event);

@@ -11,6 +11,9 @@
 
 namespace aurasim::core {
 
+/// Prototypes and statics that clients may add: what names them can be received before they are.
+inline constexpr std::size_t kRoomForClients = 20'000;
+
 using ClientShape = std::variant<Sphere, Box, Capsule, Cylinder, MeshRef>;
 
 struct NewBody {

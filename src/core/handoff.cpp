@@ -39,12 +39,6 @@ std::uint64_t DepartureLedger::last_sequence(RegionId destination) const {
   return found == last_sequence_.end() ? 0 : found->second;
 }
 
-std::size_t DepartureLedger::open_bodies() const {
-  std::size_t bodies = 0;
-  for (const HandOff& h : open_) bodies += h.cluster.bodies.size();
-  return bodies;
-}
-
 bool ArrivalLedger::first_copy(RegionId source, std::uint64_t sequence) {
   Stream& stream = streams_[source];
   if (sequence <= stream.contiguous || !stream.ahead.insert(sequence).second) return false;

@@ -28,7 +28,6 @@ class DepartureLedger {
   std::vector<HandOff> take_open(RegionId destination);
 
   std::uint64_t last_sequence(RegionId destination) const;
-  std::size_t open_bodies() const;
   const std::deque<HandOff>& open() const { return open_; }
 
  private:

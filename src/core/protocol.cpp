@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/horizon.h"
+#include "core/make_aura.h"
 
 namespace aurasim::core {
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)

@@ -1,10 +1,10 @@
-// The messages of control.h as wire types, and back. As in codec.h.
+// control_messages.h as wire types, and back. As in codec.h.
 #pragma once
 
 #include <variant>
 
 #include "dds/codec.h"
-#include "dds/control.h"
+#include "dds/control_messages.h"
 
 namespace aurasim::wire {
 class NodeStatus;

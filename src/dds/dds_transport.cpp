@@ -38,7 +38,6 @@ struct Link {
 
   std::uint64_t match = 0;  ///< RemoteWriter::order of the neighbour's aura writer that we know; 0: none yet
   bool lost = false;
-  bool dropped = false;
 };
 
 void count_sent(TopicCounters& counters, WriteResult result, std::size_t bytes) {
@@ -181,9 +180,8 @@ void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) 
       link->lost = true;
       peers.push_back({link->region, core::PeerChange::kLost});
     }
-    if (link->lost && writer.alive && (!link->dropped || other_match) && unmatched(*link).empty()) {
+    if (link->lost && writer.alive && unmatched(*link).empty()) {
       link->lost = false;
-      link->dropped = false;
       link->match = writer.order;
       peers.push_back({link->region, core::PeerChange::kJoined});
     }
@@ -270,14 +268,6 @@ void DdsTransport::wait_for_arrival(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
   impl_->wakeup.wait(time_out);
   impl_->participant.progress();
-}
-
-void DdsTransport::drop(RegionId region) {
-  if (Link* link = impl_->find(region)) {
-    link->match = link->aura_reader.watch().latest().order;
-    link->lost = true;
-    link->dropped = true;
-  }
 }
 
 const TransportCounters& DdsTransport::counters() const { return impl_->counters; }

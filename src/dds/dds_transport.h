@@ -35,7 +35,7 @@ struct TopicCounters {
   std::uint64_t received_bytes = 0;
   std::uint64_t retried = 0;      ///< writes that needed a second try
   std::uint64_t send_failed = 0;  ///< writes that failed twice: the sample is lost
-  std::uint64_t not_sent = 0;     ///< not written, because the destination is lost or dropped
+  std::uint64_t not_sent = 0;     ///< not written, because the destination is lost
   WireErrors refused;
 };
 
@@ -79,10 +79,6 @@ class DdsTransport final : public transport::Transport {
   void send(const core::Outbox& outbox) override;
   /// Also returns when a neighbour was matched, unmatched or fell silent.
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
-
-  /// Stops sending hand-offs and acks to `region` and waiting for it. Its return (kJoined) undoes it. Regions reported
-  /// as kLost are dropped without notice.
-  void drop(core::RegionId region);
 
   const TransportCounters& counters() const;
 

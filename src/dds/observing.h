@@ -7,7 +7,7 @@
 
 #include "dds/codec.h"
 #include "dds/endpoints.h"
-#include "dds/replica_bus.h"
+#include "dds/observer_settings.h"
 
 namespace aurasim::dds {
 

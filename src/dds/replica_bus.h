@@ -9,6 +9,7 @@
 
 #include "core/messages.h"
 #include "core/replica.h"
+#include "dds/observer_settings.h"
 #include "dds/participant.h"
 #include "dds/wire_error.h"
 
@@ -29,13 +30,6 @@ class ReplicaWriter {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-};
-
-/// What an observer knows of the run that it watches; replicas of others are refused and counted.
-struct ObserverSettings {
-  std::uint64_t map_version = 0;
-  std::uint32_t region_count = 0;
-  std::uint32_t prototype_count = 0;
 };
 
 /// Used by one thread. The participant must outlive it.

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/aura.h"
+#include "core/make_aura.h"
 
 namespace aurasim::experiment {
 namespace {

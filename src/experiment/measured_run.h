@@ -7,7 +7,7 @@
 #include "core/aura.h"
 #include "core/protocol.h"
 #include "core/region_map.h"
-#include "experiment/stability/case.h"
+#include "experiment/case.h"
 #include "physics/region_world.h"
 
 namespace aurasim::experiment {

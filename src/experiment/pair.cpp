@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/horizon.h"
+#include "core/make_aura.h"
 
 namespace aurasim::experiment {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "core/region_map.h"
 #include "core/scene.h"
-#include "experiment/scale/wire_post.h"
+#include "experiment/wire_post.h"
 #include "node/node.h"
 #include "transport/memory_transport.h"
 
@@ -27,7 +27,7 @@ struct ClusterRules {
   bool hash_states = false;
   node::PhaseClock clock = node::PhaseClock::kWall;
   transport::Faults network;
-  /// Messages are coded as for DDS (experiment/scale/wire_post.h), and each node's link takes so many bytes a second.
+  /// Messages are coded as for DDS (experiment/wire_post.h), and each node's link takes so many bytes a second.
   std::optional<double> bandwidth_B_s;
   double shortest_frame_s = 0;
   double longest_frame_s = 0;

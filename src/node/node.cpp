@@ -6,6 +6,8 @@
 
 #include "core/horizon.h"
 #include "node/scene_additions.h"
+#include "physics/clearance.h"
+#include "physics/state_hash.h"
 
 namespace aurasim::node {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "config/launch_variants.h"
 #include "config/meshes.h"
+#include "core/command.h"
 #include "node/scene_additions.h"
 #include "overseer/ray_regions.h"
 #include "overseer/replay.h"
@@ -19,7 +20,6 @@ using core::RegionId;
 
 namespace {
 
-constexpr std::size_t kRoomForClients = 20'000;  // prototypes that clients may add
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kLookPeriod = 20ms;
@@ -54,7 +54,7 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
       web_(web),
       sink_(sink),
       observer_settings_{launch.regions.version(), static_cast<std::uint32_t>(launch.regions.size()),
-                         static_cast<std::uint32_t>(launch.scene.prototypes.size() + kRoomForClients)},
+                         static_cast<std::uint32_t>(launch.scene.prototypes.size() + core::kRoomForClients)},
       additions_reader_(participant),
       meshes_(participant),
       scene_(launch.scene),
@@ -179,7 +179,8 @@ void Overseer::look_at_map() {
     return spdlog::error("the run has changed to what cannot be read here: {}", error.what());
   }
   observer_settings_.map_version = launch_.regions.version();
-  observer_settings_.prototype_count = static_cast<std::uint32_t>(launch_.scene.prototypes.size() + kRoomForClients);
+  observer_settings_.prototype_count =
+      static_cast<std::uint32_t>(launch_.scene.prototypes.size() + core::kRoomForClients);
   replicas_.emplace(participant_, observer_settings_);
   overlays_.forget();
   view_.emplace(view_settings_);

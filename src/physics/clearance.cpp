@@ -1,5 +1,5 @@
-// Distances between the scene's shapes as they are, without Bullet's margins: boxes, cylinders and hulls are built
-// without one, and the radius of spheres and capsules, which is a margin to Bullet, belongs to the shape.
+#include "physics/clearance.h"
+
 #include <algorithm>
 #include <deque>
 #include <limits>
@@ -11,7 +11,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "physics/bullet_convert.h"
-#include "physics/region_world.h"
 #include "physics/shapes.h"
 
 namespace aurasim::physics {

@@ -11,7 +11,7 @@
 #include "core/body_state.h"
 #include "physics/contact_cache.h"
 #include "physics/first_contacts.h"
-#include "physics/region_world.h"
+#include "physics/settings.h"
 
 class btRigidBody;
 class btTypedConstraint;

@@ -4,73 +4,18 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/body_state.h"
-#include "core/clearance.h"
 #include "core/ids.h"
 #include "core/order.h"
 #include "core/scene.h"
+#include "physics/results.h"
+#include "physics/settings.h"
 
 namespace aurasim::physics {
-
-enum class Solver {
-  kSequentialImpulse,  ///< projected Gauss-Seidel
-  kNncg,               ///< nonsmooth nonlinear conjugate gradient
-  kDantzig,            ///< direct; its time grows with the cube of a pile's contacts, it knows no rolling friction
-};
-
-struct Settings {
-  double step_s = 1.0 / 60;
-  int substeps = 4;
-  Solver solver = Solver::kSequentialImpulse;
-  int solver_iterations = 10;
-  /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).
-  double contact_erp = 0.2;
-  /// Rows of friction at each contact point: 1 along the sliding velocity, 2 across each other. Bullet's own 1 turns
-  /// away from the load where nothing slides yet: piles creep, and a card house falls.
-  int friction_directions = 1;
-  /// Continuous collision detection: a body that moves farther in a substep than it is thick stops at what is in its
-  /// way. It loses the rest of the substep, not its speed.
-  bool continuous = false;
-  /// Where Bullet's coordinates begin, in the world frame. Positions outside this library are world coordinates all the
-  /// same. With coordinates that are multiples of a power of two the conversion is exact both ways as long as world
-  /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
-  /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
-  core::Vec3 p_WO = core::Vec3::Zero();
-};
-
-/// The first contact of a pair, seen before the solver acts on it.
-struct Collision {
-  core::Step step = 0;  ///< the state being computed when it was seen
-  core::BodyId a{};     ///< a < b
-  core::BodyId b{};
-  double penetration_m = 0;       ///< positive: the shapes overlap
-  double relative_speed_m_s = 0;  ///< of the two bodies at the contact point, before the solver
-  core::Vec3 p_W = core::Vec3::Zero();
-};
-
-/// A body that an order took out: state `step` is the first without it.
-struct Removal {
-  core::Step step = 0;
-  core::BodyId body{};
-};
-
-struct RayHit {
-  std::optional<core::ObjectRef> object;  ///< nothing: nothing was hit
-  core::Vec3 p_W = core::Vec3::Zero();
-  core::Vec3 normal_W = core::Vec3::Zero();
-  double distance_m = 0;
-};
-
-/// Tells a listener about states that were made up in a scratch world (docs/design.md, "The same bits"):
-/// the records of the cluster's bodies in state `step`, in ascending order of id.
-using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
 
 class RegionWorld {
  public:
@@ -139,11 +84,5 @@ class RegionWorld {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Bullet's GJK over the scene's shapes. Thread-compatible: one per thread.
-std::unique_ptr<core::ClearanceQuery> make_clearance_query(const core::Scene& scene);
-
-/// 64-bit hash of a body's id and full dynamic state (not its epoch). Equal bits, equal hash.
-std::uint64_t state_hash(const core::BodyRecord& body);
 
 }  // namespace aurasim::physics

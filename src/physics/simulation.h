@@ -13,7 +13,8 @@
 #include "physics/bullet_convert.h"
 #include "physics/dynamics_world.h"
 #include "physics/joint_table.h"
-#include "physics/region_world.h"
+#include "physics/results.h"
+#include "physics/settings.h"
 #include "physics/shapes.h"
 #include "physics/timeline.h"
 

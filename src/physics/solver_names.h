@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "physics/region_world.h"
+#include "physics/settings.h"
 
 namespace aurasim::physics {
 

@@ -11,7 +11,7 @@
 
 #include <memory>
 
-#include "physics/region_world.h"
+#include "physics/settings.h"
 
 class btConstraintSolver;
 

@@ -1,6 +1,6 @@
-#include <bit>
+#include "physics/state_hash.h"
 
-#include "physics/region_world.h"
+#include <bit>
 
 namespace aurasim::physics {
 namespace {

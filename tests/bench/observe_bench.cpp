@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/protocol.h"
+#include "physics/clearance.h"
 #include "physics/region_world.h"
 
 namespace aurasim {

@@ -96,7 +96,9 @@ class Impacts : public testing::Test {
     const Outcome o = ClusterSim(scene, options).run(steps);
     EXPECT_EQ(o.unflagged, 0u) << "seed " << seed;
     EXPECT_EQ(o.lost + o.doubled, 0u) << "seed " << seed;
-    differ_ += o.hash != run_central(scene, options, steps).hash;
+    const bool differs = o.hash != run_central(scene, options, steps).hash;
+    EXPECT_TRUE(!differs || o.violations > 0) << "seed " << seed << " differs, and no broken promise was counted";
+    differ_ += differs;
     hand_offs_ += o.hand_offs;
   }
 
@@ -104,16 +106,18 @@ class Impacts : public testing::Test {
   std::uint64_t hand_offs_ = 0;
 };
 
-/// Without what foreign bodies hit, 2 of 5 runs differ. Of 200, 3 still do: in them a whole row that flies with gaps
-/// in it, or that overlaps so far that being pushed apart counts, is faster than any push of one body makes it. Such a
-/// broken promise is counted, and nothing is late without it.
-TEST_F(Impacts, GoThroughARowAcrossTheBorder) {
+/// A known fault, not a tolerance: of 200 runs 3 do not have the bits of one world (without what foreign bodies hit, 2
+/// of 5). In them a whole row that flies with gaps in it, or that overlaps so far that being pushed apart counts, is
+/// faster than any push of one body makes it. Such a broken promise is counted, and nothing is late without it. More
+/// than one run in kOneIn is news.
+TEST_F(Impacts, GoThroughARowAcrossTheBorderButForAKnownFewRuns) {
+  constexpr int kOneIn = 40;
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
     ImpactScene scene(static_cast<std::uint64_t>(seed));
     for (int row = 0; row < 12; ++row) add_row(scene, 4.0 * row - 24);
     run(scene, static_cast<std::uint64_t>(seed), 300);
   }
-  EXPECT_LE(differ_, seeds_or(6) / 40);
+  EXPECT_LE(differ_, seeds_or(6) / kOneIn);
   EXPECT_GT(hand_offs_, 0u);
 }
 

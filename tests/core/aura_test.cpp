@@ -1,7 +1,5 @@
 // Distances against docs/design.md, "The aura and its reach", and the thesis, paths against an integrator, meetings
 // against sampling.
-#include "core/aura.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/make_aura.h"
 #include "core/random.h"
 #include "core/round_shapes.h"
 #include "core/sphere_aura.h"

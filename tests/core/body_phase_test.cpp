@@ -39,8 +39,6 @@ const std::vector<Transition> kTransitions = {
     {"ABodyOutsideStaysOutside", Phase::kBoundaryTraversed, kOutside, Phase::kBoundaryTraversed},
     {"ABodyOutsideIsHit", Phase::kBoundaryTraversed, kAuraHit, Phase::kSent},
     {"ABodyOutsideGoesHome", Phase::kBoundaryTraversed, kIsland, Phase::kSent},
-
-    {"ASentBodyIsTakenOut", Phase::kSent, kReleased, Phase::kDestroyed},
 };
 
 class PhaseTransition : public ::testing::TestWithParam<Transition> {};
@@ -64,7 +62,7 @@ TEST(BodyPhase, HasNoOtherTransition) {
       ++forbidden;
     }
   }
-  EXPECT_EQ(forbidden, kPhases * kPhaseEvents - 17);
+  EXPECT_EQ(forbidden, kPhases * kPhaseEvents - 16);
 }
 
 TEST(BodyPhase, OnlyBodiesAtABoundaryProject) {
@@ -73,7 +71,6 @@ TEST(BodyPhase, OnlyBodiesAtABoundaryProject) {
   EXPECT_TRUE(projects(Phase::kIntersectingBoundary));
   EXPECT_TRUE(projects(Phase::kBoundaryTraversed));
   EXPECT_FALSE(projects(Phase::kSent));
-  EXPECT_FALSE(projects(Phase::kDestroyed));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/make_aura.h"
 #include "core/random.h"
 #include "core/round_shapes.h"
 

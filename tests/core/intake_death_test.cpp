@@ -51,7 +51,7 @@ TEST_F(Death, BodiesUnderWayComeBackOnlyWhenEveryLiveNeighbourKnows) {
   receive_all_until(5);
   send(2, 5, {record_of(1, 3)});
   lose(2);
-  EXPECT_EQ(departures.open_bodies(), 0u);
+  EXPECT_EQ(open_bodies(departures), 0u);
   EXPECT_EQ(intake->to_reclaim().size(), 1u);
   EXPECT_THAT(receive(6), IsEmpty());
   receive(batch(1, 6));

@@ -189,7 +189,7 @@ TEST_F(Copies, OfAcknowledgementsAreCounted) {
   listen(SyncMode::kBounded, 1);
   send(1, 3, {record_of(1, 1)});
   receive_ack(1, 1);
-  EXPECT_EQ(departures.open_bodies(), 0u);
+  EXPECT_EQ(open_bodies(departures), 0u);
   EXPECT_EQ(intake->counters().copies, 0u);
   receive_ack(1, 1);
   EXPECT_EQ(intake->counters().copies, 1u);

@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 
+#include "core/handoff.h"
 #include "core/messages.h"
 
 namespace aurasim::core::testing {
@@ -15,6 +16,13 @@ inline BodyRecord record_of(std::uint64_t id, Epoch epoch) {
   record.id = BodyId{id};
   record.epoch = epoch;
   return record;
+}
+
+/// Bodies that are kept until they are acknowledged.
+inline std::size_t open_bodies(const DepartureLedger& departures) {
+  std::size_t bodies = 0;
+  for (const HandOff& h : departures.open()) bodies += h.cluster.bodies.size();
+  return bodies;
 }
 
 inline HandOff hand_off(std::uint32_t from, std::uint32_t to, Step stamp, std::initializer_list<BodyRecord> bodies) {

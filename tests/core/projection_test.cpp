@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/kinematic_world.h"
+#include "core/letters.h"
 #include "core/random.h"
 
 namespace aurasim::core::testing {
@@ -200,9 +201,9 @@ TEST_P(ProjectionTest, AHandOffRaisesTheEpochByOneAndIsAdoptedKStepsLater) {
   EXPECT_EQ(world->now(), sent + k());
   EXPECT_EQ(world->host(kBody), kRight);
   EXPECT_EQ(world->epoch(kBody), 1u);
-  EXPECT_EQ(world->protocol(kLeft).departures().open_bodies(), 1u) << "kept until acknowledged";
+  EXPECT_EQ(open_bodies(world->protocol(kLeft).departures()), 1u) << "kept until acknowledged";
   world->run_steps(k());
-  EXPECT_EQ(world->protocol(kLeft).departures().open_bodies(), 0u);
+  EXPECT_EQ(open_bodies(world->protocol(kLeft).departures()), 0u);
 }
 
 TEST_P(ProjectionTest, ABodySentAwayStaysAsAGhostFor2KSteps) {

@@ -153,7 +153,10 @@ TEST(Push, WhatIsJoinedCoversBoth) {
   EXPECT_GT(covered, 1000);
 }
 
-TEST_F(PushesTest, AreTheSameInWhateverOrderTheyAreFound) {
+/// Of two pushes of which neither covers the other, both are passed on as one that covers both: somewhat more than
+/// either. Which are joined depends on the order in which they are found (which is the same in every run: by body). So
+/// speeds may differ, by a quarter in what is tried here; but in any order, nothing is left to pass on.
+TEST_F(PushesTest, AreAtMostAQuarterMoreInAnotherOrderAndCompleteInEach) {
   Random random("order");
   for (int run = 0; run < 200; ++run) {
     const std::uint32_t count = 3 + random.below(40);
@@ -175,8 +178,13 @@ TEST_F(PushesTest, AreTheSameInWhateverOrderTheyAreFound) {
       later.spread(raised);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-      // A push that covers two may be a little more than either, and which are joined depends on the order.
       EXPECT_NEAR(pushes.speed(i), later.speed(i), 0.25 * pushes.speed(i) + Push::kUnfelt_m_s) << run << " " << i;
+    }
+    for (Pushes* found : {&pushes, &later}) {
+      raised.clear();
+      for (std::uint32_t i = 0; i < count; ++i) found->start(i);
+      found->spread(raised);
+      EXPECT_TRUE(raised.empty()) << "run " << run;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/kinematic_world.h"
+#include "core/letters.h"
 #include "core/random.h"
 
 namespace aurasim::core::testing {
@@ -141,7 +142,7 @@ TEST_P(RandomWalk, EveryHandOffIsAcknowledged) {
   std::size_t sent = 0, open = 0;
   for (std::uint32_t r = 0; r < 4; ++r) {
     sent += world->protocol(RegionId{r}).counters().handed_over;
-    open += world->protocol(RegionId{r}).departures().open_bodies();
+    open += open_bodies(world->protocol(RegionId{r}).departures());
     EXPECT_EQ(world->protocol(RegionId{r}).intake().counters().strangers, 0u);
   }
   EXPECT_EQ(sent, world->hand_offs());

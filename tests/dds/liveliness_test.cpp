@@ -129,27 +129,6 @@ TEST_F(Neighbour, WithFramesLongerThanTheLeaseIsNotLost) {
   EXPECT_FALSE(wait_for_peer_events(1, 4s));
 }
 
-TEST_F(Neighbour, ThatIsDroppedIsNotSentHandOffsUntilItIsBack) {
-  meet(113, "run");
-  here_->transport.drop(RegionId{1});
-  core::Outbox outbox;
-  outbox.aura = testing::batch_of(0, RegionId{0});
-  outbox.hand_offs = {testing::hand_off_of(1, RegionId{0}, RegionId{1})};
-  outbox.acks = {testing::ack_of(1, RegionId{0}, RegionId{1})};
-  here_->transport.send(outbox);
-  EXPECT_EQ(here_->transport.counters().migration.not_sent, 1U);
-  EXPECT_EQ(here_->transport.counters().migration_ack.not_sent, 1U);
-  EXPECT_TRUE(here_->transport.all_matched()) << "nobody waits for a dropped region";
-  EXPECT_FALSE(wait_for_peer_events(1, 300ms)) << "the old process does not count as a return";
-
-  there_->kill(SIGKILL);
-  start("run");
-  ASSERT_TRUE(wait_for_peer_events(1));
-  expect_event(0, PeerChange::kJoined);
-  here_->transport.send(outbox);
-  EXPECT_EQ(here_->transport.counters().migration.sent, 1U);
-}
-
 TEST_F(Neighbour, ThatIsDeadNeverBlocksASend) {
   meet(129, "run");
   there_->kill(SIGKILL);

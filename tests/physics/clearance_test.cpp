@@ -1,4 +1,6 @@
 // Distances against closed forms. Bullet works in single precision in one of the two builds.
+#include "physics/clearance.h"
+
 #include <cmath>
 
 #include <LinearMath/btScalar.h>

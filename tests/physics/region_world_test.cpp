@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/scenes.h"
+#include "physics/state_hash.h"
 
 namespace aurasim::physics::testing {
 namespace {

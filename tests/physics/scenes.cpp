@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "physics/state_hash.h"
+
 namespace aurasim::physics::testing {
 namespace {
 

@@ -33,8 +33,6 @@ struct RainFigures {
   double most_hosted_share = 0;  ///< largest share of the bodies on one node at the end of a window, times the nodes
   std::uint64_t violations = 0;
   std::uint64_t late = 0;
-
-  double frame_sum_ms() const { return physics_ms + protocol_ms + transport_ms + watch_ms; }
 };
 
 RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes);

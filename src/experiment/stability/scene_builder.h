@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/scene.h"
-#include "experiment/stability/case.h"
+#include "experiment/case.h"
 
 namespace aurasim::experiment {
 

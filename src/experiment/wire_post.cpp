@@ -1,4 +1,4 @@
-#include "experiment/scale/wire_post.h"
+#include "experiment/wire_post.h"
 
 #include <algorithm>
 #include <stdexcept>

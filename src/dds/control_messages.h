@@ -1,0 +1,95 @@
+// What node_status, region_map and run_control say.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/region_map.h"
+
+namespace aurasim::dds {
+
+enum class NodeState : std::uint8_t { kStarting, kWaiting, kRunning, kPaused, kFinished, kFailed };
+const char* name_of(NodeState state);
+
+/// Of the last second, milliseconds.
+struct Durations {
+  double p50_ms = 0;
+  double p99_ms = 0;
+  double max_ms = 0;
+};
+
+/// Broken promises since the start, by kind.
+struct Violations {
+  std::uint64_t speed = 0;    ///< a body was faster than tolerances.speed
+  std::uint64_t latency = 0;  ///< a message was older than K steps when it was needed
+  std::uint64_t frame = 0;    ///< a frame took longer than tolerances.frame
+  std::uint64_t promise = 0;  ///< a body left what its last aura promised
+  std::uint64_t span = 0;     ///< a cluster or reach wider than the neighbours that were asked
+};
+
+/// What a node says of itself.
+struct Status {
+  core::RegionId region{};
+  core::Generation generation = 0;
+  core::Step step = 0;
+  std::uint32_t pid = 0;
+  std::uint64_t map_version = 0;
+  std::uint64_t agreement = 0;  ///< equal on all nodes of a run (config::Launch::agreement)
+  NodeState state = NodeState::kStarting;
+  std::uint64_t bodies = 0;
+  std::uint64_t awake = 0;
+  std::uint64_t foreign_auras = 0;
+  std::uint64_t hand_offs_out = 0;
+  std::uint64_t hand_offs_in = 0;
+  Violations violations;
+  Durations frame;
+  Durations physics;
+  Durations protocol;
+  Durations transport;
+  double real_time_factor = 0;  ///< simulated seconds per second
+  double rate = 1;              ///< the same, as asked for
+  std::uint64_t largest_cluster = 0;
+  core::Rectangle footprint;  ///< the region; infinite sides allowed, metres
+  std::int32_t lookahead = 0;
+  std::string text;  ///< e.g. why it failed; cut at 256 bytes
+  std::vector<core::RegionId> dead;
+  std::vector<std::uint64_t> meshes;  ///< hashes of clients' meshes that it has
+};
+
+/// The last status of one region, and whether its node is still there.
+struct SeenStatus {
+  Status status;
+  bool lost = false;  ///< its proof of life has ended; false again when it comes back
+  std::chrono::steady_clock::time_point seen;
+
+  /// Neither lost nor at its end.
+  bool is_live() const { return !lost && status.state != NodeState::kFinished && status.state != NodeState::kFailed; }
+};
+
+/// Who owns what, as the launcher or a node announces it.
+struct WorldMap {
+  std::uint64_t map_version = 0;
+  std::uint64_t agreement = 0;
+  core::Generation generation = 0;
+  core::Step from_step = 0;  ///< holds from this state on
+  std::string scene;         ///< cut at 256 bytes
+  std::vector<core::Rectangle> regions;
+};
+
+enum class RunCommandKind : std::uint8_t { kStart, kPause, kResume, kStep, kReset, kStop };
+const char* name_of(RunCommandKind kind);
+
+struct RunCommand {
+  std::uint64_t request = 0;  ///< 0: send() draws one
+  RunCommandKind kind = RunCommandKind::kStart;
+  core::Generation generation = 0;
+  std::uint64_t map_version = 0;  ///< of the run that is meant; 0: any
+  core::Step at_step = 0;         ///< takes effect when this state has been computed
+  std::int64_t count = 0;         ///< kStep: how many steps
+  std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume: of the first step after it
+};
+
+}  // namespace aurasim::dds

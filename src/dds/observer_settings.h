@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace aurasim::dds {
+
+/// What an observer knows of the run that it watches; replicas of others are refused and counted.
+struct ObserverSettings {
+  std::uint64_t map_version = 0;
+  std::uint32_t region_count = 0;
+  std::uint32_t prototype_count = 0;
+};
+
+}  // namespace aurasim::dds

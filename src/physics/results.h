@@ -1,0 +1,41 @@
+// What a world has to say besides the state of its bodies.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+#include "core/order.h"
+
+namespace aurasim::physics {
+
+/// The first contact of a pair, seen before the solver acts on it.
+struct Collision {
+  core::Step step = 0;  ///< the state being computed when it was seen
+  core::BodyId a{};     ///< a < b
+  core::BodyId b{};
+  double penetration_m = 0;       ///< positive: the shapes overlap
+  double relative_speed_m_s = 0;  ///< of the two bodies at the contact point, before the solver
+  core::Vec3 p_W = core::Vec3::Zero();
+};
+
+/// A body that an order took out: state `step` is the first without it.
+struct Removal {
+  core::Step step = 0;
+  core::BodyId body{};
+};
+
+struct RayHit {
+  std::optional<core::ObjectRef> object;  ///< nothing: nothing was hit
+  core::Vec3 p_W = core::Vec3::Zero();
+  core::Vec3 normal_W = core::Vec3::Zero();
+  double distance_m = 0;
+};
+
+/// Tells a listener about states that were made up in a scratch world (docs/design.md, "The same bits"):
+/// the records of the cluster's bodies in state `step`, in ascending order of id.
+using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
+
+}  // namespace aurasim::physics

@@ -1,0 +1,34 @@
+// How a world is simulated: the same on all nodes of a run.
+#pragma once
+
+#include "core/body_state.h"
+
+namespace aurasim::physics {
+
+enum class Solver {
+  kSequentialImpulse,  ///< projected Gauss-Seidel
+  kNncg,               ///< nonsmooth nonlinear conjugate gradient
+  kDantzig,            ///< direct; its time grows with the cube of a pile's contacts, it knows no rolling friction
+};
+
+struct Settings {
+  double step_s = 1.0 / 60;
+  int substeps = 4;
+  Solver solver = Solver::kSequentialImpulse;
+  int solver_iterations = 10;
+  /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).
+  double contact_erp = 0.2;
+  /// Rows of friction at each contact point: 1 along the sliding velocity, 2 across each other. Bullet's own 1 turns
+  /// away from the load where nothing slides yet: piles creep, and a card house falls.
+  int friction_directions = 1;
+  /// Continuous collision detection: a body that moves farther in a substep than it is thick stops at what is in its
+  /// way. It loses the rest of the substep, not its speed.
+  bool continuous = false;
+  /// Where Bullet's coordinates begin, in the world frame. Positions outside this library are world coordinates all the
+  /// same. With coordinates that are multiples of a power of two the conversion is exact both ways as long as world
+  /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
+  /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
+  core::Vec3 p_WO = core::Vec3::Zero();
+};
+
+}  // namespace aurasim::physics
