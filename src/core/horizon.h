@@ -46,6 +46,10 @@ constexpr Step promise(int lookahead) { return 2 * lookahead; }
 /// So many states in a row a cluster has to be an island before it goes home: all that was sent because of where it
 /// was before has arrived, and has been seen.
 constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
+/// So long a cluster does not go home before the one that was pulled to it has touched something. A pull comes early by
+/// at most the way that both may leave their paths, stated four times as fast as they are (Push::of), through kMostHops
+/// regions: 28 K states for two that come together at half of their speed.
+constexpr Step pull(int lookahead) { return 40 * lookahead; }
 /// A broken promise can spoil what is decided until its messages are replaced: aura, hand-off, and both looks ahead.
 constexpr Step blame(int lookahead) { return 6 * lookahead + 2; }
 /// States that the collision watch keeps: those in which an arrival can have been under way.

@@ -45,7 +45,28 @@ void Protocol::take_if_newer(Adoption& adoption) {
     if (!gone) let_go(body.id);
     return false;
   });
-  if (!adoption.cluster.bodies.empty()) changes_.adoptions.push_back(std::move(adoption));
+  if (adoption.cluster.bodies.empty()) return;
+  if (adoption.reason == HandOffReason::kAuraCollision && !adoption.reclaimed) {
+    const Step until = adoption.stamp + horizon::pull(aura_->rules().lookahead);
+    for (const BodyRecord& body : adoption.cluster.bodies) pulled_.push_back({body.id, until});
+  }
+  changes_.adoptions.push_back(std::move(adoption));
+}
+
+/// A pair that goes home together after the pull, and meets only there, has changed host twice for one contact.
+void Protocol::note_who_waits(const Snapshot& snapshot) {
+  waits_.assign(snapshot.bodies.size(), 0);
+  std::erase_if(pulled_, [&](Pulled& pulled) {
+    const auto here = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), pulled.id,
+                                       [](const BodyState& body, BodyId id) { return body.id < id; });
+    if (here == snapshot.bodies.end() || here->id != pulled.id || snapshot.step >= pulled.until) return true;
+    pulled.i = static_cast<std::uint32_t>(here - snapshot.bodies.begin());
+    waits_[pulled.i] = 1;
+    return false;
+  });
+  if (pulled_.empty()) return;
+  for (const Contact& contact : snapshot.contacts) waits_[contact.a] = waits_[contact.b] = 0;
+  std::erase_if(pulled_, [&](const Pulled& pulled) { return !waits_[pulled.i]; });
 }
 
 void Protocol::let_go_of_what_others_own() {
@@ -84,6 +105,7 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   rank(snapshot.step);
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
   projection_.classify(snapshot, matching_);
+  note_who_waits(snapshot);
   decide(snapshot);
   claimer_.reconsider(snapshot.step, {largest_cluster_, largest_guest_}, ranks_);
   projection_.publish(snapshot, matching_, outbox_.aura, violations_);
@@ -146,11 +168,12 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Has the cluster of body i been an island for 2K+1 states in a row?
+/// Has the cluster of body i been an island, with nobody in it that waits, for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
   bool island = !matching_.touched(i) && !matching_.expected(i);
   if (island) {
-    matching_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && matching_.outside(j); });
+    matching_.clusters().for_each_member(
+        i, [&](std::uint32_t j) { island = island && matching_.outside(j) && !waits_[j]; });
   }
   Step since = 0;
   matching_.clusters().for_each_member(i, [&](std::uint32_t j) {

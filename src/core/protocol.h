@@ -122,6 +122,7 @@ class Protocol {
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   bool is_abroad(std::uint32_t i) const;
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
+  void note_who_waits(const Snapshot& snapshot);
   bool settles_elsewhere(std::uint32_t i, Step now);
   RegionId lowest_owner(std::uint32_t i) const;
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
@@ -144,6 +145,14 @@ class Protocol {
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;
+  /// Came here by a pull, and has touched nothing since.
+  struct Pulled {
+    BodyId id{};
+    Step until = 0;       ///< it is waited for
+    std::uint32_t i = 0;  ///< its place in the snapshot
+  };
+  std::vector<Pulled> pulled_;
+  std::vector<std::uint8_t> waits_;  ///< by body: one of pulled_
   Outbox outbox_;
   ProtocolCounters counters_;
   ViolationLog violations_;

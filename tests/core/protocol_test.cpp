@@ -217,6 +217,51 @@ TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
   EXPECT_EQ(departures[0].reason, HandOffReason::kAuraCollision);
 }
 
+/// Region 0 gets a ball of region 1, over whose ground it is.
+class Arrival : public ProtocolTest {
+ protected:
+  void arrive(HandOffReason reason) {
+    start(0);
+    receive_batch_of_1();
+    HandOff h = hand_off(1, 0, 0, {record_of(7, 1)});
+    h.reason = reason;
+    receive(std::move(h), 1);
+    host(7, Vec3(20, 0, 0)).epoch = 1;
+  }
+  void pass_steps_until(Step last) {
+    while (now < last && !snapshot.bodies.empty()) pass_step();
+  }
+  bool is_here() const { return !snapshot.bodies.empty(); }
+
+  const Step island = 2 * settings.aura.lookahead + 2;
+};
+
+TEST_F(Arrival, OfWhomNobodyPulledGoesHomeAsSoonAsItIsAnIsland) {
+  arrive(HandOffReason::kBoundaryTraversal);
+  pass_steps_until(island);
+  EXPECT_FALSE(is_here());
+}
+
+TEST_F(Arrival, ByAPullStaysUntilItHasTouchedSomething) {
+  arrive(HandOffReason::kAuraCollision);
+  pass_steps_until(3 * island);
+  ASSERT_TRUE(is_here());
+  host(8, Vec3(20, 1, 0));
+  snapshot.contacts.push_back({0, 1});
+  pass_step();
+  snapshot.contacts.clear();
+  pass_steps_until(now + island);
+  EXPECT_FALSE(is_here());
+}
+
+TEST_F(Arrival, ByAPullThatCameToNothingGoesHomeInTheEnd) {
+  arrive(HandOffReason::kAuraCollision);
+  pass_steps_until(horizon::pull(settings.aura.lookahead) - 1);
+  EXPECT_TRUE(is_here());
+  pass_steps_until(now + island + 1);
+  EXPECT_FALSE(is_here());
+}
+
 TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
   host(1, Vec3(10, 0, 0));
   start(2, RegionMap::columns(3, 10));

@@ -72,6 +72,33 @@ TEST(Trial, NoPairIsHandedOverBeforeTheNodesTalk) {
   }
 }
 
+/// The first pull comes 13 steps before the contact here, with both bodies over the other region already.
+TEST(Trial, APairDoesNotGoHomeBetweenThePullAndTheContact) {
+  Campaign campaign;
+  campaign.name = "collision";
+  campaign.variants = {{AuraChoice::kSwept, SyncMode::kBounded}};
+  for (const auto& [series, value] : {std::pair{0, 8.0}, {1, 16.0}}) {
+    for (const Trial& trial : run_job(campaign, {PairKind::kRandom, thesis_series()[series], value})) {
+      EXPECT_FALSE(trial.thrashed()) << name_of(thesis_series()[series]) << ", repeat " << trial.repeat;
+    }
+  }
+}
+
+TEST(Trial, AtTheStartEachBodyIsHostedWhereItIs) {
+  for (const Series& series : thesis_series()) {
+    const Conditions conditions = conditions_at(series, series.values.back(), 1);
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      Chance chance(seed);
+      const Pair pair = make_pair(PairKind::kRandom, conditions, chance);
+      const ClusterRules rules = rules_of(conditions, {AuraChoice::kSwept, SyncMode::kBounded}, {});
+      VirtualCluster cluster(pair.scene, pair.map, rules);
+      for (std::size_t region = 0; region < cluster.size(); ++region) {
+        EXPECT_EQ(cluster.records(region).size(), 1u) << name_of(series) << ", seed " << seed << ", region " << region;
+      }
+    }
+  }
+}
+
 TEST(Trial, ASpeedThatIsNotPromisedIsALateCollisionThatWasFlagged) {
   Tally total;
   for (const double speed : {50.0, 64.0}) {
