@@ -41,6 +41,10 @@ void CollisionWatch::newborn(core::BodyId body, core::Step birth) {
   births_.insert(at, {body, birth});
 }
 
+void CollisionWatch::forget_grown_up(core::Step now) {
+  std::erase_if(births_, [now](const auto& birth) { return now > birth.second + kYoungSteps; });
+}
+
 bool CollisionWatch::was_just_born(const physics::Collision& c) const {
   const auto young = [&](core::BodyId id) {
     const auto found = std::lower_bound(births_.begin(), births_.end(), id, by_id);
@@ -159,9 +163,17 @@ const core::Pose* CollisionWatch::remembered(core::Step step, core::BodyId id) c
   return nullptr;
 }
 
+/// Two that have not been seen to overlap for longer than an aura may be old are apart, and may meet again.
+void CollisionWatch::forget_separated(core::Step now) {
+  std::erase_if(overlapping_,
+                [&](const auto& pair) { return now - pair.second > 2 * core::horizon::under_way(lookahead_); });
+}
+
 void CollisionWatch::compare(const core::Snapshot& snapshot, const core::InterestMatching& matching,
                              core::Step last_violation, std::vector<SeenCollision>& out) {
   remember(snapshot, matching);
+  forget_separated(snapshot.step);
+  forget_grown_up(snapshot.step);
   for (const core::InterestMatching::Pair& pair : matching.pairs()) {
     const core::Foreign& foreign = matching.foreign(pair.foreign);
     if (foreign.ghost || !foreign.born) continue;
@@ -175,7 +187,9 @@ void CollisionWatch::compare(const core::Snapshot& snapshot, const core::Interes
         clearance_.clearance(foreign.path.prototype, foreign.path.pose, own.prototype, *pose, kSlop);
     if (clearance > -kSlop) continue;
     const auto ids = std::minmax(foreign.id, snapshot.bodies[pair.own].id);
-    if (!overlapping_.insert(ids).second) continue;
+    const auto [counted, is_new] = overlapping_.try_emplace(ids, stamp);
+    counted->second = stamp;
+    if (!is_new) continue;
     SeenCollision seen;
     seen.collision = {stamp, ids.first, ids.second, -clearance, (own.v_WB - foreign.path.v_WB).norm(), pose->p_WB};
     seen.missed = true;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -79,6 +80,8 @@ class CollisionWatch {
   const Joined* joined(core::BodyId id) const;
   bool came_together(const Pair& pair) const;
   void forget_parted(const core::Snapshot& snapshot);
+  void forget_grown_up(core::Step now);
+  void forget_separated(core::Step now);
   std::optional<SeenCollision> overlap_of(std::uint32_t i, std::uint32_t j, const core::Snapshot& snapshot,
                                           const core::InterestMatching& matching) const;
   void report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out);
@@ -88,11 +91,11 @@ class CollisionWatch {
   double gravity_m_s2_;
   int lookahead_;
   const core::ClearanceQuery& clearance_;
-  std::vector<std::pair<core::BodyId, core::Step>> births_;
+  std::vector<std::pair<core::BodyId, core::Step>> births_;  ///< ascending id, of those that are young or unborn
   std::deque<State> states_;
-  std::set<Pair> overlapping_;  ///< already counted as missed
-  std::vector<Joined> joined_;  ///< ascending id
-  std::set<Pair> untouching_;   ///< overlap without a contact: judged before it comes
+  std::map<Pair, core::Step> overlapping_;  ///< counted as missed, and the newest state in which they overlapped
+  std::vector<Joined> joined_;              ///< ascending id
+  std::set<Pair> untouching_;               ///< overlap without a contact: judged before it comes
   std::uint64_t late_ = 0;
   std::uint64_t missed_ = 0;
   std::uint64_t unflagged_ = 0;
