@@ -12,12 +12,10 @@
 #include "cli/launch_setup.h"
 #include "cli/spawn.h"
 #include "experiment/scale/rain_run.h"
-#include "node/csv.h"
+#include "node/report_rows.h"
 
 namespace aurasim::cli {
 namespace {
-
-using Cells = std::vector<std::string_view>;
 
 /// Waits for it. True if it ended well.
 bool run_program(std::vector<std::string> words) {
@@ -28,20 +26,19 @@ bool run_program(std::vector<std::string> words) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// Columns as in node::Recorder.
-experiment::StepLoad load_of(const Cells& cells) {
+experiment::StepLoad load_of(const node::StepRow& row) {
   experiment::StepLoad load;
-  load.physics_ms = node::number(cells[4]);
-  load.protocol_ms = node::number(cells[5]);
-  load.transport_ms = node::number(cells[6]);
-  load.watch_ms = std::max(0.0, node::number(cells[2]) - load.physics_ms - load.protocol_ms - load.transport_ms);
-  load.bodies = node::whole(cells[7]);
-  load.awake = node::whole(cells[8]);
-  load.foreign = node::whole(cells[9]);
-  load.projecting = node::whole(cells[10]);
-  load.largest_cluster = node::whole(cells[11]);
-  load.departures = node::whole(cells[12]);
-  load.violations = node::whole(cells[14]);
+  load.physics_ms = row.physics_ms;
+  load.protocol_ms = row.protocol_ms;
+  load.transport_ms = row.transport_ms;
+  load.watch_ms = std::max(0.0, row.frame_ms - row.physics_ms - row.protocol_ms - row.transport_ms);
+  load.bodies = row.bodies;
+  load.awake = row.awake;
+  load.foreign = row.foreign_auras;
+  load.projecting = row.projecting;
+  load.largest_cluster = row.largest_cluster;
+  load.departures = row.hand_offs_out;
+  load.violations = row.violations;
   return load;
 }
 
@@ -51,15 +48,14 @@ std::vector<experiment::Window> windows_of_report(const std::filesystem::path& r
                                                   double step_s) {
   experiment::WindowSums sums(regions, std::llround(experiment::kWindow_s / step_s), step_s);
   std::vector<std::uint64_t> violations(regions, 0);
-  node::read_csv(report / "steps.csv", [&](const Cells& cells) {
-    const std::size_t region = node::whole(cells.at(0));
-    const auto step = static_cast<core::Step>(node::whole(cells.at(1)));
-    if (step == 0) return;
-    experiment::StepLoad load = load_of(cells);
+  node::read_csv<node::StepRow>(report / "steps.csv", [&](const node::StepRow& row) {
+    if (row.step == 0) return;
+    const std::size_t region = core::value_of(row.region);
+    experiment::StepLoad load = load_of(row);
     const std::uint64_t so_far = load.violations;  // since the start
     load.violations -= violations.at(region);
     violations[region] = so_far;
-    sums.add(region, step, load);
+    sums.add(region, row.step, load);
   });
   std::vector<experiment::Window> windows = sums.windows();
   std::ifstream in(report / "summary.json");

@@ -6,21 +6,24 @@
 #include <string>
 
 #include "core/body_state.h"
-#include "node/csv.h"
+#include "node/report_rows.h"
 
 namespace aurasim::node {
 namespace {
 
-using Cells = std::vector<std::string_view>;
-using Hashes = std::map<core::Step, std::string>;
-using Poses = std::map<std::uint64_t, core::Pose>;
+using Hashes = std::map<core::Step, Hex64>;
+using Poses = std::map<core::BodyId, core::Pose>;
+
+/// Half of a row is no state to compare.
+void refuse_broken(std::size_t rows, const std::filesystem::path& file) {
+  if (rows > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), rows));
+}
 
 Hashes read_hashes(const std::filesystem::path& folder) {
   Hashes hashes;
-  read_csv(folder / "state_hash.csv", [&](const Cells& c) {
-    if (c.size() == 2) hashes[static_cast<core::Step>(whole(c[0]))] = std::string(c[1]);
-  });
-  if (hashes.empty()) throw std::runtime_error((folder / "state_hash.csv").string() + ": no hashes");
+  const std::filesystem::path file = folder / "state_hash.csv";
+  refuse_broken(read_csv<HashRow>(file, [&](const HashRow& row) { hashes[row.step] = row.hash; }), file);
+  if (hashes.empty()) throw std::runtime_error(file.string() + ": no hashes");
   return hashes;
 }
 
@@ -28,12 +31,12 @@ Poses read_poses(const std::filesystem::path& folder) {
   Poses poses;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.is_directory() || !entry.path().filename().string().starts_with("region_")) continue;
-    read_csv(entry.path() / "bodies.csv", [&](const Cells& c) {
-      if (c.size() != 12 || c[4] != "here") return;
-      core::Pose& pose = poses[whole(c[1])];
-      pose.p_WB = {number(c[5]), number(c[6]), number(c[7])};
-      pose.q_WB = {number(c[8]), number(c[9]), number(c[10]), number(c[11])};
+    const std::filesystem::path file = entry.path() / "bodies.csv";
+    const std::size_t broken = read_csv<BodyRow>(file, [&](const BodyRow& row) {
+      if (row.where != BodyRow::kHere) return;
+      poses[row.body] = {{row.x_m, row.y_m, row.z_m}, {row.qw, row.qx, row.qy, row.qz}};
     });
+    refuse_broken(broken, file);
   }
   return poses;
 }

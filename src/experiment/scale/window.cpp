@@ -4,6 +4,8 @@
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -13,12 +15,44 @@
 namespace aurasim::experiment {
 namespace {
 
-constexpr const char* kHeader =
-    "region,begin_s,slow_down,frame_max_ms,frame_p95_ms,frame_mean_ms,physics_ms,protocol_ms,transport_ms,watch_ms,"
-    "bodies,awake,"
-    "projecting,foreign,largest_cluster,departures,returns,aura_updates,aura_bytes,hand_off_bytes,link_bytes,datagrams,"
-    "violations,late";
-constexpr std::size_t kColumns = 24;
+/// A window as it is in a file.
+struct WindowRow : Window {
+  template <class Value>
+  static constexpr auto mean_of(std::string_view name, Value StepLoad::*member, std::string_view format = "{}") {
+    return node::Column{name, [member](auto& row) -> auto& {return row.mean.*member;
+  }
+  , format
+};
+}  // namespace
+
+static constexpr auto columns() {
+  constexpr std::string_view kTime = "{:.4f}";
+  return std::tuple{node::Column{"region", &WindowRow::region},
+                    node::Column{"begin_s", &WindowRow::begin_s, "{:g}"},
+                    node::Column{"slow_down", &WindowRow::slow_down, kTime},
+                    node::Column{"frame_max_ms", &WindowRow::frame_max_ms, kTime},
+                    node::Column{"frame_p95_ms", &WindowRow::frame_p95_ms, kTime},
+                    node::Column{"frame_mean_ms", &WindowRow::frame_mean_ms, kTime},
+                    mean_of("physics_ms", &StepLoad::physics_ms, kTime),
+                    mean_of("protocol_ms", &StepLoad::protocol_ms, kTime),
+                    mean_of("transport_ms", &StepLoad::transport_ms, kTime),
+                    mean_of("watch_ms", &StepLoad::watch_ms, kTime),
+                    mean_of("bodies", &StepLoad::bodies),
+                    mean_of("awake", &StepLoad::awake),
+                    mean_of("projecting", &StepLoad::projecting),
+                    mean_of("foreign", &StepLoad::foreign),
+                    mean_of("largest_cluster", &StepLoad::largest_cluster),
+                    mean_of("departures", &StepLoad::departures),
+                    mean_of("returns", &StepLoad::returns),
+                    mean_of("aura_updates", &StepLoad::aura_updates),
+                    mean_of("aura_bytes", &StepLoad::aura_bytes),
+                    mean_of("hand_off_bytes", &StepLoad::hand_off_bytes),
+                    mean_of("link_bytes", &StepLoad::link_bytes),
+                    mean_of("datagrams", &StepLoad::datagrams),
+                    mean_of("violations", &StepLoad::violations),
+                    mean_of("late", &StepLoad::late)};
+}
+};  // namespace aurasim::experiment
 
 void add_times(StepLoad& sum, const StepLoad& load, double weight) {
   sum.physics_ms += weight * load.physics_ms;
@@ -112,16 +146,8 @@ std::vector<Window> WindowSums::windows() const {
 void write_windows(const std::filesystem::path& file, const std::vector<Window>& windows) {
   const std::filesystem::path part = file.string() + ".part";
   std::ofstream out(part, std::ios::trunc);
-  out << kHeader << '\n';
-  for (const Window& w : windows) {
-    const StepLoad& m = w.mean;
-    out << fmt::format("{},{:g},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", w.region, w.begin_s,
-                       w.slow_down, w.frame_max_ms, w.frame_p95_ms, w.frame_mean_ms, m.physics_ms, m.protocol_ms,
-                       m.transport_ms, m.watch_ms)
-        << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", m.bodies, m.awake, m.projecting, m.foreign,
-                       m.largest_cluster, m.departures, m.returns, m.aura_updates, m.aura_bytes, m.hand_off_bytes,
-                       m.link_bytes, m.datagrams, m.violations, m.late);
-  }
+  out << node::csv_header<WindowRow>();
+  for (const Window& window : windows) out << node::csv_line(WindowRow{window});
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write {}", part.string()));
   std::filesystem::rename(part, file);  // a file that is there is whole
@@ -129,24 +155,8 @@ void write_windows(const std::filesystem::path& file, const std::vector<Window>&
 
 std::vector<Window> read_windows(const std::filesystem::path& file) {
   std::vector<Window> windows;
-  node::read_csv(file, [&](const std::vector<std::string_view>& cells) {
-    if (cells.size() != kColumns) throw std::runtime_error(fmt::format("{}: a row is broken", file.string()));
-    Window& w = windows.emplace_back();
-    StepLoad& m = w.mean;
-    std::size_t i = 0;
-    w.region = static_cast<int>(node::number(cells[i++]));
-    for (double* to : {&w.begin_s, &w.slow_down, &w.frame_max_ms, &w.frame_p95_ms, &w.frame_mean_ms, &m.physics_ms,
-                       &m.protocol_ms, &m.transport_ms, &m.watch_ms}) {
-      *to = node::number(cells[i++]);
-    }
-    for (std::size_t* to : {&m.bodies, &m.awake, &m.projecting, &m.foreign, &m.largest_cluster}) {
-      *to = node::whole(cells[i++]);
-    }
-    for (std::uint64_t* to : {&m.departures, &m.returns, &m.aura_updates, &m.aura_bytes, &m.hand_off_bytes,
-                              &m.link_bytes, &m.datagrams, &m.violations, &m.late}) {
-      *to = node::whole(cells[i++]);
-    }
-  });
+  const std::size_t broken = node::read_csv<WindowRow>(file, [&](const WindowRow& row) { windows.push_back(row); });
+  if (broken > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), broken));
   return windows;
 }
 
