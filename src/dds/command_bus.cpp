@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <set>
 #include <utility>
-#include <variant>
 
-#include "aurasim.h"
-#include "dds/command_codec.h"
-#include "dds/endpoints.h"
 #include "dds/random_id.h"
+#include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 struct CommandServerEndpoint::Impl {
@@ -23,12 +20,9 @@ struct CommandServerEndpoint::Impl {
   core::RegionId region;
   std::uint64_t map_version;
   Wakeup wakeup;
-  Reader commands;
-  Writer replies;
-  wire::Command command;  // reused
-  wire::CommandReply reply;
+  TypedReader<wire::Command> commands;
+  TypedWriter<wire::CommandReply> replies;
   std::set<std::uint64_t> requests;
-  WireErrors refused;
 };
 
 CommandServerEndpoint::CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version)
@@ -42,30 +36,27 @@ std::vector<core::Command> CommandServerEndpoint::take() {
   std::vector<core::Command> commands;
   Expected expected;
   expected.map_version = impl_->map_version;
-  while (impl_->commands.take(&impl_->command)) {
-    auto decoded = decode(impl_->command, expected);
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
-      impl_->refused.add(*error);
-      if (*error == WireError::kMapVersion || impl_->command.request() == 0) continue;  // not for us
-      core::CommandReply refusal;
-      refusal.request = impl_->command.request();
-      refusal.outcome = core::Outcome::kRefused;
-      refusal.text = "malformed: " + std::string(name_of(*error));
-      reply(std::move(refusal));
-    } else if (impl_->requests.insert(impl_->command.request()).second) {
-      commands.push_back(std::move(std::get<core::Command>(decoded)));
-    }
-  }
+  const auto take_new = [&](core::Command&& command) {
+    if (impl_->requests.insert(command.request).second) commands.push_back(std::move(command));
+  };
+  const auto refuse = [&](const wire::Command& malformed, WireError error) {
+    if (error == WireError::kMapVersion || malformed.request() == 0) return;  // not for us
+    core::CommandReply refusal;
+    refusal.request = malformed.request();
+    refusal.outcome = core::Outcome::kRefused;
+    refusal.text = "malformed: " + std::string(name_of(error));
+    reply(std::move(refusal));
+  };
+  impl_->commands.take_each(expected, take_new, refuse);
   return commands;
 }
 
 void CommandServerEndpoint::reply(core::CommandReply reply) {
   reply.source = impl_->region;
-  encode(reply, impl_->map_version, impl_->reply);
-  impl_->replies.write(&impl_->reply);
+  impl_->replies.send(reply, impl_->map_version);
 }
 
-const WireErrors& CommandServerEndpoint::refused() const { return impl_->refused; }
+const WireErrors& CommandServerEndpoint::refused() const { return impl_->commands.refused(); }
 
 struct CommandClientEndpoint::Impl {
   explicit Impl(Participant& participant_in)
@@ -77,12 +68,9 @@ struct CommandClientEndpoint::Impl {
   Participant& participant;
   std::uint64_t sender = draw_id();
   Wakeup wakeup;
-  Writer commands;
-  Reader replies;
-  Writer shapes;
-  wire::Command command;  // reused
-  wire::CommandReply reply;
-  wire::MeshShape shape;
+  TypedWriter<wire::Command> commands;
+  TypedReader<wire::CommandReply> replies;
+  TypedWriter<wire::MeshShape> shapes;
   std::set<std::uint64_t> brought;
 };
 
@@ -96,8 +84,7 @@ std::size_t CommandClientEndpoint::listeners() const {
 
 std::uint64_t CommandClientEndpoint::send(core::Command command, std::uint64_t map_version) {
   if (command.request == 0) command.request = draw_id();
-  encode(command, impl_->sender, map_version, impl_->command);
-  if (impl_->commands.write(&impl_->command) == WriteResult::kFailed) {
+  if (impl_->commands.send(command, impl_->sender, map_version) == WriteResult::kFailed) {
     throw DdsError("cannot send the command: topic command does not take it");
   }
   return command.request;
@@ -105,17 +92,13 @@ std::uint64_t CommandClientEndpoint::send(core::Command command, std::uint64_t m
 
 std::vector<core::CommandReply> CommandClientEndpoint::take() {
   std::vector<core::CommandReply> replies;
-  while (impl_->replies.take(&impl_->reply)) {
-    auto decoded = decode(impl_->reply, {});
-    if (auto* reply = std::get_if<core::CommandReply>(&decoded)) replies.push_back(std::move(*reply));
-  }
+  impl_->replies.take_all({}, replies);
   return replies;
 }
 
 void CommandClientEndpoint::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
   if (!impl_->brought.insert(hash).second) return;
-  encode(NamedMesh{hash, mesh}, impl_->shape);
-  impl_->shapes.write(&impl_->shape);
+  impl_->shapes.send(NamedMesh{hash, mesh});
 }
 
 void CommandClientEndpoint::wait(std::chrono::nanoseconds time_out) {

@@ -1,32 +1,29 @@
 #include "dds/overlay_bus.h"
 
-#include "aurasim.h"
-#include "dds/cluster_graph_codec.h"
 #include "dds/observing.h"
+#include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 namespace {
 
 /// A topic of all regions, of which samples may be missed.
-template <class WireMessage, class Message>
+template <class Wire>
 class Glance {
  public:
   Glance(Participant& participant, const ObserverSettings& settings, TopicId topic, const char* profile)
       : expected_(expected_of(settings)),
         reader_(participant.domain(), {topic, {kEveryRegionPartition}, {}, profile}, wakeup_) {}
 
-  std::vector<Message> take() {
-    std::vector<Message> messages;
-    drain(reader_, sample_, expected_, messages, refused_);
+  auto take() {
+    std::vector<typename TypedReader<Wire>::Message> messages;
+    reader_.take_all(expected_, messages);
     return messages;
   }
 
  private:
   Expected expected_;
   Wakeup wakeup_;
-  Reader reader_;
-  WireMessage sample_;  // reused
-  WireErrors refused_;
+  TypedReader<Wire> reader_;
 };
 
 }  // namespace
@@ -36,8 +33,7 @@ struct ClusterGraphWriter::Impl {
       : writer(participant.domain(), {TopicId::kClusterGraph, {partition_of(region)}, region, {}}, wakeup) {}
 
   Wakeup wakeup;
-  Writer writer;
-  wire::ClusterGraph sample;  // reused
+  TypedWriter<wire::ClusterGraph> writer;
 };
 
 ClusterGraphWriter::ClusterGraphWriter(Participant& participant, core::RegionId region)
@@ -47,12 +43,9 @@ ClusterGraphWriter::~ClusterGraphWriter() = default;
 
 bool ClusterGraphWriter::anybody_listens() const { return impl_->writer.reader_count() > 0; }
 
-void ClusterGraphWriter::send(const core::ClusterGraph& graph) {
-  encode(graph, impl_->sample);
-  impl_->writer.write(&impl_->sample);
-}
+void ClusterGraphWriter::send(const core::ClusterGraph& graph) { impl_->writer.send(graph); }
 
-struct ClusterGraphWatch::Impl : Glance<wire::ClusterGraph, core::ClusterGraph> {
+struct ClusterGraphWatch::Impl : Glance<wire::ClusterGraph> {
   using Glance::Glance;
 };
 
@@ -63,7 +56,7 @@ ClusterGraphWatch::~ClusterGraphWatch() = default;
 
 std::vector<core::ClusterGraph> ClusterGraphWatch::take() { return impl_->take(); }
 
-struct AuraWatch::Impl : Glance<wire::AuraBatch, core::AuraBatch> {
+struct AuraWatch::Impl : Glance<wire::AuraBatch> {
   using Glance::Glance;
 };
 

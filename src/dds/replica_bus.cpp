@@ -1,8 +1,7 @@
 #include "dds/replica_bus.h"
 
-#include "aurasim.h"
 #include "dds/observing.h"
-#include "dds/replica_codec.h"
+#include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 struct ReplicaWriter::Impl {
@@ -11,9 +10,8 @@ struct ReplicaWriter::Impl {
         keys(participant.domain(), {TopicId::kReplicaKey, {partition_of(region)}, region, {}}, wakeup) {}
 
   Wakeup wakeup;
-  Writer deltas;
-  Writer keys;
-  wire::Replica sample;  // reused
+  TypedWriter<wire::Replica> deltas;
+  TypedWriter<wire::Replica> keys;
 };
 
 ReplicaWriter::ReplicaWriter(Participant& participant, core::RegionId region)
@@ -22,9 +20,8 @@ ReplicaWriter::ReplicaWriter(Participant& participant, core::RegionId region)
 ReplicaWriter::~ReplicaWriter() = default;
 
 bool ReplicaWriter::send(const core::Replica& replica) {
-  encode(replica, impl_->sample);
-  Writer& writer = replica.key_frame ? impl_->keys : impl_->deltas;
-  return writer.write(&impl_->sample) != WriteResult::kFailed;
+  auto& writer = replica.key_frame ? impl_->keys : impl_->deltas;
+  return writer.send(replica) != WriteResult::kFailed;
 }
 
 bool ReplicaWriter::anybody_listens() const {
@@ -43,10 +40,8 @@ struct ReplicaReader::Impl {
   Participant& participant;
   Expected expected;
   Wakeup wakeup;
-  Reader deltas;
-  Reader keys;
-  wire::Replica sample;  // reused
-  WireErrors refused;
+  TypedReader<wire::Replica> deltas;
+  TypedReader<wire::Replica> keys;
   std::uint64_t received = 0;
 };
 
@@ -59,8 +54,8 @@ std::vector<core::Replica> ReplicaReader::take() {
   impl_->participant.progress();
   impl_->wakeup.clear();
   std::vector<core::Replica> replicas;
-  drain(impl_->deltas, impl_->sample, impl_->expected, replicas, impl_->refused);
-  drain(impl_->keys, impl_->sample, impl_->expected, replicas, impl_->refused);
+  impl_->deltas.take_all(impl_->expected, replicas);
+  impl_->keys.take_all(impl_->expected, replicas);
   impl_->received += replicas.size();
   return replicas;
 }
@@ -70,7 +65,7 @@ void ReplicaReader::wait(std::chrono::nanoseconds time_out) {
   impl_->wakeup.wait(time_out);
 }
 
-const WireErrors& ReplicaReader::refused() const { return impl_->refused; }
+std::uint64_t ReplicaReader::refused() const { return impl_->deltas.refused().total() + impl_->keys.refused().total(); }
 
 std::uint64_t ReplicaReader::received() const { return impl_->received; }
 

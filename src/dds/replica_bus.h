@@ -11,7 +11,6 @@
 #include "core/replica.h"
 #include "dds/observer_settings.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -43,7 +42,7 @@ class ReplicaReader {
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);
 
-  const WireErrors& refused() const;
+  std::uint64_t refused() const;
   std::uint64_t received() const;
 
  private:

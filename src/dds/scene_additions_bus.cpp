@@ -1,12 +1,8 @@
 #include "dds/scene_additions_bus.h"
 
 #include <utility>
-#include <variant>
 
-#include "aurasim.h"
-#include "dds/codec.h"
-#include "dds/command_codec.h"
-#include "dds/endpoints.h"
+#include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 struct SceneAdditionsWriter::Impl {
@@ -15,8 +11,7 @@ struct SceneAdditionsWriter::Impl {
 
   core::RegionId region;
   Wakeup wakeup;
-  Writer writer;
-  wire::AuraBatch sample;  // reused
+  TypedWriter<wire::AuraBatch> writer;
 };
 
 SceneAdditionsWriter::SceneAdditionsWriter(Participant& participant, core::RegionId region)
@@ -30,16 +25,14 @@ void SceneAdditionsWriter::send(const SceneAdditions& additions) {
   batch.generation = additions.generation;
   batch.orders = additions.orders;
   batch.stamp = static_cast<core::Step>(additions.orders.size());
-  encode(batch, impl_->sample);
-  impl_->writer.write(&impl_->sample);
+  impl_->writer.send(batch);
 }
 
 struct SceneAdditionsReader::Impl {
   explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
 
   Wakeup wakeup;
-  Reader reader;
-  wire::AuraBatch sample;  // reused
+  TypedReader<wire::AuraBatch> reader;
 };
 
 SceneAdditionsReader::SceneAdditionsReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
@@ -52,11 +45,9 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
     return !newest ||
            std::pair(batch.generation, batch.orders.size()) >= std::pair(newest->generation, newest->orders.size());
   };
-  while (impl_->reader.take(&impl_->sample)) {
-    auto decoded = decode(impl_->sample, {});
-    auto* const batch = std::get_if<core::AuraBatch>(&decoded);
-    if (batch != nullptr && is_newer(*batch)) newest = SceneAdditions{batch->generation, std::move(batch->orders)};
-  }
+  impl_->reader.take_each({}, [&](core::AuraBatch&& batch) {
+    if (is_newer(batch)) newest = SceneAdditions{batch.generation, std::move(batch.orders)};
+  });
   return newest;
 }
 
@@ -64,10 +55,8 @@ struct MeshReader::Impl {
   explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kShape), wakeup) {}
 
   Wakeup wakeup;
-  Reader reader;
-  wire::MeshShape sample;  // reused
+  TypedReader<wire::MeshShape> reader;
   std::map<std::uint64_t, core::TriangleMesh> meshes;
-  std::uint64_t refused = 0;
 };
 
 MeshReader::MeshReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
@@ -75,18 +64,11 @@ MeshReader::MeshReader(Participant& participant) : impl_(std::make_unique<Impl>(
 MeshReader::~MeshReader() = default;
 
 const core::TriangleMesh* MeshReader::mesh(std::uint64_t hash) {
-  while (impl_->reader.take(&impl_->sample)) {
-    auto decoded = decode(impl_->sample, {});
-    if (auto* named = std::get_if<NamedMesh>(&decoded)) {
-      impl_->meshes.try_emplace(named->hash, std::move(named->mesh));
-    } else {
-      ++impl_->refused;
-    }
-  }
+  impl_->reader.take_each({}, [&](NamedMesh&& named) { impl_->meshes.try_emplace(named.hash, std::move(named.mesh)); });
   const auto found = impl_->meshes.find(hash);
   return found == impl_->meshes.end() ? nullptr : &found->second;
 }
 
-std::uint64_t MeshReader::refused() const { return impl_->refused; }
+std::uint64_t MeshReader::refused() const { return impl_->reader.refused().total(); }
 
 }  // namespace aurasim::dds

@@ -287,7 +287,7 @@ void Overseer::publish_status() {
   add("incomplete_frames_total", "Frames composed without a region that is alive.", view.incomplete);
   add("lost_ticks_total", "Ticks of a region that never came.", view.gaps);
   add("replicas_total", "Replicas received.", replicas_->received());
-  add("refused_replicas_total", "Replicas refused.", replicas_->refused().total());
+  add("refused_replicas_total", "Replicas refused.", replicas_->refused());
   text +=
       fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
                   view_->body_count());

@@ -1,0 +1,71 @@
+// Writers and readers of one kind of message each: coded on the way out, checked on the way in.
+#pragma once
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "aurasim.h"
+#include "dds/cluster_graph_codec.h"
+#include "dds/codec.h"
+#include "dds/command_codec.h"
+#include "dds/endpoints.h"
+#include "dds/replica_codec.h"
+
+namespace aurasim::dds {
+
+/// `Wire` is the generated type of the topic.
+template <class Wire>
+class TypedWriter : public Writer {
+ public:
+  using Writer::Writer;
+
+  /// What encode(message..., Wire) makes of it.
+  template <class... Message>
+  WriteResult send(const Message&... message) {
+    encode(message..., sample_);
+    return write(&sample_);
+  }
+
+ private:
+  Wire sample_;  // reused
+};
+
+/// What is not sound is counted, not passed on.
+template <class Wire>
+class TypedReader : public Reader {
+ public:
+  using Message = std::variant_alternative_t<0, decltype(decode(std::declval<const Wire&>(), Expected{}))>;
+
+  using Reader::Reader;
+
+  /// Calls `visit(message)` for each that has come, and `refuse(sample, error)` for each that is none.
+  template <class Visit, class Refuse>
+  void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse) {
+    while (take(&sample_)) {
+      auto decoded = decode(sample_, expected);
+      if (const auto* error = std::get_if<WireError>(&decoded)) {
+        refused_.add(*error);
+        refuse(std::as_const(sample_), *error);
+      } else {
+        visit(std::move(std::get<Message>(decoded)));
+      }
+    }
+  }
+  template <class Visit>
+  void take_each(const Expected& expected, Visit&& visit) {
+    take_each(expected, std::forward<Visit>(visit), [](const Wire&, WireError) {});
+  }
+  /// Appends all that have come.
+  void take_all(const Expected& expected, std::vector<Message>& out) {
+    take_each(expected, [&out](Message&& message) { out.push_back(std::move(message)); });
+  }
+
+  const WireErrors& refused() const { return refused_; }
+
+ private:
+  Wire sample_;  // reused
+  WireErrors refused_;
+};
+
+}  // namespace aurasim::dds
