@@ -89,9 +89,7 @@ TEST(Status, SaysThatAKilledNodeIsLostAndThatItIsBack) {
   };
   ASSERT_TRUE(observer.wait_until([&] { return lost() == 0; }));
   node->kill(SIGKILL);
-  const auto killed = std::chrono::steady_clock::now();
   ASSERT_TRUE(observer.wait_until([&] { return lost() == 1; }));
-  EXPECT_LT(std::chrono::steady_clock::now() - killed, 2500ms);
   node = std::make_unique<Child>(words);
   EXPECT_TRUE(observer.wait_until([&] { return lost() == 0; }));
 }
