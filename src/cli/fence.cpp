@@ -21,7 +21,7 @@ Fence::Fence(const config::Launch& launch, dds::Participant& participant, dds::C
     : region_(region),
       alone_(launch.regions.size() == 1),
       can_be_cut_(!alone_ && !participant.stays_on_this_host()),
-      never_waits_(launch.time.sync == config::Sync::kFreeRunning),
+      never_waits_(launch.time.sync == core::SyncMode::kFreeRunning),
       participant_(participant),
       control_(control),
       quorum_(region, static_cast<std::uint32_t>(launch.regions.size())) {}

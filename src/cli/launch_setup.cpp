@@ -9,35 +9,6 @@
 #include "physics/solver_names.h"
 
 namespace aurasim::cli {
-namespace {
-
-core::AuraKind kind_of(config::AuraRadius radius) {
-  switch (radius) {
-    case config::AuraRadius::kNone:
-      return core::AuraKind::kNone;
-    case config::AuraRadius::kThesis:
-      return core::AuraKind::kThesis;
-    case config::AuraRadius::kTight:
-      return core::AuraKind::kTight;
-    case config::AuraRadius::kSwept:
-      return core::AuraKind::kSwept;
-  }
-  return core::AuraKind::kSwept;
-}
-
-core::SyncMode mode_of(config::Sync sync) {
-  switch (sync) {
-    case config::Sync::kFreeRunning:
-      return core::SyncMode::kFreeRunning;
-    case config::Sync::kBounded:
-      return core::SyncMode::kBounded;
-    case config::Sync::kDeterministic:
-      return core::SyncMode::kDeterministic;
-  }
-  return core::SyncMode::kBounded;
-}
-
-}  // namespace
 
 dds::Settings dds_settings(const config::Launch& launch, std::optional<core::RegionId> region) {
   dds::Settings settings;
@@ -49,23 +20,13 @@ dds::Settings dds_settings(const config::Launch& launch, std::optional<core::Reg
   settings.impairment = {impair.delay_s, impair.jitter_s,  impair.loss, impair.bandwidth_B_s,
                          impair.reorder, impair.discovery, impair.seed};
   settings.impairment_stream = region ? core::value_of(*region) + std::uint64_t{1} : 0;
-  switch (launch.dds.discovery) {
-    case config::Discovery::kMulticast:
-      settings.discovery = dds::Discovery::kAsProfile;
-      break;
-    case config::Discovery::kPeers:
-      settings.discovery = dds::Discovery::kPeers;
-      break;
-    case config::Discovery::kServer:
-      settings.discovery = dds::Discovery::kServer;
-      break;
-  }
+  settings.discovery = launch.dds.discovery;
   return settings;
 }
 
 core::AuraRules aura_rules(const config::Launch& launch) {
   core::AuraRules rules;
-  rules.kind = kind_of(launch.aura.radius);
+  rules.kind = launch.aura.radius;
   rules.step_s = launch.step_s();
   rules.substeps = launch.time.substeps;
   rules.lookahead = launch.lookahead();
@@ -91,7 +52,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   node::NodeSetup setup;
   setup.protocol.self = region;
   setup.protocol.generation = generation;
-  setup.protocol.sync = mode_of(launch.time.sync);
+  setup.protocol.sync = launch.time.sync;
   setup.protocol.aura = aura_rules(launch);
   setup.protocol.neighbour_distance_m = listening_distance_m(launch);
   setup.physics.step_s = launch.step_s();

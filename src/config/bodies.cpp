@@ -1,42 +1,79 @@
 #include "config/bodies.h"
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_set>
 
 #include <fmt/format.h>
 
+#include "config/keys_of.h"
 #include "config/shapes.h"
 
 namespace aurasim::config {
 namespace {
 
-constexpr std::size_t kMostStatics = 100'000;
-constexpr Range kMass = Range::above(0, 1e9);
+const KeysOf<core::Material>& keys_of_material() {
+  using core::Material;
+  static const KeysOf<Material> keys(
+      "material", "What the surface of a body is like, and how it is slowed down.",
+      {
+          optional("friction", &Material::friction, number(Range::from_to(0, 100)),
+                   "Coulomb's; that of a contact is the product of the two bodies'"),
+          optional("rolling_friction", &Material::rolling_friction, number(Range::from_to(0, 100), "m"),
+                   "resists rolling: without it, a ball on a plane rolls for ever"),
+          optional("spinning_friction", &Material::spinning_friction, number(Range::from_to(0, 100), "m"),
+                   "resists spinning about the contact's normal"),
+          optional("restitution", &Material::restitution, number(Range::from_to(0, 1)),
+                   "share of its speed that it bounces back with; that of a contact is the product of the two bodies'"),
+          optional("linear_damping", &Material::linear_damping, number(Range::from_to(0, 1)),
+                   "share of its velocity that a body loses in a second"),
+          optional("angular_damping", &Material::angular_damping, number(Range::from_to(0, 1)),
+                   "share of its spin that a body loses in a second"),
+      });
+  return keys;
+}
 
-/// Takes over `value` where one is given.
-void read_number(Field field, const Range& range, double& value) {
-  if (!field.given()) return;
-  value = field.number(range).value_or(value);
+const KeysOf<core::Prototype>& keys_of_prototype() {
+  using core::Prototype;
+  static const KeysOf<Prototype> keys(
+      "prototype", "What bodies of one kind share.",
+      {
+          shape_key("one that can move: no mesh, no heightfield, no plane"),
+          required("mass", &Prototype::mass_kg, number(Range::above(0, 1e9), "kg"),
+                   "spread evenly over the shape; of a compound, about its origin"),
+          material_key(),
+          optional("can_sleep", &Prototype::can_sleep, flag(),
+                   "whether it is put to rest, and costs no more, when it has lain still for 2 s"),
+      });
+  return keys;
+}
+
+const KeysOf<core::InitialBody>& keys_of_body() {
+  using core::InitialBody;
+  static const KeysOf<InitialBody> keys(
+      "body", "A body that is there at the start.",
+      {
+          required("prototype", name_of("prototype"), "what kind of body"),
+          own_name_key("by which joints refer to it", "it has none"),
+          optional("id", integer(0, kLargestBodyId), "which commands and reports name it by; each once")
+              .otherwise("the lowest free one, in the order of the file"),
+          optional("velocity", &InitialBody::v_WB, vec3("m/s", kSpeed), "at the start"),
+          optional("spin", &InitialBody::w_WB, vec3("rad/s", kSpeed), "angular velocity at the start, in the world"),
+      });
+  return keys;
 }
 
 core::Material read_material(const std::string& name, const Field& field) {
   core::Material material{.name = name};
-  Fields fields(field);
-  read_number(fields.optional("friction"), Range::from_to(0, 100), material.friction);
-  read_number(fields.optional("rolling_friction"), Range::from_to(0, 100), material.rolling_friction);
-  read_number(fields.optional("spinning_friction"), Range::from_to(0, 100), material.spinning_friction);
-  read_number(fields.optional("restitution"), Range::from_to(0, 1), material.restitution);
-  read_number(fields.optional("linear_damping"), Range::from_to(0, 1), material.linear_damping);
-  read_number(fields.optional("angular_damping"), Range::from_to(0, 1), material.angular_damping);
-  fields.close();
+  keys_of_material().read(field, material);
   return material;
 }
 
 core::Prototype read_prototype(const std::string& name, const Field& field, SceneDraft& draft) {
   core::Prototype prototype{.name = name};
-  Fields fields(field);
-  const Field shape_field = fields.required("shape");
+  const Fields fields(field);
   if (fields.given()) {
+    const Field shape_field = fields["shape"];
     if (const auto shape = read_shape_reference(shape_field, "prototypes." + name, draft)) {
       prototype.shape = *shape;
       if (!can_move(draft.scene.shapes[*shape].shape)) {
@@ -44,25 +81,20 @@ core::Prototype read_prototype(const std::string& name, const Field& field, Scen
       }
     }
   }
-  prototype.mass_kg = fields.required("mass").number(kMass).value_or(1);
-  prototype.material = read_material_reference(fields.optional("material"), draft).value_or(0);
-  if (const Field can_sleep = fields.optional("can_sleep"); can_sleep.given()) {
-    prototype.can_sleep = can_sleep.flag().value_or(true);
-  }
+  keys_of_prototype().read_members(fields, prototype);
+  prototype.material = read_material_reference(fields["material"], draft).value_or(0);
   fields.close();
   return prototype;
 }
 
 core::StaticBody read_static(const Field& field, std::size_t index, SceneDraft& draft) {
   core::StaticBody body;
-  Fields fields(field);
-  body.name = fmt::format("static {}", index);
-  if (const Field name = fields.optional("name"); name.given()) body.name = name.text("a name").value_or(body.name);
-  const Field shape = fields.required("shape");
+  const Fields fields(field);
+  body.name = fields["name"].text().value_or(fmt::format("static {}", index));
   if (fields.given()) {
-    body.shape = read_shape_reference(shape, fmt::format("statics[{}]", index), draft).value_or(0);
+    body.shape = read_shape_reference(fields["shape"], fmt::format("statics[{}]", index), draft).value_or(0);
   }
-  body.material = read_material_reference(fields.optional("material"), draft).value_or(0);
+  body.material = read_material_reference(fields["material"], draft).value_or(0);
   body.pose = read_pose(fields);
   fields.close();
   return body;
@@ -71,28 +103,39 @@ core::StaticBody read_static(const Field& field, std::size_t index, SceneDraft& 
 DraftBody read_body(const Field& field, SceneDraft& draft) {
   DraftBody draft_body;
   core::InitialBody& body = draft_body.body;
-  Fields fields(field);
-  if (const Field name = fields.optional("name"); name.given()) {
-    if (const auto text = name.text("a name")) draft.name_next_body(*text, name);
-  }
-  if (const Field id = fields.optional("id"); id.given()) {
-    if (const auto number = id.integer(0, kLargestBodyId))
-      draft_body.id = core::BodyId{static_cast<std::uint64_t>(*number)};
-  }
-  const Field prototype = fields.required("prototype");
-  if (fields.given()) body.prototype = core::PrototypeId{draft.prototypes.find(prototype).value_or(0)};
+  const Fields fields(field);
+  const Field name = fields["name"];
+  draft_body.source = source_of(field, name.text().value_or(""));
+  if (!draft_body.source.name.empty()) draft.name_next_body(draft_body.source.name, name);
+  if (const auto id = fields["id"].integer()) draft_body.id = core::BodyId{static_cast<std::uint64_t>(*id)};
+  if (fields.given()) body.prototype = core::PrototypeId{draft.prototypes.find(fields["prototype"]).value_or(0)};
   body.pose = read_pose(fields);
-  if (const Field v = fields.optional("velocity"); v.given()) body.v_WB = v.vec3(kSpeed).value_or(body.v_WB);
-  if (const Field w = fields.optional("spin"); w.given()) body.w_WB = w.vec3(kSpeed).value_or(body.w_WB);
+  keys_of_body().read_members(fields, body);
   fields.close();
   return draft_body;
 }
 
 }  // namespace
 
+const KeyTable& material_keys() { return keys_of_material(); }
+
+const KeyTable& prototype_keys() { return keys_of_prototype(); }
+
+const KeyTable& static_keys() {
+  static const KeyTable keys{.title = "static",
+                             .about = "A thing that never moves, and is the same on every node.",
+                             .keys = {shape_key("any shape"),
+                                      own_name_key("by which commands and reports refer to it; each once",
+                                                   "`static N`, N from 0 in the order of the file"),
+                                      material_key()}};
+  return keys;
+}
+
+const KeyTable& body_keys() { return keys_of_body(); }
+
 void read_materials(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const auto& [name, entry] : field.entries("a map of materials by name")) {
+  for (const auto& [name, entry] : field.entries()) {
     draft.scene.materials.push_back(read_material(name, entry));
     draft.materials.add(name);
   }
@@ -100,7 +143,7 @@ void read_materials(const Field& field, SceneDraft& draft) {
 
 void read_shapes(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const auto& [name, entry] : field.entries("a map of shapes by name")) {
+  for (const auto& [name, entry] : field.entries()) {
     // A shape that could not be read has its name all the same, or every use of it would be one more error.
     draft.scene.shapes.push_back({name, read_shape(entry, draft.folder).value_or(core::Sphere{})});
     draft.shapes.add(name);
@@ -109,7 +152,7 @@ void read_shapes(const Field& field, SceneDraft& draft) {
 
 void read_prototypes(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const auto& [name, entry] : field.entries("a map of prototypes by name")) {
+  for (const auto& [name, entry] : field.entries()) {
     draft.scene.prototypes.push_back(read_prototype(name, entry, draft));
     draft.prototypes.add(name);
   }
@@ -119,7 +162,7 @@ void read_statics(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   std::unordered_set<std::string> names;
   std::size_t index = 0;
-  for (const Field& item : field.items(0, kMostStatics)) {
+  for (const Field& item : field.items()) {
     core::StaticBody body = read_static(item, index++, draft);
     if (!names.insert(body.name).second) {
       item.complain(fmt::format("found the name {} a second time, allowed: each name once", in_quotes(body.name)));
@@ -131,7 +174,7 @@ void read_statics(const Field& field, SceneDraft& draft) {
 void read_bodies(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   std::unordered_set<std::uint64_t> ids;
-  for (const Field& item : field.items(0, kMostBodies)) {
+  for (const Field& item : field.items()) {
     DraftBody body = read_body(item, draft);
     if (body.id && !ids.insert(value_of(*body.id)).second) {
       item.complain(fmt::format("found the id {} a second time, allowed: each id once", value_of(*body.id)));
@@ -149,10 +192,15 @@ void number_bodies(SceneDraft& draft) {
   for (DraftBody& body : draft.bodies) {
     while (!body.id && taken.contains(next)) ++next;
     body.body.id = body.id ? *body.id : core::BodyId{next++};
-    draft.scene.bodies.push_back(body.body);
   }
-  std::sort(draft.scene.bodies.begin(), draft.scene.bodies.end(),
-            [](const core::InitialBody& a, const core::InitialBody& b) { return a.id < b.id; });
+  // By places, since joints refer to bodies by theirs.
+  std::vector<std::size_t> order(draft.bodies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return draft.bodies[i].body.id; });
+  for (const std::size_t i : order) {
+    draft.scene.bodies.push_back(draft.bodies[i].body);
+    draft.body_sources.push_back(std::move(draft.bodies[i].source));
+  }
 }
 
 }  // namespace aurasim::config

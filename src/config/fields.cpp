@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -43,11 +44,6 @@ void report_copies(const YamlNode& map, const std::string& path, Errors& errors)
 
 }  // namespace
 
-std::string Range::text() const {
-  if (low_excluded) return fmt::format("a number above {} and up to {}", low, high);
-  return fmt::format("a number from {} to {}", low, high);
-}
-
 std::string path_to(std::string_view parent, std::string_view key) {
   const std::string shown = is_printable_line(key) ? std::string(key.substr(0, 80)) : in_quotes(key);
   return parent.empty() ? shown : fmt::format("{}.{}", parent, shown);
@@ -63,8 +59,19 @@ std::string listed(const std::vector<std::string_view>& names) {
   return text;
 }
 
-Field::Field(const YamlNode* node, const Place& place, std::string path, bool required, Errors& errors)
-    : node_(node), place_(node ? node->place : place), path_(std::move(path)), required_(required), errors_(&errors) {}
+Field::Field(const YamlNode* node, const Place& place, std::string path, const Value& value, bool required,
+             Errors& errors)
+    : node_(node),
+      place_(node ? node->place : place),
+      path_(std::move(path)),
+      value_(&value),
+      required_(required),
+      errors_(&errors) {}
+
+const Value& Field::as(Value::Kind kind) const {
+  if (const Value* value = value_->as(kind)) return *value;
+  throw std::logic_error("the table of keys says otherwise of " + path_);
+}
 
 std::string Field::found() const {
   switch (node_->kind) {
@@ -90,6 +97,8 @@ void Field::refuse(std::string_view allowed) const {
 
 void Field::complain(std::string_view message) const { errors_->add(place_, path_, message); }
 
+std::optional<double> Field::number() const { return number(as(Value::Kind::kNumber).range); }
+
 std::optional<double> Field::number(const Range& range) const {
   const std::optional<double> value = given() ? parsed<double>(*node_) : std::nullopt;
   if (value && std::isfinite(*value) && range.contains(*value)) return *value + 0.0;  // no negative zero
@@ -97,62 +106,84 @@ std::optional<double> Field::number(const Range& range) const {
   return std::nullopt;
 }
 
-std::optional<std::int64_t> Field::integer(std::int64_t low, std::int64_t high, std::string_view also_allowed) const {
+std::optional<std::int64_t> Field::integer() const {
+  const Value& wanted = as(Value::Kind::kInteger);
+  if (is_text() && value_->has_word(node_->text)) return std::nullopt;
   const std::optional<std::int64_t> value = given() ? parsed<std::int64_t>(*node_) : std::nullopt;
-  if (value && *value >= low && *value <= high) return value;
-  refuse(fmt::format("{}an integer from {} to {}", also_allowed, low, high));
+  if (value && *value >= wanted.lowest && *value <= wanted.highest) return value;
+  const Value* other = value_->as(Value::Kind::kWord);
+  refuse(fmt::format("{}an integer from {} to {}", other ? fmt::format("{}, or ", other->words[0].name) : "",
+                     wanted.lowest, wanted.highest));
   return std::nullopt;
 }
 
 std::optional<bool> Field::flag() const {
+  as(Value::Kind::kFlag);
   if (is_text() && !node_->quoted && (node_->text == "true" || node_->text == "false")) return node_->text == "true";
   refuse("true, false");
   return std::nullopt;
 }
 
-std::optional<std::string> Field::text(std::string_view allowed) const {
+std::optional<std::string> Field::text() const {
   if (is_text() && !node_->text.empty() && node_->text.size() <= kLongestText && is_printable_line(node_->text)) {
     return node_->text;
   }
-  refuse(allowed);
+  refuse(as(Value::Kind::kText).what);
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> Field::numbers(std::size_t count, const Range& each) const {
-  if (!is_list() || node_->children.size() != count) {
-    refuse(fmt::format("a list of {}, each {}", count, each.text()));
+const Word* Field::word() const {
+  std::vector<std::string_view> names;
+  for (const Word& word : as(Value::Kind::kWord).words) {
+    if (is_word(word.name)) return &word;
+    names.push_back(word.name);
+  }
+  refuse(listed(names));
+  return nullptr;
+}
+
+std::optional<std::vector<double>> Field::numbers() const {
+  const Value& wanted = as(Value::Kind::kNumbers);
+  if (!is_list() || node_->children.size() != wanted.most) {
+    refuse(fmt::format("a list of {}, each {}", wanted.most, wanted.range.text()));
     return std::nullopt;
   }
   std::vector<double> values;
-  for (const Field& item : items(count, count)) {
-    if (const auto value = item.number(each)) values.push_back(*value);
+  for (const Field& item : children(wanted)) {
+    if (const auto value = item.number(wanted.range)) values.push_back(*value);
   }
-  if (values.size() != count) return std::nullopt;
+  if (values.size() != wanted.most) return std::nullopt;
   return values;
 }
 
-std::optional<core::Vec3> Field::vec3(const Range& each) const {
-  const auto values = numbers(3, each);
+std::optional<core::Vec3> Field::vec3() const {
+  const auto values = numbers();
   if (!values) return std::nullopt;
   return core::Vec3((*values)[0], (*values)[1], (*values)[2]);
 }
 
-std::vector<Field> Field::items(std::size_t fewest, std::size_t most) const {
-  if (!is_list() || node_->children.size() < fewest || node_->children.size() > most) {
-    refuse(fmt::format("a list of {} to {}", fewest, most));
-    return {};
-  }
+std::vector<Field> Field::children(const Value& each) const {
   std::vector<Field> fields;
   fields.reserve(node_->children.size());
   for (std::size_t i = 0; i < node_->children.size(); ++i) {
-    fields.emplace_back(&node_->children[i], place_, fmt::format("{}[{}]", path_, i), true, *errors_);
+    fields.emplace_back(&node_->children[i], place_, fmt::format("{}[{}]", path_, i), each, true, *errors_);
   }
   return fields;
 }
 
-std::vector<std::pair<std::string, Field>> Field::entries(std::string_view allowed) const {
+std::vector<Field> Field::items() const {
+  const Value& wanted = as(Value::Kind::kList);
+  if (!is_list() || node_->children.size() < wanted.fewest || node_->children.size() > wanted.most) {
+    refuse(fmt::format("a list of {} to {}", wanted.fewest, wanted.most));
+    return {};
+  }
+  return children(wanted.items.front());
+}
+
+std::vector<std::pair<std::string, Field>> Field::entries() const {
+  const Value& wanted = as(Value::Kind::kNamed);
   if (!is_map()) {
-    refuse(allowed);
+    refuse(wanted.what);
     return {};
   }
   report_copies(*node_, path_, *errors_);
@@ -165,31 +196,67 @@ std::vector<std::pair<std::string, Field>> Field::entries(std::string_view allow
       errors_->add(entry.key_place, path,
                    fmt::format("found the name {}, allowed: a printable name", in_quotes(entry.key)));
     }
-    fields.emplace_back(entry.key, Field(&entry, place_, path, true, *errors_));
+    fields.emplace_back(entry.key, Field(&entry, place_, path, wanted.items.front(), true, *errors_));
   }
   return fields;
 }
 
-Fields::Fields(const Field& map) : map_(map) {
-  if (given()) report_copies(*map.node(), map.path(), map.errors());
+Fields::Fields(const Field& map, std::vector<const KeyTable*> tables) : map_(map), tables_(std::move(tables)) {
+  for (const Table& table : map.value().as(Value::Kind::kMap)->shared) tables_.push_back(&table());
 }
 
-Field Fields::ask(std::string_view key, bool required) {
-  asked_.push_back(key);
-  const YamlNode* node = given() ? map_.node()->find(key) : nullptr;
-  // What is missing from a map that is itself missing or wrong has been said already.
-  return Field(node, map_.place(), path_to(map_.path(), key), required && given(), map_.errors());
+Fields::Fields(const Field& map) : Fields(map, {&map.value().as(Value::Kind::kMap)->tables.front()()}) {}
+
+Fields::Fields(const Field& map, const KeyTable& chosen) : Fields(map, std::vector{&chosen}) {}
+
+Fields Fields::of_any_table(const Field& map) {
+  std::vector<const KeyTable*> tables;
+  for (const Table& table : map.value().as(Value::Kind::kMap)->tables) tables.push_back(&table());
+  return Fields(map, std::move(tables));
+}
+
+Field Fields::operator[](std::string_view name) const {
+  const YamlNode* node = given() ? map_.node()->find(name) : nullptr;
+  const YamlNode* count = given() ? map_.node()->find("count") : nullptr;
+  for (const KeyTable* table : tables_) {
+    const Key* key = table->find(name);
+    if (key == nullptr) continue;
+    // What is missing from a map that is itself missing or wrong has been said already.
+    const bool required = given() && is_required(*key, count ? count->text : "");
+    return Field(node, map_.place(), path_to(map_.path(), name), key->value, required, map_.errors());
+  }
+  throw std::logic_error(fmt::format("no table has the key {}", path_to(map_.path(), name)));
+}
+
+std::vector<Field> Fields::given_of(const KeyTable& table) const {
+  std::vector<Field> fields;
+  for (const std::string_view key : table.one_of) {
+    if (has(key)) fields.push_back((*this)[key]);
+  }
+  return fields;
+}
+
+std::vector<std::string_view> Fields::allowed() const {
+  std::vector<std::string_view> names;
+  for (const KeyTable* table : tables_) {
+    for (const Key& key : table->keys) {
+      if (std::ranges::find(names, key.name) == names.end()) names.push_back(key.name);
+    }
+  }
+  return names;
 }
 
 void Fields::close() const {
+  const std::vector<std::string_view> names = allowed();
   if (!given()) {
-    map_.refuse(fmt::format("a map of {}", listed(asked_)));
+    map_.refuse(fmt::format("a map of {}", listed(names)));
     return;
   }
+  report_copies(*map_.node(), map_.path(), map_.errors());
   for (const YamlNode& entry : map_.node()->children) {
-    if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
+    if (std::ranges::find(names, entry.key) != names.end()) continue;
     map_.errors().add(entry.key_place, path_to(map_.path(), entry.key),
-                      fmt::format("unknown key, allowed: {}", listed(asked_)));
+                      fmt::format("unknown key, allowed: {}", listed(names)));
   }
 }
 

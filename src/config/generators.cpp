@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "config/bodies.h"
+#include "config/generator_keys.h"
 #include "config/shapes.h"
 
 namespace aurasim::config {
@@ -12,8 +12,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kMostGenerators = 10'000;
-constexpr std::int64_t kMostInLine = 100'000;
 constexpr double kSmallestStep = 1e-6;
 
 /// Bodies that hang together by ball joints.
@@ -40,42 +38,34 @@ struct Formation {
 
 double as_double(std::int64_t n) { return static_cast<double>(n); }
 
-void read_common(Fields& fields, Formation& formation, SceneDraft& draft) {
-  const Field prototype = fields.required("prototype");
-  if (const auto index = fields.given() ? draft.prototypes.find(prototype) : std::nullopt) {
+void read_common(const Fields& fields, Formation& formation, SceneDraft& draft) {
+  if (const auto index = fields.given() ? draft.prototypes.find(fields["prototype"]) : std::nullopt) {
     formation.prototype = core::PrototypeId{*index};
     const std::uint32_t shape = draft.scene.prototypes[*index].shape;
     if (shape < draft.scene.shapes.size()) formation.bounds = bounds_of(draft.scene.shapes[shape].shape);
   }
-  if (const Field name = fields.optional("name"); name.given()) formation.name = name.text("a name");
-  Vec3& position = formation.X_WF.p_WB;
-  if (const Field p = fields.optional("position"); p.given()) position = p.vec3().value_or(position);
-  if (const Field yaw = fields.optional("yaw_deg"); yaw.given()) {
-    const double yaw_deg = yaw.number(Range::from_to(-3600, 3600)).value_or(0);
-    formation.X_WF.q_WB = core::Quat(Eigen::AngleAxisd(yaw_deg * std::numbers::pi / 180, Vec3::UnitZ()));
-  }
-  if (const Field v = fields.optional("velocity"); v.given()) formation.v_WB = v.vec3(kSpeed).value_or(Vec3::Zero());
-  if (const Field w = fields.optional("spin"); w.given()) formation.w_WB = w.vec3(kSpeed).value_or(Vec3::Zero());
+  formation.name = fields["name"].text();
+  formation.X_WF.p_WB = fields["position"].vec3().value_or(Vec3::Zero());
+  const double yaw_deg = fields["yaw_deg"].number().value_or(0);
+  formation.X_WF.q_WB = core::Quat(Eigen::AngleAxisd(yaw_deg * std::numbers::pi / 180, Vec3::UnitZ()));
+  formation.v_WB = fields["velocity"].vec3().value_or(Vec3::Zero());
+  formation.w_WB = fields["spin"].vec3().value_or(Vec3::Zero());
 }
 
-void read_gap(Fields& fields, Formation& formation) {
-  if (const Field gap = fields.optional("gap"); gap.given()) {
-    formation.gap_m = gap.number(Range::from_to(0, 1e6)).value_or(0);
-  }
-}
+void read_gap(const Fields& fields, Formation& formation) { formation.gap_m = fields["gap"].number().value_or(0); }
 
-void place_stack(Fields& fields, Formation& formation, const SceneDraft& draft) {
-  const Field count_field = fields.required("count");
-  const auto count = count_field.integer(1, kMostInLine);
+void place_stack(const Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field count_field = fields["count"];
+  const auto count = count_field.integer();
   if (!count || !draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) return;
   const double height = formation.bounds.size().z();
   for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back({0, 0, (as_double(i) + 0.5) * height});
 }
 
-void place_wall(Fields& fields, Formation& formation, const SceneDraft& draft) {
+void place_wall(const Fields& fields, Formation& formation, const SceneDraft& draft) {
   read_gap(fields, formation);
-  const auto rows = fields.required("rows").integer(1, kMostInLine);
-  const auto columns = fields.required("columns").integer(1, kMostInLine);
+  const auto rows = fields["rows"].integer();
+  const auto columns = fields["columns"].integer();
   if (!rows || !columns) return;
   if (!draft.has_room_for(static_cast<std::uint64_t>(*rows * *columns), fields.whole())) return;
   const Vec3 size = formation.bounds.size();
@@ -88,10 +78,10 @@ void place_wall(Fields& fields, Formation& formation, const SceneDraft& draft) {
   }
 }
 
-void place_pyramid(Fields& fields, Formation& formation, const SceneDraft& draft) {
+void place_pyramid(const Fields& fields, Formation& formation, const SceneDraft& draft) {
   read_gap(fields, formation);
-  const Field rows_field = fields.required("rows");
-  const auto rows = rows_field.integer(1, kMostInLine);
+  const Field rows_field = fields["rows"];
+  const auto rows = rows_field.integer();
   if (!rows || !draft.has_room_for(static_cast<std::uint64_t>(*rows * (*rows + 1) / 2), rows_field)) return;
   const Vec3 size = formation.bounds.size();
   for (std::int64_t row = 0; row < *rows; ++row) {
@@ -103,15 +93,14 @@ void place_pyramid(Fields& fields, Formation& formation, const SceneDraft& draft
   }
 }
 
-void place_block(Fields& fields, Formation& formation, const SceneDraft& draft) {
-  const Field counts_field = fields.required("counts");
+void place_block(const Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field counts_field = fields["counts"];
   std::vector<std::int64_t> counts;
-  for (const Field& item : counts_field.items(3, 3)) {
-    if (const auto count = item.integer(1, kMostInLine)) counts.push_back(*count);
+  for (const Field& item : counts_field.items()) {
+    if (const auto count = item.integer()) counts.push_back(*count);
   }
   const Vec3 size = formation.bounds.size();
-  Vec3 spacing = size;
-  if (const Field s = fields.optional("spacing"); s.given()) spacing = s.vec3(kSize).value_or(spacing);
+  const Vec3 spacing = fields["spacing"].vec3().value_or(size);
   if (counts.size() != 3) return;
   const std::int64_t in_layer = counts[0] * counts[1];
   const std::int64_t all = in_layer > static_cast<std::int64_t>(kMostBodies) ? in_layer : in_layer * counts[2];
@@ -127,26 +116,19 @@ void place_block(Fields& fields, Formation& formation, const SceneDraft& draft) 
   }
 }
 
-void place_row(Fields& fields, Formation& formation, const SceneDraft& draft) {
-  const Field count_field = fields.required("count");
-  const auto count = count_field.integer(1, kMostInLine);
-  const auto step = fields.required("step").vec3();
+void place_row(const Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Field count_field = fields["count"];
+  const auto count = count_field.integer();
+  const auto step = fields["step"].vec3();
   if (!count || !step || !draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) return;
   const Vec3 first = 0.5 * (formation.bounds.low + formation.bounds.high);  // position is a body's centre here
   for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back(first + as_double(i) * *step);
 }
 
-void place_chain(Fields& fields, Formation& formation, const SceneDraft& draft) {
-  enum class Anchor { kNone, kFirst, kLast, kBoth };
-  Anchor anchor = Anchor::kNone;
-  if (const Field f = fields.optional("anchor"); f.given()) {
-    anchor =
-        f.choice<Anchor>(
-             {{"none", Anchor::kNone}, {"first", Anchor::kFirst}, {"last", Anchor::kLast}, {"both", Anchor::kBoth}})
-            .value_or(anchor);
-  }
+void place_chain(const Fields& fields, Formation& formation, const SceneDraft& draft) {
+  const Anchor anchor = fields["anchor"].choice<Anchor>().value_or(Anchor::kNone);
   place_row(fields, formation, draft);
-  const Field step_field = fields.required("step");
+  const Field step_field = fields["step"];
   const auto step = step_field.is_list() ? step_field.vec3() : std::nullopt;
   if (!step) return;
   if (step->norm() < kSmallestStep) {
@@ -183,8 +165,9 @@ void add_bodies(const Formation& formation, const Field& blame, SceneDraft& draf
   if (formation.chain) q_FB = core::Quat::FromTwoVectors(Vec3::UnitZ(), formation.chain->step_F);
   std::size_t index = 0;
   for (const Vec3& p_FC : formation.centres_F) {
-    if (formation.name) draft.name_next_body(fmt::format("{}.{}", *formation.name, index++), blame);
     DraftBody body;
+    body.source = source_of(blame, formation.name ? fmt::format("{}.{}", *formation.name, index++) : "");
+    if (formation.name) draft.name_next_body(body.source.name, blame);
     body.body.prototype = formation.prototype;
     body.body.pose.p_WB = formation.X_WF.p_WB + formation.X_WF.q_WB * (p_FC - q_FB * p_BoC);
     body.body.pose.q_WB = formation.X_WF.q_WB * q_FB;
@@ -194,10 +177,10 @@ void add_bodies(const Formation& formation, const Field& blame, SceneDraft& draf
   }
 }
 
-using Placement = void (*)(Fields&, Formation&, const SceneDraft&);
+using Placement = void (*)(const Fields&, Formation&, const SceneDraft&);
 
 void read_formation(const Field& field, Placement place, SceneDraft& draft) {
-  Fields fields(field);
+  const Fields fields(field);
   Formation formation;
   read_common(fields, formation, draft);
   place(fields, formation, draft);
@@ -208,26 +191,24 @@ void read_formation(const Field& field, Placement place, SceneDraft& draft) {
 }
 
 void read_generator(const Field& field, SceneDraft& draft) {
-  constexpr std::pair<const char*, Placement> kKinds[] = {{"stack", place_stack},     {"wall", place_wall},
-                                                          {"pyramid", place_pyramid}, {"block", place_block},
-                                                          {"row", place_row},         {"chain", place_chain}};
-  Fields fields(field);
-  int kinds = 0;
+  constexpr std::pair<std::string_view, Placement> kKinds[] = {{"stack", place_stack},     {"wall", place_wall},
+                                                               {"pyramid", place_pyramid}, {"block", place_block},
+                                                               {"row", place_row},         {"chain", place_chain}};
+  const Fields fields(field);
   for (const auto& [kind, place] : kKinds) {
-    const Field formation = fields.optional(kind);
-    if (!formation.given()) continue;
-    ++kinds;
-    read_formation(formation, place, draft);
+    if (fields.has(kind)) read_formation(fields[kind], place, draft);
   }
   fields.close();
-  if (fields.given() && kinds != 1) field.refuse("one of stack, wall, pyramid, block, row, chain");
+  if (fields.given() && fields.given_of(generator_keys()).size() != 1) {
+    field.refuse("one of stack, wall, pyramid, block, row, chain");
+  }
 }
 
 }  // namespace
 
 void read_generators(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const Field& item : field.items(0, kMostGenerators)) read_generator(item, draft);
+  for (const Field& item : field.items()) read_generator(item, draft);
 }
 
 }  // namespace aurasim::config

@@ -28,15 +28,25 @@ core::TriangleMesh triangulated(const std::vector<std::vector<double>>& heights,
 
 }  // namespace
 
-std::optional<core::Shape> read_heightfield(Fields& fields) {
-  const auto cell = fields.required("cell").numbers(2, kSize);
+const KeyTable& heightfield_keys() {
+  static const KeyTable keys{
+      .title = "shape: heightfield",
+      .about = "Ground given as a grid of heights, centred on the origin. Statics only.",
+      .keys = {required("cell", numbers(2, kSize, "m"), "distance of two heights along x and along y"),
+               required("heights", list(2, kMostRows, list(2, kMostRows, number(kAnyNumber, "m"))),
+                        "rows from -y to +y, each from -x to +x, all of one length")}};
+  return keys;
+}
+
+std::optional<core::Shape> read_heightfield(const Fields& fields) {
+  const auto cell = fields["cell"].numbers();
   std::vector<std::vector<double>> heights;
-  const std::vector<Field> rows = fields.required("heights").items(2, kMostRows);
+  const std::vector<Field> rows = fields["heights"].items();
   for (const Field& row : rows) {
     std::vector<double> values;
-    const std::vector<Field> items = row.items(2, kMostRows);
+    const std::vector<Field> items = row.items();
     for (const Field& item : items) {
-      if (const auto height = item.number(kAnyNumber)) values.push_back(*height);
+      if (const auto height = item.number()) values.push_back(*height);
     }
     if (items.empty() || values.size() != items.size()) continue;
     if (!heights.empty() && values.size() != heights[0].size()) {

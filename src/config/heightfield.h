@@ -8,7 +8,9 @@
 
 namespace aurasim::config {
 
-/// {cell: [dx, dy], heights: [[...], ...]} as triangles: rows from -y to +y, the grid centred on the origin.
-std::optional<core::Shape> read_heightfield(Fields& fields);
+const KeyTable& heightfield_keys();
+
+/// As triangles.
+std::optional<core::Shape> read_heightfield(const Fields& fields);
 
 }  // namespace aurasim::config

@@ -7,15 +7,13 @@
 #include <fmt/format.h>
 
 #include "config/bodies.h"
+#include "config/injector_keys.h"
 
 namespace aurasim::config {
 namespace {
 
 using core::Rectangle;
 using core::Vec3;
-
-constexpr std::size_t kMostInjectors = 10'000;
-constexpr Range kExtent = Range::from_to(0, 1e6);
 
 /// Where a part of an injector's bodies appears.
 struct Volume {
@@ -47,9 +45,9 @@ std::vector<Side> sides_of(const std::vector<Rectangle>& tiles, std::size_t regi
   return sides;
 }
 
-std::vector<Volume> volumes_per_region(Fields fields, const std::vector<Rectangle>& tiles) {
-  const auto size = fields.required("size").vec3(kExtent);
-  const auto height = fields.required("height").number(kAnyNumber);
+std::vector<Volume> volumes_per_region(const Fields& fields, const std::vector<Rectangle>& tiles) {
+  const auto size = fields["size"].vec3();
+  const auto height = fields["height"].number();
   fields.close();
   std::vector<Volume> volumes;
   if (!size || !height) return volumes;
@@ -61,10 +59,10 @@ std::vector<Volume> volumes_per_region(Fields fields, const std::vector<Rectangl
   return volumes;
 }
 
-std::vector<Volume> volumes_per_boundary(Fields fields, const std::vector<Rectangle>& tiles) {
-  const auto distance = fields.required("distance").number(kExtent);
-  const auto size = fields.required("size").vec3(kExtent);  // across, along, up
-  const auto height = fields.required("height").number(kAnyNumber);
+std::vector<Volume> volumes_per_boundary(const Fields& fields, const std::vector<Rectangle>& tiles) {
+  const auto distance = fields["distance"].number();
+  const auto size = fields["size"].vec3();  // across, along, up
+  const auto height = fields["height"].number();
   fields.close();
   std::vector<Volume> volumes;
   if (!distance || !size || !height) return volumes;
@@ -86,12 +84,12 @@ std::vector<Volume> volumes_per_boundary(Fields fields, const std::vector<Rectan
 }
 
 std::vector<Volume> read_per(const Field& field, const SceneDraft& draft) {
-  Fields fields(field);
-  const Field regions = fields.optional("regions");
-  const Field boundaries = fields.optional("boundaries");
+  const Fields fields(field);
+  const Field regions = fields["regions"];
+  const Field boundaries = fields["boundaries"];
   fields.close();
   if (!fields.given()) return {};
-  if (regions.given() == boundaries.given()) {
+  if (fields.given_of(per_keys()).size() != 1) {
     field.refuse("one of regions, boundaries");
     return {};
   }
@@ -105,20 +103,20 @@ std::vector<Volume> read_per(const Field& field, const SceneDraft& draft) {
 }
 
 std::optional<Volume> read_volume(const Field& field) {
-  Fields fields(field);
-  const auto centre = fields.required("center").vec3();
-  const auto size = fields.required("size").vec3(kExtent);
+  const Fields fields(field);
+  const auto centre = fields["center"].vec3();
+  const auto size = fields["size"].vec3();
   fields.close();
   if (!centre || !size) return std::nullopt;
   return Volume{*centre, *size, 1};
 }
 
-std::vector<Volume> read_volumes(Fields& fields, const SceneDraft& draft) {
-  const Field one = fields.optional("volume");
-  const Field several = fields.optional("volumes");
-  const Field per = fields.optional("per");
+std::vector<Volume> read_volumes(const Fields& fields, const SceneDraft& draft) {
+  const Field one = fields["volume"];
+  const Field several = fields["volumes"];
+  const Field per = fields["per"];
   if (!fields.given()) return {};
-  if (int{one.given()} + int{several.given()} + int{per.given()} != 1) {
+  if (fields.given_of(injector_keys()).size() != 1) {
     fields.whole().refuse("one of volume, volumes, per");
     return {};
   }
@@ -128,7 +126,7 @@ std::vector<Volume> read_volumes(Fields& fields, const SceneDraft& draft) {
     if (const auto volume = read_volume(one)) volumes.push_back(*volume);
     return volumes;
   }
-  for (const Field& item : several.items(1, kMostInjectors)) {
+  for (const Field& item : several.items()) {
     if (const auto volume = read_volume(item)) volumes.push_back(*volume);
   }
   for (Volume& volume : volumes) volume.share = 1.0 / static_cast<double>(volumes.size());
@@ -137,9 +135,9 @@ std::vector<Volume> read_volumes(Fields& fields, const SceneDraft& draft) {
 
 void read_velocity(const Field& field, core::Injector& injector) {
   if (!field.given()) return;
-  Fields fields(field);
-  const auto low = fields.required("min").vec3(kSpeed);
-  const auto high = fields.required("max").vec3(kSpeed);
+  const Fields fields(field);
+  const auto low = fields["min"].vec3();
+  const auto high = fields["max"].vec3();
   fields.close();
   if (!low || !high) return;
   if ((low->array() > high->array()).any()) {
@@ -151,31 +149,18 @@ void read_velocity(const Field& field, core::Injector& injector) {
 }
 
 /// Everything but the volumes: as if all bodies came from one.
-core::Injector read_common(Fields& fields, std::size_t index, const SceneDraft& draft) {
+core::Injector read_common(const Fields& fields, std::size_t index, const SceneDraft& draft) {
   core::Injector injector;
-  injector.name = fmt::format("injector {}", index);
-  if (const Field name = fields.optional("name"); name.given()) {
-    injector.name = name.text("a name").value_or(injector.name);
-  }
-  if (const Field seed = fields.optional("seed"); seed.given()) {
-    injector.seed = static_cast<std::uint64_t>(seed.integer(0, INT64_MAX).value_or(1));
-  }
-  const Field count_field = fields.required("count");
-  const auto count = count_field.integer(1, static_cast<std::int64_t>(kMostBodies));
+  keys_of_injector().read_members(fields, injector);
+  injector.name = fields["name"].text().value_or(fmt::format("injector {}", index));
+  const Field count_field = fields["count"];
+  const auto count = count_field.integer();
   if (count && draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) {
     injector.max_bodies = static_cast<std::uint64_t>(*count);
   }
-  injector.rate_per_s = fields.required("rate").number(Range::above(0, 1e5)).value_or(1);
-  if (const Field start = fields.optional("start"); start.given()) {
-    injector.start_s = start.number(Range::from_to(0, 1e6)).value_or(0);
-  }
-  read_velocity(fields.optional("velocity"), injector);
-  if (const Field random = fields.optional("random_orientation"); random.given()) {
-    injector.random_orientation = random.flag().value_or(false);
-  }
-  const Field prototypes = fields.required("prototypes");
+  read_velocity(fields["velocity"], injector);
   if (fields.given()) {
-    for (const Field& item : prototypes.items(1, 1000)) {
+    for (const Field& item : fields["prototypes"].items()) {
       injector.prototypes.push_back(core::PrototypeId{draft.prototypes.find(item).value_or(0)});
     }
   }
@@ -231,8 +216,8 @@ void read_injectors(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   std::unordered_set<std::string> names;
   std::size_t index = 0;
-  for (const Field& item : field.items(0, kMostInjectors)) {
-    Fields fields(item);
+  for (const Field& item : field.items()) {
+    const Fields fields(item);
     const core::Injector whole = read_common(fields, index++, draft);
     const std::vector<Volume> volumes = read_volumes(fields, draft);
     fields.close();
@@ -245,6 +230,7 @@ void read_injectors(const Field& field, SceneDraft& draft) {
       continue;
     }
     add_injectors(whole, volumes, draft);
+    draft.injector_sources.resize(draft.scene.injectors.size(), source_of(item, whole.name));
     if (static_cast<std::int64_t>(value_of(next_free_id(draft.scene))) > kLargestBodyId + 1) {
       item.complain(fmt::format("found ids up to {}, allowed: at most {}", value_of(next_free_id(draft.scene)) - 1,
                                 kLargestBodyId));

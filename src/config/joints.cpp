@@ -4,21 +4,21 @@
 
 #include <fmt/format.h>
 
+#include "config/joint_keys.h"
+
 namespace aurasim::config {
 namespace {
 
 using core::JointLimits;
 using core::Vec3;
 
-constexpr std::size_t kMostJoints = 1'000'000;
 constexpr double kSmallestAxis = 1e-6;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr Range kAngleDeg = Range::from_to(-180, 180);
 
 /// [low, high], in the unit of the result times `unit`.
-std::optional<JointLimits> read_limits(const Field& field, const Range& range, double unit) {
+std::optional<JointLimits> read_limits(const Field& field, double unit) {
   if (!field.given()) return std::nullopt;
-  const auto values = field.numbers(2, range);
+  const auto values = field.numbers();
   if (!values) return std::nullopt;
   if ((*values)[0] > (*values)[1]) {
     field.refuse("[low, high] with low up to high");
@@ -37,26 +37,21 @@ core::Quat read_axis(const Field& field) {
   return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis);
 }
 
-core::JointKind read_ball(Fields&, core::Quat&) { return core::BallJoint{}; }
+core::JointKind read_ball(const Fields&, core::Quat&) { return core::BallJoint{}; }
 
-core::JointKind read_fixed(Fields&, core::Quat&) { return core::FixedJoint{}; }
+core::JointKind read_fixed(const Fields&, core::Quat&) { return core::FixedJoint{}; }
 
-core::JointKind read_hinge(Fields& fields, core::Quat& q_WJ) {
+core::JointKind read_hinge(const Fields& fields, core::Quat& q_WJ) {
   core::HingeJoint hinge;
-  q_WJ = read_axis(fields.optional("axis"));
-  hinge.limits = read_limits(fields.optional("limits_deg"), kAngleDeg, kDegree);
-  if (const Field motor_field = fields.optional("motor"); motor_field.given()) {
-    Fields motor(motor_field);
-    hinge.motor = core::JointMotor{motor.required("speed").number(Range::from_to(-1e4, 1e4)).value_or(0),
-                                   motor.required("max_impulse").number(Range::from_to(0, 1e9)).value_or(0)};
-    motor.close();
-  }
+  q_WJ = read_axis(fields["axis"]);
+  hinge.limits = read_limits(fields["limits_deg"], kDegree);
+  if (const Field motor = fields["motor"]; motor.given()) motor_keys().read(motor, hinge.motor.emplace());
   return hinge;
 }
 
-core::JointKind read_slider(Fields& fields, core::Quat& q_WJ) {
-  q_WJ = read_axis(fields.optional("axis"));
-  return core::SliderJoint{read_limits(fields.optional("limits"), kAnyNumber, 1)};
+core::JointKind read_slider(const Fields& fields, core::Quat& q_WJ) {
+  q_WJ = read_axis(fields["axis"]);
+  return core::SliderJoint{read_limits(fields["limits"], 1)};
 }
 
 core::SpringAxis read_spring_axis(const Field& field, bool turns) {
@@ -65,49 +60,38 @@ core::SpringAxis read_spring_axis(const Field& field, bool turns) {
     axis.limits = JointLimits{};
     return axis;
   }
-  Fields fields(field);
-  axis.limits = turns ? read_limits(fields.optional("limits_deg"), kAngleDeg, kDegree)
-                      : read_limits(fields.optional("limits"), kAnyNumber, 1);
-  if (const Field f = fields.optional("stiffness"); f.given()) {
-    axis.stiffness = f.number(Range::from_to(0, 1e9)).value_or(0);
-  }
-  if (const Field f = fields.optional("damping"); f.given()) {
-    axis.damping = f.number(Range::from_to(0, 1e9)).value_or(0);
-  }
+  const Fields fields(field);
+  axis.limits = turns ? read_limits(fields["limits_deg"], kDegree) : read_limits(fields["limits"], 1);
+  (turns ? turning_axis_keys() : sliding_axis_keys()).read_members(fields, axis);
   fields.close();
   return axis;
 }
 
-core::JointKind read_spring(Fields& fields, core::Quat& q_WJ) {
+core::JointKind read_spring(const Fields& fields, core::Quat& q_WJ) {
   core::SpringJoint spring;
-  q_WJ = read_orientation(fields.optional("orientation"));
+  q_WJ = read_orientation(fields["orientation"]);
   std::size_t i = 0;
   for (const char* name : {"x", "y", "z", "rx", "ry", "rz"}) {
-    spring.axes[i] = read_spring_axis(fields.optional(name), i >= 3);
+    spring.axes[i] = read_spring_axis(fields[name], i >= 3);
     ++i;
   }
   return spring;
 }
 
-using KindReader = core::JointKind (*)(Fields&, core::Quat&);
-constexpr std::pair<const char*, KindReader> kKinds[] = {{"ball", read_ball},
-                                                         {"hinge", read_hinge},
-                                                         {"slider", read_slider},
-                                                         {"fixed", read_fixed},
-                                                         {"spring", read_spring}};
+using KindReader = core::JointKind (*)(const Fields&, core::Quat&);
+constexpr std::pair<std::string_view, KindReader> kKinds[] = {{"ball", read_ball},
+                                                              {"hinge", read_hinge},
+                                                              {"slider", read_slider},
+                                                              {"fixed", read_fixed},
+                                                              {"spring", read_spring}};
 
-/// True if there is one kind, and only one.
-bool read_kind(Fields& fields, core::JointSpec& joint) {
-  int kinds = 0;
+void read_kinds(const Fields& fields, core::JointSpec& joint) {
   for (const auto& [name, read] : kKinds) {
-    const Field field = fields.optional(name);
-    if (!field.given()) continue;
-    ++kinds;
-    Fields settings(field);
+    if (!fields.has(name)) continue;
+    const Fields settings(fields[name]);
     joint.kind = read(settings, joint.X_WJ.q_WB);
     settings.close();
   }
-  return kinds == 1;
 }
 
 /// The places of one or two bodies in the draft.
@@ -117,7 +101,7 @@ std::vector<std::size_t> read_ends(const Field& field, const SceneDraft& draft) 
     field.refuse("a list of 1 to 2");
     return {};
   }
-  const std::vector<Field> items = field.items(1, 2);
+  const std::vector<Field> items = field.items();
   for (const Field& item : items) {
     if (const auto name = draft.body_names.find(item)) places.push_back(draft.named_bodies[*name]);
   }
@@ -131,19 +115,17 @@ std::vector<std::size_t> read_ends(const Field& field, const SceneDraft& draft) 
 void read_joint(const Field& field, SceneDraft& draft) {
   DraftJoint draft_joint;
   core::JointSpec& joint = draft_joint.joint;
-  Fields fields(field);
-  const bool has_one_kind = read_kind(fields, joint);
-  const std::vector<std::size_t> ends = read_ends(fields.required("bodies"), draft);
-  joint.name = fmt::format("joint {}", draft.joints.size());
-  if (const Field name = fields.optional("name"); name.given()) joint.name = name.text("a name").value_or(joint.name);
+  const Fields fields(field);
+  read_kinds(fields, joint);
+  const std::vector<std::size_t> ends = read_ends(fields["bodies"], draft);
+  joint.name = fields["name"].text().value_or(fmt::format("joint {}", draft.joints.size()));
   if (!ends.empty()) joint.X_WJ.p_WB = draft.bodies[ends[0]].body.pose.p_WB;
-  if (const Field p = fields.optional("position"); p.given()) joint.X_WJ.p_WB = p.vec3().value_or(Vec3::Zero());
-  if (const Field f = fields.optional("collide"); f.given()) joint.collide = f.flag().value_or(false);
-  if (const Field f = fields.optional("break_impulse"); f.given()) {
-    joint.break_impulse = f.number(Range::above(0, 1e9)).value_or(joint.break_impulse);
-  }
+  joint.X_WJ.p_WB = fields["position"].vec3().value_or(joint.X_WJ.p_WB);
+  keys_of_joint().read_members(fields, joint);
   fields.close();
-  if (fields.given() && !has_one_kind) field.refuse("one of ball, hinge, slider, fixed, spring");
+  if (fields.given() && fields.given_of(joint_keys()).size() != 1) {
+    field.refuse("one of ball, hinge, slider, fixed, spring");
+  }
   if (ends.empty()) return;
   draft_joint.a = ends[0];
   if (ends.size() == 2) draft_joint.b = ends[1];
@@ -154,7 +136,7 @@ void read_joint(const Field& field, SceneDraft& draft) {
 
 void read_joints(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const Field& item : field.items(0, kMostJoints)) read_joint(item, draft);
+  for (const Field& item : field.items()) read_joint(item, draft);
 }
 
 void number_joints(SceneDraft& draft) {

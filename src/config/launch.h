@@ -9,21 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "config/discovery.h"
+#include "core/aura.h"
 #include "core/region_map.h"
 #include "core/scene.h"
+#include "core/sync_mode.h"
 
 namespace aurasim::config {
 
-enum class Sync { kFreeRunning, kBounded, kDeterministic };
 enum class Pace { kWall, kNone };
-enum class AuraRadius { kNone, kThesis, kTight, kSwept };
 enum class Origin { kWorld, kRegion };
-enum class Discovery { kMulticast, kPeers, kServer };
 
 struct Time {
   double step_hz = 60;
   int substeps = 4;
-  Sync sync = Sync::kBounded;
+  core::SyncMode sync = core::SyncMode::kBounded;
   std::optional<int> lookahead;  ///< K; nothing: from the tolerances
   Pace pace = Pace::kWall;
 };
@@ -35,7 +35,7 @@ struct Tolerances {
 };
 
 struct Aura {
-  AuraRadius radius = AuraRadius::kSwept;
+  core::AuraKind radius = core::AuraKind::kSwept;
   double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"
 };
 
@@ -80,11 +80,20 @@ struct Overseer {
   int port = 8080;                 ///< 0: any that is free
 };
 
+/// Where the scene file says something, for messages about it.
+struct SceneSource {
+  std::string name;  ///< that the file gives it; may be empty
+  int line = 0;      ///< 0: not in the file, but in an override
+  int column = 0;
+};
+
 struct Launch {
   std::filesystem::path file;          ///< absolute
   std::vector<std::string> overrides;  ///< as they were given
   std::filesystem::path scene_file;
   core::Scene scene;
+  std::vector<SceneSource> body_sources;      ///< as scene.bodies
+  std::vector<SceneSource> injector_sources;  ///< as scene.injectors
   core::RegionMap regions = core::RegionMap::columns(1, 1);
   bool neighbour_distance_is_given = false;
   double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other; at least the zone

@@ -14,12 +14,58 @@ using core::RegionMap;
 
 enum class Kind { kColumns, kGrid, kBrick, kBoxes };
 
+const Value& any_layout() {
+  static const Value value = choice<Kind>(
+      {{"columns", Kind::kColumns}, {"grid", Kind::kGrid}, {"brick", Kind::kBrick}, {"boxes", Kind::kBoxes}});
+  return value;
+}
+
+const KeyTable& columns_keys() {
+  static const KeyTable keys{.title = "layout: columns",
+                             .about = "Side by side along x, centred on the origin.",
+                             .keys = {optional("layout", words({"columns"}), "this layout").usual("columns"),
+                                      required("count", integer(1, kMostRegions), "how many regions"),
+                                      required_unless_central("width", number(kSize, "m"), "of each of them")}};
+  return keys;
+}
+
+const KeyTable& grid_keys() {
+  static const KeyTable keys{
+      .title = "layout: grid or brick",
+      .about = "Rows along y of cells along x, centred on the origin; brick shifts every other row by half a cell.",
+      .keys = {required("layout", words({"grid", "brick"}), "this layout"),
+               required("rows", integer(1, kMostRegions), "along y; rows times columns is at most 1024"),
+               required("columns", integer(1, kMostRegions), "along x"),
+               required("cell", numbers(2, kSize, "m"), "size of each region, along x and y")}};
+  return keys;
+}
+
+const KeyTable& counted_grid_keys() {
+  static const KeyTable keys{
+      .title = "layout: grid or brick, by count",
+      .about = "The most square grid of so many cells, with no more rows than columns.",
+      .keys = {required("layout", words({"grid", "brick"}), "this layout"),
+               required("count", integer(1, kMostRegions), "how many regions"),
+               required_unless_central("cell", numbers(2, kSize, "m"), "size of each region, along x and y")}};
+  return keys;
+}
+
+const KeyTable& boxes_keys() {
+  static const KeyTable keys{.title = "layout: boxes",
+                             .about = "Rectangles that tile a rectangle, without overlap or gap.",
+                             .keys = {required("layout", words({"boxes"}), "this layout"),
+                                      required_unless_central("boxes", list(1, kMostBoxes, numbers(4, kAnyNumber, "m")),
+                                                              "[x0, y0, x1, y1] of each region, x0 < x1 and y0 < y1"),
+                                      optional("count", integer(1, 1), "1: the central run, whatever the boxes are")
+                                          .otherwise("as many as there are boxes")}};
+  return keys;
+}
+
 bool is_used_by(std::string_view layout, std::string_view key) {
-  if (key == "layout" || key == "count" || key == "neighbour_distance") return true;
-  if (layout == "columns") return key == "width";
-  if (layout == "grid" || layout == "brick") return key == "rows" || key == "columns" || key == "cell";
-  if (layout == "boxes") return key == "boxes";
-  return true;
+  if (key == "neighbour_distance" || !any_layout().has_word(layout)) return true;
+  return std::ranges::any_of(layout_value().tables, [&](const Table& table) {
+    return table().find("layout")->value.has_word(layout) && table().find(key) != nullptr;
+  });
 }
 
 /// Edge `i` of `count` cells in a row that is centred on the origin.
@@ -56,11 +102,11 @@ std::vector<Rectangle> grid_tiles(const Grid& grid, bool brick) {
 
 RegionLayout central_run(double width) { return {RegionMap::columns(1, width), column_tiles(1, width)}; }
 
-std::optional<RegionLayout> read_columns(Fields& fields) {
-  const auto count = fields.required("count").integer(1, kMostRegions);
+std::optional<RegionLayout> read_columns(const Fields& fields) {
+  const auto count = fields["count"].integer();
+  const Field width_field = fields["width"];
+  const auto width = width_field.number();
   const bool central = count == 1;
-  const Field width_field = central ? fields.optional("width") : fields.required("width");
-  const auto width = width_field.number(kSize);
   if (!count || (!central && !width) || (width_field.given() && !width)) return std::nullopt;
   if (central) return central_run(width.value_or(1));
   const auto columns = static_cast<std::size_t>(*count);
@@ -75,10 +121,10 @@ void make_square(std::int64_t count, Grid& grid) {
   grid.columns = static_cast<std::size_t>(count / rows);
 }
 
-bool read_rows_and_columns(Fields& fields, Grid& grid) {
-  const auto rows = fields.required("rows").integer(1, kMostRegions);
-  const Field columns_field = fields.required("columns");
-  const auto columns = columns_field.integer(1, kMostRegions);
+bool read_rows_and_columns(const Fields& fields, Grid& grid) {
+  const auto rows = fields["rows"].integer();
+  const Field columns_field = fields["columns"];
+  const auto columns = columns_field.integer();
   if (!rows || !columns) return false;
   if (*rows * *columns > kMostRegions) {
     columns_field.refuse(fmt::format("at most {} regions, rows times columns", kMostRegions));
@@ -89,20 +135,20 @@ bool read_rows_and_columns(Fields& fields, Grid& grid) {
   return true;
 }
 
-std::optional<RegionLayout> read_grid(Fields& fields, bool brick) {
+std::optional<RegionLayout> read_grid(const Fields& fields, bool brick) {
   Grid grid;
   bool good = true;
   bool central = false;
   if (fields.has("count")) {
-    const auto count = fields.required("count").integer(1, kMostRegions);
+    const auto count = fields["count"].integer();
     good = count.has_value();
     central = count == 1;
     if (good) make_square(*count, grid);
   } else {
     good = read_rows_and_columns(fields, grid);
   }
-  const Field cell_field = central ? fields.optional("cell") : fields.required("cell");
-  const auto cell = cell_field.given() || !central ? cell_field.numbers(2, kSize) : std::vector<double>{1, 1};
+  const Field cell_field = fields["cell"];
+  const auto cell = cell_field.given() || !central ? cell_field.numbers() : std::vector<double>{1, 1};
   if (!good || !cell) return std::nullopt;
   grid.cell_x = (*cell)[0];
   grid.cell_y = (*cell)[1];
@@ -112,17 +158,16 @@ std::optional<RegionLayout> read_grid(Fields& fields, bool brick) {
                       grid_tiles(grid, brick)};
 }
 
-std::optional<RegionLayout> read_boxes(Fields& fields) {
+std::optional<RegionLayout> read_boxes(const Fields& fields) {
   if (fields.has("count")) {
-    fields.optional("boxes");
-    if (!fields.required("count").integer(1, 1)) return std::nullopt;
+    if (!fields["count"].integer()) return std::nullopt;
     return central_run(1);
   }
-  const Field list = fields.required("boxes");
+  const Field list = fields["boxes"];
   std::vector<Rectangle> boxes;
-  const std::vector<Field> items = list.items(1, kMostBoxes);
+  const std::vector<Field> items = list.items();
   for (const Field& item : items) {
-    const auto edges = item.numbers(4, kAnyNumber);
+    const auto edges = item.numbers();
     if (!edges) continue;
     const std::vector<double>& e = *edges;
     if (e[0] < e[2] && e[1] < e[3]) {
@@ -140,29 +185,35 @@ std::optional<RegionLayout> read_boxes(Fields& fields) {
   }
 }
 
+/// Nothing if the map says a layout that there is not.
+std::optional<Kind> read_kind(const Field& map) {
+  if (!map.is_map()) return std::nullopt;
+  const YamlNode* layout = map.node()->find("layout");
+  if (layout == nullptr) return Kind::kColumns;
+  return Field(layout, map.place(), path_to(map.path(), "layout"), any_layout(), true, map.errors()).choice<Kind>();
+}
+
+/// Its keys, or those of all layouts if the kind is not known.
+Fields fields_of(const Field& map, std::optional<Kind> kind) {
+  if (!kind) return Fields::of_any_table(map);
+  if (*kind == Kind::kColumns) return Fields(map, columns_keys());
+  if (*kind == Kind::kBoxes) return Fields(map, boxes_keys());
+  return Fields(map, map.node()->find("count") != nullptr ? counted_grid_keys() : grid_keys());
+}
+
 }  // namespace
 
-std::optional<RegionLayout> read_layout(Fields& fields) {
-  std::optional<Kind> kind = Kind::kColumns;
-  if (const Field layout = fields.optional("layout"); layout.given()) {
-    kind = layout.choice<Kind>(
-        {{"columns", Kind::kColumns}, {"grid", Kind::kGrid}, {"brick", Kind::kBrick}, {"boxes", Kind::kBoxes}});
-  }
-  if (!kind || !fields.given()) {  // which keys are wrong cannot be said
-    for (const char* key : {"count", "width", "rows", "columns", "cell", "boxes"}) fields.optional(key);
-    return std::nullopt;
-  }
-  switch (*kind) {
-    case Kind::kColumns:
-      return read_columns(fields);
-    case Kind::kGrid:
-      return read_grid(fields, false);
-    case Kind::kBrick:
-      return read_grid(fields, true);
-    case Kind::kBoxes:
-      return read_boxes(fields);
-  }
-  return std::nullopt;
+Value layout_value() { return map_of_one({columns_keys, grid_keys, counted_grid_keys, boxes_keys}); }
+
+std::optional<RegionLayout> read_layout(const Field& map) {
+  const std::optional<Kind> kind = read_kind(map);
+  const Fields fields = fields_of(map, kind);
+  std::optional<RegionLayout> layout;
+  if (kind == Kind::kColumns) layout = read_columns(fields);
+  if (kind == Kind::kGrid || kind == Kind::kBrick) layout = read_grid(fields, kind == Kind::kBrick);
+  if (kind == Kind::kBoxes) layout = read_boxes(fields);
+  fields.close();
+  return layout;
 }
 
 void settle_overridden_layout(YamlNode& regions) {

@@ -1,9 +1,5 @@
-// The `regions` block of a launch file and the `layout` block of a scene:
-//   {layout: columns, count: 4, width: 40}
-//   {layout: grid, rows: 2, columns: 2, cell: [40, 40]}      (brick: the same, odd rows shifted by half a cell)
-//   {layout: boxes, boxes: [[x0, y0, x1, y1], ...]}
-// `count: 1` is the central run, in every layout, and needs nothing else. A grid or brick may give `count` instead of
-// rows and columns: the most square grid of so many cells.
+// The `regions` block of a launch file and the `layout` block of a scene. `count: 1` is the central run, in every
+// layout, and needs nothing else.
 #pragma once
 
 #include <optional>
@@ -25,8 +21,11 @@ struct RegionLayout {
   std::vector<core::Rectangle> tiles;
 };
 
-/// Asks for the keys of the layout; the caller may ask for more, and closes the map.
-std::optional<RegionLayout> read_layout(Fields& fields);
+/// A map with the keys of one of the layouts.
+Value layout_value();
+
+/// The map that `layout_value` describes, as a whole.
+std::optional<RegionLayout> read_layout(const Field& map);
 
 /// After overrides: forgets what the file says where an override of `layout`, `count`, `rows` or `columns` has made
 /// it meaningless, so that "--set regions.layout=columns --set regions.count=4 --set regions.width=40" suffices.

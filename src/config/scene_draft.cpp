@@ -20,23 +20,59 @@ core::Quat from_rpy_deg(const core::Vec3& rpy_deg) {
 
 }  // namespace
 
+SceneSource source_of(const Field& field, std::string name) {
+  return {std::move(name), field.place().line, field.place().column};
+}
+
+const KeyTable& orientation_keys() {
+  static const KeyTable keys{
+      .title = "orientation",
+      .about = "How a thing is turned: exactly one of these.",
+      .keys = {optional("rpy_deg", vec3("degrees", Range::from_to(-3600, 3600)),
+                        "[roll, pitch, yaw], about the fixed axes x, y, z, in this order"),
+               optional("quaternion", numbers(4, kAnyNumber), "[w, x, y, z], of any length but 0")},
+      .one_of = {"rpy_deg", "quaternion"}};
+  return keys;
+}
+
+const KeyTable& pose_keys() {
+  static const KeyTable keys{
+      .title = "position and orientation",
+      .about = "Where a thing stands, of its origin.",
+      .keys = {optional("position", vec3("m"), "[x, y, z]; z is up").usual("[0, 0, 0]"),
+               optional("orientation", map(orientation_keys), "how it is turned").otherwise("not turned")}};
+  return keys;
+}
+
+Key shape_key(std::string_view meaning) {
+  return required("shape", name_of("shape").or_else(map(shape_keys)), meaning);
+}
+
+Key material_key() {
+  return optional("material", name_of("material"), "what its surface is like")
+      .otherwise("the material `default`, if there is one of this name, or else one of defaults");
+}
+
+Key own_name_key(std::string_view meaning, std::string otherwise) {
+  return optional("name", text("a name"), meaning).otherwise(std::move(otherwise));
+}
+
 core::Quat read_orientation(const Field& field) {
   core::Quat q = core::Quat::Identity();
   if (!field.given()) return q;
-  Fields fields(field);
-  const Field rpy_field = fields.optional("rpy_deg");
-  const Field quaternion_field = fields.optional("quaternion");
+  const Fields fields(field);
   fields.close();
   if (!fields.given()) return q;
-  if (rpy_field.given() == quaternion_field.given()) {
+  if (fields.given_of(orientation_keys()).size() != 1) {
     field.refuse("one of rpy_deg, quaternion");
     return q;
   }
-  if (rpy_field.given()) {
-    if (const auto rpy_deg = rpy_field.vec3(Range::from_to(-3600, 3600))) q = from_rpy_deg(*rpy_deg);
+  if (const Field rpy_field = fields["rpy_deg"]; rpy_field.given()) {
+    if (const auto rpy_deg = rpy_field.vec3()) q = from_rpy_deg(*rpy_deg);
     return q;
   }
-  const auto wxyz = quaternion_field.numbers(4, kAnyNumber);
+  const Field quaternion_field = fields["quaternion"];
+  const auto wxyz = quaternion_field.numbers();
   if (!wxyz) return q;
   const core::Quat given((*wxyz)[0], (*wxyz)[1], (*wxyz)[2], (*wxyz)[3]);
   if (given.norm() < kSmallestQuaternion) {
@@ -82,12 +118,10 @@ bool SceneDraft::has_room_for(std::uint64_t count, const Field& blame) const {
   return false;
 }
 
-core::Pose read_pose(Fields& fields) {
+core::Pose read_pose(const Fields& fields) {
   core::Pose pose;
-  if (const Field position = fields.optional("position"); position.given()) {
-    pose.p_WB = position.vec3().value_or(pose.p_WB);
-  }
-  pose.q_WB = read_orientation(fields.optional("orientation"));
+  pose.p_WB = fields["position"].vec3().value_or(pose.p_WB);
+  pose.q_WB = read_orientation(fields["orientation"]);
   return pose;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/fields.h"
+#include "config/launch.h"
 #include "config/region_layout.h"
 #include "core/scene.h"
 
@@ -40,6 +41,7 @@ class Names {
 struct DraftBody {
   std::optional<core::BodyId> id;
   core::InitialBody body;
+  SceneSource source;
 };
 
 /// A joint whose bodies may not have their ids yet: places in SceneDraft::bodies.
@@ -51,7 +53,9 @@ struct DraftJoint {
 
 struct SceneDraft {
   core::Scene scene;
-  std::filesystem::path folder;  ///< mesh files are relative to it
+  std::vector<SceneSource> body_sources;      ///< as scene.bodies
+  std::vector<SceneSource> injector_sources;  ///< as scene.injectors
+  std::filesystem::path folder;               ///< mesh files are relative to it
   Names shapes{"shape"};
   Names materials{"material"};
   Names prototypes{"prototype"};
@@ -71,12 +75,26 @@ struct SceneDraft {
   bool has_room_for(std::uint64_t count, const Field& blame) const;
 };
 
-/// `position` and `orientation` of a map: {rpy_deg: [roll, pitch, yaw]}, about the fixed axes x, y, z in this order,
-/// or {quaternion: [w, x, y, z]}, which is normalised. Both are optional.
-core::Pose read_pose(Fields& fields);
+/// Where `field` is, for messages about what it describes.
+SceneSource source_of(const Field& field, std::string name);
+
+/// Of maps of things that stand somewhere.
+const KeyTable& pose_keys();
+const KeyTable& orientation_keys();
+
+/// `position` and `orientation` of a map that shares pose_keys.
+core::Pose read_pose(const Fields& fields);
 
 /// `orientation` alone.
 core::Quat read_orientation(const Field& field);
+
+/// Metres per second, and radians per second, of one component.
+inline constexpr Range kSpeed = Range::from_to(-1e4, 1e4);
+
+/// `shape:`, a name or a shape in place; `material:`, a name; a name of its own.
+Key shape_key(std::string_view meaning);
+Key material_key();
+Key own_name_key(std::string_view meaning, std::string otherwise);
 
 /// `shape:` of a prototype, a static or a part: a name, or a shape in place, which gets the name `own_name`.
 std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft);

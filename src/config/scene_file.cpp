@@ -4,12 +4,39 @@
 #include "config/generators.h"
 #include "config/injectors.h"
 #include "config/joints.h"
+#include "config/keys_of.h"
 #include "config/launch.h"
+#include "config/shapes.h"
 
 namespace aurasim::config {
 namespace {
 
-constexpr Range kGravity = Range::from_to(-1000, 1000);
+constexpr std::size_t kMostStatics = 100'000;
+
+const KeysOf<core::Scene>& scene_keys() {
+  using core::Scene;
+  static const KeysOf<Scene> keys(
+      "scene file", "What a world is made of. Lengths in metres, z is up; paths are relative to the file.",
+      {
+          optional("name", &Scene::name, text("a name"), "shown by the viewer and in reports")
+              .otherwise("the file's, without its ending"),
+          optional("gravity", &Scene::gravity, vec3("m/s^2", Range::from_to(-1000, 1000)),
+                   "acceleration of all bodies"),
+          optional("layout", layout_value().or_word("launch"),
+                   "what injectors `per` region or boundary go by. launch: the regions of the launch file; a layout of "
+                   "its own keeps the world the same on any number of nodes")
+              .otherwise("none: `per` is refused"),
+          optional("materials", named("a map of materials by name", map(material_keys)), "surfaces, by name"),
+          optional("shapes", named("a map of shapes by name", map(shape_keys)), "shapes, by name"),
+          optional("prototypes", named("a map of prototypes by name", map(prototype_keys)), "kinds of bodies, by name"),
+          optional("statics", list(0, kMostStatics, map(static_keys).with(pose_keys)), "what never moves"),
+          optional("bodies", list(0, kMostBodies, map(body_keys).with(pose_keys)), "what is there at the start"),
+          optional("generators", list(0, kMostGenerators, map(generator_keys)), "bodies in regular formations"),
+          optional("joints", list(0, kMostJoints, map(joint_keys)), "what holds bodies together"),
+          optional("injectors", list(0, kMostInjectors, map(injector_keys)), "what throws bodies in, over time"),
+      });
+  return keys;
+}
 
 void read_scene_layout(const Field& field, const LaunchLayout& launch, SceneDraft& draft) {
   if (!field.given()) return;
@@ -22,44 +49,40 @@ void read_scene_layout(const Field& field, const LaunchLayout& launch, SceneDraf
   if (!field.is_map()) {
     field.refuse("launch, or a map such as {layout: columns, count: 2, width: 80}");
   } else {
-    Fields fields(field);
-    draft.layout = read_layout(fields);
-    fields.close();
+    draft.layout = read_layout(field);
   }
   draft.layout_is_wrong = !draft.layout;
 }
 
-core::Scene read_scene_map(const YamlNode& root, const std::filesystem::path& file, const LaunchLayout& launch,
-                           Errors& errors) {
+SceneFile read_scene_map(const YamlNode& root, const std::filesystem::path& file, const LaunchLayout& launch,
+                         Errors& errors) {
+  static const Value kFile = map(scene_keys);
   SceneDraft draft;
   draft.folder = file.parent_path();
   draft.scene.name = file.stem().string();
-  Fields fields(Field(&root, root.place, "", true, errors));
-  if (const Field name = fields.optional("name"); name.given()) {
-    draft.scene.name = name.text("a name").value_or(draft.scene.name);
-  }
-  if (const Field gravity = fields.optional("gravity"); gravity.given()) {
-    draft.scene.gravity = gravity.vec3(kGravity).value_or(draft.scene.gravity);
-  }
-  read_scene_layout(fields.optional("layout"), launch, draft);
-  read_materials(fields.optional("materials"), draft);
-  read_shapes(fields.optional("shapes"), draft);
-  read_prototypes(fields.optional("prototypes"), draft);
-  read_statics(fields.optional("statics"), draft);
-  read_bodies(fields.optional("bodies"), draft);
-  read_generators(fields.optional("generators"), draft);
-  read_joints(fields.optional("joints"), draft);
+  const Fields fields(Field(&root, root.place, "", kFile, true, errors));
+  scene_keys().read_members(fields, draft.scene);
+  read_scene_layout(fields["layout"], launch, draft);
+  read_materials(fields["materials"], draft);
+  read_shapes(fields["shapes"], draft);
+  read_prototypes(fields["prototypes"], draft);
+  read_statics(fields["statics"], draft);
+  read_bodies(fields["bodies"], draft);
+  read_generators(fields["generators"], draft);
+  read_joints(fields["joints"], draft);
   number_bodies(draft);
   number_joints(draft);
-  read_injectors(fields.optional("injectors"), draft);
+  read_injectors(fields["injectors"], draft);
   fields.close();
-  return std::move(draft.scene);
+  return {std::move(draft.scene), std::move(draft.body_sources), std::move(draft.injector_sources)};
 }
 
 }  // namespace
 
-core::Scene read_scene_file(const std::filesystem::path& file, const std::vector<Override>& overrides,
-                            const LaunchLayout& launch, Errors& errors) {
+const KeyTable& scene_file_keys() { return scene_keys(); }
+
+SceneFile read_scene_file(const std::filesystem::path& file, const std::vector<Override>& overrides,
+                          const LaunchLayout& launch, Errors& errors) {
   std::optional<YamlNode> root = read_yaml(file, errors);
   if (!root) return {};
   for (const Override& change : overrides) apply_override(change, *root, errors);
@@ -69,7 +92,7 @@ core::Scene read_scene_file(const std::filesystem::path& file, const std::vector
 
 core::Scene read_scene(const std::filesystem::path& file) {
   Errors errors;
-  core::Scene scene = read_scene_file(std::filesystem::absolute(file).lexically_normal(), {}, {}, errors);
+  core::Scene scene = read_scene_file(std::filesystem::absolute(file).lexically_normal(), {}, {}, errors).scene;
   errors.throw_if_any();
   return scene;
 }

@@ -9,6 +9,7 @@
 #include "config/heightfield.h"
 #include "config/meshes.h"
 #include "config/scene_draft.h"
+#include "config/shape_keys.h"
 
 namespace aurasim::config {
 namespace {
@@ -17,51 +18,46 @@ using core::ConvexShape;
 using core::Shape;
 using core::Vec3;
 
-constexpr std::size_t kMostParts = 1000;
-constexpr std::size_t kMostPoints = 1000;
-
-std::optional<Shape> read_sphere(Fields& fields) {
-  const auto radius = fields.required("radius").number(kSize);
+std::optional<Shape> read_sphere(const Fields& fields) {
+  const auto radius = fields["radius"].number();
   if (!radius) return std::nullopt;
   return core::Sphere{*radius};
 }
 
-std::optional<Shape> read_box(Fields& fields) {
-  const auto size = fields.required("size").vec3(kSize);
+std::optional<Shape> read_box(const Fields& fields) {
+  const auto size = fields["size"].vec3();
   if (!size) return std::nullopt;
   return core::Box{*size / 2};
 }
 
-std::optional<Shape> read_capsule(Fields& fields) {
-  const auto radius = fields.required("radius").number(kSize);
-  const Field height_field = fields.optional("height");
-  const Field total_field = fields.optional("total_height");
-  if (height_field.given() == total_field.given()) {
+std::optional<Shape> read_capsule(const Fields& fields) {
+  const auto radius = fields["radius"].number();
+  if (fields.given_of(capsule_keys()).size() != 1) {
     fields.whole().refuse("one of height (between the cap centres), total_height");
     return std::nullopt;
   }
-  if (height_field.given()) {
-    const auto height = height_field.number(kSize);
+  if (const Field height_field = fields["height"]; height_field.given()) {
+    const auto height = height_field.number();
     if (!radius || !height) return std::nullopt;
     return core::Capsule{*radius, *height};
   }
-  const auto total = total_field.number(Range::above(2 * radius.value_or(0), kSize.high));
+  const auto total = fields["total_height"].number(Range::above(2 * radius.value_or(0), kSize.high));
   if (!radius || !total) return std::nullopt;
   return core::Capsule{*radius, *total - 2 * *radius};
 }
 
-std::optional<Shape> read_cylinder(Fields& fields) {
-  const auto radius = fields.required("radius").number(kSize);
-  const auto height = fields.required("height").number(kSize);
+std::optional<Shape> read_cylinder(const Fields& fields) {
+  const auto radius = fields["radius"].number();
+  const auto height = fields["height"].number();
   if (!radius || !height) return std::nullopt;
   return core::Cylinder{*radius, *height};
 }
 
-std::optional<Shape> read_plane(Fields& fields) {
-  const Field normal_field = fields.optional("normal");
-  const Field offset_field = fields.optional("offset");
+std::optional<Shape> read_plane(const Fields& fields) {
+  const Field normal_field = fields["normal"];
+  const Field offset_field = fields["offset"];
   const auto normal = normal_field.given() ? normal_field.vec3() : Vec3::UnitZ();
-  const auto offset = offset_field.given() ? offset_field.number(kAnyNumber) : 0;
+  const auto offset = offset_field.given() ? offset_field.number() : 0;
   if (!normal || !offset) return std::nullopt;
   if (normal->norm() < 1e-6) {
     normal_field.complain("found a normal of length 0, allowed: [x, y, z] that can be normalised");
@@ -71,20 +67,20 @@ std::optional<Shape> read_plane(Fields& fields) {
 }
 
 /// `mesh`/`file`, `scale` and `up` of a hull or a mesh.
-std::optional<core::TriangleMesh> read_mesh_file(const Field& file_field, Fields& fields,
+std::optional<core::TriangleMesh> read_mesh_file(const Field& file_field, const Fields& fields,
                                                  const std::filesystem::path& folder) {
-  const auto name = file_field.text("an OBJ, STL or glTF file");
+  const auto name = file_field.text();
   MeshRequest request;
   bool good = name.has_value();
   if (name) request = {.file = (folder / *name).lexically_normal(), .up = usual_up_axis(*name)};
-  if (const Field scale = fields.optional("scale"); scale.given()) {
-    const auto each = scale.is_list() ? scale.vec3(kSize) : std::nullopt;
-    const auto all = scale.is_list() ? std::nullopt : scale.number(kSize);
+  if (const Field scale = fields["scale"]; scale.given()) {
+    const auto each = scale.is_list() ? scale.vec3() : std::nullopt;
+    const auto all = scale.is_list() ? std::nullopt : scale.number();
     good = good && (each || all);
     request.scale = each ? *each : Vec3::Constant(all.value_or(1));
   }
-  if (const Field up = fields.optional("up"); up.given()) {
-    const auto axis = up.choice<UpAxis>({{"y", UpAxis::kY}, {"z", UpAxis::kZ}});
+  if (const Field up = fields["up"]; up.given()) {
+    const auto axis = up.choice<UpAxis>();
     good = good && axis;
     request.up = axis.value_or(request.up);
   }
@@ -113,7 +109,7 @@ bool has_volume(const std::vector<Vec3>& points) {
 
 std::optional<std::vector<Vec3>> read_points(const Field& field) {
   std::vector<Vec3> points;
-  const std::vector<Field> items = field.items(4, kMostPoints);
+  const std::vector<Field> items = field.items();
   for (const Field& item : items) {
     if (const auto p = item.vec3()) points.push_back(*p);
   }
@@ -121,21 +117,26 @@ std::optional<std::vector<Vec3>> read_points(const Field& field) {
   return points;
 }
 
-std::optional<Shape> read_convex_hull(Fields& fields, const std::filesystem::path& folder) {
-  const Field points_field = fields.optional("points");
-  const Field mesh_field = fields.optional("mesh");
-  if (points_field.given() == mesh_field.given()) {
+/// With the keys of what the hull is made of, or of both if it does not say.
+Fields fields_of_hull(const Field& field) {
+  const bool of_points = field.is_map() && field.node()->find("points") != nullptr;
+  const bool of_mesh = field.is_map() && field.node()->find("mesh") != nullptr;
+  if (of_points == of_mesh) return Fields::of_any_table(field);
+  return Fields(field, of_points ? hull_of_points_keys() : hull_of_mesh_keys());
+}
+
+std::optional<Shape> read_convex_hull(const Fields& fields, const std::filesystem::path& folder) {
+  if (fields.has("points") == fields.has("mesh")) {
     fields.whole().refuse("one of points, mesh");
     return std::nullopt;
   }
   std::optional<std::vector<Vec3>> points;
-  if (points_field.given()) {
-    points = read_points(points_field);
+  if (fields.has("points")) {
+    points = read_points(fields["points"]);
   } else {
-    const Field recentre = fields.optional("recentre");
-    const auto mesh = read_mesh_file(mesh_field, fields, folder);
-    const Vec3 centre =
-        mesh && recentre.given() && recentre.flag().value_or(false) ? centre_of_mass(*mesh) : Vec3::Zero();
+    const bool recentre = fields["recentre"].flag().value_or(false);
+    const auto mesh = read_mesh_file(fields["mesh"], fields, folder);
+    const Vec3 centre = mesh && recentre ? centre_of_mass(*mesh) : Vec3::Zero();
     if (mesh) points = hull_points(*mesh);
     for (std::size_t i = 0; points && i < points->size(); ++i) (*points)[i] -= centre;
   }
@@ -147,13 +148,13 @@ std::optional<Shape> read_convex_hull(Fields& fields, const std::filesystem::pat
   return core::ConvexHull{std::move(*points)};
 }
 
-std::optional<Shape> read_mesh(Fields& fields, const std::filesystem::path& folder) {
-  auto mesh = read_mesh_file(fields.required("file"), fields, folder);
+std::optional<Shape> read_mesh(const Fields& fields, const std::filesystem::path& folder) {
+  auto mesh = read_mesh_file(fields["file"], fields, folder);
   if (!mesh) return std::nullopt;
   return std::move(*mesh);
 }
 
-std::optional<Shape> read_shape_kind(std::string_view kind, const Field& value, const std::filesystem::path& folder);
+std::optional<Shape> read_shape_kind(const Field& field, const std::filesystem::path& folder);
 
 std::optional<ConvexShape> as_convex(Shape&& shape) {
   return std::visit(
@@ -168,27 +169,23 @@ std::optional<ConvexShape> as_convex(Shape&& shape) {
       std::move(shape));
 }
 
-/// A part is a map of one convex shape and, at will, position and orientation.
 std::optional<core::CompoundPart> read_part(const Field& field, const std::filesystem::path& folder) {
-  Fields fields(field);
+  const Fields fields(field);
+  const std::vector<Field> kinds = fields.given_of(part_keys());
   std::optional<ConvexShape> shape;
-  int kinds = 0;
-  for (const char* kind : {"sphere", "box", "capsule", "cylinder", "convex_hull"}) {
-    const Field value = fields.optional(kind);
-    if (!value.given()) continue;
-    ++kinds;
-    if (auto read = read_shape_kind(kind, value, folder)) shape = as_convex(std::move(*read));
+  for (const Field& kind : kinds) {
+    if (auto read = read_shape_kind(kind, folder)) shape = as_convex(std::move(*read));
   }
   const core::Pose pose = read_pose(fields);
   fields.close();
-  if (fields.given() && kinds != 1) field.refuse("one of sphere, box, capsule, cylinder, convex_hull");
-  if (!shape || kinds != 1) return std::nullopt;
+  if (fields.given() && kinds.size() != 1) field.refuse("one of sphere, box, capsule, cylinder, convex_hull");
+  if (!shape || kinds.size() != 1) return std::nullopt;
   return core::CompoundPart{std::move(*shape), pose};
 }
 
-std::optional<Shape> read_compound(Fields& fields, const std::filesystem::path& folder) {
+std::optional<Shape> read_compound(const Fields& fields, const std::filesystem::path& folder) {
   core::Compound compound;
-  const std::vector<Field> items = fields.required("parts").items(1, kMostParts);
+  const std::vector<Field> items = fields["parts"].items();
   for (const Field& item : items) {
     if (auto part = read_part(item, folder)) compound.parts.push_back(std::move(*part));
   }
@@ -196,11 +193,13 @@ std::optional<Shape> read_compound(Fields& fields, const std::filesystem::path& 
   return compound;
 }
 
-std::optional<Shape> read_shape_kind(std::string_view kind, const Field& value, const std::filesystem::path& folder) {
-  Fields fields(value);
+/// `field` is the value of a key of shape_keys.
+std::optional<Shape> read_shape_kind(const Field& field, const std::filesystem::path& folder) {
+  const std::string kind = field.path().substr(field.path().rfind('.') + 1);
+  const Fields fields = kind == "convex_hull" ? fields_of_hull(field) : Fields(field);
   std::optional<Shape> shape;
   if (!fields.given()) {
-    value.refuse(fmt::format("a map, the sizes of the {}", kind));
+    field.refuse(fmt::format("a map, the sizes of the {}", kind));
     return std::nullopt;
   }
   if (kind == "sphere") shape = read_sphere(fields);
@@ -259,19 +258,13 @@ Bounds bounds_of_part(const core::CompoundPart& part) {
 }  // namespace
 
 std::optional<Shape> read_shape(const Field& field, const std::filesystem::path& folder) {
-  Fields fields(field);
+  const Fields fields(field);
+  const std::vector<Field> kinds = fields.given_of(shape_keys());
   std::optional<Shape> shape;
-  int kinds = 0;
-  for (const char* kind :
-       {"sphere", "box", "capsule", "cylinder", "convex_hull", "compound", "mesh", "heightfield", "plane"}) {
-    const Field value = fields.optional(kind);
-    if (!value.given()) continue;
-    ++kinds;
-    shape = read_shape_kind(kind, value, folder);
-  }
+  for (const Field& kind : kinds) shape = read_shape_kind(kind, folder);
   fields.close();
-  if (kinds == 1) return shape;
-  if (kinds > 1) field.refuse("a shape of one kind");
+  if (kinds.size() == 1) return shape;
+  if (kinds.size() > 1) field.refuse("a shape of one kind");
   if (fields.given() && field.node()->children.empty()) field.refuse("a shape of one kind");
   return std::nullopt;
 }

@@ -1,13 +1,4 @@
-// Shapes of a scene. One of:
-//   {sphere: {radius: 0.3}}
-//   {box: {size: [1, 2, 3]}}
-//   {capsule: {radius: 0.3, height: 1.4}}                 along z; height between the cap centres, or total_height
-//   {cylinder: {radius: 0.3, height: 1}}                  along z
-//   {convex_hull: {points: [[x, y, z], ...]}}             or {mesh: FILE, scale: 1, up: z, recentre: false}
-//   {compound: {parts: [{SHAPE, position, orientation}, ...]}}     convex parts; the origin is the centre of mass
-//   {mesh: {file: FILE, scale: 1, up: z}}                 triangles of an OBJ, STL or glTF file; statics only
-//   {heightfield: {cell: [dx, dy], heights: [[...], ...]}}         rows from -y to +y, centred; statics only
-//   {plane: {normal: [0, 0, 1], offset: 0}}               half-space below; statics only
+// Shapes of a scene: how each kind is written is in the tables of shapes.cpp, and on the page of all keys.
 #pragma once
 
 #include <filesystem>
@@ -17,6 +8,9 @@
 #include "core/scene.h"
 
 namespace aurasim::config {
+
+/// Exactly one kind of shape.
+const KeyTable& shape_keys();
 
 /// The shape that `field` (a map of one key) describes; mesh files are relative to `folder`.
 std::optional<core::Shape> read_shape(const Field& field, const std::filesystem::path& folder);

@@ -9,12 +9,11 @@
 #include "core/handoff.h"
 #include "core/messages.h"
 #include "core/neighbour.h"
+#include "core/sync_mode.h"
 #include "core/vicinity.h"
 #include "core/violation.h"
 
 namespace aurasim::core {
-
-enum class SyncMode : std::uint8_t { kFreeRunning, kBounded, kDeterministic };
 
 struct IntakeSettings {
   Generation generation = 0;

@@ -113,9 +113,9 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   if (!settings.interfaces.empty()) {
     set_interfaces(qos, settings.interfaces);
   }
-  if (settings.discovery == Discovery::kPeers) {
+  if (settings.discovery == config::Discovery::kPeers) {
     set_peers(qos, settings);
-  } else if (settings.discovery == Discovery::kServer) {
+  } else if (settings.discovery == config::Discovery::kServer) {
     set_servers(qos, settings);
   }
   return qos;

@@ -8,16 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "config/discovery.h"
 #include "dds/impairment.h"
 
 namespace aurasim::dds {
-
-/// How participants find each other.
-enum class Discovery : std::uint8_t {
-  kAsProfile,  ///< as the XML file says (qos/aurasim.xml: multicast, on loopback)
-  kPeers,      ///< no multicast: announcements go to `peers`
-  kServer,     ///< by the discovery servers in `peers`
-};
 
 struct Settings {
   std::uint32_t domain = 0;
@@ -28,7 +22,7 @@ struct Settings {
   /// Addresses that may carry traffic. Not empty: replaces the white list of every transport of the profile, whatever
   /// the file says; {"*"} removes the white list. Empty: the file decides.
   std::vector<std::string> interfaces;
-  Discovery discovery = Discovery::kAsProfile;
+  config::Discovery discovery = config::Discovery::kMulticast;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
   /// Lays over what the profile's properties aurasim.impair.* say.
   ImpairmentOverrides impairment;

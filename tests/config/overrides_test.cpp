@@ -17,7 +17,7 @@ class Overrides : public testing::Test {
 TEST_F(Overrides, ReplaceAndAddValues) {
   const Launch launch = read({"regions.count=4", "time.sync=deterministic", "dds.interfaces=[10.0.0.1]"});
   EXPECT_EQ(launch.regions.size(), 4u);
-  EXPECT_EQ(launch.time.sync, Sync::kDeterministic);
+  EXPECT_EQ(launch.time.sync, core::SyncMode::kDeterministic);
   EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("10.0.0.1"));
 }
 

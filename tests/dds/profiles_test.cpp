@@ -89,7 +89,7 @@ TEST(Interfaces, AreAllOnlyWhenSaidSo) {
 
 TEST(Peers, ReplaceMulticastAndThePeersOfTheFile) {
   Settings settings = settings_for(0);
-  settings.discovery = Discovery::kPeers;
+  settings.discovery = config::Discovery::kPeers;
   settings.interfaces = {"127.0.0.1"};
   settings.peers = {"127.0.0.1", "127.0.0.1:7410"};
   const DomainParticipantQos qos = qos_for(settings);
@@ -100,7 +100,7 @@ TEST(Peers, ReplaceMulticastAndThePeersOfTheFile) {
 
 TEST(Peers, ThatCannotBeUsedAreNamed) {
   Settings settings = settings_for(0);
-  settings.discovery = Discovery::kPeers;
+  settings.discovery = config::Discovery::kPeers;
   EXPECT_THAT(error_of(settings), HasSubstr("neither dds.peers nor the profile names a peer"));
   settings.peers = {"127.0.0.1:"};
   EXPECT_THAT(error_of(settings), HasSubstr("'127.0.0.1:' is not"));
@@ -114,7 +114,7 @@ TEST(Peers, ThatCannotBeUsedAreNamed) {
 
 TEST(Servers, AreClientsOfTheListedOnes) {
   Settings settings = settings_for(0);
-  settings.discovery = Discovery::kServer;
+  settings.discovery = config::Discovery::kServer;
   EXPECT_THAT(error_of(settings), HasSubstr("names a server"));
   settings.peers = {"127.0.0.1", "127.0.0.1:11888"};
   const DomainParticipantQos qos = qos_for(settings);

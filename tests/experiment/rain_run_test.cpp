@@ -17,9 +17,7 @@ RainPlace place() {
   place.setup_of = [](const config::Launch& launch, core::RegionId region) {
     node::NodeSetup setup;
     setup.protocol.self = region;
-    setup.protocol.aura.kind = launch.aura.radius == config::AuraRadius::kNone    ? core::AuraKind::kNone
-                               : launch.aura.radius == config::AuraRadius::kTight ? core::AuraKind::kTight
-                                                                                  : core::AuraKind::kSwept;
+    setup.protocol.aura.kind = launch.aura.radius;
     setup.protocol.aura.lookahead = launch.lookahead();
     setup.protocol.aura.substeps = launch.time.substeps;
     setup.protocol.neighbour_distance_m = 40;

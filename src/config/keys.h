@@ -1,0 +1,136 @@
+// What launch and scene files may say, as tables of keys. The readers ask by these tables (Fields), and the page of
+// all keys and the JSON schemas are printed from them (key_page, key_schema), so that nothing is said twice.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace aurasim::config {
+
+/// The numbers that a field may have. All are finite.
+struct Range {
+  double low = 0;
+  double high = 0;
+  bool low_excluded = false;
+
+  static constexpr Range from_to(double low, double high) { return {low, high, false}; }
+  static constexpr Range above(double low, double high) { return {low, high, true}; }
+
+  bool contains(double value) const { return (low_excluded ? value > low : value >= low) && value <= high; }
+  std::string text() const;
+};
+
+/// Any coordinate or component, in the unit of the field: far beyond use, far from overflow.
+inline constexpr Range kAnyNumber = Range::from_to(-1e7, 1e7);
+/// A length that must not vanish.
+inline constexpr Range kSize = Range::above(0, 1e6);
+
+struct KeyTable;
+/// Tables refer to each other, in circles too (parts of a shape are shapes): they are made when first asked for.
+using Table = std::function<const KeyTable&()>;
+
+/// A word of a choice, and what it stands for: an enumerator, as a number.
+struct Word {
+  std::string_view name;
+  std::int64_t meaning = 0;
+};
+
+/// What may stand behind a key.
+struct Value {
+  enum class Kind : std::uint8_t {
+    kNumber,
+    kInteger,
+    kFlag,
+    kText,
+    kWord,     ///< one of `words`
+    kName,     ///< of a `what` ("shape") of the scene
+    kNumbers,  ///< a list of `most` numbers
+    kList,     ///< of `fewest` to `most` values, each like the one in `items`
+    kMap,      ///< with the keys of one of `tables`, and those of `shared`
+    kNamed,    ///< a map whose keys are names that the author makes up; values like the one in `items`
+  };
+
+  Kind kind = Kind::kText;
+  Range range = {};
+  std::int64_t lowest = 0, highest = 0;  ///< of an integer
+  std::string_view unit = {};
+  std::size_t fewest = 0, most = 0;
+  std::vector<Word> words = {};
+  std::string_view what = {};  ///< "a name", "an XML file"; kNamed: "a map of materials by name"
+  std::vector<Value> items = {};
+  std::vector<Table> tables = {};
+  std::vector<Table> shared = {};
+  std::vector<Value> also = {};  ///< what may stand there instead
+
+  Value or_word(std::string_view word) &&;
+  Value or_else(Value other) &&;
+  /// Of a map: it takes the keys of this table as well.
+  Value with(Table more) &&;
+
+  /// Itself or an alternative of that kind; null if there is none.
+  const Value* as(Kind wanted) const;
+  bool has_word(std::string_view word) const;
+};
+
+Value number(const Range& range, std::string_view unit = "");
+Value integer(std::int64_t low, std::int64_t high, std::string_view unit = "");
+Value flag();
+Value text(std::string_view what);
+/// Words that stand for themselves.
+Value words(std::initializer_list<std::string_view> names);
+Value name_of(std::string_view kind);
+Value numbers(std::size_t count, const Range& each, std::string_view unit = "");
+Value vec3(std::string_view unit = "", const Range& each = kAnyNumber);
+Value list(std::size_t fewest, std::size_t most, Value item);
+Value map(Table table);
+Value map_of_one(std::vector<Table> tables);
+Value named(std::string_view what, Value entry);
+
+template <class E>
+Value choice(std::initializer_list<std::pair<std::string_view, E>> choices) {
+  Value value{.kind = Value::Kind::kWord};
+  for (const auto& [name, meaning] : choices) value.words.push_back({name, static_cast<std::int64_t>(meaning)});
+  return value;
+}
+
+struct Key {
+  std::string_view name = {};
+  bool required = false;
+  Value value = {};
+  std::string_view meaning = {};
+  std::string default_value = {};        ///< as YAML; empty: none, or see default_words
+  std::string default_words = {};        ///< what holds without the key, where that is no value
+  bool required_unless_central = false;  ///< required, but not beside `count: 1`
+
+  Key usual(std::string yaml) &&;
+  Key otherwise(std::string words) &&;
+};
+
+Key required(std::string_view name, Value value, std::string_view meaning);
+Key required_unless_central(std::string_view name, Value value, std::string_view meaning);
+Key optional(std::string_view name, Value value, std::string_view meaning);
+
+/// A map whose keys are known beforehand.
+struct KeyTable {
+  std::string_view title = {};  ///< of its section on the page; unique
+  std::string_view about = {};
+  std::vector<Key> keys = {};
+  std::vector<std::string_view> one_of = {};  ///< exactly one of these keys must be there
+
+  const Key* find(std::string_view name) const;
+};
+
+/// Whether a map with these keys has to have that one, beside a `count` of this text (empty: there is none).
+bool is_required(const Key& key, std::string_view count);
+
+/// The top of a launch file and of a scene file.
+const KeyTable& launch_file_keys();
+const KeyTable& scene_file_keys();
+
+}  // namespace aurasim::config

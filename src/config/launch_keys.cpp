@@ -1,0 +1,217 @@
+#include "config/launch_keys.h"
+
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "config/launch_checks.h"
+#include "config/presets.h"
+#include "config/region_layout.h"
+
+namespace aurasim::config {
+namespace {
+
+std::string presets_text() {
+  std::string text =
+      "sets solver, iterations, time.substeps and friction_directions at once; what is given beside it goes before "
+      "it: ";
+  for (const Preset& preset : kPresets) {
+    text += fmt::format("{}{} is {}, {}, {}, {}", &preset == kPresets.data() ? "" : "; ", preset.name, preset.solver,
+                        preset.iterations, preset.substeps, preset.friction_directions);
+  }
+  return text;
+}
+
+}  // namespace
+
+const KeysOf<Time>& time_keys() {
+  static const KeysOf<Time> keys(
+      "time", "How the world goes on: steps, and who waits for whom.",
+      {
+          optional("step_hz", &Time::step_hz, number(Range::from_to(1, 10'000), "Hz"),
+                   "steps of the world per simulated second; nodes exchange what they know once a step"),
+          optional("substeps", &Time::substeps, integer(1, 64),
+                   "steps of the physics in each step of the world: more are more accurate, and cost as much more"),
+          optional("sync", &Time::sync,
+                   choice<core::SyncMode>({{"free_running", core::SyncMode::kFreeRunning},
+                                           {"bounded", core::SyncMode::kBounded},
+                                           {"deterministic", core::SyncMode::kDeterministic}}),
+                   "bounded: waits for neighbours, so a slow network makes it slower, never wrong; deterministic: the "
+                   "same bits in every run on any number of nodes; free_running: never waits, counts what came too "
+                   "late"),
+          optional("lookahead", &Time::lookahead, integer(1, kLargestLookahead, "steps").or_word("auto"),
+                   "K, how many steps neighbours may be apart; auto: ceil((tolerances.frame + tolerances.latency) * "
+                   "step_hz)")
+              .usual("auto"),
+          optional("pace", &Time::pace, choice<Pace>({{"wall", Pace::kWall}, {"none", Pace::kNone}}),
+                   "wall: a simulated second takes a second of the clock; none: as fast as it goes"),
+      });
+  return keys;
+}
+
+const KeysOf<Tolerances>& tolerances_keys() {
+  static const KeysOf<Tolerances> keys(
+      "tolerances",
+      "What the run promises to itself; lookahead and auras are made for it. A broken promise is counted: a collision "
+      "may "
+      "have come late, or been missed.",
+      {
+          optional("speed", &Tolerances::speed_m_s, number(Range::above(0, 1e4), "m/s"),
+                   "no body is faster; auras reach, and regions have to be wide, in proportion to it"),
+          optional("latency", &Tolerances::latency_s, number(Range::from_to(0, 10), "s"),
+                   "no message is longer on its way from node to node"),
+          optional("frame", &Tolerances::frame_s, number(Range::above(0, 10), "s"), "no node takes longer for a step"),
+      });
+  return keys;
+}
+
+const KeysOf<Aura>& aura_keys() {
+  static const KeysOf<Aura> keys(
+      "aura", "How far ahead of its bodies a node warns its neighbours.",
+      {
+          optional("radius", &Aura::radius,
+                   choice<core::AuraKind>({{"none", core::AuraKind::kNone},
+                                           {"thesis", core::AuraKind::kThesis},
+                                           {"tight", core::AuraKind::kTight},
+                                           {"swept", core::AuraKind::kSwept}}),
+                   "swept: along the path of the body; tight and thesis: a sphere around it, by our and by the thesis' "
+                   "formula; none: the control that must fail"),
+          optional("uncertainty", &Aura::uncertainty, number(Range::from_to(0, 10)),
+                   "U, share of its speed by which a body may leave its foreseen path before that counts as broken"),
+      });
+  return keys;
+}
+
+const KeysOf<Physics>& physics_keys() {
+  static const std::string kPresetsText = presets_text();
+  static const KeysOf<Physics> keys(
+      "physics", "Bullet, and how accurate it is.",
+      {
+          optional("preset", choice<int>({{kPresets[0].name, 0}, {kPresets[1].name, 1}, {kPresets[2].name, 2}}),
+                   kPresetsText)
+              .otherwise("none: the defaults of this page"),
+          optional("precision", &Physics::precision, words({"double", "single"}),
+                   "of Bullet's numbers; single is another program, aurasim-single, which is started for it"),
+          optional("solver", &Physics::solver, words({"sequential_impulse", "nncg", "dantzig"}),
+                   "of contacts and joints: projected Gauss-Seidel, nonsmooth conjugate gradient, or direct (slow in "
+                   "piles, knows no rolling friction)"),
+          optional("iterations", &Physics::iterations, integer(1, 1000), "of the solver in each substep"),
+          optional("friction_directions", &Physics::friction_directions, integer(1, 2),
+                   "rows of friction at each contact point; with 1, piles creep and a card house falls"),
+          optional("erp", &Physics::contact_erp, number(Range::from_to(0, 1)),
+                   "share of an overlap that contacts undo in each substep, by a speed that stays"),
+          optional("continuous", &Physics::continuous, flag(),
+                   "continuous collision detection: fast bodies stop at what is in their way instead of passing "
+                   "through what is thin"),
+          optional("origin", &Physics::origin, choice<Origin>({{"world", Origin::kWorld}, {"region", Origin::kRegion}}),
+                   "where Bullet's coordinates begin. world: equal bits on any number of nodes; region: in the middle "
+                   "of each region, which is accurate far out"),
+      });
+  return keys;
+}
+
+const KeysOf<Impair>& impair_keys() {
+  static const KeysOf<Impair> keys(
+      "dds.impair", "A worse network than there is: every process holds back or drops the datagrams that it sends.",
+      {
+          optional("delay", &Impair::delay_s, number(Range::from_to(0, 10), "s"), "one way, of each datagram")
+              .otherwise("the profile's, or 0"),
+          optional("jitter", &Impair::jitter_s, number(Range::from_to(0, 10), "s"),
+                   "delay +- jitter, uniform, never early")
+              .otherwise("the profile's, or 0"),
+          optional("loss", &Impair::loss, number(Range::from_to(0, 1)),
+                   "share of the datagrams that are dropped, each for itself; DDS sends what is lost again")
+              .otherwise("the profile's, or 0"),
+          optional("bandwidth", &Impair::bandwidth_B_s, number(Range::from_to(0, 1e12), "B/s"),
+                   "of all that one process sends, UDP payload; 0: unlimited")
+              .otherwise("the profile's, or 0"),
+          optional("reorder", &Impair::reorder, flag(),
+                   "jitter lets a datagram overtake another one to the same destination")
+              .otherwise("the profile's, or false"),
+          optional("discovery", &Impair::discovery, flag(), "DDS discovery suffers as well")
+              .otherwise("the profile's, or false"),
+          optional("seed", &Impair::seed, integer(0, INT64_MAX),
+                   "of the random numbers; each region has its own from it")
+              .otherwise("the profile's, or 1"),
+      });
+  return keys;
+}
+
+const KeysOf<Dds>& dds_keys() {
+  static const KeysOf<Dds> keys(
+      "dds", "How the nodes find each other. All but the domain may differ between hosts.",
+      {
+          optional("domain", &Dds::domain, integer(0, 232), "runs at the same time need different ones"),
+          optional("profiles", text("an XML file"), "QoS profiles, relative to this file")
+              .otherwise("`../qos/aurasim.xml`, or where that is not, the one that comes with the program"),
+          optional(
+              "discovery", &Dds::discovery,
+              choice<Discovery>(
+                  {{"multicast", Discovery::kMulticast}, {"peers", Discovery::kPeers}, {"server", Discovery::kServer}}),
+              "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
+              "at `peers`"),
+          optional("interfaces", &Dds::interfaces, list(1, 256, text("an address")),
+                   "own addresses that may carry traffic; [\"*\"]: all of them. The default never leaves the machine"),
+          optional("peers", &Dds::peers, list(1, 256, text("an address")),
+                   "ADDRESS or ADDRESS:PORT; required with discovery: peers and server")
+              .otherwise("none"),
+          optional("impair", &Dds::impair, impair_keys, "a worse network than there is"),
+      });
+  return keys;
+}
+
+const KeysOf<Observe>& observe_keys() {
+  static const KeysOf<Observe> keys("observe", "What nodes tell those who watch.",
+                                    {
+                                        optional("tick_hz", &Observe::tick_hz, number(Range::above(0, 1000), "Hz"),
+                                                 "how often nodes tell the viewer what has changed"),
+                                    });
+  return keys;
+}
+
+const KeysOf<Overseer>& overseer_keys() {
+  static const KeysOf<Overseer> keys(
+      "overseer", "The viewer's server.",
+      {
+          optional(
+              "bind", &Overseer::bind, text("an address"),
+              "address that it listens on; on any other than this machine's own, a token, printed at the start, is "
+              "needed to change the world"),
+          optional("port", &Overseer::port, integer(0, 65535), "0: any that is free"),
+      });
+  return keys;
+}
+
+const KeyTable& regions_keys() {
+  static const KeyTable keys{
+      .title = "regions",
+      .about =
+          "How the plane is divided. The outermost regions reach to infinity; `count: 1` is the central run, in "
+          "every layout, and needs nothing else.",
+      .keys = {optional("neighbour_distance", number(Range::from_to(0, 1e6), "m"),
+                        "regions at most this far apart listen to each other; never less than the default")
+                   .otherwise("as far as bodies may matter to each other, from tolerances and lookahead")}};
+  return keys;
+}
+
+const KeysOf<Launch>& launch_keys() {
+  static const KeysOf<Launch> keys(
+      "launch file", "Which scene, on how many nodes, and how. Paths are relative to the file.",
+      {
+          required("scene", text("a scene file"), "what the world is made of; relative to this file"),
+          required("regions", layout_value().with(regions_keys), "how the plane is divided among the nodes"),
+          optional("time", &Launch::time, time_keys, "steps, and who waits for whom"),
+          optional("tolerances", &Launch::tolerances, tolerances_keys, "what the run promises to itself"),
+          optional("aura", &Launch::aura, aura_keys, "how far ahead nodes warn each other"),
+          optional("physics", &Launch::physics, physics_keys, "Bullet, and how accurate it is"),
+          optional("dds", map(dds_keys), "how nodes find each other"),
+          optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
+          optional("overseer", &Launch::overseer, overseer_keys, "the viewer's server"),
+      });
+  return keys;
+}
+
+const KeyTable& launch_file_keys() { return launch_keys(); }
+
+}  // namespace aurasim::config
