@@ -22,6 +22,8 @@ packages=(
   nftables jq cyclonedds-dev cyclonedds-tools tshark
   # figures of the experiments
   python3-matplotlib
+  # JSON schemas of launch and scene files, in tests
+  python3-jsonschema python3-yaml
   # the browser that the page is tested in
   chromium
 )

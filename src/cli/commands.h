@@ -13,6 +13,7 @@ namespace aurasim::cli {
 using Action = std::function<int()>;
 
 void add_check(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
 void add_node(CLI::App& program, Action& action);
 void add_launch(CLI::App& program, Action& action);
 void add_top(CLI::App& program, Action& action);

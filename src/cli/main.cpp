@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   cli::Action action;
   cli::add_check(program, action);
+  cli::add_keys(program, action);
   cli::add_node(program, action);
   cli::add_launch(program, action);
   cli::add_top(program, action);

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Writes what the program says of its keys into docs/: the second half of scenes.md, and the JSON schemas for editors.
+# To be run after a change of keys; a test fails until it was.
+#   scripts/write_keys.sh [PROGRAM=build/release/aurasim]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+program=${1:-build/release/aurasim}
+"$program" keys --schema launch >docs/aurasim-launch.schema.json
+"$program" keys --schema scene >docs/aurasim-scene.schema.json
+
+page=docs/scenes.md
+written=$(mktemp)
+trap 'rm -f "$written"' EXIT
+{
+  sed '/^<!-- keys:/q' "$page"
+  "$program" keys --markdown
+  sed -n '/^<!-- end of the keys/,$p' "$page"
+} >"$written"
+cat "$written" >"$page"
