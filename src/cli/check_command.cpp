@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
+#include "cli/scene_warnings.h"
 #include "config/launch.h"
 
 namespace aurasim::cli {
@@ -25,6 +26,7 @@ void add_check(CLI::App& program, Action& action) {
       fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
                  files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
                  launch.regions.size(), launch.lookahead(), listening_distance_m(launch));
+      for (const std::string& text : scene_warnings(launch)) fmt::print(stderr, "warning: {}\n", text);
       return 0;
     };
   });

@@ -11,6 +11,7 @@
 #include "cli/leave.h"
 #include "cli/node_process.h"
 #include "cli/run_length.h"
+#include "cli/scene_warnings.h"
 #include "cli/stop_signal.h"
 #include "physics/region_world.h"
 
@@ -52,6 +53,10 @@ int run_node(const Arguments& arguments) {
   }
   become_the_right_precision(launch);
   spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
+  // Once in a run; `launch` starts this node as well.
+  if (arguments.region == 0) {
+    for (const std::string& text : scene_warnings(launch)) spdlog::warn("{}", text);
+  }
   catch_stop_signals();
   NodeOptions options;
   options.region = core::RegionId{arguments.region};

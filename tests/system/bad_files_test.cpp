@@ -5,6 +5,7 @@ namespace aurasim::system_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kScene = R"(shapes:
   ball: {sphere: {radius: 0.5}}
@@ -69,6 +70,25 @@ TEST_F(CommandLines, ThatAreGoodExitWithZero) {
     EXPECT_TRUE(program.err().empty()) << program.said();
   }
   expect_exit(start({"--help"}), 0, 5s);
+}
+
+TEST_F(CommandLines, AWarningIsNoError) {
+  write("scene.yaml", std::string(kScene) + "  - {prototype: ball, name: bullet, velocity: [900, 0, 0]}\n");
+  const std::string file = write("launch.yaml", "scene: scene.yaml\nregions: {count: 1}\ntime: {pace: none}\n");
+  for (const Words& words : {Words{"check", file}, Words{"launch", file, "--headless", "--steps", "2"}}) {
+    Process& program = start(words);
+    expect_exit(program, 0, 60s);
+    EXPECT_THAT(program.err(), HasSubstr("scene.yaml:7:5: body 1 (\"bullet\") starts with 900 m/s")) << words[0];
+    EXPECT_THAT(program.err(), HasSubstr("body 0 overlaps body 1")) << words[0];
+  }
+}
+
+TEST_F(CommandLines, KeysArePrintedBySections) {
+  Process& tolerances = start({"keys", "tolerances"});
+  expect_exit(tolerances, 0, 10s);
+  EXPECT_THAT(tolerances.out(), HasSubstr("above 0 to 10000 m/s; default 32"));
+  EXPECT_THAT(tolerances.out(), Not(HasSubstr("step_hz")));
+  expect_exit(start({"keys", "no such section"}), 2, 10s);
 }
 
 }  // namespace
