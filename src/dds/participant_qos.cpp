@@ -7,6 +7,8 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 
+#include "dds/link_mtu.h"
+
 namespace aurasim::dds {
 
 using eprosima::fastdds::dds::DomainParticipantQos;
@@ -106,6 +108,21 @@ void set_servers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
+/// Over a network, RTPS cuts what is larger than a packet, not IP: a piece that is lost is sent again alone, and the
+/// lease of a dead reader does not wait behind fragments. Copies the descriptors: the profile's are shared.
+void fit_to_links(DomainParticipantQos& qos) {
+  const std::vector<Interface> interfaces = interfaces_of_this_host();
+  for (auto& transport : qos.transport().user_transports) {
+    const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport);
+    if (udp == nullptr) continue;
+    const std::uint32_t largest_B = largest_payload_B(interfaces, udp->interfaceWhiteList);
+    if (largest_B == 0 || udp->maxMessageSize <= largest_B) continue;
+    auto copy = std::make_shared<UDPv4TransportDescriptor>(*udp);
+    copy->maxMessageSize = largest_B;
+    transport = copy;
+  }
+}
+
 }  // namespace
 
 DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings) {
@@ -113,6 +130,7 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   if (!settings.interfaces.empty()) {
     set_interfaces(qos, settings.interfaces);
   }
+  fit_to_links(qos);
   if (settings.discovery == config::Discovery::kPeers) {
     set_peers(qos, settings);
   } else if (settings.discovery == config::Discovery::kServer) {

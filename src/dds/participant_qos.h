@@ -8,8 +8,9 @@
 
 namespace aurasim::dds {
 
-/// Precedence: settings.interfaces, .discovery and .peers, where given, replace what the profile says. Throws DdsError
-/// when a value cannot be used.
+/// Precedence: settings.interfaces, .discovery and .peers, where given, replace what the profile says. Messages are
+/// no larger than fits into a packet of the links that carry them (link_mtu.h). Throws DdsError when a value cannot be
+/// used.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
 
 /// True when every transport may use loopback addresses only.

@@ -1,5 +1,4 @@
-// Regions that talk over DDS and a network that is made worse, by settings and by the files in qos/impaired/. Domain
-// 128.
+// Regions that talk over DDS and a network that is made worse, by settings and by the files in qos/impaired/.
 #include <algorithm>
 #include <thread>
 #include <vector>
@@ -21,10 +20,8 @@ using testing::take_until;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kDomain = 128;
-
 Settings impaired_settings(const ImpairmentOverrides& impairment, std::uint64_t stream) {
-  Settings settings = testing::settings_for(kDomain);
+  Settings settings = testing::settings_for(own_domain());
   settings.impairment = impairment;
   settings.impairment_stream = stream;
   return settings;
@@ -87,13 +84,13 @@ TEST(ImpairedRegions, MeetThoughDiscoverySuffers) {
 }
 
 TEST(ImpairedRegions, LeaveTheTransportAloneWhenNothingIsImpaired) {
-  const Domain plain(testing::settings_for(kDomain));
+  const Domain plain(testing::settings_for(own_domain()));
   EXPECT_EQ(plain.delay_line(), nullptr);
   Settings settings = impaired_settings({.reorder = true, .seed = 3}, 1);
   EXPECT_FALSE(Participant(settings).impairment());
 }
 
-Settings shipped(const std::string& name) { return testing::settings_for(kDomain, "impaired/" + name); }
+Settings shipped(const std::string& name) { return testing::settings_for(own_domain(), "impaired/" + name); }
 
 TEST(ImpairedProfiles, ImpairByAFileAlone) {
   Participant participant(shipped("wan_16ms_jitter_loss.xml"));

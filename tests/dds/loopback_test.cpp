@@ -1,4 +1,4 @@
-// Nothing leaves the machine: a capture on every interface while two regions and an observer talk. Domain 123.
+// Nothing leaves the machine: a capture on every interface while two regions and an observer talk.
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -22,9 +22,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kDomain = 123;
 /// RTPS ports of one domain: 7400 + 250 * domain and the 249 after it.
-constexpr std::uint32_t kFirstPort = 7400 + 250 * kDomain;
+std::uint32_t first_port() { return 7400 + 250 * own_domain(); }
 
 /// Sees every packet on every interface. Needs CAP_NET_RAW.
 class Capture {
@@ -78,7 +77,7 @@ class Capture {
     }
     std::memcpy(&udp, packet + header, sizeof udp);
     const auto in_range = [](std::uint16_t port) {
-      return ntohs(port) >= kFirstPort && ntohs(port) < kFirstPort + 250;
+      return ntohs(port) >= first_port() && ntohs(port) < first_port() + 250;
     };
     return in_range(udp.source) || in_range(udp.dest);
   }
@@ -89,9 +88,9 @@ class Capture {
 
 /// Two regions and an observer meet and exchange everything there is.
 void talk() {
-  testing::Peer a(kDomain, 0, {1});
-  testing::Peer b(kDomain, 1, {0});
-  Participant observer(testing::settings_for(kDomain));
+  testing::Peer a(own_domain(), 0, {1});
+  testing::Peer b(own_domain(), 1, {0});
+  Participant observer(testing::settings_for(own_domain()));
   ControlBus bus(observer, {});
   ControlSettings node;
   node.region = a.region();

@@ -1,4 +1,4 @@
-// The QoS files, and what settings replace in them. Domains 121 and 122.
+// The QoS files, and what settings replace in them.
 #include "dds/profiles.h"
 
 #include <fstream>
@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "dds/domain.h"
+#include "dds/link_mtu.h"
 #include "dds/participant_qos.h"
 #include "transport_fixture.h"
 
@@ -87,6 +88,36 @@ TEST(Interfaces, AreAllOnlyWhenSaidSo) {
   EXPECT_THAT(white_list(qos_for(settings_for(0, "hosts.xml"))), IsEmpty());
 }
 
+/// A datagram that IP has to cut is lost with any of its pieces.
+TEST(Messages, FitIntoAPacketOfEveryLinkThatCarriesThem) {
+  const std::vector<Interface> host = {{"lo", "127.0.0.1", true, 65536},
+                                       {"eth0", "10.1.2.3", false, 1500},
+                                       {"eth1", "10.1.3.3", false, 9000},
+                                       {"tun0", "10.9.9.9", false, 1280}};
+  EXPECT_EQ(largest_payload_B(host, {"127.0.0.1"}), 0U) << "no limit";
+  EXPECT_EQ(largest_payload_B(host, {"10.1.2.3"}), 1472U);
+  EXPECT_EQ(largest_payload_B(host, {"10.1.3.3"}), 8972U);
+  EXPECT_EQ(largest_payload_B(host, {"10.1.2.3", "127.0.0.1", "10.1.3.3"}), 1472U);
+  EXPECT_EQ(largest_payload_B(host, {}), 1252U) << "no white list: all of them";
+  EXPECT_EQ(largest_payload_B(host, {"10.1.9.9"}), 0U) << "an address that is not here";
+}
+
+TEST(Messages, AreCutOnlyWhereALinkNeedsIt) {
+  const auto largest_message = [](const Settings& settings) {
+    const auto qos = qos_for(settings);
+    return std::dynamic_pointer_cast<UDPv4TransportDescriptor>(qos.transport().user_transports.at(0))->maxMessageSize;
+  };
+  Settings settings = settings_for(0);
+  EXPECT_GT(largest_message(settings), 60'000U) << "loopback";
+  for (const Interface& link : interfaces_of_this_host()) {
+    settings.interfaces = {link.address};
+    if (!link.is_loopback) {
+      EXPECT_LE(largest_message(settings), link.mtu_B - 28) << link.name;
+    }
+  }
+  EXPECT_GT(largest_message(settings_for(0)), 60'000U) << "the profile itself stays";
+}
+
 TEST(Peers, ReplaceMulticastAndThePeersOfTheFile) {
   Settings settings = settings_for(0);
   settings.discovery = config::Discovery::kPeers;
@@ -124,16 +155,16 @@ TEST(Servers, AreClientsOfTheListedOnes) {
 }
 
 TEST(PeersFile, LetsTwoRegionsMeetWithoutMulticast) {
-  testing::Peer a(settings_for(121, "peers.xml"), 0, {1});
-  testing::Peer b(settings_for(121, "peers.xml"), 1, {0});
+  testing::Peer a(settings_for(own_domain(), "peers.xml"), 0, {1});
+  testing::Peer b(settings_for(own_domain(), "peers.xml"), 1, {0});
   std::jthread other([&] { b.transport.wait_until_matched(testing::kDeadline); });
   EXPECT_NO_THROW(a.transport.wait_until_matched(testing::kDeadline));
 }
 
 TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
-  Settings loopback = settings_for(122);
+  Settings loopback = settings_for(own_domain());
   Domain domain(loopback);
-  Profiles hosts(settings_for(122, "hosts.xml").profiles);
+  Profiles hosts(settings_for(own_domain(), "hosts.xml").profiles);
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   auto* subscriber = domain.participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
   for (const std::string topic :
@@ -189,7 +220,7 @@ TEST_F(OwnFile, WithAnUnknownElementIsRefusedAsAWhole) {
 TEST_F(OwnFile, WithoutTheProfileIsNamedWithTheNamesLookedFor) {
   const Settings settings = write("bare.xml", R"(<data_writer profile_name="bare_x"></data_writer>)");
   Profiles profiles(settings.profiles);
-  Domain domain(settings_for(122));
+  Domain domain(settings_for(own_domain()));
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   try {
     profiles.writer(*publisher, "missing_writer");
@@ -204,7 +235,7 @@ TEST_F(OwnFile, ChangesARunWithoutARebuild) {
   Settings settings = write("own.xml", R"(<data_writer profile_name="own_aura_writer"><qos>
       <reliability><kind>BEST_EFFORT</kind></reliability></qos></data_writer>)");
   Profiles profiles(settings.profiles);
-  Domain domain(settings_for(122));
+  Domain domain(settings_for(own_domain()));
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   EXPECT_EQ(profiles.writer(*publisher, "aura_writer").reliability().kind,
             eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS);

@@ -1,4 +1,4 @@
-// Nodes publish, observers listen. Domains 124 and 128.
+// Nodes publish, observers listen.
 #include "dds/replica_bus.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ bool holds_in_time(Condition condition) {
 }
 
 TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
-  Participant participant(settings_for(124));
+  Participant participant(settings_for(own_domain()));
   ReplicaWriter writer(participant, RegionId{1});
   EXPECT_FALSE(writer.anybody_listens());
   core::Replica key = replica_of(3);
@@ -50,7 +50,7 @@ TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
   writer.send(key);
   key.sequence = 34;
   writer.send(key);
-  Observer observer(124);
+  Observer observer(own_domain());
   ASSERT_TRUE(holds_in_time([&] { return writer.arrivals() == 2; }));
   EXPECT_TRUE(writer.anybody_listens());
   ASSERT_TRUE(observer.take(1));
@@ -63,9 +63,9 @@ TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
 }
 
 TEST(ReplicaBus, AnObserverThatDoesNotTakeHoldsNobodyUp) {
-  Participant participant(settings_for(128));
+  Participant participant(settings_for(own_domain()));
   ReplicaWriter writer(participant, RegionId{1});
-  Observer observer(128);
+  Observer observer(own_domain());
   ASSERT_TRUE(holds_in_time([&] { return writer.arrivals() == 2; }));
   const core::Replica replica = replica_of(100);
   const auto begin = std::chrono::steady_clock::now();

@@ -13,6 +13,13 @@
 #include "dds/dds_transport.h"
 #include "dds/participant.h"
 #include "messages.h"
+#include "own_domain.h"
+
+namespace aurasim::dds {
+
+using test::own_domain;
+
+}  // namespace aurasim::dds
 
 namespace aurasim::dds::testing {
 

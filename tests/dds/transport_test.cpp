@@ -1,4 +1,4 @@
-// Two and more regions that really talk over DDS on loopback. Domains 101 to 106 and 125 to 127.
+// Two and more regions that really talk over DDS on loopback.
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -43,8 +43,8 @@ void match(std::initializer_list<Peer*> peers) {
 }
 
 TEST(TwoRegions, ExchangeAurasHandOffsAndAcksToTheBit) {
-  Peer a(101, 0, {1});
-  Peer b(101, 1, {0});
+  Peer a(own_domain(), 0, {1});
+  Peer b(own_domain(), 1, {0});
   match({&a, &b});
 
   core::Outbox from_b;
@@ -70,8 +70,8 @@ TEST(TwoRegions, ExchangeAurasHandOffsAndAcksToTheBit) {
 }
 
 TEST(TwoRegions, LoseNothingOfALongStreamAndKeepItsOrder) {
-  Peer a(102, 0, {1});
-  Peer b(102, 1, {0});
+  Peer a(own_domain(), 0, {1});
+  Peer b(own_domain(), 1, {0});
   match({&a, &b});
   constexpr std::size_t kSteps = 3000;
   for (std::size_t step = 0; step < kSteps; ++step) {
@@ -85,8 +85,8 @@ TEST(TwoRegions, LoseNothingOfALongStreamAndKeepItsOrder) {
 }
 
 TEST(TwoRegions, RefuseEachOthersMessagesWhenTheirMapsDiffer) {
-  Peer a(103, 0, {1});
-  Peer b(103, 1, {0});
+  Peer a(own_domain(), 0, {1});
+  Peer b(own_domain(), 1, {0});
   match({&a, &b});
   core::Outbox outbox;
   outbox.aura = batch_of(1, RegionId{1});
@@ -98,9 +98,9 @@ TEST(TwoRegions, RefuseEachOthersMessagesWhenTheirMapsDiffer) {
 }
 
 TEST(ARow, HearsNeighboursOnly) {
-  Peer left(104, 0, {1});
-  Peer middle(104, 1, {0, 2});
-  Peer right(104, 2, {1});
+  Peer left(own_domain(), 0, {1});
+  Peer middle(own_domain(), 1, {0, 2});
+  Peer right(own_domain(), 2, {1});
   match({&left, &middle, &right});
   left.send_batch(1);
   right.send_batch(1);
@@ -137,14 +137,14 @@ class Onlooker : public eprosima::fastdds::dds::DomainParticipantListener {
 
 TEST(Readers, NameOnlyTheNeighboursPartitions) {
   Onlooker onlooker;
-  const Settings settings = testing::settings_for(105);
+  const Settings settings = testing::settings_for(own_domain());
   Profiles profiles(settings.profiles);
   auto* factory = eprosima::fastdds::dds::DomainParticipantFactory::get_instance();
-  auto* participant = factory->create_participant(105, participant_qos(profiles, settings), &onlooker,
+  auto* participant = factory->create_participant(settings.domain, participant_qos(profiles, settings), &onlooker,
                                                   eprosima::fastdds::dds::StatusMask::none());
   ASSERT_NE(participant, nullptr);
   {
-    const Peer four(105, 4, {1, 3, 7});
+    const Peer four(own_domain(), 4, {1, 3, 7});
     const auto deadline = std::chrono::steady_clock::now() + testing::kDeadline;
     while (onlooker.seen().size() < 9 && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(10ms);
@@ -160,8 +160,8 @@ TEST(Readers, NameOnlyTheNeighboursPartitions) {
 }
 
 TEST(Waiting, NamesTheRegionsThatAreMissing) {
-  Peer a(106, 0, {1, 2, 3});
-  Peer b(106, 1, {0});
+  Peer a(own_domain(), 0, {1, 2, 3});
+  Peer b(own_domain(), 1, {0});
   b.transport.wait_until_matched(testing::kDeadline);
   try {
     a.transport.wait_until_matched(1s);
@@ -175,8 +175,8 @@ TEST(Waiting, NamesTheRegionsThatAreMissing) {
 }
 
 TEST(Waiting, NamesAOneSidedNeighbour) {
-  Peer a(125, 0, {1});
-  Peer b(125, 1, {2});  // does not listen to region 0
+  Peer a(own_domain(), 0, {1});
+  Peer b(own_domain(), 1, {2});  // does not listen to region 0
   try {
     a.transport.wait_until_matched(1s);
     FAIL() << "region 1 does not listen";
@@ -187,8 +187,8 @@ TEST(Waiting, NamesAOneSidedNeighbour) {
 }
 
 TEST(Domains, DoNotSeeEachOther) {
-  Peer a(126, 0, {1});
-  Peer b(127, 1, {0});
+  Peer a(own_domain(0), 0, {1});
+  Peer b(own_domain(1), 1, {0});
   EXPECT_THROW(a.transport.wait_until_matched(1s), NeighboursMissing);
   EXPECT_THROW(b.transport.wait_until_matched(100ms), NeighboursMissing);
 }
@@ -213,11 +213,11 @@ class RawAuras final : public wire::AuraBatchPubSubType {
 };
 
 TEST(AMalformedSample, IsCountedAndTheNextOneStillArrives) {
-  Peer a(124, 0, {1});
-  const Settings settings = testing::settings_for(124);
+  Peer a(own_domain(), 0, {1});
+  const Settings settings = testing::settings_for(own_domain());
   Profiles profiles(settings.profiles);
   auto* factory = eprosima::fastdds::dds::DomainParticipantFactory::get_instance();
-  auto* participant = factory->create_participant(124, participant_qos(profiles, settings));
+  auto* participant = factory->create_participant(settings.domain, participant_qos(profiles, settings));
   ASSERT_NE(participant, nullptr);
   eprosima::fastdds::dds::TypeSupport type(new RawAuras());
   type.register_type(participant);
@@ -250,7 +250,7 @@ TEST(AMalformedSample, IsCountedAndTheNextOneStillArrives) {
 }
 
 TEST(Settings, ThatMakeNoSenseAreRefused) {
-  Participant participant(testing::settings_for(101));
+  Participant participant(testing::settings_for(own_domain()));
   const auto make = [&](std::uint32_t region, std::initializer_list<std::uint32_t> neighbours) {
     DdsTransport transport(participant, {.region = static_cast<RegionId>(region),
                                          .neighbours = testing::regions(neighbours),

@@ -5,11 +5,10 @@
 
 #include "config/launch.h"
 #include "experiment/collision.h"
+#include "own_domain.h"
 
 namespace aurasim::experiment {
 namespace {
-
-constexpr std::uint32_t kDomain = 151;
 
 /// By variant; the control is not among them.
 std::array<Tally, 2> try_over_dds(PairKind kind, const Series& series, std::uint32_t repeats) {
@@ -18,7 +17,7 @@ std::array<Tally, 2> try_over_dds(PairKind kind, const Series& series, std::uint
   campaign.repeats = repeats;
   campaign.variants = {{AuraChoice::kSwept, core::SyncMode::kBounded, false},
                        {AuraChoice::kNone, core::SyncMode::kBounded, false}};
-  RealLaboratory laboratory(kDomain, config::shipped_profiles());
+  RealLaboratory laboratory(test::own_domain(), config::shipped_profiles());
   std::array<Tally, 2> tallies;
   for (const Trial& trial : laboratory.run_job(campaign, {kind, series, series.tolerance})) {
     for (std::size_t i = 0; i < 2; ++i) {

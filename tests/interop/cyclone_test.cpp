@@ -1,4 +1,4 @@
-// A run is heard and steered by a program that was made with Cyclone DDS from the same IDL. Domain 180.
+// A run is heard and steered by a program that was made with Cyclone DDS from the same IDL.
 #include <cstdlib>
 
 #include "system_fixture.h"
@@ -20,12 +20,12 @@ class Cyclone : public SystemTest {
 };
 
 TEST_F(Cyclone, ReadsEveryRegionAndItsCommandsAreObeyed) {
-  Process& run = launch("run", launch_file("corner_stacks"), 180);
+  Process& run = launch("run", launch_file("corner_stacks"));
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 1));
-  Process& peer = start_program({AURASIM_BINARY_DIR "/cyclone_peer", "180", "4"});
-  expect_exit(peer, 0, 60s);
+  Process& peer = start_program({AURASIM_BINARY_DIR "/cyclone_peer", std::to_string(test::own_domain()), "4"});
+  expect_exit(peer, 0);
   EXPECT_THAT(peer.out(), ::testing::HasSubstr("was made, pushed and seen to rise"));
-  expect_exit(start({"send", "stop", launch_file("corner_stacks"), "--set", "dds.domain=180"}), 0);
+  expect_exit(start(Words{"send", "stop", launch_file("corner_stacks")} + in_own_domain()), 0);
   expect_exit(run, 0);
   expect_all_bodies_accounted_for(report_of("run"));
   EXPECT_THAT(run.err(), ::testing::Not(::testing::HasSubstr("refused")));

@@ -1,4 +1,4 @@
-// A capture of a run's traffic says what it is to anybody's eyes: tshark knows topics by name. Domain 181.
+// A capture of a run's traffic says what it is to anybody's eyes: tshark knows topics by name.
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -10,8 +10,6 @@
 namespace aurasim::system_test {
 namespace {
 
-constexpr int kDomain = 181;
-
 class Tshark : public SystemTest {
  protected:
   void SetUp() override {
@@ -22,13 +20,13 @@ class Tshark : public SystemTest {
   /// What tshark prints of the capture; one line per packet that `filter` lets through.
   std::string tshark(const std::filesystem::path& capture, const Words& options) {
     Process& program = start_program(Words{"/usr/bin/tshark", "-r", capture.string(), "-n"} + options);
-    expect_exit(program, 0, 60s);
+    expect_exit(program, 0);
     return program.out();
   }
 
   /// The UDP ports of a domain (RTPS 2.5, section 9.6.2.3).
   static std::string ports() {
-    const int first = 7400 + 250 * kDomain;
+    const int first = static_cast<int>(7400 + 250 * test::own_domain());
     return "udp portrange " + std::to_string(first) + "-" + std::to_string(first + 249);
   }
 };
@@ -39,7 +37,7 @@ TEST_F(Tshark, NamesTheTopicsOfARunAndFindsNothingMalformed) {
       start_program({"/usr/bin/tcpdump", "-i", "lo", "-U", "-w", capture.string(), "-Z", "root", ports()});
   ASSERT_TRUE(wait_until([&] { return capturing.err().find("listening on lo") != std::string::npos; }, 10s))
       << capturing.said();
-  Process& run = launch("run", launch_file("corner_stacks"), kDomain, {"--steps", "120"});
+  Process& run = launch("run", launch_file("corner_stacks"), {"--steps", "120"});
   expect_exit(run, 0);
   capturing.signal(SIGINT);
   expect_exit(capturing, 0);

@@ -29,7 +29,7 @@ TEST_P(BadFiles, ExitWithTwoAndNameThePlace) {
   for (const Words& words : {Words{"check", file}, Words{"launch", file, "--headless", "--duration", "1"},
                              Words{"node", file, "--region", "0"}, Words{"send", "stop", file}}) {
     Process& program = start(words);
-    expect_exit(program, 2, 5s);
+    expect_exit(program, 2);
     EXPECT_THAT(program.err(), HasSubstr((folder() / GetParam().place).string())) << words[0];
     EXPECT_TRUE(program.out().empty()) << program.said();
   }
@@ -58,7 +58,7 @@ TEST_F(CommandLines, ThatMakeNoSenseExitWithTwo) {
         Words{"launch", file, "--set", "nonsense"}, Words{"node", file}, Words{"node", file, "--region", "2"},
         Words{"node", file, "--region", "0", "--start-time-out", "0"}, Words{"send", "jump", file}}) {
     Process& program = start(words);
-    expect_exit(program, 2, 5s);
+    expect_exit(program, 2);
     EXPECT_FALSE(program.err().empty()) << program.said();
   }
 }
@@ -66,10 +66,10 @@ TEST_F(CommandLines, ThatMakeNoSenseExitWithTwo) {
 TEST_F(CommandLines, ThatAreGoodExitWithZero) {
   for (const char* name : {"demo", "columns_rain", "corner_stacks", "island", "three_way", "tower", "two_spheres"}) {
     Process& program = start({"check", launch_file(name)});
-    expect_exit(program, 0, 10s);
+    expect_exit(program, 0);
     EXPECT_TRUE(program.err().empty()) << program.said();
   }
-  expect_exit(start({"--help"}), 0, 5s);
+  expect_exit(start({"--help"}), 0);
 }
 
 TEST_F(CommandLines, AWarningIsNoError) {

@@ -1,5 +1,4 @@
 // Commands of clients to a real run: `aurasim send spawn, static, impulse, remove, rate, regions, scene, ray`.
-// Domains 163 to 166.
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -11,12 +10,11 @@ namespace {
 
 class Commands : public SystemTest {
  protected:
-  void run(const std::string& name, int domain, const Words& overrides, std::int64_t steps) {
-    domain_ = "dds.domain=" + std::to_string(domain);
+  void run(const std::string& name, const Words& overrides, std::int64_t steps) {
     file_ = launch_file("corner_stacks");
     name_ = name;
     overrides_ = overrides;
-    run_ = &launch(name, file_, domain, Words{"--steps", std::to_string(steps)} + set(overrides));
+    run_ = &launch(name, file_, Words{"--steps", std::to_string(steps)} + set(overrides));
   }
 
   void wait_for(int regions, std::int64_t step) { expect_reaches(report_of(name_), regions, step); }
@@ -24,15 +22,15 @@ class Commands : public SystemTest {
   /// What it says, as JSON; null if it fails.
   nlohmann::json send(const Words& words, int code = 0) {
     SCOPED_TRACE(words[0]);
-    Process& process = start(Words{"send", words[0], file_} + Words(words.begin() + 1, words.end()) +
-                             set(overrides_ + Words{domain_}));
-    expect_exit(process, code, 15s);
+    Process& process = start(Words{"send", words[0], file_} + Words(words.begin() + 1, words.end()) + set(overrides_) +
+                             in_own_domain());
+    expect_exit(process, code);
     last_error_ = process.err();
     return code == 0 ? nlohmann::json::parse(process.out(), nullptr, false) : nlohmann::json();
   }
 
   void expect_end() {
-    expect_exit(*run_, 0, 60s);
+    expect_exit(*run_, 0);
     expect_all_bodies_accounted_for(report_of(name_));
   }
 
@@ -49,7 +47,7 @@ class Commands : public SystemTest {
 
   Process* run_ = nullptr;
   Words overrides_;
-  std::string name_, file_, domain_, last_error_;
+  std::string name_, file_, last_error_;
 };
 
 /// The first line in which two lists of hashes differ; empty if there is none.
@@ -64,13 +62,13 @@ std::string first_difference(const std::string& a, const std::string& b) {
 
 TEST_F(Commands, InDeterministicModeHaveTheSameBitsOnOneNodeAndOnFour) {
   const Words deterministic = {"time.sync=deterministic"};
-  run("four", 163, deterministic, 700);
+  run("four", deterministic, 700);
   wait_for(4, 1);
   send_one_of_each();
   expect_end();
   EXPECT_GT(report_of("four").count("migrations"), 50);
   const std::string four = report_of("four").state_hash();
-  run("one", 163, deterministic + Words{"regions.count=1"}, 700);
+  run("one", deterministic + Words{"regions.count=1"}, 700);
   wait_for(1, 1);
   send_one_of_each();
   expect_end();
@@ -80,7 +78,7 @@ TEST_F(Commands, InDeterministicModeHaveTheSameBitsOnOneNodeAndOnFour) {
 /// Nobody feels it: the run has the bits of one that kept its regions.
 TEST_F(Commands, RegionsAreDrawnAnewInMidRun) {
   const Words deterministic = {"time.sync=deterministic"};
-  run("redrawn", 164, deterministic, 600);
+  run("redrawn", deterministic, 600);
   wait_for(4, 60);
   send({"regions", "--boxes", "-100", "-100", "-10", "100", "-10", "-100", "0", "100", "0", "-100", "10", "100", "10",
         "-100", "100", "100"});
@@ -89,13 +87,13 @@ TEST_F(Commands, RegionsAreDrawnAnewInMidRun) {
   send({"regions", "--boxes", "-100", "-100", "0", "100", "0", "-100", "100", "100"}, 1);
   EXPECT_NE(last_error_.find("2 regions for 4 nodes"), std::string::npos) << last_error_;
   expect_end();
-  run("kept", 164, deterministic + Words{"time.pace=none", "regions.count=1"}, 600);
+  run("kept", deterministic + Words{"time.pace=none", "regions.count=1"}, 600);
   expect_end();
   EXPECT_EQ(first_difference(report_of("redrawn").state_hash(), report_of("kept").state_hash()), "");
 }
 
 TEST_F(Commands, ARayFindsWhatEveryRegionHosts) {
-  run("rays", 165, {}, 100'000);
+  run("rays", {}, 100'000);
   wait_for(4, 30);
   send({"static", "--size", "2", "2", "2", "--p", "30", "30", "1"});
   const auto hit = send({"ray", "--from", "30", "30", "20", "--to", "30", "30", "-5"});
@@ -107,12 +105,12 @@ TEST_F(Commands, ARayFindsWhatEveryRegionHosts) {
   EXPECT_NE(last_error_.find("there is no body 3000001"), std::string::npos) << last_error_;
   send({"velocity", "--body", "5", "--v", "100", "0", "0"}, 1);
   EXPECT_NE(last_error_.find("faster than this run promises"), std::string::npos) << last_error_;
-  start(Words{"send", "stop", file_} + set({domain_}));
-  expect_exit(*run_, 0, 30s);
+  start(Words{"send", "stop", file_} + in_own_domain());
+  expect_exit(*run_, 0);
 }
 
 TEST_F(Commands, ASceneIsChosenAndTheRunGoesOn) {
-  run("scenes", 166, {}, 400);
+  run("scenes", {}, 400);
   wait_for(4, 60);
   send({"rate", "--value", "2"});
   send({"scene", "--name", "nosuch"}, 1);

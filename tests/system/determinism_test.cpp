@@ -1,4 +1,4 @@
-// docs/design.md, "The same bits": the hash of every state is equal on any number of nodes. Domains 150 to 156.
+// docs/design.md, "The same bits": the hash of every state is equal on any number of nodes.
 #include <sstream>
 
 #include "system_fixture.h"
@@ -9,12 +9,11 @@ namespace {
 class Determinism : public SystemTest {
  protected:
   /// The hash of every state, by `steps` states computed as fast as it goes.
-  std::string hashes(const std::string& name, const std::string& scene, int domain, int steps,
-                     const Words& overrides = {}) {
+  std::string hashes(const std::string& name, const std::string& scene, int steps, const Words& overrides = {}) {
     Process& run = launch(
-        name, launch_file(scene), domain,
+        name, launch_file(scene),
         Words{"--steps", std::to_string(steps)} + set(Words{"time.sync=deterministic", "time.pace=none"} + overrides));
-    expect_exit(run, 0, 60s);
+    expect_exit(run, 0);
     expect_all_bodies_accounted_for(report_of(name));
     return report_of(name).state_hash();
   }
@@ -35,19 +34,18 @@ std::string first_difference(const std::string& a, const std::string& b) {
 }
 
 TEST_F(Determinism, DeterministicRunsAreEqual) {
-  const std::string first = hashes("first", "demo", 150, 300);
+  const std::string first = hashes("first", "demo", 300);
   EXPECT_GT(hand_offs("first"), 50);
-  EXPECT_EQ(first_difference(first, hashes("again", "demo", 150, 300)), "");
-  EXPECT_EQ(first_difference(first, hashes("central", "demo", 150, 300, {"regions.count=1"})), "");
+  EXPECT_EQ(first_difference(first, hashes("again", "demo", 300)), "");
+  EXPECT_EQ(first_difference(first, hashes("central", "demo", 300, {"regions.count=1"})), "");
   EXPECT_EQ(hand_offs("central"), 0);
-  EXPECT_EQ(
-      first_difference(first, hashes("columns", "demo", 150, 300, {"regions={layout: columns, count: 2, width: 40}"})),
-      "");
+  EXPECT_EQ(first_difference(first, hashes("columns", "demo", 300, {"regions={layout: columns, count: 2, width: 40}"})),
+            "");
 }
 
 TEST_F(Determinism, WithoutAurasTheRunDiffersFromTheCentralOne) {
-  const std::string naive = hashes("naive", "demo", 151, 300, {"aura.radius=none"});
-  const std::string central = hashes("central", "demo", 151, 300, {"regions.count=1"});
+  const std::string naive = hashes("naive", "demo", 300, {"aura.radius=none"});
+  const std::string central = hashes("central", "demo", 300, {"regions.count=1"});
   EXPECT_NE(first_difference(naive, central), "") << "or this test could not see a difference";
 }
 
@@ -57,10 +55,10 @@ TEST_F(Determinism, InBoundedModeTheTowerAndTheDominoesFallAsInOneWorld) {
   for (const std::string scene : {"tower", "domino_line"}) {
     const Words bounded = {"time.sync=bounded"};
     const std::string two =
-        hashes(scene + "_2", scene, 149, 400,
+        hashes(scene + "_2", scene, 400,
                bounded + Words{"regions={layout: columns, count: 2, width: 40, neighbour_distance: 1000}"});
     EXPECT_GT(hand_offs(scene + "_2"), 0);
-    const std::string one = hashes(scene + "_1", scene, 149, 400, bounded + Words{"regions.count=1"});
+    const std::string one = hashes(scene + "_1", scene, 400, bounded + Words{"regions.count=1"});
     EXPECT_EQ(first_difference(two, one), "") << scene;
   }
 }
@@ -68,7 +66,6 @@ TEST_F(Determinism, InBoundedModeTheTowerAndTheDominoesFallAsInOneWorld) {
 struct Scene {
   const char* name;
   int steps;
-  int domain;
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
@@ -76,16 +73,15 @@ void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 class EveryScene : public Determinism, public ::testing::WithParamInterface<Scene> {};
 
 TEST_P(EveryScene, IsEqualToTheCentralRun) {
-  const auto [name, steps, domain] = GetParam();
-  const std::string distributed = hashes("distributed", name, domain, steps);
+  const auto [name, steps] = GetParam();
+  const std::string distributed = hashes("distributed", name, steps);
   EXPECT_GT(hand_offs("distributed"), 0);
-  EXPECT_EQ(first_difference(distributed, hashes("central", name, domain, steps, {"regions.count=1"})), "");
+  EXPECT_EQ(first_difference(distributed, hashes("central", name, steps, {"regions.count=1"})), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, EveryScene,
-                         ::testing::Values(Scene{"two_spheres", 300, 152}, Scene{"island", 600, 153},
-                                           Scene{"three_way", 600, 154}, Scene{"tower", 600, 155},
-                                           Scene{"columns_rain", 400, 156}),
+                         ::testing::Values(Scene{"two_spheres", 300}, Scene{"island", 600}, Scene{"three_way", 600},
+                                           Scene{"tower", 600}, Scene{"columns_rain", 400}),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

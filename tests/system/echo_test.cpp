@@ -1,4 +1,4 @@
-// `aurasim echo` prints every topic of a run. Domain 187.
+// `aurasim echo` prints every topic of a run.
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -9,12 +9,10 @@
 namespace aurasim::system_test {
 namespace {
 
-constexpr int kDomain = 187;
-
 class Echo : public SystemTest {
  protected:
   const std::string file_ = launch_file("corner_stacks");
-  const Words in_domain_ = set({"dds.domain=" + std::to_string(kDomain)});
+  const Words in_domain_ = in_own_domain();
 
   Process& echo(const std::string& topic, const Words& more = {}) {
     return start(Words{"echo", topic, file_, "--json", "--duration", "20"} + in_domain_ + more);
@@ -22,7 +20,7 @@ class Echo : public SystemTest {
 
   /// One per line; fails where a line is no JSON.
   std::vector<nlohmann::json> samples_of(Process& echo) {
-    expect_exit(echo, 0, 25s);
+    expect_exit(echo, 0);
     std::vector<nlohmann::json> samples;
     std::istringstream lines(echo.out());
     for (std::string line; std::getline(lines, line);) {
@@ -35,7 +33,7 @@ class Echo : public SystemTest {
 };
 
 TEST_F(Echo, PrintsEveryTopic) {
-  Process& run = launch("run", file_, kDomain);
+  Process& run = launch("run", file_);
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 1));
   std::map<std::string, Process*> echoes;
   for (const char* topic : {"node_status", "region_map", "replica", "replica_key", "migration", "migration_ack",
@@ -55,7 +53,7 @@ TEST_F(Echo, PrintsEveryTopic) {
   Process& sent = start(Words{"send", "static", file_, "--mesh", AURASIM_SOURCE_DIR "/tests/config/meshes/wedge.obj",
                               "--p", "30", "30", "5"} +
                         in_domain_);
-  expect_exit(sent, 0, 15s);
+  expect_exit(sent, 0);
   for (const auto& [topic, process] : echoes) {
     SCOPED_TRACE(topic);
     const std::vector<nlohmann::json> samples = samples_of(*process);

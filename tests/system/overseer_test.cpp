@@ -1,4 +1,4 @@
-// The overseer beside real runs. Domains 157 to 162.
+// The overseer beside real runs.
 #include <csignal>
 
 #include <sys/wait.h>
@@ -17,9 +17,8 @@ using Json = nlohmann::json;
 
 class Overseers : public SystemTest {
  protected:
-  void start_run(int domain, const Words& more = {}) {
-    domain_ = "dds.domain=" + std::to_string(domain);
-    run_ = &launch("run", file_, domain, more);
+  void start_run(const Words& more = {}) {
+    run_ = &launch("run", file_, more);
     ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 30));
   }
 
@@ -33,7 +32,7 @@ class Overseers : public SystemTest {
   }
 
   Process& start_overseer(const Words& more = {}) {
-    return start(Words{"overseer", file_, "--port", "0"} + set({domain_}) + more);
+    return start(Words{"overseer", file_, "--port", "0"} + in_own_domain() + more);
   }
 
   static std::uint64_t bodies_of(const Json& status) {
@@ -67,21 +66,18 @@ class Overseers : public SystemTest {
   }
 
   const std::string file_ = launch_file("corner_stacks");
-  std::string domain_;
   Process* run_ = nullptr;
 };
 
 TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
-  ASSERT_NO_FATAL_FAILURE(start_run(157));
+  ASSERT_NO_FATAL_FAILURE(start_run());
   Process& overseer = start_overseer();
   Page page(port_of(overseer));
   ASSERT_TRUE(page.open()) << overseer.said();
-  const auto begin = Clock::now();
   ASSERT_TRUE(page.wait_until([&] {
     return page.has("hello") && page.has("scene") && page.has("map") && page.has("status") &&
            page.latest["status"].at("nodes").size() == 4 && page.world.bodies.size() >= 96;
   }));
-  EXPECT_LT(Clock::now() - begin, 4s) << "two, and as many for a busy host to find its nodes";
   EXPECT_EQ(page.latest["hello"].at("mode"), "live");
   EXPECT_EQ(page.latest["scene"].at("prototypes").size(), 4U);
   EXPECT_EQ(page.latest["map"].at("regions").size(), 4U);
@@ -109,13 +105,13 @@ TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
   EXPECT_EQ(page.latest["scene"].at("generation"), 1);
   EXPECT_THAT(request(port_of(overseer), verb::get, "/metrics").body, HasSubstr("aurasim_step{region=\"3\"}"));
   overseer.signal(SIGTERM);
-  expect_exit(overseer, 0, 5s);
+  expect_exit(overseer, 0);
   end_run();
   expect_all_bodies_accounted_for(report_of("run"));
 }
 
 TEST_F(Overseers, MayBeKilledAndStartedAgainAndNoNodeNotices) {
-  ASSERT_NO_FATAL_FAILURE(start_run(158, {"--duration", "6"}));
+  ASSERT_NO_FATAL_FAILURE(start_run({"--duration", "6"}));
   for (int i = 0; i < 2; ++i) {
     Process& overseer = start_overseer();
     Page page(port_of(overseer));
@@ -133,7 +129,7 @@ TEST_F(Overseers, MayBeKilledAndStartedAgainAndNoNodeNotices) {
 }
 
 TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
-  ASSERT_NO_FATAL_FAILURE(start_run(159));
+  ASSERT_NO_FATAL_FAILURE(start_run());
   Process& overseer = start_overseer({"--token", "open sesame"});
   const std::uint16_t port = port_of(overseer);
   EXPECT_FALSE(Page(port, {{"Origin", "http://evil.example"}}).open());
@@ -153,7 +149,7 @@ TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
 }
 
 TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
-  ASSERT_NO_FATAL_FAILURE(start_run(160));
+  ASSERT_NO_FATAL_FAILURE(start_run());
   Process& overseer = start_overseer();
   Page page(port_of(overseer));
   const auto of_the_dead = [&] {
@@ -172,7 +168,7 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   }
   ASSERT_GT(node, 0);
   ::kill(node, SIGKILL);
-  EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, 20s));
+  EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, kGenerous));
   EXPECT_GT(page.world.bodies.size(), 20U);
   EXPECT_EQ(page.latest["status"].at("nodes")[2].at("lost"), true);
   EXPECT_EQ(page.latest["status"].at("state"), "running");
@@ -181,8 +177,7 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
 
 TEST_F(Overseers, WhatTheyRecordIsShownAgain) {
   const std::string recording = (folder() / "recording").string();
-  domain_ = "dds.domain=162";
-  Process& run = launch("run", file_, 162, {"--record", recording, "--duration", "4"});
+  Process& run = launch("run", file_, {"--record", recording, "--duration", "4"});
   expect_exit(run, 0);
   Process& replay = start({"replay", recording, "--port", "0"});
   Page page(port_of(replay));
@@ -202,10 +197,10 @@ TEST_F(Overseers, WhatTheyRecordIsShownAgain) {
 }
 
 TEST_F(Overseers, ALaunchBringsOneAndTakesAnotherPortWhenItsOwnIsTaken) {
-  Process& first = start(Words{"launch", file_} + set({"dds.domain=161", "overseer.port=0"}));
+  Process& first = start(Words{"launch", file_} + in_own_domain() + set({"overseer.port=0"}));
   const std::uint16_t port = port_of(first);
   ASSERT_GT(port, 0);
-  Process& second = start(Words{"overseer", file_, "--port", std::to_string(port)} + set({"dds.domain=161"}));
+  Process& second = start(Words{"overseer", file_, "--port", std::to_string(port)} + in_own_domain());
   const std::uint16_t other = port_of(second);
   EXPECT_NE(other, port);
   EXPECT_THAT(second.err(), HasSubstr(std::to_string(port)));

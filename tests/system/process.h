@@ -15,6 +15,10 @@ namespace aurasim::system_test {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+/// How long a test waits for what happens at once on a machine that has nothing else to do. What has to be quick is
+/// measured in tests/bench.
+inline constexpr auto kGenerous = 60s;
+
 /// Asks `condition` again and again until it holds; false when it does not within `time_out`.
 template <class Condition>
 bool wait_until(Condition&& condition, Clock::duration time_out) {

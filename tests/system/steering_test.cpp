@@ -1,4 +1,4 @@
-// `aurasim send`, and what `aurasim top` shows of it. Domains 147 to 149.
+// `aurasim send`, and what `aurasim top` shows of it.
 #include <map>
 #include <sstream>
 
@@ -17,13 +17,13 @@ class Steering : public SystemTest {
  protected:
   void send(const Words& words) {
     SCOPED_TRACE(words[0]);
-    expect_exit(start(Words{"send"} + words + Words{file_} + set({domain_})), 0, 15s);
+    expect_exit(start(Words{"send"} + words + Words{file_} + in_own_domain()), 0);
   }
 
   /// By region, as `aurasim top` tells.
   std::map<int, Row> statuses() {
-    Process& top = start(Words{"top", file_, "--duration", "1"} + set({domain_}));
-    expect_exit(top, 0, 5s);
+    Process& top = start(Words{"top", file_, "--duration", "1"} + in_own_domain());
+    expect_exit(top, 0);
     std::map<int, Row> rows;
     std::istringstream in(top.out());
     for (std::string line; std::getline(in, line);) {
@@ -60,12 +60,11 @@ class Steering : public SystemTest {
   }
 
   const std::string file_ = launch_file("demo");
-  const std::string domain_ = "dds.domain=147";
 };
 
 TEST_F(Steering, PauseStepResumeResetStop) {
   const Report report = report_of("run");
-  Process& run = launch("run", file_, 147);
+  Process& run = launch("run", file_);
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
 
   send({"pause"});
@@ -86,7 +85,7 @@ TEST_F(Steering, PauseStepResumeResetStop) {
   EXPECT_LT(paused_again_at, resumed_at) << "the world begins anew";
 
   send({"stop"});
-  expect_exit(run, 0, 5s);
+  expect_exit(run, 0);
   expect_all_bodies_accounted_for(report);
   EXPECT_EQ(report.count("steps"), paused_again_at);
   expect_only_the_last_world_recorded(report, paused_again_at);

@@ -29,6 +29,8 @@ Words set(const Words& overrides) {
   return words;
 }
 
+Words in_own_domain(std::size_t which) { return set({"dds.domain=" + std::to_string(test::own_domain(which))}); }
+
 void SystemTest::SetUp() {
   adopt_orphans();
   std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -63,9 +65,8 @@ Process& SystemTest::start_program(const Words& words) {
 
 Process& SystemTest::start(const Words& words) { return start_program(Words{AURASIM_BINARY_DIR "/aurasim"} + words); }
 
-Process& SystemTest::launch(const std::string& name, const std::string& file, int domain, const Words& more) {
-  return start(Words{"launch", file, "--headless", "--report", (folder_ / name).string()} +
-               set({"dds.domain=" + std::to_string(domain)}) + more);
+Process& SystemTest::launch(const std::string& name, const std::string& file, const Words& more) {
+  return start(Words{"launch", file, "--headless", "--report", (folder_ / name).string()} + in_own_domain() + more);
 }
 
 void SystemTest::expect_exit(Process& process, int code, Clock::duration time_out) const {
@@ -81,7 +82,7 @@ void SystemTest::expect_reaches(const Report& report, int regions, std::int64_t 
     }
     return true;
   };
-  ASSERT_TRUE(wait_until(all_there, 30s)) << "step " << step << " of " << report.folder();
+  ASSERT_TRUE(wait_until(all_there, kGenerous)) << "step " << step << " of " << report.folder();
 }
 
 void SystemTest::expect_all_bodies_accounted_for(const Report& report) const {

@@ -1,4 +1,4 @@
-// A test that runs the real program. Each takes a DDS domain of its own (130 to 169), all traffic stays on loopback,
+// A test that runs the real program. Each has a DDS domain of its own (own_domain.h), all traffic stays on loopback,
 // and when it ends no process and no shared memory may be left.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "own_domain.h"
 #include "process.h"
 #include "report.h"
 
@@ -28,6 +29,8 @@ std::string launch_file(const std::string& name);
 
 /// `--set key=value` for each of these.
 Words set(const Words& overrides);
+/// `--set dds.domain=N`: the running test's, or its second one.
+Words in_own_domain(std::size_t which = 0);
 
 class SystemTest : public ::testing::Test {
  protected:
@@ -42,12 +45,12 @@ class SystemTest : public ::testing::Test {
   Process& start_program(const Words& words);
   /// Starts `aurasim` with these words.
   Process& start(const Words& words);
-  /// Starts `aurasim launch FILE --headless --report ... --set dds.domain=... ` and more. Its report is
-  /// report_of(name).
-  Process& launch(const std::string& name, const std::string& file, int domain, const Words& more = {});
+  /// Starts `aurasim launch FILE --headless --report ... --set dds.domain=... ` and more, in this test's domain. Its
+  /// report is report_of(name).
+  Process& launch(const std::string& name, const std::string& file, const Words& more = {});
   Report report_of(const std::string& name) const { return Report(folder_ / name); }
 
-  void expect_exit(Process& process, int code, Clock::duration time_out = 30s) const;
+  void expect_exit(Process& process, int code, Clock::duration time_out = kGenerous) const;
   /// Waits until every node of a run has written down this step.
   void expect_reaches(const Report& report, int regions, std::int64_t step) const;
   /// No body is lost, and none is there twice.
