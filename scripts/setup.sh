@@ -17,7 +17,7 @@ packages=(
   # HTTP and WebSocket of the overseer
   libboost1.74-dev
   # tests and benchmarks, and the tools that tests of real processes use
-  libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump
+  libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump libfaketime
   # separate hosts on one machine; other people's DDS and a dissector, as witnesses
   nftables jq cyclonedds-dev cyclonedds-tools tshark
   # figures of the experiments

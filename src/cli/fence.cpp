@@ -1,7 +1,6 @@
 #include "cli/fence.h"
 
-#include <algorithm>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,62 +9,49 @@ namespace aurasim::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 constexpr auto kLookEvery = 50ms;
 
 }  // namespace
 
-Fence::Fence(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
-             core::RegionId region)
-    : region_(region),
-      alone_(launch.regions.size() == 1),
-      can_be_cut_(!alone_ && !participant.stays_on_this_host()),
-      never_waits_(launch.time.sync == core::SyncMode::kFreeRunning),
-      participant_(participant),
-      control_(control),
-      quorum_(region, static_cast<std::uint32_t>(launch.regions.size())) {}
+Fence::Fence(const FenceSettings& settings, Senses senses)
+    : settings_(settings), senses_(std::move(senses)), quorum_(settings.region, settings.regions) {}
 
-bool Fence::open(const core::Protocol& protocol) {
-  if (closed() || alone_) return !closed();
-  reason_ = why_stop(protocol);
+bool Fence::open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now) {
+  if (closed() || settings_.regions == 1) return !closed();
+  reason_ = why_stop(held_for_dead, dead, now);
   if (closed()) return false;
-  return standing_ == node::Standing::kGoOn || never_waits_;
+  return standing_ == node::Standing::kGoOn || settings_.never_waits;
 }
 
-std::string Fence::why_stop(const core::Protocol& protocol) {
-  if (protocol.fenced()) {
-    return fmt::format("a neighbour holds region {} for dead; its bodies have other hosts", core::value_of(region_));
+std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now) {
+  const std::uint32_t self = core::value_of(settings_.region);
+  if (held_for_dead) {
+    return fmt::format("a neighbour holds region {} for dead; its bodies have other hosts", self);
   }
   // A host that stands still as a whole holds all nodes up alike: then nobody is lost.
-  if (participant_.outlived_its_lease() && !protocol.intake().dead_regions().empty()) {
+  if (!dead.empty() && senses_.was_held_up()) {
     return fmt::format(
         "region {} was held up for longer than its participant's lease, and has lost neighbours since: they have given "
         "it up",
-        core::value_of(region_));
+        self);
   }
-  if (can_be_cut_) look(protocol);
+  if (settings_.can_be_cut) look(dead, now);
   if (standing_ != node::Standing::kCutOff) return {};
   std::vector<std::uint32_t> silent;
   for (const core::RegionId lost : quorum_.lost()) silent.push_back(core::value_of(lost));
   return fmt::format(
       "region {} hears nothing from regions [{}], half of the run or more: they may have died, or this host is cut off "
       "and they go on without it",
-      core::value_of(region_), fmt::join(silent, ", "));
+      self, fmt::join(silent, ", "));
 }
 
 /// A neighbour's death lets the node compute at once: so whoever is newly dead is looked at before that.
-void Fence::look(const core::Protocol& protocol) {
-  const std::vector<core::RegionId> dead = protocol.intake().dead_regions();
-  const auto now = Clock::now();
+void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now) {
   if (now < next_look_ && dead.size() == dead_) return;
   next_look_ = now + kLookEvery;
   dead_ = dead.size();
-  std::map<core::RegionId, node::PeerSign> signs;
-  for (const auto& [region, seen] : control_.statuses()) {
-    const bool left = seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
-    if (region != region_) signs[region] = {seen.lost, left, seen.seen};
-  }
+  std::map<core::RegionId, node::PeerSign> signs = senses_.peers();
   for (const core::RegionId region : dead) signs[region].lost = true;
   standing_ = quorum_.judge(signs, now);
 }

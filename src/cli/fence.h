@@ -1,44 +1,55 @@
 // When a node has to stop because the rest of the run may go on without it: the others hold it for dead, it was held up
-// for so long that they may, or it has lost touch with the majority. Two hosts of one body are worse than none.
+// for so long that they may, or it has lost touch with the majority. Two hosts of one body are worse than none. Time is
+// passed in.
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
-#include "config/launch.h"
-#include "core/protocol.h"
-#include "dds/control.h"
-#include "dds/participant.h"
 #include "node/quorum.h"
 
 namespace aurasim::cli {
 
+struct FenceSettings {
+  core::RegionId region{};
+  std::uint32_t regions = 1;  ///< of the run
+  bool can_be_cut = false;    ///< the others may be on other hosts
+  bool never_waits = false;   ///< free_running
+};
+
 class Fence {
  public:
-  /// Both outlive it.
-  Fence(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, core::RegionId region);
+  using Clock = std::chrono::steady_clock;
 
-  /// True while the node may compute its next state. Cheap while no region is lost.
-  bool open(const core::Protocol& protocol);
+  /// Asked only when there is something to find out.
+  struct Senses {
+    std::function<bool()> was_held_up;                                ///< for longer than its participant's lease
+    std::function<std::map<core::RegionId, node::PeerSign>()> peers;  ///< all regions but this one
+  };
+
+  Fence(const FenceSettings& settings, Senses senses);
+
+  /// True while the node may compute its next state. `held_for_dead`: by a neighbour. `dead`: neighbours that it holds
+  /// for dead itself. Cheap while there are none.
+  bool open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
   /// For good: the node has to stop.
   bool closed() const { return !reason_.empty(); }
   /// Why it is closed, for people.
   const std::string& reason() const { return reason_; }
 
  private:
-  std::string why_stop(const core::Protocol& protocol);
-  void look(const core::Protocol& protocol);
+  std::string why_stop(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
+  void look(const std::vector<core::RegionId>& dead, Clock::time_point now);
 
-  core::RegionId region_;
-  bool alone_;        ///< no other regions
-  bool can_be_cut_;   ///< the others may be on other hosts
-  bool never_waits_;  ///< free_running
-  dds::Participant& participant_;
-  dds::ControlBus& control_;
+  FenceSettings settings_;
+  Senses senses_;
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
   std::size_t dead_ = 0;  ///< neighbours when last looked
-  std::chrono::steady_clock::time_point next_look_;
+  Clock::time_point next_look_;
   std::string reason_;
 };
 

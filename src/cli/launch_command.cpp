@@ -19,7 +19,7 @@ int run_launch(Arguments arguments) {
   arguments.options.steps = arguments.length.last_step(launch);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
-  leave(static_cast<int>(launcher.run()));
+  leave_after([&launcher] { return launcher.run(); });
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
     : launch_(launch),
       options_(options),
       participant_(dds_settings(launch)),
-      control_(participant_, {launch.regions.version(), {}}) {}
+      control_(participant_, {launch.regions.version(), {}, launch.agreement(), run_}) {}
 
 Launcher::~Launcher() {
   signal_all(SIGKILL);
@@ -46,8 +46,9 @@ ExitCode Launcher::run() {
   bool stopping = false;
   while (any_running()) {
     control_.wait(20ms);
+    look_at_nodes();
     collect_exits();
-    if (stop_requested() && !stopping) {
+    if (has_to_stop() && !stopping) {
       stopping = true;
       stop_all();
     }
@@ -66,6 +67,8 @@ std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
                                     options_.files.file,
                                     "--region",
                                     std::to_string(region),
+                                    "--run",
+                                    std::to_string(run_),
                                     "--start-time-out",
                                     std::to_string(options_.start_time_out_s)};
   for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
@@ -74,8 +77,16 @@ std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
   return words;
 }
 
+/// Throws when another run writes there: what it has would be gone.
+void Launcher::take_report_folder() {
+  if (!options_.report) return;
+  report_folder_.emplace(*options_.report);
+  node::clear_report(*options_.report);
+  node::reserve_summary(*options_.report);
+}
+
 void Launcher::start_nodes() {
-  if (options_.report) node::clear_report(*options_.report);
+  take_report_folder();
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
     Child child;
     child.region = core::RegionId{r};
@@ -86,35 +97,55 @@ void Launcher::start_nodes() {
 
 pid_t Launcher::start_node(std::uint32_t region) const { return spawn(arguments_of(region)); }
 
+void Launcher::look_at_nodes() {
+  for (const auto& [region, seen] : control_.statuses()) {
+    const dds::NodeState state = seen.status.state;
+    has_begun_ = has_begun_ || state == dds::NodeState::kRunning || state == dds::NodeState::kPaused ||
+                 state == dds::NodeState::kFinished;
+  }
+}
+
 void Launcher::collect_exits() {
   for (Child& child : children_) {
     int status = 0;
     if (!child.running || ::waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
     child.running = false;
     child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    child.died = child.exit_code != 0 && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
-                 child.exit_code != static_cast<int>(ExitCode::kRefused);
-    if (child.died)
-      spdlog::error("the node of region {} died (exit code {})", core::value_of(child.region), child.exit_code);
+    if (child.told_to_end && child.exit_code == 128 + SIGTERM) child.exit_code = 0;  // told before it could listen
+    const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
+    child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig);
+    if (child.died) {
+      spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
+                    has_begun_ ? "" : " before the run had begun: the others are ended");
+    }
     // Without all of them the run cannot start: the others need not wait for their time-out.
-    if (child.exit_code == static_cast<int>(ExitCode::kRefused)) signal_all(SIGTERM);
+    cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
   }
 }
+
+/// Whoever asks for it, who hung up, and a run that cannot begin.
+bool Launcher::has_to_stop() const { return stop_requested() || !is_seen_ || cannot_begin_; }
 
 bool Launcher::any_running() const {
   return std::any_of(children_.begin(), children_.end(), [](const Child& c) { return c.running; });
 }
 
-void Launcher::signal_all(int signal) const {
-  for (const Child& child : children_) {
-    if (child.running) ::kill(child.pid, signal);
+void Launcher::signal_all(int signal) {
+  for (Child& child : children_) {
+    if (!child.running) continue;
+    child.told_to_end = child.told_to_end || signal == SIGTERM;
+    ::kill(child.pid, signal);
   }
 }
 
 /// All at the same state, so that every body can be accounted for; those that do not listen are told more firmly.
 void Launcher::stop_all() {
   RunSteering steering(launch_, control_);
-  if (steering.find_run(0ms)) steering.send(dds::RunCommandKind::kStop);
+  if (has_begun_ && steering.find_run(0ms)) {
+    steering.send(dds::RunCommandKind::kStop);
+  } else {
+    signal_all(SIGTERM);
+  }
   const auto begin = Clock::now();
   std::vector<NodeEnding> endings(children_.size(), NodeEnding(begin));
   int presses = stop_requests();
@@ -133,12 +164,14 @@ void Launcher::stop_all() {
   }
 }
 
-void Launcher::urge(const Child& child, NodeEnding& ending) {
+void Launcher::urge(Child& child, NodeEnding& ending) {
   if (!child.running) return;
   const auto& statuses = control_.statuses();
   const auto seen = statuses.find(child.region);
   const Urge urge = ending.urge(Clock::now(), seen == statuses.end() ? nullptr : &seen->second);
-  if (urge != Urge::kNone) ::kill(child.pid, urge == Urge::kKill ? SIGKILL : SIGTERM);
+  if (urge == Urge::kNone) return;
+  child.told_to_end = true;
+  ::kill(child.pid, urge == Urge::kKill ? SIGKILL : SIGTERM);
 }
 
 std::vector<std::uint32_t> Launcher::running_regions() const {
@@ -152,7 +185,7 @@ std::vector<std::uint32_t> Launcher::running_regions() const {
 void Launcher::show() {
   if (options_.headless) return;
   viewer_.look();
-  view_.show(live_table(control_.statuses()) + viewer_.said());
+  is_seen_ = view_.show(live_table(control_.statuses()) + viewer_.said()) && is_seen_;
 }
 
 ExitCode Launcher::conclude() {
@@ -161,7 +194,13 @@ ExitCode Launcher::conclude() {
     if (child.died) code = ExitCode::kFailed;
     if (!child.died && child.exit_code != 0 && code == ExitCode::kOk) code = static_cast<ExitCode>(child.exit_code);
   }
-  return options_.report && code != ExitCode::kRefused ? report_and_count(code) : code;
+  if (!options_.report) return code;
+  if (code == ExitCode::kRefused || !node::has_records(*options_.report)) {
+    spdlog::warn("no report: the run has not begun");
+    node::clear_report(*options_.report);
+    return code;
+  }
+  return report_and_count(code);
 }
 
 ExitCode Launcher::report_and_count(ExitCode so_far) {

@@ -9,11 +9,13 @@
 #include <sys/types.h>
 
 #include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/folder_lock.h"
 #include "cli/live_table.h"
 #include "cli/node_ending.h"
-#include "cli/node_process.h"
 #include "cli/run_steering.h"
 #include "cli/viewer_process.h"
+#include "dds/random_id.h"
 
 namespace aurasim::cli {
 
@@ -40,28 +42,37 @@ class Launcher {
     pid_t pid = 0;
     bool running = true;
     int exit_code = 0;  ///< 128 + signal when it was killed
+    bool told_to_end = false;
     bool died = false;  ///< ended before the run did
   };
 
+  void take_report_folder();
   void start_nodes();
   pid_t start_node(std::uint32_t region) const;
   std::vector<std::string> arguments_of(std::uint32_t region) const;
   void collect_exits();
+  void look_at_nodes();
+  bool has_to_stop() const;
   bool any_running() const;
   void stop_all();
-  void urge(const Child& child, NodeEnding& ending);
+  void urge(Child& child, NodeEnding& ending);
   std::vector<std::uint32_t> running_regions() const;
-  void signal_all(int signal) const;
+  void signal_all(int signal);
   void show();
   ExitCode conclude();
   ExitCode report_and_count(ExitCode so_far);
 
   const config::Launch& launch_;
   LaunchOptions options_;
+  std::uint64_t run_ = dds::draw_id();
   dds::Participant participant_;
   dds::ControlBus control_;
   TerminalView view_;
+  std::optional<FolderLock> report_folder_;
   std::vector<Child> children_;
+  bool has_begun_ = false;     ///< a node has shown that all have met
+  bool cannot_begin_ = false;  ///< a node is missing, and the others would wait for it
+  bool is_seen_ = true;        ///< the table has a reader
   ViewerProcess viewer_;
 };
 

@@ -1,10 +1,11 @@
 #include "cli/live_table.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "cli/terminal.h"
 
 namespace aurasim::cli {
 
@@ -33,11 +34,10 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
 
 TerminalView::TerminalView() : is_terminal_(::isatty(STDOUT_FILENO) != 0) {}
 
-void TerminalView::show(const std::string& text) {
-  if (is_terminal_ && lines_ > 0) fmt::print("\x1b[{}A\x1b[J", lines_);
-  fmt::print("{}", text);
-  std::fflush(stdout);
+bool TerminalView::show(const std::string& text) {
+  const std::string over = is_terminal_ && lines_ > 0 ? fmt::format("\x1b[{}A\x1b[J", lines_) : "";
   lines_ = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  return print(over + text);
 }
 
 }  // namespace aurasim::cli

@@ -15,7 +15,8 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
 class TerminalView {
  public:
   TerminalView();
-  void show(const std::string& text);
+  /// False when nobody sees it any more.
+  bool show(const std::string& text);
   bool is_terminal() const { return is_terminal_; }
 
  private:

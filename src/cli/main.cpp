@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "config/launch.h"
 
 using namespace aurasim;

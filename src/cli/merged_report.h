@@ -3,12 +3,13 @@
 
 #include <filesystem>
 
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "node/report.h"
 
 namespace aurasim::cli {
 
-/// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice.
+/// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice, or
+/// records are missing.
 ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far);
 
 }  // namespace aurasim::cli

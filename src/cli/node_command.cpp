@@ -21,6 +21,7 @@ namespace {
 struct Arguments {
   FileArguments files;
   std::uint32_t region = 0;
+  std::uint64_t run = 0;
   RunLength length;
   std::string report;
   int start_time_out_s = 30;
@@ -60,11 +61,12 @@ int run_node(const Arguments& arguments) {
   catch_stop_signals();
   NodeOptions options;
   options.region = core::RegionId{arguments.region};
+  options.run = arguments.run;
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
   options.steps = arguments.length.last_step(launch);
   if (!arguments.report.empty()) options.report = arguments.report;
   NodeProcess process(launch, options);
-  leave(static_cast<int>(process.run()));
+  leave_after([&process] { return process.run(); });
 }
 
 }  // namespace
@@ -74,6 +76,8 @@ void add_node(CLI::App& program, Action& action) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->files.add_to(*command);
   command->add_option("--region", arguments->region, "which region of the map")->required();
+  command->add_option("--run", arguments->run,
+                      "a number for this run, the same for all its nodes: they ignore every other run's");
   arguments->length.add_to(*command);
   command->add_option("--report", arguments->report, "folder for what the node records");
   command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")

@@ -3,13 +3,17 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "cli/command_server.h"
+#include "cli/exit_code.h"
 #include "cli/fence.h"
+#include "cli/node_phase.h"
 #include "cli/replica_publisher.h"
 #include "config/launch.h"
 #include "dds/control.h"
@@ -21,17 +25,9 @@
 
 namespace aurasim::cli {
 
-/// How a process ended; also its exit code.
-enum class ExitCode : int {
-  kOk = 0,
-  kFailed = 1,     ///< something broke, a node died or a body was lost
-  kBadConfig = 2,  ///< the files or the command line are wrong
-  kRefused = 3,    ///< another run is in the same domain, or a neighbour did not come in time
-  kFenced = 4,     ///< the others hold this node for dead, or may (fence.h)
-};
-
 struct NodeOptions {
   core::RegionId region{};
+  std::uint64_t run = 0;            ///< the same number for all nodes of a run and no other; 0: nobody has drawn one
   std::optional<core::Step> steps;  ///< stop after this state; nothing: run until told to stop
   std::optional<std::filesystem::path> report;
   std::chrono::seconds start_time_out{30};
@@ -52,14 +48,20 @@ class NodeProcess {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   };
 
+  FenceSettings fence_settings() const;
+  std::map<core::RegionId, node::PeerSign> peer_signs();
+  bool fence_is_open();
   ExitCode meet_and_run();
   bool domain_is_free();
   bool meet_neighbours();
   bool another_run_is_here();
-  bool this_region_is_taken();
+  bool another_agreement_is_here();
+  bool the_same_run_is_here();
+  void name_the_dead();
   void start_when_all_wait();
   bool wait_for_start();
-  void begin_generation(core::Generation generation, std::int64_t epoch_ns);
+  /// `begin`: the command that names when.
+  void begin_generation(core::Generation generation, const dds::RunCommand& begin);
   ExitCode run_steps();
   bool wait_until_due();
   void compute_step();
@@ -76,12 +78,19 @@ class NodeProcess {
   void connect_anew(const dds::TransportSettings& settings);
   bool finished() const;
   void linger();
-  void publish(dds::NodeState state, const std::string& text = {});
+  dds::RunCommand with_clock_of_region_zero(dds::RunCommand start);
+  void compare_clocks();
+  void watch_the_clock();
+  void watch_the_records();
+  void enter(NodeEvent event);
+  void publish(const std::string& text = {});
   void publish_running();
   void note(const node::StepReport& report, double frame_ms);
   ExitCode refuse(const std::string& why);
+  ExitCode not_begun();
   double real_time_factor() const;
 
+  NodePhase phase_ = NodePhase::kListening;
   config::Launch launch_;
   NodeOptions options_;
   dds::Participant participant_;
@@ -94,6 +103,9 @@ class NodeProcess {
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;
+  node::ClockWatch clock_watch_{node::read_clocks()};
+  bool says_records_end_ = false;
+  std::string notice_;  ///< for people, in the status while the node runs
   core::Generation generation_ = 0;
   std::optional<core::Step> hold_at_;  ///< paused once this state has been computed
   std::optional<core::Step> stop_at_;
@@ -107,6 +119,7 @@ class NodeProcess {
   std::chrono::steady_clock::time_point began_;
   std::chrono::steady_clock::duration paused_{};
   std::chrono::steady_clock::time_point last_published_;
+  std::set<core::RegionId> missed_;  ///< died while the nodes met, and said so
 };
 
 }  // namespace aurasim::cli

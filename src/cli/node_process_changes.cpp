@@ -1,15 +1,18 @@
 // What clients ask of a node, and the changes of a whole run while it runs: its rate, another scene, other regions. All
 // nodes come to a change after the same state.
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "cli/launch_setup.h"
 #include "cli/node_process.h"
-#include "cli/repartition.h"
 #include "cli/stop_signal.h"
 #include "config/launch_variants.h"
+#include "dds/replica_bus.h"
+#include "node/repartition.h"
 
 namespace aurasim::cli {
 namespace {
@@ -18,6 +21,32 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = 20s;
+constexpr auto kRound = 5ms;
+
+/// What went wrong and with whom: the run cannot go on.
+class ChangeFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What all regions say that they host.
+std::vector<node::Resident> take_census(const node::RepartitionSettings& settings, Clock::time_point deadline,
+                                        dds::Participant& participant, const node::Node& node) {
+  dds::ObserverSettings watched;
+  watched.map_version = settings.map->version();
+  watched.region_count = static_cast<std::uint32_t>(settings.map->size());
+  watched.prototype_count = static_cast<std::uint32_t>(node.scene().prototypes.size());
+  dds::ReplicaReader reader(participant, watched);
+  node::Census census(settings, node.current_step());
+  while (!census.complete()) {
+    if (Clock::now() > deadline) {
+      throw ChangeFailed(fmt::format("new regions: regions {} have not published what they host", census.silent()));
+    }
+    reader.wait(kRound);
+    for (const core::Replica& replica : reader.take()) census.accept(replica);
+  }
+  return census.take();
+}
 
 }  // namespace
 
@@ -30,7 +59,7 @@ void NodeProcess::serve_clients() {
     run.complete = run.complete && seen.is_live();
     if (!seen.is_live()) continue;
     run.bodies += seen.status.bodies;
-    run.leads = run.leads && (region >= options_.region || seen.status.agreement != status_.agreement);
+    run.leads = run.leads && region >= options_.region;
   }
   run.all_have = [&statuses](std::uint64_t mesh) {
     return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
@@ -75,11 +104,12 @@ void NodeProcess::change_scene(const std::string& name) {
   control_.publish_map(map);  // first: observers read the new scene before its bodies come
   node_.reset();
   connect_anew(neighbour_transport(launch_, options_.region));
-  begin_generation(waits_to_start_, start_->epoch_ns);
+  begin_generation(waits_to_start_, *start_);
 }
 
 /// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.
 void NodeProcess::wait_until_all_stand() {
+  enter(NodeEvent::kChanges);
   const auto deadline = Clock::now() + kPatience;
   const auto stands = [this](const auto& entry) {
     const dds::Status& status = entry.second.status;
@@ -88,11 +118,11 @@ void NodeProcess::wait_until_all_stand() {
     return entry.first == options_.region || is_here || status.generation > generation_;
   };
   for (;;) {
-    publish(dds::NodeState::kPaused);
+    publish();
     const auto& statuses = control_.statuses();
     if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
     if (Clock::now() > deadline || stop_requested()) {
-      throw RepartitionFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
+      throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
     }
     control_.wait(5ms);
   }
@@ -102,7 +132,9 @@ void NodeProcess::wait_until_all_stand() {
 void NodeProcess::settle_all() {
   const auto deadline = Clock::now() + kPatience;
   while (!node_->ready_to_settle()) {
-    if (Clock::now() > deadline) throw RepartitionFailed("new regions: a neighbour has not come to this state");
+    if (Clock::now() > deadline || stop_requested()) {
+      throw ChangeFailed("new regions: a neighbour has not come to this state");
+    }
     transport_->wait_for_arrival(5ms);
   }
   const node::StepReport& report = node_->settle();
@@ -116,31 +148,33 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
   const auto deadline = Clock::now() + kPatience;
   while (!transport_->all_matched()) {
     if (Clock::now() > deadline) transport_->wait_until_matched(0ns);  // says who is missing
+    if (stop_requested()) throw ChangeFailed("told to stop while the run changes");
     control_.wait(10ms);
   }
   generation_ = waits_to_start_;
   start_.reset();
-  status_.state = dds::NodeState::kRunning;  // so that the next state is published at once
+  enter(NodeEvent::kStands);
   while (!start_) {
-    if (Clock::now() > deadline || stop_requested()) throw RepartitionFailed("the run does not go on after a change");
-    publish(dds::NodeState::kWaiting);
+    if (Clock::now() > deadline || stop_requested()) throw ChangeFailed("the run does not go on after a change");
+    publish();
     start_when_all_wait();
     execute_commands();
     control_.wait(10ms);
   }
+  enter(NodeEvent::kStarted);
 }
 
 void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   settle_all();
   wait_until_all_stand();
-  RepartitionSettings settings;
-  settings.region = options_.region;
-  settings.census = generation_ + 1;
-  settings.deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kPatience;
   const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
+  const node::RepartitionSettings settings = {options_.region, generation_ + 1, aura_rules(*changed),
+                                              &changed->regions};
   observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
   observers_->publish_census(*node_, settings.census);
-  const std::vector<core::Departure> departures = find_new_hosts(settings, *changed, participant_, *node_);
+  const std::vector<core::Departure> departures =
+      node::find_new_hosts(settings, take_census(settings, deadline, participant_, *node_), *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
   to_all.neighbours.clear();
@@ -151,7 +185,12 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   connect_anew(to_all);
   node::StepReport moved;
   moved.step = node_->current_step();
-  for (const node::HandOffRow& row : exchange(settings, *changed, departures, *transport_, *node_)) {
+  node::Exchange exchange(settings, departures, *transport_, *node_);
+  while (!exchange.ready()) {
+    if (Clock::now() > deadline) throw ChangeFailed("new regions: not every region has sent its bodies");
+    transport_->wait_for_arrival(kRound);
+  }
+  for (const node::HandOffRow& row : exchange.finish()) {
     (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
   }
   wait_until_all_stand();
@@ -170,7 +209,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   control_.use_map(launch_.regions.version());
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
   observers_->after_step(*node_, report);
-  pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns);
+  pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
   dds::WorldMap map = world_map(launch_);
   map.agreement = status_.agreement;
   map.generation = generation_;

@@ -26,13 +26,15 @@ int oversee(const Arguments& arguments) {
   overseer::ShapeStore shapes;
   const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, shapes);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {launch.regions.version(), {}});
+  dds::ControlBus control(participant, {launch.regions.version(), {}, launch.agreement()});
   RunCommandSink sink(launch, participant, control, shapes);
   overseer::Overseer overseer(launch, participant, control, *web, sink, !settings.token.empty());
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();
-  while (!stop_requested()) overseer.turn();
-  leave(0);
+  leave_after([&overseer] {
+    while (!stop_requested()) overseer.turn();
+    return ExitCode::kOk;
+  });
 }
 
 }  // namespace

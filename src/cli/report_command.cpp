@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/merged_report.h"
+#include "config/launch.h"
 
 namespace aurasim::cli {
 namespace {

@@ -101,7 +101,7 @@ void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int
   if (kind == Kind::kStep && !steering_.is_paused()) return refuse("steps are for a run that is paused");
   try {
     under_way_.push_back({request.client, request.id, steering_.send(kind, count), Clock::now() + kPatience});
-  } catch (const dds::DdsError& error) {
+  } catch (const std::runtime_error& error) {
     refuse(error.what());
   }
 }

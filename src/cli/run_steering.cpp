@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "core/horizon.h"
 #include "node/pacer.h"
 
@@ -46,13 +49,32 @@ bool RunSteering::is_paused() {
   });
 }
 
+/// By what the live nodes say, and by their own silence.
+std::set<std::uint32_t> RunSteering::dead_regions() {
+  std::set<std::uint32_t> dead;
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (seen.status.agreement != agreement_) continue;
+    const bool ended = seen.status.state == dds::NodeState::kFinished;
+    if (!ended && !seen.is_live()) dead.insert(core::value_of(region));
+    if (!seen.is_live()) continue;
+    for (const core::RegionId other : seen.status.dead) dead.insert(core::value_of(other));
+  }
+  return dead;
+}
+
 dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
+  if (const auto dead = dead_regions(); kind == Kind::kReset && !dead.empty()) {
+    throw SteeringRefused(fmt::format(
+        "reset: the bodies of dead regions [{}] would be missing from the new world; stop the run and launch it again",
+        fmt::join(dead, ", ")));
+  }
   dds::RunCommand command;
   command.kind = kind;
   command.count = count;
   bool running = false;
   for (const auto& [region, seen] : control_.statuses()) {
     if (!belongs(seen)) continue;
+    command.run = seen.status.run;
     command.generation = std::max(command.generation, seen.status.generation);
     command.at_step = std::max(command.at_step, seen.status.step);
     running = running || seen.status.state == dds::NodeState::kRunning;

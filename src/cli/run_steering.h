@@ -3,11 +3,19 @@
 #pragma once
 
 #include <chrono>
+#include <set>
+#include <stdexcept>
 
 #include "config/launch.h"
 #include "dds/control.h"
 
 namespace aurasim::cli {
+
+/// What a run cannot do, and why.
+class SteeringRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class RunSteering {
  public:
@@ -22,7 +30,8 @@ class RunSteering {
   bool is_there();
   bool is_paused();
 
-  /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent.
+  /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent. Throws
+  /// SteeringRefused when the run cannot do that any more.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
   /// Does every live node show the effect of `command`?
@@ -32,6 +41,7 @@ class RunSteering {
   bool wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out);
 
  private:
+  std::set<std::uint32_t> dead_regions();
   bool belongs(const dds::SeenStatus& seen) const;
   bool shows(const dds::Status& status, const dds::RunCommand& command) const;
 

@@ -163,13 +163,15 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 int send(const Arguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {{}, {}});
+  dds::ControlBus control(participant, {.agreement = launch.agreement()});
   RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
     fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
   }
-  if (kSteering.contains(arguments.what)) steer(arguments, steering);
-  carry(arguments, participant, control, launch.agreement());
+  leave_after([&]() -> ExitCode {
+    if (kSteering.contains(arguments.what)) steer(arguments, steering);
+    carry(arguments, participant, control, launch.agreement());
+  });
 }
 
 using Options = std::function<void(CLI::App&, Arguments&)>;

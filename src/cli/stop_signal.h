@@ -1,9 +1,11 @@
-// Ctrl-C and SIGTERM counted.
+// Ctrl-C, SIGTERM and a terminal that hangs up, counted.
 #pragma once
 
 namespace aurasim::cli {
 
-/// From now on SIGINT and SIGTERM are counted instead of ending the process.
+/// From now on SIGINT, SIGTERM and SIGHUP are counted instead of ending the process (SIGHUP not under nohup), and a
+/// closed pipe or a full file is an error of the write. Told to stop after its parent has died, when nobody is left to
+/// see to it, the process has 30 s before it is ended.
 void catch_stop_signals();
 bool stop_requested();
 /// How often: whoever asks again does not want to wait.

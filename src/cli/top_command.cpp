@@ -16,14 +16,14 @@ using Clock = std::chrono::steady_clock;
 int watch(const FileArguments& files, double seconds) {
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {});
+  dds::ControlBus control(participant, {.agreement = launch.agreement()});
   TerminalView view;
   catch_stop_signals();
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   while (!stop_requested() && (seconds <= 0 || Clock::now() < end)) {
     const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
     while (!stop_requested() && Clock::now() < next) control.wait(50ms);
-    view.show(live_table(control.statuses()));
+    if (!view.show(live_table(control.statuses()))) break;
   }
   leave(0);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <set>
 #include <utility>
 
@@ -27,11 +28,35 @@ const char* name_of(RunCommandKind kind) {
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
+namespace {
+
+/// What one process has published last.
+struct Received {
+  Guid writer;
+  SeenStatus seen;
+  std::deque<std::chrono::nanoseconds> clock_ahead;  ///< by the last samples
+};
+
+/// A sample that was long on its way makes its sender's clock look late: the fastest tells best. Of the last second, as
+/// clocks may be set.
+constexpr std::size_t kSamplesOfAClock = 10;
+
+/// Where Fast DDS matched a writer anew, the later match counts.
+bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
+  const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
+  return found == writers.rend() || found->lost;
+}
+
+}  // namespace
+
 struct ControlBus::Impl {
   Impl(Participant& participant, const ControlSettings& settings);
 
   void take_statuses();
-  void mark_lost();
+  void note(Status status, const Origin& origin);
+  void look();
+  void choose_publisher(RegionId region, const std::vector<Received>& of_region);
+  bool is_of_the_run(const Received& one) const;
 
   Participant& participant;
   ControlSettings settings;
@@ -47,6 +72,8 @@ struct ControlBus::Impl {
   wire::RegionMap map;
   wire::RunControl command;
 
+  std::map<RegionId, std::vector<Received>> received;  ///< in order of the first sample
+  std::map<RegionId, Guid> publishers;
   std::map<RegionId, SeenStatus> statuses;
   std::map<std::uint64_t, WorldMap> maps;
   std::set<std::uint64_t> requests;  ///< seen or sent
@@ -69,27 +96,59 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
 }
 
 void ControlBus::Impl::take_statuses() {
-  while (status_reader.take(&status)) {
+  Origin origin;
+  while (status_reader.take(&status, &origin)) {
     auto decoded = decode(status, {});
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       refused.add(*error);
-      continue;
+    } else {
+      note(std::move(std::get<Status>(decoded)), origin);
     }
-    auto& fresh = std::get<Status>(decoded);
-    const RegionId region = fresh.region;
-    statuses[region] = {std::move(fresh), false, std::chrono::steady_clock::now()};
   }
 }
 
-/// The writer that was matched last speaks for its region: an earlier one is what a restart left behind.
-void ControlBus::Impl::mark_lost() {
-  for (const RemoteWriter& writer : status_reader.watch().writers()) {
-    const std::int64_t region = participant.domain().directory().region_of(writer.guid);
-    const auto found = region < 0 ? statuses.end() : statuses.find(static_cast<RegionId>(region));
-    if (found != statuses.end()) {
-      found->second.lost = writer.lost;
-    }
+void ControlBus::Impl::note(Status fresh, const Origin& origin) {
+  std::vector<Received>& of_region = received[fresh.region];
+  auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
+  if (found == of_region.end()) {
+    found = of_region.insert(found, {origin.writer, {}, {}});
   }
+  found->seen.status = std::move(fresh);
+  found->seen.seen = std::chrono::steady_clock::now();
+  found->clock_ahead.push_back(origin.clock_ahead);
+  if (found->clock_ahead.size() > kSamplesOfAClock) found->clock_ahead.pop_front();
+  found->seen.clock_ahead = std::ranges::max(found->clock_ahead);
+}
+
+/// Whose proof of life has ended, and whose status stands for each region now.
+void ControlBus::Impl::look() {
+  const std::vector<RemoteWriter> writers = status_reader.watch().writers();
+  for (auto& [region, of_region] : received) {
+    for (Received& one : of_region) one.seen.lost = is_lost(writers, one.writer);
+    choose_publisher(region, of_region);
+    std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers[region]; });
+  }
+}
+
+void ControlBus::Impl::choose_publisher(RegionId region, const std::vector<Received>& of_region) {
+  const Received* chosen = nullptr;
+  for (const Received& one : of_region) {
+    if (!is_of_the_run(one)) continue;
+    const bool stands = publishers.contains(region) && publishers[region] == one.writer;
+    const bool is_better = chosen == nullptr || (one.seen.is_live() && !chosen->seen.is_live()) ||
+                           (stands && one.seen.is_live() == chosen->seen.is_live());
+    if (is_better) chosen = &one;
+  }
+  if (chosen == nullptr) return;
+  publishers[region] = chosen->writer;
+  statuses[region] = chosen->seen;
+}
+
+bool ControlBus::Impl::is_of_the_run(const Received& one) const {
+  const Status& s = one.seen.status;
+  if (settings.agreement && s.agreement != *settings.agreement) return false;
+  if (settings.run && s.run != *settings.run) return false;
+  return settings.region != s.region || one.writer == status_writer->guid();
 }
 
 ControlBus::ControlBus(Participant& participant, const ControlSettings& settings)
@@ -109,8 +168,19 @@ bool ControlBus::publish_status(const Status& status) {
 const std::map<RegionId, SeenStatus>& ControlBus::statuses() {
   impl_->participant.progress();
   impl_->take_statuses();
-  impl_->mark_lost();
+  impl_->look();
   return impl_->statuses;
+}
+
+std::vector<SeenStatus> ControlBus::strangers() {
+  statuses();
+  std::vector<SeenStatus> strangers;
+  for (const auto& [region, of_region] : impl_->received) {
+    for (const Received& one : of_region) {
+      if (one.seen.is_live() && !impl_->is_of_the_run(one)) strangers.push_back(one.seen);
+    }
+  }
+  return strangers;
 }
 
 bool ControlBus::publish_map(const WorldMap& map) {
@@ -153,13 +223,16 @@ std::vector<RunCommand> ControlBus::take_commands() {
   std::vector<RunCommand> commands;
   Expected expected;
   expected.map_version = impl_->settings.map_version;
-  while (impl_->command_reader.take(&impl_->command)) {
+  Origin origin;
+  while (impl_->command_reader.take(&impl_->command, &origin)) {
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);
       continue;
     }
-    const auto& command = std::get<RunCommand>(decoded);
+    auto& command = std::get<RunCommand>(decoded);
+    if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
+    command.clock_ahead = origin.clock_ahead;
     if (impl_->requests.insert(command.request).second) {
       commands.push_back(command);
     }

@@ -16,10 +16,14 @@
 namespace aurasim::dds {
 
 struct ControlSettings {
-  /// Commands for another map are refused and counted; statuses and maps of all runs are seen. Nothing: all commands.
-  std::optional<std::uint64_t> map_version;
+  /// Commands for another map are refused and counted; maps of all runs are seen. Nothing: all commands.
+  std::optional<std::uint64_t> map_version = {};
   /// This process is the node of this region and may publish_status. Nothing: launcher or tool.
-  std::optional<core::RegionId> region;
+  std::optional<core::RegionId> region = {};
+  /// Whoever has another one in its status is a stranger. Nothing: whatever nodes are there.
+  std::optional<std::uint64_t> agreement = {};
+  /// Likewise; commands that name another run are refused, too.
+  std::optional<std::uint64_t> run = {};
 };
 
 /// Used by one thread. The participant must outlive it.
@@ -30,8 +34,11 @@ class ControlBus {
 
   /// Only with a region. False when the write failed twice.
   bool publish_status(const Status& status);
-  /// The latest status of every region seen so far (also this one's).
+  /// The latest status of every region of this run seen so far (also this one's). Where several processes are the
+  /// node of a region, the one that was here first counts, until it is lost or has ended.
   const std::map<core::RegionId, SeenStatus>& statuses();
+  /// Live nodes of other runs, and those that say that they are this process's region.
+  std::vector<SeenStatus> strangers();
 
   bool publish_map(const WorldMap& map);
   /// Commands for another map than this one are refused from now on.

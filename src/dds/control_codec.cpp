@@ -121,6 +121,7 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.stamp(status.step);
   out.map_version(status.map_version);
   out.agreement(status.agreement);
+  out.run(status.run);
   out.pid(status.pid);
   out.state(static_cast<std::uint8_t>(status.state));
   encode_counts(status, out);
@@ -147,6 +148,7 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   status.step = in.stamp();
   status.map_version = in.map_version();
   status.agreement = in.agreement();
+  status.run = in.run();
   status.pid = in.pid();
   status.state = static_cast<NodeState>(in.state());
   decode_counts(in, status);
@@ -206,6 +208,7 @@ void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& o
   out.generation(command.generation);
   out.stamp(command.at_step);
   out.map_version(command.map_version);
+  out.run(command.run);
   out.request(command.request);
   out.kind(static_cast<std::uint8_t>(command.kind));
   out.count(command.count);
@@ -230,6 +233,7 @@ Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected)
                     .kind = static_cast<RunCommandKind>(in.kind()),
                     .generation = in.generation(),
                     .map_version = in.map_version(),
+                    .run = in.run(),
                     .at_step = in.stamp(),
                     .count = in.count(),
                     .epoch_ns = in.epoch_ns()};

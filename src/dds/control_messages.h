@@ -35,6 +35,7 @@ struct Status {
   core::RegionId region{};
   core::Generation generation = 0;
   core::Step step = 0;
+  std::uint64_t run = 0;  ///< number of the run; 0: its nodes were started by hand
   std::uint32_t pid = 0;
   std::uint64_t map_version = 0;
   std::uint64_t agreement = 0;  ///< equal on all nodes of a run (config::Launch::agreement)
@@ -64,6 +65,9 @@ struct SeenStatus {
   Status status;
   bool lost = false;  ///< its proof of life has ended; false again when it comes back
   std::chrono::steady_clock::time_point seen;
+  /// How far its host's wall clock is ahead of ours, as far as its last statuses tell: never more than that, and less
+  /// by the time that the fastest of them has taken.
+  std::chrono::nanoseconds clock_ahead{0};
 
   /// Neither lost nor at its end.
   bool is_live() const { return !lost && status.state != NodeState::kFinished && status.state != NodeState::kFailed; }
@@ -87,9 +91,12 @@ struct RunCommand {
   RunCommandKind kind = RunCommandKind::kStart;
   core::Generation generation = 0;
   std::uint64_t map_version = 0;  ///< of the run that is meant; 0: any
+  std::uint64_t run = 0;          ///< likewise
   core::Step at_step = 0;         ///< takes effect when this state has been computed
   std::int64_t count = 0;         ///< kStep: how many steps
   std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume: of the first step after it
+  /// How far the sender's wall clock was ahead of ours when it came, less its way. Not sent.
+  std::chrono::nanoseconds clock_ahead{0};
 };
 
 }  // namespace aurasim::dds

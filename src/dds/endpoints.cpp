@@ -121,12 +121,15 @@ Reader::~Reader() {
   domain_.participant().delete_subscriber(subscriber_);
 }
 
-bool Reader::take(void* sample) {
+bool Reader::take(void* sample, Origin* origin) {
   SampleInfo info;
   while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
-    if (info.valid_data) {
-      return true;
+    if (!info.valid_data) continue;
+    if (origin != nullptr) {
+      origin->writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+      origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - info.reception_timestamp.to_ns());
     }
+    return true;
   }
   return false;
 }

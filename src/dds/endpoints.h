@@ -1,6 +1,7 @@
 // One writer or reader with the publisher or subscriber that gives it its partitions, by profile name.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,12 +48,20 @@ class Writer {
   std::uint64_t matches() const { return watch_.matches(); }
   /// Matched readers in other processes.
   std::size_t foreign_reader_count() const;
+  const Guid& guid() const { return writer_->guid(); }
 
  private:
   Domain& domain_;
   WriterWatch watch_;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
+};
+
+/// Where a sample comes from.
+struct Origin {
+  Guid writer;
+  /// The writer's wall clock when it was sent, minus ours when it came: how far that clock is ahead, less the way.
+  std::chrono::nanoseconds clock_ahead{0};
 };
 
 /// QoS by profile `<topic>_reader`, or as the spec says.
@@ -64,7 +73,7 @@ class Reader {
   Reader& operator=(const Reader&) = delete;
 
   /// Takes the next sample that carries data into `sample` (the generated type). False when there is none.
-  bool take(void* sample);
+  bool take(void* sample, Origin* origin = nullptr);
 
   const ReaderWatch& watch() const { return watch_; }
   /// As the QoS says.

@@ -5,27 +5,39 @@
 
 namespace aurasim::node {
 
+using std::chrono::nanoseconds;
+
 std::int64_t wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(WallClock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-void Pacer::set_epoch(core::Step first, std::int64_t epoch_ns) {
+Instant read_clocks() { return {std::chrono::steady_clock::now(), wall_clock_ns()}; }
+
+void Pacer::set_epoch(core::Step first, std::int64_t epoch_ns, nanoseconds clock_ahead, const Instant& now) {
+  const bool is_one_clock = std::chrono::abs(clock_ahead) < kClockTolerance;
   first_ = first;
-  epoch_ns_ = epoch_ns;
+  epoch_ = now.steady + nanoseconds(epoch_ns - now.wall_ns) - (is_one_clock ? nanoseconds(0) : clock_ahead);
 }
 
-std::int64_t Pacer::due_ns(core::Step step) const {
-  return epoch_ns_ + std::llround(static_cast<double>(step - first_) * step_s_ / rate_ * 1e9);
+std::chrono::steady_clock::time_point Pacer::due(core::Step step) const {
+  return epoch_ + nanoseconds(std::llround(static_cast<double>(step - first_) * step_s_ / rate_ * 1e9));
 }
 
 void Pacer::set_rate(core::Step step, double rate) {
-  set_epoch(step, due_ns(step));
+  epoch_ = due(step);
+  first_ = step;
   rate_ = rate;
 }
 
-std::chrono::nanoseconds Pacer::until(core::Step step) const {
-  if (!wait_) return std::chrono::nanoseconds(0);
-  return std::chrono::nanoseconds(std::max<std::int64_t>(0, due_ns(step) - wall_clock_ns()));
+nanoseconds Pacer::until(core::Step step, const Instant& now) const {
+  if (!wait_) return nanoseconds(0);
+  return std::max<nanoseconds>(nanoseconds(0), due(step) - now.steady);
+}
+
+nanoseconds ClockWatch::look(const Instant& now) {
+  const nanoseconds jump = nanoseconds(now.wall_ns - last_.wall_ns) - nanoseconds(now.steady - last_.steady);
+  last_ = now;
+  return std::chrono::abs(jump) < kClockTolerance ? nanoseconds(0) : jump;
 }
 
 }  // namespace aurasim::node

@@ -1,20 +1,27 @@
 #include "node/recorder.h"
 
-#include <fstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <fmt/os.h>
 #include <nlohmann/json.hpp>
 
 namespace aurasim::node {
 namespace {
 
 constexpr core::Step kFlushEvery = 60;
+constexpr std::size_t kLastWordBytes = 8 * 1024;
 constexpr std::array<const char*, core::kViolationKinds> kKindNames = {"speed", "latency", "frame", "promise", "span"};
 
 const char* name_of(core::HandOffReason reason) {
   return reason == core::HandOffReason::kAuraCollision ? "aura_collision" : "boundary_traversal";
+}
+
+/// What a node that is killed leaves for a last word, with room for a longer one.
+std::filesystem::path make_folder(const std::filesystem::path& folder, core::RegionId region) {
+  std::filesystem::create_directories(folder);
+  const nlohmann::json died = {{"region", core::value_of(region)}, {"outcome", "died"}};
+  reserve(folder / "node.json", died.dump(), kLastWordBytes);
+  return folder;
 }
 
 }  // namespace
@@ -24,70 +31,54 @@ std::filesystem::path Recorder::region_folder(const std::filesystem::path& folde
 }
 
 Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region)
-    : region_(region), folder_(region_folder(folder, region)) {
-  std::filesystem::create_directories(folder_);
-  std::filesystem::remove(folder_ / "node.json");
-  steps_ =
-      open("steps.csv",
-           "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
-           "largest_cluster,hand_offs_out,hand_offs_in,violations\n");
-  collisions_ = open("collisions.csv",
-                     "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
-                     "violation_flagged\n");
-  migrations_ = open("migrations.csv",
-                     "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n");
-  violations_ = open("violations.csv", "region,step,kind,of_region,body,value,allowed\n");
-  births_ = open("births.csv", "region,body,birth_step\n");
-  removals_ = open("removals.csv", "region,body,removed_step\n");
-}
-
-Recorder::~Recorder() = default;
-
-Recorder::File Recorder::open(const char* name, const char* header) const {
-  File file(std::fopen((folder_ / name).c_str(), "w"));
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}", (folder_ / name).string()));
-  std::fputs(header, file.get());
-  return file;
-}
+    : region_(region),
+      folder_(make_folder(region_folder(folder, region), region)),
+      steps_(folder_ / "steps.csv",
+             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
+             "largest_cluster,hand_offs_out,hand_offs_in,violations\n"),
+      collisions_(folder_ / "collisions.csv",
+                  "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
+                  "violation_flagged\n"),
+      migrations_(folder_ / "migrations.csv",
+                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n"),
+      violations_(folder_ / "violations.csv", "region,step,kind,of_region,body,value,allowed\n"),
+      births_(folder_ / "births.csv", "region,body,birth_step\n"),
+      removals_(folder_ / "removals.csv", "region,body,removed_step\n"),
+      hashes_(folder_ / "state_hash.csv", "step,hash\n") {}
 
 void Recorder::write(const StepReport& r, const FrameTimes& times, const Node& node) {
-  fmt::print(steps_.get(), "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n",
-             core::value_of(region_), r.step, times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s,
-             1e3 * r.durations.protocol_s, 1e3 * r.durations.transport_s, r.bodies, r.awake, r.foreign_auras,
-             r.projecting, r.largest_cluster, r.departures.size(), r.arrivals.size(),
-             node.protocol().violations().total());
-  write_hand_offs(r);
+  if (end_) return;
+  steps_.add("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", core::value_of(region_), r.step,
+             times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s, 1e3 * r.durations.protocol_s,
+             1e3 * r.durations.transport_s, r.bodies, r.awake, r.foreign_auras, r.projecting, r.largest_cluster,
+             r.departures.size(), r.arrivals.size(), node.protocol().violations().total());
+  write_settling(r);
   write_collisions(r);
-  for (const core::Violation& v : node.protocol().violations().recent()) {
-    fmt::print(violations_.get(), "{},{},{},{},{},{:.6g},{:.6g}\n", core::value_of(region_), v.step,
-               kKindNames[static_cast<std::size_t>(v.kind)], core::value_of(v.region), core::value_of(v.body), v.value,
-               v.allowed);
-  }
+  write_violations(node);
   for (const Birth& birth : r.births) {
-    fmt::print(births_.get(), "{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
+    births_.add("{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
   }
-  if (!r.births.empty()) std::fflush(births_.get());  // rare, and nobody else knows of them
   for (const physics::Removal& removal : r.removals) {
-    fmt::print(removals_.get(), "{},{},{}\n", core::value_of(region_), core::value_of(removal.body), removal.step);
+    removals_.add("{},{},{}\n", core::value_of(region_), core::value_of(removal.body), removal.step);
   }
-  if (!r.removals.empty()) std::fflush(removals_.get());
-  for (const HashPart& part : r.hash) hash_[part.step] += part.sum;
-  if (r.step >= flushed_ + kFlushEvery) {
-    flush();
-    flushed_ = r.step;
-  }
+  // Rare, and nobody else knows of them.
+  if (!r.births.empty() && !births_.flush()) end_records(births_);
+  if (!r.removals.empty() && !removals_.flush()) end_records(removals_);
+  if (r.step >= flushed_ + kFlushEvery) flush(r.step);
 }
 
+/// A state's hash comes in parts: what joins later has made up that state, too. The merge adds them up.
 void Recorder::write_settling(const StepReport& report) {
+  if (end_) return;
   write_hand_offs(report);
-  for (const HashPart& part : report.hash) hash_[part.step] += part.sum;
+  for (const HashPart& part : report.hash) hashes_.add("{},{:016x}\n", part.step, part.sum);
 }
 
 void Recorder::write_hand_offs(const StepReport& report) {
   const auto row = [this](const char* direction, const HandOffRow& h) {
-    fmt::print(migrations_.get(), "{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp,
-               h.joined, core::value_of(h.body), h.epoch, core::value_of(h.source), core::value_of(h.destination),
-               name_of(h.reason), int{h.reclaimed}, int{h.touched});
+    migrations_.add("{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp, h.joined,
+                    core::value_of(h.body), h.epoch, core::value_of(h.source), core::value_of(h.destination),
+                    name_of(h.reason), int{h.reclaimed}, int{h.touched});
   };
   for (const HandOffRow& h : report.departures) row("out", h);
   for (const HandOffRow& h : report.arrivals) row("in", h);
@@ -97,33 +88,49 @@ void Recorder::write_collisions(const StepReport& report) {
   for (const SeenCollision& s : report.collisions) {
     const physics::Collision& c = s.collision;
     const double time_s = c.relative_speed_m_s > 0 ? c.penetration_m / c.relative_speed_m_s : 0;
-    fmt::print(collisions_.get(), "{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{}\n", core::value_of(region_), c.step,
-               core::value_of(c.a), core::value_of(c.b), c.penetration_m, c.relative_speed_m_s, time_s, int{s.late},
-               int{s.missed}, int{s.flagged});
+    collisions_.add("{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{}\n", core::value_of(region_), c.step, core::value_of(c.a),
+                    core::value_of(c.b), c.penetration_m, c.relative_speed_m_s, time_s, int{s.late}, int{s.missed},
+                    int{s.flagged});
   }
 }
 
-void Recorder::flush() {
-  for (std::FILE* file : {steps_.get(), collisions_.get(), migrations_.get(), violations_.get(), births_.get()}) {
-    std::fflush(file);
+void Recorder::write_violations(const Node& node) {
+  for (const core::Violation& v : node.protocol().violations().recent()) {
+    violations_.add("{},{},{},{},{},{:.6g},{:.6g}\n", core::value_of(region_), v.step,
+                    kKindNames[static_cast<std::size_t>(v.kind)], core::value_of(v.region), core::value_of(v.body),
+                    v.value, v.allowed);
   }
+}
+
+void Recorder::flush(core::Step step) {
+  for (RowFile* file : {&steps_, &collisions_, &migrations_, &violations_, &births_, &removals_, &hashes_}) {
+    if (!file->flush()) return end_records(*file);
+  }
+  flushed_ = step;
+}
+
+/// The run goes on without.
+void Recorder::end_records(const RowFile& failed) {
+  if (!end_) end_ = RecordsEnd{flushed_, failed.failure()};
 }
 
 void Recorder::finish(Node& node, const Ending& ending) {
-  flush();
-  const File hashes = open("state_hash.csv", "step,hash\n");
-  for (const auto& [step, sum] : hash_) fmt::print(hashes.get(), "{},{:016x}\n", step, sum);
-  write_bodies(node);
+  if (!end_) flush(node.current_step());
+  try {
+    write_bodies(node);
+  } catch (const std::runtime_error& error) {
+    if (!end_) end_ = RecordsEnd{flushed_, error.what()};
+  }
   write_summary(node, ending);
 }
 
-void Recorder::write_bodies(Node& node) const {
-  const File bodies = open("bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz\n");
+void Recorder::write_bodies(Node& node) {
+  RowFile bodies(folder_ / "bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz\n");
   const auto row = [&](const core::BodyState& b, const char* where) {
     const core::Vec3& p = b.pose.p_WB;
     const core::Quat& q = b.pose.q_WB;
-    fmt::print(bodies.get(), "{},{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), core::value_of(b.id),
-               b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    bodies.add("{},{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), core::value_of(b.id), b.epoch, b.birth,
+               where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
   };
   for (const core::BodyState& body : node.world().snapshot().bodies) row(body, "here");
   const auto under_way = [&](const core::HandOff& h) {
@@ -131,6 +138,7 @@ void Recorder::write_bodies(Node& node) const {
   };
   for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
   for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);
+  if (!bodies.flush()) end_records(bodies);
 }
 
 void Recorder::write_summary(Node& node, const Ending& ending) const {
@@ -141,7 +149,7 @@ void Recorder::write_summary(Node& node, const Ending& ending) const {
   }
   nlohmann::json dead = nlohmann::json::array();
   for (const core::RegionId id : ending.dead_regions) dead.push_back(core::value_of(id));
-  const nlohmann::json summary = {
+  nlohmann::json summary = {
       {"region", core::value_of(region_)},
       {"outcome", ending.outcome},
       {"steps", node.current_step()},
@@ -160,7 +168,8 @@ void Recorder::write_summary(Node& node, const Ending& ending) const {
       {"stale_arrivals", p.counters().stale_arrivals},
       {"dead_regions", dead},
   };
-  std::ofstream(folder_ / "node.json") << summary.dump(2) << '\n';
+  if (end_) summary["records_end"] = {{"after_step", end_->after}, {"why", end_->why}};
+  overwrite(folder_ / "node.json", summary.dump(2) + '\n');
 }
 
 }  // namespace aurasim::node

@@ -1,15 +1,15 @@
 // What one node leaves on disk: one folder per region, one CSV file per question. Written as the run goes, so that a
-// node that dies leaves what it had. The launcher merges the folders (report.h).
+// node that dies leaves what it had. The launcher merges the folders (report.h). A disk that is full ends the records,
+// not the run.
 #pragma once
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <map>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "node/node.h"
+#include "node/row_file.h"
 
 namespace aurasim::node {
 
@@ -26,11 +26,16 @@ struct Ending {
   std::vector<core::RegionId> dead_regions;
 };
 
+/// Where the records end before the run does.
+struct RecordsEnd {
+  core::Step after = 0;  ///< the last state that is recorded for sure
+  std::string why;
+};
+
 class Recorder {
  public:
   /// Creates `folder`/region_<r>; throws std::runtime_error when that fails.
   Recorder(const std::filesystem::path& folder, core::RegionId region);
-  ~Recorder();
 
   void write(const StepReport& report, const FrameTimes& times, const Node& node);
 
@@ -40,26 +45,25 @@ class Recorder {
   /// The last word: who is here, who is on the way, all counters, and how fast it went.
   void finish(Node& node, const Ending& ending);
 
+  /// Nothing while all could be written.
+  const std::optional<RecordsEnd>& records_end() const { return end_; }
+
   static std::filesystem::path region_folder(const std::filesystem::path& folder, core::RegionId region);
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  using File = std::unique_ptr<std::FILE, Close>;
-
-  File open(const char* name, const char* header) const;
   void write_hand_offs(const StepReport& report);
   void write_collisions(const StepReport& report);
-  void write_bodies(Node& node) const;
+  void write_violations(const Node& node);
+  void write_bodies(Node& node);
   void write_summary(Node& node, const Ending& ending) const;
-  void flush();
+  void flush(core::Step step);
+  void end_records(const RowFile& failed);
 
   core::RegionId region_;
   std::filesystem::path folder_;
-  File steps_, collisions_, migrations_, violations_, births_, removals_;
-  std::map<core::Step, std::uint64_t> hash_;
+  RowFile steps_, collisions_, migrations_, violations_, births_, removals_, hashes_;
   core::Step flushed_ = 0;
+  std::optional<RecordsEnd> end_;
 };
 
 }  // namespace aurasim::node

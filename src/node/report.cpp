@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -12,12 +13,16 @@
 #include "node/csv.h"
 #include "node/durations.h"
 #include "node/recorder.h"
+#include "node/row_file.h"
 
 namespace aurasim::node {
 namespace {
 
 using Json = nlohmann::json;
 using Cells = std::vector<std::string_view>;
+
+constexpr std::uint64_t kMostSteps = 1'000'000'000;  // of a run; a step beyond is a broken row
+constexpr std::size_t kSummaryBytes = 32 * 1024;     // with some to spare for many regions
 
 /// A change of host as the records tell it.
 struct Move {
@@ -48,11 +53,13 @@ class Merge {
   Merge(const std::filesystem::path& folder, const RunFacts& facts) : folder_(folder), facts_(facts) {}
 
   Accounts run() {
-    for (const char* name : {"steps.csv", "collisions.csv", "migrations.csv", "violations.csv"}) join(name);
+    for (const char* name : {"steps.csv", "collisions.csv", "migrations.csv", "violations.csv"}) {
+      if (!join(name)) give_up(name);
+    }
+    read_nodes();
     read_moves();
     read_bodies();
-    read_nodes();
-    add_hashes();
+    if (!add_hashes()) give_up("state_hash.csv");
     count_bodies();
     count_thrashing();
     write_summary();
@@ -65,9 +72,8 @@ class Merge {
                        [&](core::RegionId id) { return core::value_of(id) == region; });
   }
 
-  void join(const char* name) const {
+  bool join(const char* name) const {
     std::ofstream out(folder_ / name);
-    if (!out) throw std::runtime_error(fmt::format("cannot write {}", (folder_ / name).string()));
     bool header = false;
     for (std::size_t r = 0; r < facts_.regions; ++r) {
       std::ifstream in(of_region(folder_, r, name));
@@ -75,13 +81,27 @@ class Merge {
       if (!std::getline(in, line)) continue;
       if (!header) out << line << '\n';
       header = true;
-      while (std::getline(in, line) && !in.eof()) out << line << '\n';
+      while (out && std::getline(in, line) && !in.eof()) out << line << '\n';
     }
+    return static_cast<bool>(out.flush());
+  }
+
+  /// Half a file would look like a whole one.
+  void give_up(const char* name) {
+    std::error_code ignored;
+    std::filesystem::remove(folder_ / name, ignored);
+    accounts_.not_merged.emplace_back(name);
+  }
+
+  /// The rows of all regions, whether or not there was room for a merged file.
+  template <class Row>
+  void read_all(const char* name, Row&& row) const {
+    for (std::size_t r = 0; r < facts_.regions; ++r) read_csv(of_region(folder_, r, name), row);
   }
 
   void read_moves() {
     std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // by body and epoch: two reports of one move
-    read_csv(folder_ / "migrations.csv", [&](const Cells& c) {
+    read_all("migrations.csv", [&](const Cells& c) {
       if (c.size() != 11) return;
       Move& move = moves[{whole(c[4]), whole(c[5])}];
       const bool departure = c[1] == "out";
@@ -121,17 +141,29 @@ class Merge {
   }
 
   void read_nodes() {
-    for (std::size_t r = 0; r < facts_.regions; ++r) nodes_.push_back(last_word_of(folder_, r));
+    for (std::size_t r = 0; r < facts_.regions; ++r) {
+      const Json& node = nodes_.emplace_back(last_word_of(folder_, r));
+      if (!node.contains("records_end")) continue;
+      const Json& end = node["records_end"];
+      accounts_.incomplete.push_back({core::RegionId{static_cast<std::uint32_t>(r)},
+                                      end.value("after_step", std::uint64_t{0}), end.value("why", std::string())});
+    }
   }
 
-  void add_hashes() const {
-    std::map<std::uint64_t, std::uint64_t> sums;
-    for (std::size_t r = 0; r < facts_.regions; ++r) {
-      read_csv(of_region(folder_, r, "state_hash.csv"), [&](const Cells& c) { sums[whole(c[0])] += whole(c[1], 16); });
-    }
+  bool add_hashes() const {
+    std::vector<std::optional<std::uint64_t>> sums;  // by step
+    read_all("state_hash.csv", [&](const Cells& c) {
+      const std::uint64_t step = whole(c[0]);
+      if (c.size() != 2 || step > kMostSteps) return;
+      if (step >= sums.size()) sums.resize(step + 1);
+      sums[step] = sums[step].value_or(0) + whole(c[1], 16);
+    });
     std::ofstream out(folder_ / "state_hash.csv");
     out << "step,hash\n";
-    for (const auto& [step, sum] : sums) out << fmt::format("{},{:016x}\n", step, sum);
+    for (std::size_t step = 0; step < sums.size(); ++step) {
+      if (sums[step]) out << fmt::format("{},{:016x}\n", step, *sums[step]);
+    }
+    return static_cast<bool>(out.flush());
   }
 
   void count_bodies() {
@@ -148,6 +180,8 @@ class Merge {
       }
       if (died(host)) {
         with_dead_[host].push_back(body);
+      } else if (!accounts_.incomplete.empty()) {
+        ++accounts_.unaccounted;
       } else {
         ++accounts_.lost;
         lost_.push_back(body);
@@ -173,7 +207,7 @@ class Merge {
     std::map<std::uint64_t, std::map<std::string, std::vector<double>>> columns;
     const std::vector<std::pair<std::string, std::size_t>> wanted = {
         {"frame_ms", 2}, {"wait_ms", 3}, {"physics_ms", 4}, {"protocol_ms", 5}, {"transport_ms", 6}};
-    read_csv(folder_ / "steps.csv", [&](const Cells& c) {
+    read_all("steps.csv", [&](const Cells& c) {
       if (c.size() < 15 || c[1] == "0") return;
       for (const auto& [name, column] : wanted) columns[whole(c[0])][name].push_back(number(c[column]));
     });
@@ -232,8 +266,11 @@ class Merge {
         {"bodies_lost", accounts_.lost},
         {"lost", lost_},
         {"bodies_duplicated", accounts_.duplicated},
+        {"bodies_unaccounted", accounts_.unaccounted},
         {"bodies_with_dead_regions", with_dead},
         {"dead_regions", dead},
+        {"incomplete_regions", incomplete_json()},
+        {"not_merged", accounts_.not_merged},
         {"migrations", accounts_.hand_offs},
         {"reclaimed", accounts_.reclaimed},
         {"thrashed", accounts_.thrashed},
@@ -246,7 +283,18 @@ class Merge {
         {"regions", frame_times()},
         {"nodes", nodes_},
     };
-    std::ofstream(folder_ / "summary.json") << summary.dump(2) << '\n';
+    if (!overwrite(folder_ / "summary.json", summary.dump(2) + '\n')) {
+      throw std::runtime_error(fmt::format("cannot write {}; what the nodes have written is in region_*",
+                                           (folder_ / "summary.json").string()));
+    }
+  }
+
+  Json incomplete_json() const {
+    Json regions = Json::array();
+    for (const IncompleteRegion& r : accounts_.incomplete) {
+      regions.push_back({{"region", core::value_of(r.region)}, {"after_step", r.after_step}, {"why", r.why}});
+    }
+    return regions;
   }
 
   std::filesystem::path folder_;
@@ -264,6 +312,15 @@ class Merge {
 
 }  // namespace
 
+bool has_records(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) return false;
+  const std::filesystem::directory_iterator entries(folder);
+  return std::any_of(begin(entries), end(entries), [](const auto& entry) {
+    return entry.path().filename().string().starts_with("region_") &&
+           std::filesystem::exists(entry.path() / "steps.csv");
+  });
+}
+
 void clear_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) return;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -273,6 +330,11 @@ void clear_report(const std::filesystem::path& folder) {
                         name == "migrations.csv" || name == "violations.csv" || name == "state_hash.csv";
     if (region || merged) std::filesystem::remove_all(entry.path());
   }
+}
+
+void reserve_summary(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  reserve(folder / "summary.json", Json{{"outcome", "not merged"}}.dump(), kSummaryBytes);
 }
 
 std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions) {

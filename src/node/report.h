@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/ids.h"
@@ -22,25 +23,41 @@ struct DeadRegion {
   std::size_t bodies = 0;  ///< that went down with it
 };
 
+/// A node whose records end before its run did.
+struct IncompleteRegion {
+  core::RegionId region{};
+  std::uint64_t after_step = 0;  ///< the last that is there for sure
+  std::string why;
+};
+
 struct Accounts {
   std::uint64_t bodies = 0;
   std::uint64_t lost = 0;
+  std::uint64_t unaccounted = 0;  ///< nobody has them, and records are missing that might tell why
   std::uint64_t duplicated = 0;
   std::uint64_t hand_offs = 0;
   std::uint64_t thrashed = 0;
   std::uint64_t reclaimed = 0;
   double real_time_factor = 0;
   std::vector<DeadRegion> dead;
+  std::vector<IncompleteRegion> incomplete;
+  std::vector<std::string> not_merged;  ///< files for which there was no room; the regions' folders have their rows
 };
 
 /// Removes what an earlier run has left in `folder` (region_* and the merged files). Leaves everything else alone.
 void clear_report(const std::filesystem::path& folder);
 
+/// Has any node written anything there?
+bool has_records(const std::filesystem::path& folder);
+
 /// Regions 0 to `regions` - 1 whose records in `folder` do not say that they came to the run's end.
 std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions);
 
+/// Keeps room for the summary, so that it can be written when the disk has become full. Throws std::runtime_error.
+void reserve_summary(const std::filesystem::path& folder);
+
 /// Reads `folder`/region_*; writes summary.json, steps.csv, collisions.csv, migrations.csv, violations.csv and
-/// state_hash.csv into `folder`. Throws std::runtime_error when it cannot write.
+/// state_hash.csv into `folder`. Throws std::runtime_error when it cannot write summary.json; of the others it says so.
 Accounts merge_report(const std::filesystem::path& folder, const RunFacts& facts);
 
 }  // namespace aurasim::node

@@ -10,6 +10,7 @@ inline Status status_of(std::uint32_t region) {
   status.region = static_cast<core::RegionId>(region);
   status.generation = 2;
   status.step = 1234;
+  status.run = 11;
   status.pid = 4321;
   status.map_version = 77;
   status.agreement = 88;
@@ -53,6 +54,7 @@ inline RunCommand command_of(RunCommandKind kind) {
   command.kind = kind;
   command.generation = 2;
   command.map_version = 77;
+  command.run = 0;
   command.at_step = 600;
   command.count = 10;
   command.epoch_ns = 1'700'000'000'123'456'789;

@@ -1,4 +1,4 @@
-// Starting, steering and watching a run over DDS. Domains 115 to 120.
+// Starting, steering and watching a run over DDS.
 #include "dds/control.h"
 
 #include <gmock/gmock.h>
@@ -27,6 +27,9 @@ struct Member {
       : participant(settings_for(domain)),
         bus(participant, {.map_version = map_version,
                           .region = region ? std::optional(static_cast<RegionId>(*region)) : std::nullopt}) {}
+
+  Member(std::uint32_t domain, const ControlSettings& settings)
+      : participant(settings_for(domain)), bus(participant, settings) {}
 
   template <class Done>
   bool wait_until(Done done, std::chrono::nanoseconds time_out = testing::kDeadline) {
@@ -59,8 +62,8 @@ struct Member {
 };
 
 TEST(Status, OfEveryNodeIsSeenAlsoByLateObservers) {
-  Member zero(115, 0);
-  Member one(115, 1);
+  Member zero(own_domain(), 0);
+  Member one(own_domain(), 1);
   for (core::Step step = 0; step < 5; ++step) {
     Status status = status_of(0);
     status.step = step;
@@ -68,7 +71,7 @@ TEST(Status, OfEveryNodeIsSeenAlsoByLateObservers) {
     status.region = RegionId{1};
     ASSERT_TRUE(one.bus.publish_status(status));
   }
-  Member late(115);
+  Member late(own_domain());
   ASSERT_TRUE(late.wait_until([&] { return late.bus.statuses().size() == 2; }));
   EXPECT_EQ(late.bus.statuses().at(RegionId{0}).status.step, 4);
   EXPECT_EQ(late.bus.statuses().at(RegionId{1}).status.text, "all is well");
@@ -78,9 +81,10 @@ TEST(Status, OfEveryNodeIsSeenAlsoByLateObservers) {
 }
 
 TEST(Status, SaysThatAKilledNodeIsLostAndThatItIsBack) {
-  Member observer(116);
-  testing::Peer region_zero(116, 0, {1});
-  const std::vector<std::string> words = {AURASIM_BINARY_DIR "/dds_peer_process", "116", "1", "0", "run"};
+  Member observer(own_domain());
+  testing::Peer region_zero(own_domain(), 0, {1});
+  const std::vector<std::string> words = {AURASIM_BINARY_DIR "/dds_peer_process", std::to_string(own_domain()), "1",
+                                          "0", "run"};
   auto node = std::make_unique<Child>(words);
   const auto lost = [&] {
     const auto& statuses = observer.bus.statuses();
@@ -94,39 +98,110 @@ TEST(Status, SaysThatAKilledNodeIsLostAndThatItIsBack) {
   EXPECT_TRUE(observer.wait_until([&] { return lost() == 0; }));
 }
 
+Status status_of_run(std::uint64_t run, core::Step step) {
+  Status status = status_of(0);
+  status.run = run;
+  status.step = step;
+  return status;
+}
+
+/// Two launches of one file: the same regions, the same agreement.
+TEST(Status, OfAStrangerDoesNotTouchThatOfTheRun) {
+  Member node(own_domain(), {.region = RegionId{0}, .run = 5});
+  auto stranger = std::make_unique<Member>(own_domain(), ControlSettings{.region = RegionId{0}, .run = 6});
+  Member launcher(own_domain(), {.agreement = 88, .run = 5});
+  Member tool(own_domain(), {.agreement = 88});
+  ASSERT_TRUE(node.bus.publish_status(status_of_run(5, 10)));
+  const auto step_seen_by = [](Member& member) {
+    const auto& statuses = member.bus.statuses();
+    return statuses.empty() ? -1 : statuses.at(RegionId{0}).status.step;
+  };
+  ASSERT_TRUE(launcher.wait_until([&] { return step_seen_by(launcher) == 10; }));
+  ASSERT_TRUE(tool.wait_until([&] { return step_seen_by(tool) == 10; }));
+
+  ASSERT_TRUE(stranger->bus.publish_status(status_of_run(6, 999)));
+  for (Member* member : {&launcher, &tool, &node}) {
+    const std::size_t strangers = member == &tool ? 0 : 1;
+    ASSERT_TRUE(member->wait_until([&] { return member->bus.strangers().size() == strangers; }));
+    EXPECT_EQ(step_seen_by(*member), 10);
+  }
+  EXPECT_EQ(launcher.bus.strangers().at(0).status.run, 6U);
+
+  stranger.reset();
+  ASSERT_TRUE(launcher.wait_until([&] { return launcher.bus.strangers().empty(); }));
+  ASSERT_TRUE(node.bus.publish_status(status_of_run(5, 11)));
+  for (Member* member : {&launcher, &tool}) {
+    ASSERT_TRUE(member->wait_until([&] { return step_seen_by(*member) == 11; }));
+    EXPECT_FALSE(member->bus.statuses().at(RegionId{0}).lost) << "it was the stranger who left";
+  }
+}
+
+TEST(Status, OfANodeThatDoesNotAgreeIsAStrangers) {
+  Member node(own_domain(), {.region = RegionId{0}});
+  Member tool(own_domain(), {.agreement = 77});
+  ASSERT_TRUE(node.bus.publish_status(status_of(0)));
+  ASSERT_TRUE(tool.wait_until([&] { return tool.bus.strangers().size() == 1; }));
+  EXPECT_TRUE(tool.bus.statuses().empty());
+}
+
+TEST(Commands, ForAnotherRunAreNotTaken) {
+  Member launcher(own_domain());
+  Member node(own_domain(), {.region = RegionId{0}, .run = 5});
+  RunCommand command = command_of(RunCommandKind::kStop);
+  command.run = 6;
+  launcher.bus.send(command);
+  command.kind = RunCommandKind::kPause;
+  command.run = 5;
+  launcher.bus.send(command);
+  command.kind = RunCommandKind::kResume;
+  command.run = 0;
+  launcher.bus.send(command);
+  EXPECT_THAT(node.take_commands(2), ElementsAre(RunCommandKind::kPause, RunCommandKind::kResume));
+}
+
+TEST(Commands, SayWhetherTheSendersClockIsOurs) {
+  Member launcher(own_domain());
+  Member node(own_domain(), 0);
+  launcher.bus.send(command_of(RunCommandKind::kPause));
+  std::vector<RunCommand> commands;
+  ASSERT_TRUE(node.wait_until([&] { return !(commands = node.bus.take_commands()).empty(); }));
+  EXPECT_LE(commands[0].clock_ahead, 0ns) << "both are of this host, and the way takes its time";
+  EXPECT_GT(commands[0].clock_ahead, -testing::kDeadline);
+}
+
 TEST(Status, OfAnotherRegionCannotBePublished) {
-  Member zero(117, 0);
+  Member zero(own_domain(), 0);
   EXPECT_THROW(zero.bus.publish_status(status_of(1)), std::logic_error);
-  Member launcher(117);
+  Member launcher(own_domain());
   EXPECT_THROW(launcher.bus.publish_status(status_of(1)), std::logic_error);
 }
 
 TEST(Maps, AreSeenByLateJoiners) {
-  Member launcher(117);
+  Member launcher(own_domain());
   ASSERT_TRUE(launcher.bus.publish_map(map_of(77)));
   ASSERT_TRUE(launcher.bus.publish_map(map_of(78)));
-  Member late(117);
+  Member late(own_domain());
   ASSERT_TRUE(late.wait_until([&] { return late.bus.maps().size() == 2; }));
   EXPECT_EQ(late.bus.maps().at(77).scene, "tower");
   EXPECT_EQ(late.bus.maps().at(78).regions.size(), 2U);
 }
 
 TEST(Commands, ReachEveryoneInOrderOnceAndAlsoLateJoiners) {
-  Member launcher(118);
-  Member node(118, 0, 77);
+  Member launcher(own_domain());
+  Member node(own_domain(), 0, 77);
   ASSERT_TRUE(launcher.wait_until([&] { return launcher.bus.listeners() == 1; }));
   launcher.bus.send(command_of(RunCommandKind::kStart));
   launcher.bus.send(command_of(RunCommandKind::kPause));
   EXPECT_THAT(node.take_commands(2), ElementsAre(RunCommandKind::kStart, RunCommandKind::kPause));
-  Member late(118, 1, 77);
+  Member late(own_domain(), 1, 77);
   EXPECT_THAT(late.take_commands(2), ElementsAre(RunCommandKind::kStart, RunCommandKind::kPause));
   EXPECT_TRUE(launcher.bus.take_commands().empty()) << "nobody is told what it said itself";
 }
 
 TEST(Commands, ThatAreSentTwiceCountOnce) {
-  Member launcher(119);
-  Member tool(119);
-  Member node(119, 0);
+  Member launcher(own_domain());
+  Member tool(own_domain());
+  Member node(own_domain(), 0);
   ASSERT_TRUE(launcher.wait_until([&] { return launcher.bus.listeners() == 2 && tool.bus.listeners() == 2; }));
   RunCommand command = command_of(RunCommandKind::kStep);
   command.request = launcher.bus.send(command);
@@ -136,8 +211,8 @@ TEST(Commands, ThatAreSentTwiceCountOnce) {
 }
 
 TEST(Commands, ForAnotherMapAreRefused) {
-  Member launcher(120);
-  Member node(120, 0, 99);
+  Member launcher(own_domain());
+  Member node(own_domain(), 0, 99);
   RunCommand command = command_of(RunCommandKind::kStop);
   launcher.bus.send(command);
   command.map_version = 0;

@@ -1,0 +1,159 @@
+// How the nodes of a run find each other, see that nobody else is there, and begin together.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/node_process.h"
+#include "cli/stop_signal.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
+
+std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
+  return fmt::format("{:.1f} s {}", std::chrono::duration<double>(std::chrono::abs(ahead)).count(),
+                     ahead > 0ns ? "ahead of" : "behind");
+}
+
+}  // namespace
+
+/// Two runs in one domain would tear each other's worlds apart.
+bool NodeProcess::another_run_is_here() { return another_agreement_is_here() || the_same_run_is_here(); }
+
+/// Another map, scene or setting.
+bool NodeProcess::another_agreement_is_here() {
+  for (const auto& [version, map] : control_.maps()) {
+    if (map.agreement == status_.agreement) continue;
+    refuse(fmt::format(
+        "DDS domain {} already has a run that does not agree with this one: scene '{}', {} regions, map {:016x}, "
+        "agreement {:016x}; this is scene '{}', {} regions, map {:016x}, agreement {:016x}. Use another dds.domain.",
+        launch_.dds.domain, map.scene, map.regions.size(), map.map_version, map.agreement, launch_.scene.name,
+        launch_.regions.size(), status_.map_version, status_.agreement));
+    return true;
+  }
+  return false;
+}
+
+/// The same launch twice, by mistake. Of two that begin together, the one with the lower number stays.
+bool NodeProcess::the_same_run_is_here() {
+  for (const dds::SeenStatus& stranger : control_.strangers()) {
+    const dds::Status& other = stranger.status;
+    const bool is_meeting = other.state == dds::NodeState::kStarting || other.state == dds::NodeState::kWaiting;
+    if (other.agreement != status_.agreement) continue;  // its map says more
+    if (transport_ && is_meeting && other.run > options_.run) continue;
+    refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
+                       core::value_of(other.region), launch_.dds.domain, other.pid, other.step));
+    return true;
+  }
+  return false;
+}
+
+/// Listens before it publishes: a node's endpoints would disturb a run that is already here.
+bool NodeProcess::domain_is_free() {
+  const auto begin = Clock::now();
+  // Whoever has a status has a map, which is on its way.
+  while (Clock::now() < begin + (control_.strangers().empty() ? kListenFirst : 6 * kListenFirst)) {
+    if (stop_requested() || another_run_is_here()) return false;
+    control_.wait(20ms);
+  }
+  return true;
+}
+
+bool NodeProcess::meet_neighbours() {
+  const auto deadline = Clock::now() + options_.start_time_out;
+  while (!transport_->all_matched()) {
+    if (stop_requested() || another_run_is_here()) return false;
+    name_the_dead();
+    if (Clock::now() > deadline) {
+      try {
+        transport_->wait_until_matched(0ns);
+      } catch (const dds::NeighboursMissing& missing) {
+        refuse(fmt::format("after {} s: {}", options_.start_time_out.count(), missing.what()));
+        return false;
+      }
+    }
+    control_.wait(50ms);
+  }
+  if (another_run_is_here()) return false;
+  enter(NodeEvent::kMet);
+  return true;
+}
+
+/// The node of region 0 starts the run once every region waits for it.
+void NodeProcess::start_when_all_wait() {
+  if (options_.region != core::RegionId{0} || start_) return;
+  std::size_t waiting = 0;
+  for (const auto& [region, seen] : control_.statuses()) {
+    waiting += !seen.lost && seen.status.state == dds::NodeState::kWaiting &&
+               seen.status.generation == waits_to_start_ && region != options_.region;
+  }
+  if (waiting + 1 < launch_.regions.size()) return;
+  dds::RunCommand start;
+  start.kind = dds::RunCommandKind::kStart;
+  start.generation = waits_to_start_;
+  start.run = options_.run;
+  start.epoch_ns = node::wall_clock_ns() + 500'000'000;
+  start.request = control_.send(start);
+  start_ = start;
+}
+
+bool NodeProcess::wait_for_start() {
+  publish();
+  const auto deadline = Clock::now() + options_.start_time_out;
+  while (!start_) {
+    if (stop_requested() || another_run_is_here()) return false;
+    if (Clock::now() > deadline) {
+      std::vector<std::uint32_t> absent;
+      for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
+        if (!control_.statuses().contains(core::RegionId{r})) absent.push_back(r);
+      }
+      refuse(fmt::format("the run has not started in {} s; regions that have not reported: [{}]",
+                         options_.start_time_out.count(), fmt::join(absent, ", ")));
+      return false;
+    }
+    name_the_dead();
+    publish();
+    start_when_all_wait();
+    execute_commands();
+    control_.wait(50ms);
+  }
+  enter(NodeEvent::kStarted);
+  return true;
+}
+
+/// Nodes that have died while all wait for each other. Somebody may start them again; a launcher ends the run.
+void NodeProcess::name_the_dead() {
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (seen.is_live()) {
+      missed_.erase(region);
+    } else if (missed_.insert(region).second) {
+      spdlog::warn("the node of region {} (process {}) {} before the run has begun", core::value_of(region),
+                   seen.status.pid, seen.lost ? "has died" : "has given up");
+    }
+  }
+}
+
+/// A single message may have been long on its way, which looks like a clock that is behind; the fastest of the last
+/// statuses tells better.
+dds::RunCommand NodeProcess::with_clock_of_region_zero(dds::RunCommand start) {
+  const auto sender = control_.statuses().find(core::RegionId{0});
+  if (sender != control_.statuses().end()) start.clock_ahead = std::max(start.clock_ahead, sender->second.clock_ahead);
+  return start;
+}
+
+/// Hosts whose clocks are wrong are named; the run does not depend on them.
+void NodeProcess::compare_clocks() {
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (std::chrono::abs(seen.clock_ahead) < node::kClockTolerance) continue;
+    spdlog::warn("the wall clock of region {}'s host is {} this one's: steps are counted from when the start came",
+                 core::value_of(region), ahead_or_behind(seen.clock_ahead));
+  }
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,90 @@
+// What a node tells of itself, some times a second.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/node_process.h"
+#include "node/durations.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kStatusPeriod = 100ms;
+
+dds::Durations summary_of(std::vector<double>& values) {
+  return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
+}
+
+}  // namespace
+
+void NodeProcess::note(const node::StepReport& report, double frame_ms) {
+  if (Clock::now() - window_.begin > 1s) window_ = {};
+  window_.frame.push_back(frame_ms);
+  window_.physics.push_back(1e3 * report.durations.physics_s);
+  window_.protocol.push_back(1e3 * report.durations.protocol_s);
+  window_.transport.push_back(1e3 * report.durations.transport_s);
+  status_.bodies = report.bodies;
+  status_.awake = report.awake;
+  status_.foreign_auras = report.foreign_auras;
+  status_.largest_cluster = report.largest_cluster;
+  status_.hand_offs_out += report.departures.size();
+  status_.hand_offs_in += report.arrivals.size();
+}
+
+void NodeProcess::publish_running() {
+  if (Clock::now() - last_published_ < kStatusPeriod) return;
+  const core::ViolationLog& log = node_->protocol().violations();
+  status_.violations = {log.count(core::ViolationKind::kSpeed), log.count(core::ViolationKind::kLatency),
+                        log.count(core::ViolationKind::kFrame), log.count(core::ViolationKind::kPromise),
+                        log.count(core::ViolationKind::kSpan)};
+  status_.frame = summary_of(window_.frame);
+  status_.physics = summary_of(window_.physics);
+  status_.protocol = summary_of(window_.protocol);
+  status_.transport = summary_of(window_.transport);
+  status_.real_time_factor = real_time_factor();
+  status_.dead = node_->protocol().intake().dead_regions();
+  watch_the_clock();
+  watch_the_records();
+  publish(notice_);
+}
+
+void NodeProcess::publish(const std::string& text) {
+  const auto now = Clock::now();
+  const dds::NodeState state = state_of(phase_).value();
+  if (state == status_.state && now - last_published_ < kStatusPeriod) return;
+  last_published_ = now;
+  status_.state = state;
+  status_.text = text;
+  status_.generation = generation_;
+  status_.step = node_ ? node_->current_step() : 0;
+  control_.publish_status(status_);
+}
+
+double NodeProcess::real_time_factor() const {
+  const double wall_s = std::chrono::duration<double>(Clock::now() - began_ - paused_).count();
+  return wall_s > 0 ? static_cast<double>(node_->current_step()) * launch_.step_s() / wall_s : 1;
+}
+
+void NodeProcess::watch_the_clock() {
+  const std::chrono::nanoseconds jump = clock_watch_.look(node::read_clocks());
+  if (jump == 0ns) return;
+  notice_ = fmt::format("this host's wall clock was set {:.1f} s {} at step {}: the pace is kept without it",
+                        std::chrono::duration<double>(std::chrono::abs(jump)).count(), jump > 0ns ? "forward" : "back",
+                        node_->current_step());
+  spdlog::warn("{}", notice_);
+}
+
+/// A disk that is full ends the records, not the run.
+void NodeProcess::watch_the_records() {
+  if (!recorder_ || !recorder_->records_end() || says_records_end_) return;
+  says_records_end_ = true;
+  const node::RecordsEnd& end = *recorder_->records_end();
+  notice_ = fmt::format("nothing is recorded after step {}: {}", end.after, end.why);
+  spdlog::error("{}", notice_);
+}
+
+}  // namespace aurasim::cli

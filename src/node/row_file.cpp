@@ -1,0 +1,78 @@
+#include "node/row_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace aurasim::node {
+namespace {
+
+/// False with errno when not all of it could be written.
+bool write_all(int file, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = ::write(file, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+std::string cannot_write(const std::filesystem::path& file) {
+  return fmt::format("cannot write {}: {}", file.string(), std::strerror(errno));
+}
+
+}  // namespace
+
+RowFile::RowFile(const std::filesystem::path& file, const std::string& header)
+    : path_(file), file_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)), buffer_(header) {
+  if (file_ < 0) throw std::runtime_error(cannot_write(file));
+  if (!flush()) {
+    ::close(file_);
+    throw std::runtime_error(failure_);
+  }
+}
+
+RowFile::~RowFile() {
+  flush();
+  ::close(file_);
+}
+
+bool RowFile::flush() {
+  if (!failure_.empty()) return false;
+  if (write_all(file_, buffer_)) {
+    whole_ += static_cast<std::int64_t>(buffer_.size());
+  } else {
+    failure_ = cannot_write(path_);
+    // A row that is cut off would be read as another one.
+    if (::ftruncate(file_, whole_) != 0) failure_ += " (and its last row may be cut off)";
+  }
+  buffer_.clear();
+  return failure_.empty();
+}
+
+bool overwrite(const std::filesystem::path& file, const std::string& text) {
+  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (out < 0) return false;
+  const bool done = write_all(out, text) && ::ftruncate(out, static_cast<::off_t>(text.size())) == 0;
+  return ::close(out) == 0 && done;
+}
+
+void reserve(const std::filesystem::path& file, const std::string& text, std::size_t bytes) {
+  std::string padded = text;
+  if (padded.size() < bytes) padded.append(bytes - padded.size(), ' ');
+  padded += '\n';
+  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const bool done = out >= 0 && write_all(out, padded);
+  if (!done) {
+    const std::string why = cannot_write(file);
+    if (out >= 0) ::close(out);
+    throw std::runtime_error(why);
+  }
+  ::close(out);
+}
+
+}  // namespace aurasim::node

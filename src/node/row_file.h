@@ -1,0 +1,48 @@
+// A file of rows that survives a full disk: what it holds are whole rows, and the first failed write is the last.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace aurasim::node {
+
+class RowFile {
+ public:
+  /// An empty file with one header line. Throws std::runtime_error when there can be none.
+  RowFile(const std::filesystem::path& file, const std::string& header);
+  ~RowFile();
+  RowFile(const RowFile&) = delete;
+  RowFile& operator=(const RowFile&) = delete;
+
+  /// One row, newline included. It reaches the disk with the next flush, or when many have come together.
+  template <class... Values>
+  void add(fmt::format_string<Values...> row, Values&&... values) {
+    fmt::format_to(std::back_inserter(buffer_), row, std::forward<Values>(values)...);
+    if (buffer_.size() > kBuffered) flush();
+  }
+
+  /// False when a write has failed, now or earlier; then nothing is written any more.
+  bool flush();
+  /// Why it failed, for people; empty while it has not.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  static constexpr std::size_t kBuffered = 64 * 1024;  // bytes
+
+  std::filesystem::path path_;
+  int file_ = -1;
+  std::string buffer_;
+  std::int64_t whole_ = 0;  ///< bytes that hold whole rows
+  std::string failure_;
+};
+
+/// Writes a file of which `reserve` has kept the blocks. False when that fails.
+bool overwrite(const std::filesystem::path& file, const std::string& text);
+/// A file of `text` and enough blanks after it that `overwrite` has room on a disk that is full by then. Throws
+/// std::runtime_error when there can be none.
+void reserve(const std::filesystem::path& file, const std::string& text, std::size_t bytes);
+
+}  // namespace aurasim::node

@@ -1,0 +1,106 @@
+// When a node has to stop: held for dead, held up, or not of the majority. Virtual time.
+#include "cli/fence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace aurasim::cli {
+namespace {
+
+using core::RegionId;
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+class Fenced : public ::testing::Test {
+ protected:
+  Fence fence_of(std::uint32_t region, std::uint32_t regions, bool can_be_cut = true, bool never_waits = false) {
+    return Fence({RegionId{region}, regions, can_be_cut, never_waits},
+                 {[this] { return held_up_; }, [this] { return peers_; }});
+  }
+  bool open(Fence& fence, bool held_for_dead = false) { return fence.open(held_for_dead, dead_, now_); }
+  void hear(std::uint32_t region) { peers_[RegionId{region}] = {false, false, now_}; }
+  void lose(std::uint32_t region) { peers_[RegionId{region}].lost = true; }
+  void leave(std::uint32_t region) { peers_[RegionId{region}].left = true; }
+  void pass(std::chrono::milliseconds time) { now_ += time; }
+
+  bool held_up_ = false;
+  std::map<RegionId, node::PeerSign> peers_;
+  std::vector<RegionId> dead_;
+  Fence::Clock::time_point now_{1h};
+};
+
+TEST_F(Fenced, AWholeRunGoesOn) {
+  Fence fence = fence_of(0, 3);
+  hear(1);
+  hear(2);
+  EXPECT_TRUE(open(fence));
+  EXPECT_FALSE(fence.closed());
+}
+
+TEST_F(Fenced, WhomANeighbourHoldsForDeadStopsForGood) {
+  Fence fence = fence_of(0, 3);
+  EXPECT_FALSE(open(fence, true));
+  EXPECT_THAT(fence.reason(), HasSubstr("holds region 0 for dead"));
+  EXPECT_FALSE(open(fence, false)) << "it stays closed";
+}
+
+TEST_F(Fenced, WhoWasHeldUpStopsOnlyIfItHasLostNeighbours) {
+  Fence fence = fence_of(0, 3, false);
+  held_up_ = true;
+  EXPECT_TRUE(open(fence)) << "the host stood still with all its nodes";
+  dead_ = {RegionId{1}};
+  EXPECT_FALSE(open(fence));
+  EXPECT_THAT(fence.reason(), HasSubstr("held up for longer"));
+}
+
+TEST_F(Fenced, OnOneHostASilentNeighbourIsDeadAndTheRestGoesOn) {
+  Fence fence = fence_of(0, 2, false);
+  lose(1);
+  dead_ = {RegionId{1}};
+  EXPECT_TRUE(open(fence));
+}
+
+TEST_F(Fenced, TheMinorityWaitsAndThenStops) {
+  Fence fence = fence_of(2, 3);
+  lose(0);
+  hear(1);
+  dead_ = {RegionId{0}};
+  EXPECT_FALSE(open(fence)) << "has region 1 been heard since?";
+  EXPECT_FALSE(fence.closed());
+  lose(1);
+  pass(60ms);
+  EXPECT_FALSE(open(fence));
+  EXPECT_THAT(fence.reason(), HasSubstr("regions [0, 1]"));
+}
+
+TEST_F(Fenced, TheMajorityGoesOnOnceItHasHeardOfTheRest) {
+  Fence fence = fence_of(2, 3);
+  lose(0);
+  dead_ = {RegionId{0}};
+  EXPECT_FALSE(open(fence));
+  pass(60ms);
+  hear(1);
+  EXPECT_TRUE(open(fence));
+}
+
+TEST_F(Fenced, WhoNeverWaitsGoesOnWhileItIsNotCutOff) {
+  Fence fence = fence_of(2, 3, true, true);
+  lose(0);
+  dead_ = {RegionId{0}};
+  EXPECT_TRUE(open(fence));
+}
+
+TEST_F(Fenced, WhoHasLeftIsNotMissed) {
+  Fence fence = fence_of(1, 2);
+  leave(0);
+  lose(0);
+  EXPECT_TRUE(open(fence));
+}
+
+TEST_F(Fenced, ANodeThatIsAloneIsNeverFenced) {
+  Fence fence = fence_of(0, 1);
+  EXPECT_TRUE(open(fence, true));
+}
+
+}  // namespace
+}  // namespace aurasim::cli
