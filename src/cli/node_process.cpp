@@ -73,7 +73,7 @@ FenceSettings NodeProcess::fence_settings() const {
   settings.region = options_.region;
   settings.regions = static_cast<std::uint32_t>(launch_.regions.size());
   settings.can_be_cut = !participant_.stays_on_this_host();
-  settings.never_waits = launch_.time.sync == config::Sync::kFreeRunning;
+  settings.never_waits = launch_.time.sync == core::SyncMode::kFreeRunning;
   return settings;
 }
 
