@@ -15,9 +15,16 @@ if [[ $# -gt 0 && $1 != -* ]]; then
   shift
 fi
 
-"$root/scripts/setup.sh"
+"$root/scripts/setup.sh" --demo
+# The page is an extra: without it the world runs all the same.
+if ! said=$("$root/scripts/build_web.sh" 2>&1); then
+  printf 'demo.sh: no page for the viewer (%s); the next start tries again\n' "${said##*$'\n'}" >&2
+fi
+# Where everything is built already, for tests, it only has to be brought up to date.
+preset=demo
+! grep -qs 'AURASIM_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" || preset=release
 echo "demo.sh: building; the first time this takes some minutes"
-"$root/scripts/build.sh" release aurasim aurasim-single
+"$root/scripts/build.sh" $preset aurasim
 
 cat <<'TEXT'
 

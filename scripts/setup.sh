@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Installs what aurasim is built, run and tested with: packages of Debian 12, and by npm those of the viewer's page,
-# which it builds. Run it as often as you like; when everything is there it changes nothing and takes no time.
+# Installs what aurasim is built, run and tested with: packages of Debian 12. Run it as often as you like; when
+# everything is there it changes nothing and takes no time.
+#   scripts/setup.sh [--demo]     --demo: only what a world that runs needs, without what tests and experiments need
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 packages=(
-  # compiler and build; the format check uses clang-format
-  g++ cmake ninja-build ccache clang-format
+  # compiler and build
+  g++ cmake ninja-build
   # Fast DDS (its package brings Asio, OpenSSL, TinyXML2 and foonathan memory) and its IDL compiler, a Java program
   # whose package does not ask for Java
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
@@ -14,8 +15,12 @@ packages=(
   libbullet-dev libbullet-extras-dev libeigen3-dev
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  # HTTP and WebSocket of the overseer
-  libboost1.74-dev
+  # HTTP and WebSocket of the overseer, its page
+  libboost1.74-dev esbuild
+)
+packages_of_tests=(
+  # second builds in seconds, the format check, the Debian package
+  ccache clang-format dpkg-dev
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump libfaketime
   # separate hosts on one machine; other people's DDS and a dissector, as witnesses
@@ -24,17 +29,25 @@ packages=(
   python3-matplotlib
   # JSON schemas of launch and scene files, in tests
   python3-jsonschema python3-yaml
-  # the browser that the page is tested in
-  chromium
+  # the browser that the page is tested in, the shell whose completion is tested
+  chromium zsh
 )
-# The page. A node of another origin is as good (and brings an npm that Debian's would be in conflict with).
-command -v node >/dev/null || packages+=(nodejs)
-command -v npm >/dev/null || packages+=(npm)
 
 fail() {
   printf 'setup.sh: %s\n' "$*" >&2
   exit 1
 }
+
+case ${1:-} in
+  '')
+    packages+=("${packages_of_tests[@]}")
+    # A node of another origin is as good (and brings an npm that Debian's would be in conflict with).
+    command -v node >/dev/null || packages+=(nodejs)
+    command -v npm >/dev/null || packages+=(npm)
+    ;;
+  --demo) ;;
+  *) fail "found $1, allowed: --demo" ;;
+esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "this is not Debian. Install by other means what these packages of Debian 12 hold: ${packages[*]}"
@@ -60,4 +73,6 @@ install_missing() {
 }
 
 [[ ${#missing[@]} -eq 0 ]] || install_missing
-"$root/scripts/build_web.sh" --tests
+[[ ${1:-} == --demo ]] && exit
+# The tests of the page ask for it again, and fail by name when it still cannot be had: the others need not wait for it.
+"$root/scripts/build_web.sh" --tests || printf 'setup.sh: no page, so the tests of it will fail\n' >&2

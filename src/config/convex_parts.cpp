@@ -18,7 +18,7 @@ namespace {
 using core::TriangleMesh;
 using core::Vec3;
 
-constexpr std::size_t kMostTriangles = 4000;
+constexpr std::size_t kMostTrianglesToDivide = 4000;
 constexpr std::size_t kMostParts = 64;
 constexpr std::size_t kMostPointsOfAPart = 64;
 constexpr double kNormalSize = 1000;    ///< of the mesh from corner to corner, as HACD sees it
@@ -70,8 +70,9 @@ bool is_sound(const TriangleMesh& mesh) {
 
 std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& mesh) {
   if (mesh.points.empty()) return "it has no points";
-  if (mesh.triangles.size() > kMostTriangles) {
-    return fmt::format("it has {} triangles, at most {} are taken apart", mesh.triangles.size(), kMostTriangles);
+  if (mesh.triangles.size() > kMostTrianglesToDivide) {
+    return fmt::format("it has {} triangles, at most {} are taken apart", mesh.triangles.size(),
+                       kMostTrianglesToDivide);
   }
   std::vector<HACD::Vec3<HACD::Real>> points;
   std::vector<HACD::Vec3<long>> triangles;

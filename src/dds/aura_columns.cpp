@@ -99,7 +99,7 @@ void encode_exceptions(const AuraBatch& batch, wire::AuraBatch& out) {
 
 bool is_empty_or(std::size_t size, std::size_t rows) { return size == 0 || size == rows; }
 
-MaybeError check_shape(const wire::AuraBatch& in) {
+MaybeError check_column_shapes(const wire::AuraBatch& in) {
   const std::size_t rows = in.id().size();
   if (std::max({rows, in.elsewhere_row().size(), in.pushed_row().size(), in.unborn_row().size()}) > kMaxRows) {
     return WireError::kTooLarge;
@@ -118,7 +118,7 @@ MaybeError check_shape(const wire::AuraBatch& in) {
   return fits ? MaybeError{} : WireError::kLength;
 }
 
-MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
+MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expected) {
   if (!all_finite(in.p_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB()) || !all_finite(in.speed_m_s()) ||
       !all_finite(in.pushed_kg_m_s()) || !all_finite(in.pushed_m_s())) {
     return WireError::kNotFinite;
@@ -173,8 +173,8 @@ void encode_auras(const AuraBatch& batch, wire::AuraBatch& out) {
 }
 
 std::optional<WireError> check_auras(const wire::AuraBatch& in, const Expected& expected) {
-  if (const auto error = check_shape(in)) return error;
-  return check_values(in, expected);
+  if (const auto error = check_column_shapes(in)) return error;
+  return check_column_values(in, expected);
 }
 
 std::vector<AuraRecord> decode_auras(const wire::AuraBatch& in) {

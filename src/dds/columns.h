@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -69,6 +70,10 @@ bool none_negative(const std::vector<Number>& column) {
 
 inline bool all_below(const std::vector<std::uint32_t>& column, std::uint32_t bound) {
   return std::ranges::all_of(column, [bound](std::uint32_t x) { return x < bound; });
+}
+
+inline bool strictly_ascending(const std::vector<std::uint64_t>& ids) {
+  return std::ranges::adjacent_find(ids, std::greater_equal<>{}) == ids.end();
 }
 
 /// Body ids are used as signed references too.

@@ -114,10 +114,6 @@ bool known_objects(const wire::Migration& in, const Expected& expected) {
   return true;
 }
 
-bool strictly_ascending(const std::vector<std::uint64_t>& ids) {
-  return std::ranges::adjacent_find(ids, std::greater_equal<>{}) == ids.end();
-}
-
 MaybeError check_values(const wire::Migration& in, const Expected& expected) {
   if (!all_finite(in.body_p_WB()) || !all_finite(in.body_R_WB()) || !all_finite(in.body_v_WB()) ||
       !all_finite(in.body_w_WB()) || !all_finite(in.body_deactivation_time()) || !all_finite(in.points()) ||

@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::size_t kMostOrders = 4096;
 constexpr std::size_t kMostNumbers = 1 << 16;
-constexpr std::size_t kMostText = 1 << 16;
+constexpr std::size_t kMostTextOfRow = 1 << 16;
 constexpr std::uint32_t kMostIndices = 1 << 20;
-constexpr std::uint32_t kFirstMeshShape = 4;
+constexpr std::uint32_t kFirstMeshRow = 4;
 constexpr auto kMostSubjects = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
 struct Row {
@@ -48,7 +48,7 @@ struct ShapeToRow {
   void operator()(const core::Cylinder& s) const { row.numbers = {s.radius, s.height}; }
   void operator()(const core::MeshRef& s) const {
     row.subject = s.hash;
-    row.index = kFirstMeshShape + static_cast<std::uint32_t>(s.use);
+    row.index = kFirstMeshRow + static_cast<std::uint32_t>(s.use);
   }
 };
 
@@ -115,8 +115,8 @@ Maybe shape_of(const Row& row, const Numbers& n) {
   if (row.index == 1 && count == 3) return core::DefineShape{core::Box{n.vector(0)}};
   if (row.index == 2 && count == 2) return core::DefineShape{core::Capsule{n.all[0], n.all[1]}};
   if (row.index == 3 && count == 2) return core::DefineShape{core::Cylinder{n.all[0], n.all[1]}};
-  if (row.index < kFirstMeshShape || row.index > kFirstMeshShape + 2 || count != 0) return {};
-  return core::DefineShape{core::MeshRef{row.subject, static_cast<core::MeshUse>(row.index - kFirstMeshShape)}};
+  if (row.index < kFirstMeshRow || row.index > kFirstMeshRow + 2 || count != 0) return {};
+  return core::DefineShape{core::MeshRef{row.subject, static_cast<core::MeshUse>(row.index - kFirstMeshRow)}};
 }
 
 Maybe spawn_of(const Row& row, const Numbers& n) {
@@ -179,7 +179,7 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
 
 bool have_room(const wire::AuraBatch& in) {
   const std::size_t rows = in.order_sequence().size();
-  return rows <= kMostOrders && in.order_numbers().size() <= kMostNumbers && in.order_text().size() <= kMostText &&
+  return rows <= kMostOrders && in.order_numbers().size() <= kMostNumbers && in.order_text().size() <= kMostTextOfRow &&
          same_rows(rows, {{in.order_request().size()},
                           {in.order_step().size()},
                           {in.order_kind().size()},

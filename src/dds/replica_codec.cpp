@@ -44,10 +44,6 @@ MaybeError check_shape(const wire::Replica& in) {
   return fits ? MaybeError{} : WireError::kLength;
 }
 
-bool strictly_ascending(const std::vector<std::uint64_t>& ids) {
-  return std::ranges::adjacent_find(ids, std::greater_equal<>{}) == ids.end();
-}
-
 MaybeError check_values(const wire::Replica& in, const Expected& expected) {
   if (!all_finite(in.p_WB()) || !all_finite(in.q_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB())) {
     return WireError::kNotFinite;

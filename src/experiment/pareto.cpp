@@ -17,7 +17,7 @@ namespace {
 /// Errors below this count as this, so that one perfect case does not outweigh the others.
 constexpr double kSmallest = 1e-6;
 
-struct Planned {
+struct PlannedRun {
   RunRules rules;
   int nodes = 1;
 };
@@ -27,8 +27,8 @@ bool same_physics(const RunRules& a, const RunRules& b) {
          a.friction_directions == b.friction_directions;
 }
 
-std::vector<Planned> physics_points(const ParetoPlan& plan) {
-  std::vector<Planned> points;
+std::vector<PlannedRun> physics_points(const ParetoPlan& plan) {
+  std::vector<PlannedRun> points;
   RunRules rules;
   for (const auto& [solver, name] : physics::kSolverNames) {
     rules.solver = solver;
@@ -47,14 +47,14 @@ std::vector<Planned> physics_points(const ParetoPlan& plan) {
   for (const config::Preset& preset : config::kPresets) {
     const RunRules wanted = preset_rules(preset.name);
     const bool is_there =
-        std::any_of(points.begin(), points.end(), [&](const Planned& p) { return same_physics(p.rules, wanted); });
+        std::any_of(points.begin(), points.end(), [&](const PlannedRun& p) { return same_physics(p.rules, wanted); });
     if (!is_there) points.push_back({wanted, 1});
   }
   return points;
 }
 
-std::vector<Planned> node_points() {
-  std::vector<Planned> points;
+std::vector<PlannedRun> node_points() {
+  std::vector<PlannedRun> points;
   for (const int nodes : {1, 2, 4}) {
     for (const core::SyncMode sync :
          {core::SyncMode::kFreeRunning, core::SyncMode::kBounded, core::SyncMode::kDeterministic}) {
@@ -85,7 +85,7 @@ std::vector<Case> cases_of(const ParetoPlan& plan) {
   return cases;
 }
 
-std::string preset_of(const Planned& planned) {
+std::string preset_of(const PlannedRun& planned) {
   std::string names;
   for (const config::Preset& preset : config::kPresets) {
     if (planned.nodes == 1 && same_physics(preset_rules(preset.name), planned.rules)) names += preset.name;
@@ -93,7 +93,7 @@ std::string preset_of(const Planned& planned) {
   return names;
 }
 
-ParetoPoint measure(const Planned& planned, const std::vector<Case>& cases) {
+ParetoPoint measure(const PlannedRun& planned, const std::vector<Case>& cases) {
   ParetoPoint point;
   point.rules = planned.rules;
   point.nodes = planned.nodes;
@@ -160,13 +160,13 @@ void mark_front(std::vector<ParetoPoint>& points) {
 }
 
 std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress& progress) {
-  std::vector<Planned> planned = physics_points(plan);
+  std::vector<PlannedRun> planned = physics_points(plan);
   if (plan.nodes) {
-    for (const Planned& point : node_points()) planned.push_back(point);
+    for (const PlannedRun& point : node_points()) planned.push_back(point);
   }
   const std::vector<Case> cases = cases_of(plan);
   std::vector<ParetoPoint> points;
-  for (const Planned& point : planned) {
+  for (const PlannedRun& point : planned) {
     if (!progress(static_cast<double>(points.size()) / static_cast<double>(planned.size()))) break;
     points.push_back(measure(point, cases));
   }

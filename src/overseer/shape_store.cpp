@@ -6,7 +6,7 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr std::size_t kMostMeshes = 256;
-constexpr std::size_t kMostPoints = 10'000'000;  // of all meshes
+constexpr std::size_t kMostPointsOfAll = 10'000'000;  // of all meshes
 
 ShapeStore::Stored summary_of(std::uint64_t hash, const core::TriangleMesh& mesh) {
   return {hash, mesh.points.size(), mesh.triangles.size()};
@@ -22,7 +22,8 @@ std::variant<ShapeStore::Stored, std::string> ShapeStore::add(const std::string&
   if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);
   auto mesh = std::make_shared<const core::TriangleMesh>(std::get<core::TriangleMesh>(std::move(read)));
   const std::lock_guard lock(mutex_);
-  if (meshes_.size() >= kMostMeshes || points_ + mesh->points.size() > kMostPoints) return "there is no room for more";
+  if (meshes_.size() >= kMostMeshes || points_ + mesh->points.size() > kMostPointsOfAll)
+    return "there is no room for more";
   if (meshes_.emplace(hash, mesh).second) points_ += mesh->points.size();
   return summary_of(hash, *mesh);
 }

@@ -8,6 +8,8 @@
 
 namespace aurasim::physics {
 
+inline btScalar scalar(double x) { return static_cast<btScalar>(x); }
+
 inline btVector3 to_bullet(const core::Vec3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }

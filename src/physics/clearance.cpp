@@ -26,7 +26,7 @@ struct Part {
   double radius = 0;  ///< of the sphere around the part's own origin
 };
 
-struct Parts {
+struct ConvexParts {
   std::vector<Part> parts;
   double radius = 0;  ///< of the sphere around the body's origin
 };
@@ -34,13 +34,13 @@ struct Parts {
 struct MakeParts {
   template <class Convex>
   std::vector<Part> operator()(const Convex& s) const {
-    return parts_of({{s, Pose{}}});
+    return convex_parts_of({{s, Pose{}}});
   }
-  std::vector<Part> operator()(const core::Compound& s) const { return parts_of(s.parts); }
+  std::vector<Part> operator()(const core::Compound& s) const { return convex_parts_of(s.parts); }
   std::vector<Part> operator()(const core::TriangleMesh&) const { return {}; }
   std::vector<Part> operator()(const core::Plane&) const { return {}; }
 
-  static std::vector<Part> parts_of(const std::vector<core::CompoundPart>& parts) {
+  static std::vector<Part> convex_parts_of(const std::vector<core::CompoundPart>& parts) {
     std::vector<Part> made;
     for (const core::CompoundPart& part : parts) {
       const auto radius = std::visit([](const auto& s) { return core::bounding_radius(s); }, part.shape);
@@ -100,8 +100,8 @@ class Query : public core::ClearanceQuery {
 
   double clearance(core::PrototypeId a, const Pose& pose_a, core::PrototypeId b, const Pose& pose_b,
                    double limit_m) const override {
-    const Parts& parts_a = of(a);
-    const Parts& parts_b = of(b);
+    const ConvexParts& parts_a = of(a);
+    const ConvexParts& parts_b = of(b);
     const Vec3 p_AB = pose_b.p_WB - pose_a.p_WB;
     const double apart = p_AB.norm() - parts_a.radius - parts_b.radius;
     if (apart > limit_m) return apart;
@@ -134,7 +134,7 @@ class Query : public core::ClearanceQuery {
   }
 
   /// Made when first asked for: a scene may get more prototypes.
-  const Parts& of(core::PrototypeId prototype) const {
+  const ConvexParts& of(core::PrototypeId prototype) const {
     while (prototypes_.size() <= core::value_of(prototype)) {
       const core::Shape& shape = scene_.shapes.at(scene_.prototypes.at(prototypes_.size()).shape).shape;
       prototypes_.push_back({std::visit(MakeParts{}, shape), core::bounding_radius(shape)});
@@ -143,7 +143,7 @@ class Query : public core::ClearanceQuery {
   }
 
   const core::Scene& scene_;
-  mutable std::deque<Parts> prototypes_;  // references to entries stay good
+  mutable std::deque<ConvexParts> prototypes_;  // references to entries stay good
 };
 
 }  // namespace

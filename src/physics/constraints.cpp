@@ -20,8 +20,6 @@ using core::Pose;
 using core::Quat;
 using core::Vec3;
 
-btScalar scalar(double x) { return static_cast<btScalar>(x); }
-
 Pose frame_in(const Pose& X_WB, const Pose& X_WJ) {
   const Quat q_BW = X_WB.q_WB.normalized().conjugate();
   return {q_BW * (X_WJ.p_WB - X_WB.p_WB), q_BW * X_WJ.q_WB.normalized()};

@@ -20,8 +20,6 @@
 namespace aurasim::physics {
 namespace {
 
-btScalar scalar(double x) { return static_cast<btScalar>(x); }
-
 std::unique_ptr<btConvexHullShape> hull_through(const btVector3* points, int count) {
   auto hull = std::make_unique<btConvexHullShape>();
   for (int i = 0; i < count; ++i) hull->addPoint(points[i], false);

@@ -4,9 +4,6 @@ import { defineConfig } from "vite";
 const overseer = process.env.AURASIM_URL ?? "http://127.0.0.1:8080";
 
 export default defineConfig({
-  base: "./",
-  // Nothing in the files that is fetched from elsewhere, and no inlined data: addresses that a strict server forbids.
-  build: { target: "es2022", assetsInlineLimit: 0, chunkSizeWarningLimit: 900, sourcemap: false },
   server: {
     host: "127.0.0.1",
     proxy: { "/ws": { target: overseer, ws: true }, "/api": overseer },

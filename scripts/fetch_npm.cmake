@@ -1,0 +1,20 @@
+# Fetches one package of the npm registry and unpacks it, if its bytes have the hash that the lock file names.
+#   cmake -D URL=... -D SHA512=HEX -D FOLDER=... -P fetch_npm.cmake
+# CMake rather than npm: it is there anyway, and Debian's npm is 355 packages. FOLDER is whole or not there at all.
+set(archive ${FOLDER}.tgz)
+file(DOWNLOAD ${URL} ${archive} TLS_VERIFY ON INACTIVITY_TIMEOUT 15 STATUS status)
+list(GET status 0 code)
+if(code)
+  list(GET status 1 why)
+  file(REMOVE ${archive})
+  message(FATAL_ERROR "${URL}: ${why}")
+endif()
+file(SHA512 ${archive} found)
+if(NOT found STREQUAL SHA512)
+  file(REMOVE ${archive})
+  message(FATAL_ERROR "${URL} is not what package-lock.json names: its SHA-512 is ${found}")
+endif()
+file(REMOVE_RECURSE ${FOLDER} ${FOLDER}.unpacking)
+file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${FOLDER}.unpacking)
+file(RENAME ${FOLDER}.unpacking/package ${FOLDER})
+file(REMOVE_RECURSE ${archive} ${FOLDER}.unpacking)
