@@ -1,12 +1,16 @@
 // `aurasim experiment stability` and `pareto`.
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
 #include "cli/target_list.h"
@@ -35,6 +39,14 @@ class Watch {
   ProgressBar bar_;
 };
 
+/// Empty when there is such a case. (They are not listed in advance: every command would wait for them.)
+std::string problem_with_case(const std::string& name) {
+  std::vector<std::string> names;
+  for (const experiment::Case& c : experiment::stability_cases()) names.push_back(c.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
+  return fmt::format("no case '{}'; there are {}", name, fmt::join(names, ", "));
+}
+
 int run_stability(const experiment::StabilityPlan& plan, const std::string& out) {
   catch_stop_signals();
   Watch watch;
@@ -56,11 +68,12 @@ void add_stability(CLI::App& experiments, Action& action) {
   const auto plan = std::make_shared<experiment::StabilityPlan>();
   const auto out = std::make_shared<std::string>();
   command->add_option("--out", *out, "folder for the results")->required();
-  command->add_option("--cases", plan->cases, "only these")->delimiter(',');
+  command->add_option("--cases", plan->cases, "only these")->delimiter(',')->check(problem_with_case);
   command->add_option("--step-hz", plan->step_hz, "steps per second")->delimiter(',')->check(CLI::Range(1, 10000));
   command->add_flag("--presets,!--no-presets", plan->presets, "also with every preset");
   command->add_option("--longest", plan->longest_s, "cut every case to this many simulated seconds");
   command->add_option("--standing", plan->standing_s, "seconds that piles have to stand with the preset balanced");
+  command->footer("Example:\n  aurasim experiment stability --cases stack_20 --out out");
   command->callback([plan, out, &action] { action = [plan, out] { return run_stability(*plan, *out); }; });
 }
 
@@ -74,6 +87,7 @@ void add_pareto(CLI::App& experiments, Action& action) {
   command->add_option("--iterations", plan->iterations, "of the solver")->delimiter(',')->check(CLI::Range(1, 1000));
   command->add_option("--substeps", plan->substeps, "of a step")->delimiter(',')->check(CLI::Range(1, 64));
   command->add_flag("--nodes,!--no-nodes", plan->nodes, "also vary the number of nodes, sync mode, lookahead and aura");
+  command->footer("Example:\n  aurasim experiment pareto --no-nodes --out out");
   command->callback([plan, out, &action] { action = [plan, out] { return run_pareto(*plan, *out); }; });
 }
 

@@ -6,11 +6,14 @@
 #include "cli/launch_setup.h"
 #include "cli/scene_warnings.h"
 #include "config/launch.h"
+#include "config/shipped_files.h"
 
 namespace aurasim::cli {
 
 void FileArguments::add_to(CLI::App& command) {
-  command.add_option("FILE", file, "launch file")->required();
+  command.add_option("FILE", file, "launch file, or the name of one that comes with the program: demo, tower, ...")
+      ->required()
+      ->transform(config::launch_file_named);
   command.add_option("--set", overrides, "change one key of the launch file: key.path=value")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -20,6 +23,7 @@ void add_check(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("check", "validate a launch file and its scene");
   const auto files = std::make_shared<FileArguments>();
   files->add_to(*command);
+  command->footer("Example:\n  aurasim check demo --set regions.count=9");
   command->callback([files, &action] {
     action = [files] {
       const config::Launch launch = config::read_launch(files->file, files->overrides);

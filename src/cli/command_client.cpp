@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 6s;
+constexpr auto kPatienceForAnswers = 6s;
 constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it is done
 constexpr auto kPatienceForChanges = 20s;
 constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
@@ -43,7 +43,8 @@ std::uint64_t CommandClient::send(core::Command command) {
   under_way.delivery.is_ray = ray != nullptr;
   if (ray != nullptr) under_way.asked = ray->regions;
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
-  under_way.deadline = Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatience));
+  under_way.deadline =
+      Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatienceForAnswers));
   // Any map: there is one run in a domain, and its map may be changing just now.
   const std::uint64_t request = endpoint_.send(std::move(command), 0);
   under_way.delivery.request = request;

@@ -9,12 +9,12 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string a, b;
   bool json = false;
 };
 
-int compare(const Arguments& arguments) {
+int compare(const CompareArguments& arguments) {
   const node::Comparison c = node::compare_reports(arguments.a, arguments.b);
   if (arguments.json) {
     nlohmann::json out = {{"hashes_equal", c.hashes_equal},
@@ -42,10 +42,11 @@ int compare(const Arguments& arguments) {
 
 void add_compare(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("compare", "are two reports of a scene the same run, bit by bit?");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   command->add_option("DIR_A", arguments->a, "a report")->required()->check(CLI::ExistingDirectory);
   command->add_option("DIR_B", arguments->b, "another report")->required()->check(CLI::ExistingDirectory);
   command->add_flag("--json", arguments->json, "print an object instead of a sentence");
+  command->footer("Example:\n  aurasim compare four one");
   command->callback([arguments, &action] { action = [arguments] { return compare(*arguments); }; });
 }
 

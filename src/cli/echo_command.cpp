@@ -1,13 +1,17 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
+#include "cli/silence.h"
 #include "cli/stop_signal.h"
+#include "dds/control.h"
 #include "dds/topic_echo.h"
 
 namespace aurasim::cli {
@@ -16,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
+struct EchoArguments {
   FileArguments files;
   std::string topic;
   std::string partition = "*";
@@ -35,22 +39,43 @@ void print(const nlohmann::ordered_json& sample, bool json) {
   std::fflush(stdout);
 }
 
+/// DDS takes a pattern that fits nothing for granted, and stays silent.
+void check_partition(const EchoArguments& arguments, const config::Launch& launch) {
+  const std::vector<std::string> partitions = dds::partitions_of_topic(arguments.topic, launch.regions.size());
+  const auto fits = [&](const std::string& name) {
+    return ::fnmatch(arguments.partition.c_str(), name.c_str(), 0) == 0;
+  };
+  if (std::any_of(partitions.begin(), partitions.end(), fits)) return;
+  throw config::BadConfig(
+      {fmt::format("--partition: found '{}', allowed for {}: {}{}, or a pattern with *", arguments.partition,
+                   arguments.topic, partitions.front(), partitions.size() > 1 ? " to " + partitions.back() : "")});
+}
+
 /// 0 when as many as asked for have come, or when no number was asked for.
-int echo(const Arguments& arguments) {
+int echo(const EchoArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  check_partition(arguments, launch);
   dds::Participant participant(dds_settings(launch));
   dds::TopicEcho topic(participant, arguments.topic, arguments.partition);
+  dds::ControlBus control(participant, {});
   catch_stop_signals();
-  const auto end = Clock::now() + std::chrono::duration<double>(arguments.duration_s);
+  const auto begin = Clock::now();
+  const auto end = begin + std::chrono::duration<double>(arguments.duration_s);
   std::uint64_t left = arguments.count;
+  bool has_heard = false;
+  const auto nobody = [&] { return !has_heard && control.statuses().empty() && !stop_requested(); };
   while (!stop_requested() && (arguments.duration_s <= 0 || Clock::now() < end)) {
     if (const auto sample = topic.take()) {
+      has_heard = true;
       print(*sample, arguments.json);
       if (arguments.count > 0 && --left == 0) break;
     } else {
       topic.wait(50ms);
+      control.wait(0ms);
+      if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
     }
   }
+  if (nobody()) fail_for_want_of_a_run(arguments.files, launch);
   leave(left == 0 ? 0 : 1);
 }
 
@@ -58,13 +83,14 @@ int echo(const Arguments& arguments) {
 
 void add_echo(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("echo", "print what is said on a topic of a run");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<EchoArguments>();
   command->add_option("TOPIC", arguments->topic, "its name")->required()->check(CLI::IsMember(dds::topic_names()));
   arguments->files.add_to(*command);
   command->add_option("--partition", arguments->partition, "such as region/3, region/*, world; default: all");
   command->add_option("--count", arguments->count, "stop after so many samples");
   command->add_option("--duration", arguments->duration_s, "stop after so many seconds; 0: on Ctrl-C");
   command->add_flag("--json", arguments->json, "one object per line");
+  command->footer("Example:\n  aurasim echo aura demo --partition region/2 --count 5");
   command->callback([arguments, &action] { action = [arguments] { return echo(*arguments); }; });
 }
 

@@ -9,11 +9,11 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
 #include "cli/target_list.h"
-#include "config/launch.h"
+#include "config/shipped_files.h"
 #include "experiment/aura_radius.h"
 #include "experiment/collision.h"
 #include "experiment/loss.h"
@@ -23,7 +23,7 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct TrialArguments {
   std::vector<std::string> pairs, auras, syncs;
   experiment::CollisionPlan plan;
   std::string out;
@@ -40,7 +40,7 @@ void choose(const std::vector<std::string>& names, Named&& named, std::vector<Va
 }
 
 /// The flag follows the signal, which the threads of the laboratory cannot ask for themselves.
-bool run_to_the_end(const experiment::Campaign& campaign, const Arguments& arguments) {
+bool run_to_the_end(const experiment::Campaign& campaign, const TrialArguments& arguments) {
   catch_stop_signals();
   std::atomic<bool> stop = false;
   ProgressBar bar;
@@ -60,7 +60,7 @@ bool run_to_the_end(const experiment::Campaign& campaign, const Arguments& argum
   return finished;
 }
 
-int run_trials(Arguments arguments, bool loss) {
+int run_trials(TrialArguments arguments, bool loss) {
   choose(arguments.pairs, experiment::pair_named, arguments.plan.pairs);
   choose(arguments.auras, experiment::aura_named, arguments.plan.auras);
   choose(arguments.syncs, experiment::sync_named, arguments.plan.syncs);
@@ -79,7 +79,7 @@ int run_trials(Arguments arguments, bool loss) {
 
 void add_trials(CLI::App& parent, Action& action, const std::string& name, const std::string& about, bool loss) {
   CLI::App* command = parent.add_subcommand(name, about);
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<TrialArguments>();
   a->pairs = loss ? std::vector<std::string>{"head_on"}
                   : std::vector<std::string>{"head_on", "corner", "grazing", "boxes", "capsules", "random"};
   a->auras = {"none", "thesis", "tight", "tight_at_thesis_size", "swept"};
@@ -111,6 +111,7 @@ void add_trials(CLI::App& parent, Action& action, const std::string& name, const
                      "values of each series for pairs that are not head-on (0: all)")
         ->check(CLI::Range(0, 1000));
   }
+  command->footer(fmt::format("Example:\n  aurasim experiment {} --virtual --repeats 20 --out out", name));
   command->callback([a, loss, &action] { action = [a, loss] { return run_trials(*a, loss); }; });
 }
 
@@ -119,6 +120,7 @@ void add_trials(CLI::App& parent, Action& action, const std::string& name, const
 void add_experiment(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("experiment", "the laboratory: the thesis's experiments");
   command->require_subcommand(1);
+  command->footer("Example:\n  aurasim experiment collision --virtual --repeats 20 --out out");
   add_trials(*command, action, "collision", "pairs that meet across a border: speed, latency, frame time", false);
   add_trials(*command, action, "loss", "the same with 0 to 20% of the datagrams lost", true);
   add_stability(*command, action);

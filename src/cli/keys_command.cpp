@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "config/key_page.h"
 #include "config/key_schema.h"
 

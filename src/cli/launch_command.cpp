@@ -1,21 +1,43 @@
 #include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
+#include "cli/host_room.h"
 #include "cli/launcher.h"
 #include "cli/leave.h"
 #include "cli/run_length.h"
+#include "cli/web_setup.h"
 
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct LaunchArguments {
   LaunchOptions options;
   RunLength length;
   std::string report;
 };
 
-int run_launch(Arguments arguments) {
+/// What cannot work is refused before anything is started; what may be slow is said.
+void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
+  if (const auto problem = problem_with_regions(launch.regions.size(), launch.dds.domain)) {
+    throw config::BadConfig({fmt::format("{}: {}", options.files.file, *problem)});
+  }
+  if (const auto warning = warning_of_turns(launch.regions.size(), std::thread::hardware_concurrency())) {
+    spdlog::warn("{}", *warning);
+  }
+  if (options.headless && options.recording.empty()) return;
+  const auto problem = problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
+  if (problem) throw std::runtime_error(*problem);
+  if (!options.recording.empty()) check_recording(options.recording);
+}
+
+int run_launch(LaunchArguments arguments) {
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
+  look_at_host(launch, arguments.options);
   arguments.options.steps = arguments.length.last_step(launch);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
@@ -26,7 +48,7 @@ int run_launch(Arguments arguments) {
 
 void add_launch(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("launch", "run every region of a launch file on this host");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LaunchArguments>();
   arguments->options.files.add_to(*command);
   arguments->length.add_to(*command);
   command->add_flag("--headless", arguments->options.headless, "no table, no viewer");
@@ -34,6 +56,7 @@ void add_launch(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the nodes record");
   command->add_option("--start-time-out", arguments->options.start_time_out_s, "seconds to wait for all regions")
       ->check(CLI::Range(1, 3600));
+  command->footer("Example:\n  aurasim launch demo --duration 30 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_launch(*arguments); }; });
 }
 

@@ -81,7 +81,11 @@ dds::WorldMap world_map(const config::Launch& launch) {
 std::filesystem::path executable_for(const std::string& precision) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
   std::filesystem::path program = self.parent_path() / (precision == "single" ? "aurasim-single" : "aurasim");
-  if (!std::filesystem::exists(program)) throw std::runtime_error(program.string() + " is missing");
+  if (!std::filesystem::exists(program)) {
+    throw std::runtime_error(program.string() +
+                             " is missing. `scripts/setup.sh && scripts/build.sh release aurasim-single` builds it; "
+                             "scripts/demo.sh builds double precision only");
+  }
   return program;
 }
 

@@ -183,13 +183,14 @@ std::vector<std::uint32_t> Launcher::running_regions() const {
 }
 
 void Launcher::show() {
-  if (options_.headless) return;
   viewer_.look();
-  is_seen_ = view_.show(live_table(control_.statuses()) + viewer_.said()) && is_seen_;
+  if (options_.headless) return;
+  is_seen_ = view_.show(live_table(control_.statuses(), view_.size()) + viewer_.said()) && is_seen_;
 }
 
 ExitCode Launcher::conclude() {
-  ExitCode code = ExitCode::kOk;
+  const bool recording_broke_off = viewer_.has_ended_early() && !options_.recording.empty();
+  ExitCode code = recording_broke_off ? ExitCode::kFailed : ExitCode::kOk;
   for (const Child& child : children_) {
     if (child.died) code = ExitCode::kFailed;
     if (!child.died && child.exit_code != 0 && code == ExitCode::kOk) code = static_cast<ExitCode>(child.exit_code);

@@ -1,38 +1,108 @@
 #include "cli/live_table.h"
 
 #include <algorithm>
+#include <vector>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "cli/terminal.h"
 
 namespace aurasim::cli {
+namespace {
 
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses) {
-  std::string text =
-      fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>9} {:>6}\n", "region", "state",
-                  "step", "bodies", "awake", "auras", "sent", "received", "frame ms", "p99 ms", "broken", "rtf");
+constexpr std::size_t kLinesBesides = 6;  // head, sums, what the viewer says, the cursor
+
+struct Column {
+  std::string head;
+  std::size_t width = 0;  ///< without the space before it
+  int rank = 0;           ///< the one of the highest rank is left out first
+  std::vector<std::string> cells;
+};
+
+struct Sums {
   std::uint64_t bodies = 0, sent = 0, received = 0, broken = 0;
-  for (const auto& [region, seen] : statuses) {
-    const dds::Status& s = seen.status;
-    const dds::Violations& v = s.violations;
-    const std::uint64_t violations = v.speed + v.latency + v.frame + v.promise + v.span;
-    text += fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9.2f} {:>9.2f} {:>9} {:>6.2f}\n",
-                        core::value_of(region), seen.lost ? "lost" : dds::name_of(s.state), s.step, s.bodies, s.awake,
-                        s.foreign_auras, s.hand_offs_out, s.hand_offs_in, s.frame.p50_ms, s.frame.p99_ms, violations,
-                        s.real_time_factor);
-    bodies += s.bodies;
-    sent += s.hand_offs_out;
-    received += s.hand_offs_in;
-    broken += violations;
+};
+
+std::vector<Column> empty_columns() {
+  return {{"region", 6, 0, {}},   {"state", 8, 0, {}},  {"step", 8, 1, {}},   {"bodies", 7, 0, {}},
+          {"awake", 7, 6, {}},    {"auras", 7, 5, {}},  {"sent", 7, 2, {}},   {"received", 8, 2, {}},
+          {"frame ms", 8, 3, {}}, {"p99 ms", 8, 7, {}}, {"broken", 6, 1, {}}, {"rtf", 5, 0, {}}};
+}
+
+void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    columns[i].width = std::max(columns[i].width, cells[i].size());
+    columns[i].cells.push_back(cells[i]);
   }
-  text += fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>9}\n", "all", "", "", bodies, "",
-                      "", sent, received, "", "", broken);
-  return text;
+}
+
+std::uint64_t broken_promises(const dds::Violations& v) { return v.speed + v.latency + v.frame + v.promise + v.span; }
+
+void add_region(std::vector<Column>& columns, const dds::SeenStatus& seen) {
+  const dds::Status& s = seen.status;
+  const auto text = [](const auto& value) { return fmt::to_string(value); };
+  const auto decimals = [](double value) { return fmt::format("{:.2f}", value); };
+  add_row(columns,
+          {text(core::value_of(s.region)), seen.lost ? "lost" : dds::name_of(s.state), text(s.step), text(s.bodies),
+           text(s.awake), text(s.foreign_auras), text(s.hand_offs_out), text(s.hand_offs_in), decimals(s.frame.p50_ms),
+           decimals(s.frame.p99_ms), text(broken_promises(s.violations)), decimals(s.real_time_factor)});
+}
+
+std::size_t width_of(const std::vector<Column>& columns) {
+  std::size_t width = 0;
+  for (const Column& column : columns) width += column.width + 1;
+  return width - 1;
+}
+
+/// A line that ends in the last column makes some terminals wrap: one is kept free.
+void leave_out_what_does_not_fit(std::vector<Column>& columns, std::size_t terminal) {
+  while (columns.size() > 1 && width_of(columns) >= terminal) {
+    columns.erase(std::max_element(columns.begin(), columns.end(),
+                                   [](const Column& a, const Column& b) { return a.rank < b.rank; }));
+  }
+}
+
+std::string line(const std::vector<Column>& columns, std::size_t row) {
+  std::string text;
+  for (const Column& column : columns) text += fmt::format(" {:>{}}", column.cells[row], column.width);
+  return text.substr(1) + "\n";
+}
+
+}  // namespace
+
+std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {
+  std::vector<Column> columns = empty_columns();
+  for (Column& column : columns) column.cells.push_back(column.head);
+  const std::size_t room = size.rows > kLinesBesides + 1 ? size.rows - kLinesBesides : 1;
+  const std::size_t shown = statuses.size() <= room ? statuses.size() : room - 1;
+  Sums sums;
+  std::size_t row = 0;
+  for (const auto& [region, seen] : statuses) {
+    if (row++ < shown) add_region(columns, seen);
+    sums.bodies += seen.status.bodies;
+    sums.sent += seen.status.hand_offs_out;
+    sums.received += seen.status.hand_offs_in;
+    sums.broken += broken_promises(seen.status.violations);
+  }
+  const auto text = [](std::uint64_t value) { return fmt::to_string(value); };
+  add_row(columns, {"all", "", "", text(sums.bodies), "", "", text(sums.sent), text(sums.received), "", "",
+                    text(sums.broken), ""});
+  leave_out_what_does_not_fit(columns, size.columns);
+  std::string table;
+  for (std::size_t i = 0; i <= shown; ++i) table += line(columns, i);
+  if (shown < statuses.size()) table += fmt::format("{:>6} {} more\n", "...", statuses.size() - shown);
+  return table + line(columns, shown + 1);
 }
 
 TerminalView::TerminalView() : is_terminal_(::isatty(STDOUT_FILENO) != 0) {}
+
+TerminalSize TerminalView::size() const {
+  ::winsize found{};
+  if (!is_terminal_ || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &found) != 0 || found.ws_col == 0) return {};
+  return {found.ws_col, found.ws_row};
+}
 
 bool TerminalView::show(const std::string& text) {
   const std::string over = is_terminal_ && lines_ > 0 ? fmt::format("\x1b[{}A\x1b[J", lines_) : "";

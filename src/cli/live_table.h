@@ -1,6 +1,7 @@
 // What the nodes say of themselves, as a table for a terminal.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -8,8 +9,15 @@
 
 namespace aurasim::cli {
 
-/// One line per region and a line of sums.
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses);
+/// Where a table has to fit.
+struct TerminalSize {
+  std::size_t columns = 1000;
+  std::size_t rows = 1000;
+};
+
+/// One line per region and a line of sums, each shorter than the terminal is wide: what matters least is left out.
+/// When there are more regions than rows, the last line but one says how many are not shown.
+std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
 
 /// Prints `text` over what was printed last (if standard output is a terminal; otherwise below it).
 class TerminalView {
@@ -18,6 +26,8 @@ class TerminalView {
   /// False when nobody sees it any more.
   bool show(const std::string& text);
   bool is_terminal() const { return is_terminal_; }
+  /// Of now; a terminal may change. Boundless for a file or a pipe.
+  TerminalSize size() const;
 
  private:
   bool is_terminal_;

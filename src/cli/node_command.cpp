@@ -18,7 +18,7 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct NodeArguments {
   FileArguments files;
   std::uint32_t region = 0;
   std::uint64_t run = 0;
@@ -46,7 +46,7 @@ void become_the_right_precision(const config::Launch& launch) {
   throw std::runtime_error(fmt::format("cannot start {}", program));
 }
 
-int run_node(const Arguments& arguments) {
+int run_node(const NodeArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   if (arguments.region >= launch.regions.size()) {
     throw config::BadConfig({fmt::format("--region: found {}, allowed: 0 to {} ({} has {} regions)", arguments.region,
@@ -73,7 +73,7 @@ int run_node(const Arguments& arguments) {
 
 void add_node(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("node", "run one region");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<NodeArguments>();
   arguments->files.add_to(*command);
   command->add_option("--region", arguments->region, "which region of the map")->required();
   command->add_option("--run", arguments->run,
@@ -82,6 +82,7 @@ void add_node(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the node records");
   command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
       ->check(CLI::Range(1, 3600));
+  command->footer("Example:\n  aurasim node demo --region 0 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_node(*arguments); }; });
 }
 

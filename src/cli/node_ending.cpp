@@ -5,11 +5,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStopGently = 900ms;   // so long a node may take to the state in which all stop
-constexpr auto kStandstill = 500ms;   // and longer if its step grows at least so often
-constexpr auto kStopSurely = 1600ms;  // whoever shows no life then is killed
-constexpr auto kSilence = 3s;         // no life: lost, and nothing heard for so long
-constexpr auto kPatience = 30s;       // with whoever does
+constexpr auto kStopGently = 900ms;        // so long a node may take to the state in which all stop
+constexpr auto kStandstill = 500ms;        // and longer if its step grows at least so often
+constexpr auto kStopSurely = 1600ms;       // whoever shows no life then is killed
+constexpr auto kSilence = 3s;              // no life: lost, and nothing heard for so long
+constexpr auto kPatienceWithEnding = 30s;  // with whoever does
 
 bool has_ended(const dds::SeenStatus& seen) {
   return seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
@@ -26,7 +26,7 @@ Urge NodeEnding::urge(Clock::time_point now, const dds::SeenStatus* seen) {
 
 bool NodeEnding::is_given_up(Clock::time_point now, const dds::SeenStatus* seen) const {
   const auto waited = now - begin_;
-  if (waited > kPatience) return true;
+  if (waited > kPatienceWithEnding) return true;
   if (waited <= kStopSurely) return false;
   return seen == nullptr || (!has_ended(*seen) && seen->lost && now - seen->seen > kSilence);
 }

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPatience = 20s;
+constexpr auto kPatienceWithOthers = 20s;
 constexpr auto kRound = 5ms;
 
 /// What went wrong and with whom: the run cannot go on.
@@ -110,7 +110,7 @@ void NodeProcess::change_scene(const std::string& name) {
 /// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.
 void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
     const dds::Status& status = entry.second.status;
     const bool is_here = status.state == dds::NodeState::kPaused && status.generation == generation_ &&
@@ -130,7 +130,7 @@ void NodeProcess::wait_until_all_stand() {
 
 /// Waits until every body that was on its way to us is here.
 void NodeProcess::settle_all() {
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kPatienceWithOthers;
   while (!node_->ready_to_settle()) {
     if (Clock::now() > deadline || stop_requested()) {
       throw ChangeFailed("new regions: a neighbour has not come to this state");
@@ -145,7 +145,7 @@ void NodeProcess::settle_all() {
 void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
   transport_.reset();
   transport_.emplace(participant_, settings);
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kPatienceWithOthers;
   while (!transport_->all_matched()) {
     if (Clock::now() > deadline) transport_->wait_until_matched(0ns);  // says who is missing
     if (stop_requested()) throw ChangeFailed("told to stop while the run changes");
@@ -167,7 +167,7 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
 void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   settle_all();
   wait_until_all_stand();
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kPatienceWithOthers;
   const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
   const node::RepartitionSettings settings = {options_.region, generation_ + 1, aura_rules(*changed),
                                               &changed->regions};

@@ -14,13 +14,13 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct OverseerArguments {
   FileArguments files;
   WebArguments web;
   std::string recording;
 };
 
-int oversee(const Arguments& arguments) {
+int oversee(const OverseerArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   const overseer::WebSettings settings = web_settings(launch, arguments.web);
   overseer::ShapeStore shapes;
@@ -41,10 +41,11 @@ int oversee(const Arguments& arguments) {
 
 void add_overseer(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("overseer", "serve the viewer of a run; start and stop it as you like");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OverseerArguments>();
   arguments->files.add_to(*command);
   arguments->web.add_to(*command);
   command->add_option("--record", arguments->recording, "write down what pages see; `aurasim replay` shows it again");
+  command->footer("Example:\n  aurasim overseer demo --port 8081");
   command->callback([arguments, &action] { action = [arguments] { return oversee(*arguments); }; });
 }
 

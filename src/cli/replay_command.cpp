@@ -17,10 +17,10 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kRound = 5ms;
-constexpr auto kStatusPeriod = 250ms;
+constexpr auto kReplayRound = 5ms;
+constexpr auto kReplayStatusPeriod = 250ms;
 
-struct Arguments {
+struct ReplayArguments {
   std::string file;
   WebArguments web;
 };
@@ -54,7 +54,7 @@ void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
   }
 }
 
-int replay(const Arguments& arguments) {
+int replay(const ReplayArguments& arguments) {
   overseer::Replay replay(arguments.file);
   overseer::ShapeStore shapes;
   const auto web = open_web_server(web_settings({}, arguments.web), shapes);
@@ -68,10 +68,10 @@ int replay(const Arguments& arguments) {
     for (auto& [notice, text] : due.texts) web->publish(notice, std::move(text));
     for (const overseer::WorldFrame& frame : due.frames) web->show(frame);
     if (Clock::now() >= next_status) {
-      next_status = Clock::now() + kStatusPeriod;
+      next_status = Clock::now() + kReplayStatusPeriod;
       web->publish(overseer::Notice::kReplay, replay_message(replay));
     }
-    std::this_thread::sleep_for(kRound);
+    std::this_thread::sleep_for(kReplayRound);
   }
   leave(0);
 }
@@ -80,9 +80,10 @@ int replay(const Arguments& arguments) {
 
 void add_replay(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("replay", "show a recording in the viewer");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("FILE", arguments->file, "what --record has written")->required()->check(CLI::ExistingFile);
   arguments->web.add_to(*command);
+  command->footer("Example:\n  aurasim replay run.rec");
   command->callback([arguments, &action] { action = [arguments] { return replay(*arguments); }; });
 }
 

@@ -1,4 +1,7 @@
+#include <filesystem>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "cli/merged_report.h"
@@ -7,13 +10,24 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   FileArguments files;
   std::string folder;
 };
 
-int merge(const Arguments& arguments) {
+/// A report is written only where nodes have recorded something.
+void check_folder(const ReportArguments& arguments, const config::Launch& launch) {
+  for (std::size_t r = 0; r < launch.regions.size(); ++r) {
+    const std::filesystem::path folder = std::filesystem::path(arguments.folder) / fmt::format("region_{}", r);
+    if (std::filesystem::is_directory(folder)) return;
+  }
+  throw config::BadConfig(
+      {fmt::format("{}: has no folder of a node, region_0 to region_{}", arguments.folder, launch.regions.size() - 1)});
+}
+
+int merge(const ReportArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  check_folder(arguments, launch);
   node::RunFacts facts;
   facts.regions = launch.regions.size();
   facts.step_s = launch.step_s();
@@ -27,11 +41,12 @@ int merge(const Arguments& arguments) {
 void add_report(CLI::App& program, Action& action) {
   CLI::App* command =
       program.add_subcommand("report", "merge what the nodes of separate hosts have recorded, as launch does");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReportArguments>();
   arguments->files.add_to(*command);
   command->add_option("DIR", arguments->folder, "the region_N folders of all nodes")
       ->required()
       ->check(CLI::ExistingDirectory);
+  command->footer("Example:\n  aurasim report demo out");
   command->callback([arguments, &action] { action = [arguments] { return merge(*arguments); }; });
 }
 

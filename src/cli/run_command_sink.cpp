@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Kind = dds::RunCommandKind;
 
-constexpr auto kPatience = 10s;
+constexpr auto kPatienceForEffect = 10s;
 constexpr auto kPatienceForListeners = 3s;
 
 class BadAsk : public std::runtime_error {
@@ -100,7 +100,7 @@ void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int
   if (!steering_.is_there()) return refuse("no node of this run is there");
   if (kind == Kind::kStep && !steering_.is_paused()) return refuse("steps are for a run that is paused");
   try {
-    under_way_.push_back({request.client, request.id, steering_.send(kind, count), Clock::now() + kPatience});
+    under_way_.push_back({request.client, request.id, steering_.send(kind, count), Clock::now() + kPatienceForEffect});
   } catch (const std::runtime_error& error) {
     refuse(error.what());
   }

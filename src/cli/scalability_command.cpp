@@ -9,10 +9,11 @@
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "cli/progress_bar.h"
 #include "cli/rain_processes.h"
 #include "cli/stop_signal.h"
+#include "config/shipped_files.h"
 #include "experiment/scale/message_sizes.h"
 #include "experiment/scale/rain_summary.h"
 #include "experiment/scale/scalability.h"
@@ -20,16 +21,16 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct RainArguments {
   experiment::ScalabilityPlan plan;
-  std::filesystem::path launch_file = AURASIM_SOURCE_DIR "/launch_configs/columns_rain.yaml";
+  std::filesystem::path launch_file = config::shipped_folder() / "launch_configs" / "columns_rain.yaml";
   std::filesystem::path out;
   int threads = 2;
   bool processes = false;
   std::vector<std::string> overrides;
 };
 
-experiment::RainPlace place_of(const Arguments& arguments) {
+experiment::RainPlace place_of(const RainArguments& arguments) {
   experiment::RainPlace place;
   place.launch_file = arguments.launch_file;
   place.setup_of = [](const config::Launch& launch, core::RegionId region) { return node_setup(launch, region, 0); };
@@ -49,7 +50,7 @@ void print(const nlohmann::json& speed_ups) {
 }
 
 /// False when it was told to stop.
-bool run(const std::vector<experiment::Rain>& rains, const Arguments& arguments) {
+bool run(const std::vector<experiment::Rain>& rains, const RainArguments& arguments) {
   catch_stop_signals();
   std::atomic<bool> stop = false;
   ProgressBar bar;
@@ -66,7 +67,7 @@ bool run(const std::vector<experiment::Rain>& rains, const Arguments& arguments)
 }
 
 /// One after the other, since they measure the wall clock. False when one of them has failed.
-bool run_as_processes(const std::vector<experiment::Rain>& rains, const Arguments& arguments) {
+bool run_as_processes(const std::vector<experiment::Rain>& rains, const RainArguments& arguments) {
   std::filesystem::create_directories(arguments.out / "runs");
   for (const experiment::Rain& rain : rains) {
     const std::filesystem::path file = experiment::windows_file(arguments.out, rain);
@@ -81,14 +82,14 @@ bool run_as_processes(const std::vector<experiment::Rain>& rains, const Argument
 
 int exit_code(bool finished) { return static_cast<int>(finished ? ExitCode::kOk : ExitCode::kFailed); }
 
-int run_scalability(const Arguments& arguments) {
+int run_scalability(const RainArguments& arguments) {
   const std::vector<experiment::Rain> rains = experiment::rains_of(arguments.plan);
   const bool finished = arguments.processes ? run_as_processes(rains, arguments) : run(rains, arguments);
   print(experiment::summarise_rains(rains, arguments.out)["speed_up"]);
   return exit_code(finished);
 }
 
-int run_bandwidth(const Arguments& arguments) {
+int run_bandwidth(const RainArguments& arguments) {
   const std::vector<experiment::Rain> rains = experiment::rains_of(arguments.plan);
   const bool finished = run(rains, arguments);
   experiment::summarise_rains(rains, arguments.out);
@@ -101,7 +102,7 @@ int run_bandwidth(const Arguments& arguments) {
   return exit_code(finished && tight <= 40 && swept <= 80);
 }
 
-void add_options(CLI::App& command, const std::shared_ptr<Arguments>& a, const std::vector<std::string>& series) {
+void add_options(CLI::App& command, const std::shared_ptr<RainArguments>& a, const std::vector<std::string>& series) {
   a->plan.series = series;
   command.add_option("--out", a->out, "folder for the results; runs that it holds are not repeated")->required();
   command.add_option("--launch", a->launch_file, "launch file whose rain it is");
@@ -124,20 +125,22 @@ void add_options(CLI::App& command, const std::shared_ptr<Arguments>& a, const s
 void add_scalability(CLI::App& experiment, Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "scalability", "rain on 1 to 10 nodes: CPU time of each node and step, in virtual time (thesis 5.1)");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<RainArguments>();
   add_options(*command, a, experiment::scalability_series());
   command->add_flag("--processes", a->processes, "real nodes over DDS on this host, by the wall clock");
   command->add_option("--set", a->overrides, "key.path=value, as for launch; with --processes");
   command->add_option("--columns", a->plan.columns, "numbers of columns")->delimiter(',')->check(CLI::Range(1, 64));
+  command->footer("Example:\n  aurasim experiment scalability --columns 1,4 --out out");
   command->callback([a, &action] { action = [a] { return run_scalability(*a); }; });
 }
 
 void add_bandwidth(CLI::App& experiment, Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "bandwidth", "bytes of auras and hand-offs by speed and aura, and what narrow links do, in virtual time");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<RainArguments>();
   a->plan.run_s = 10;
   add_options(*command, a, experiment::bandwidth_series());
+  command->footer("Example:\n  aurasim experiment bandwidth --out out");
   command->callback([a, &action] { action = [a] { return run_bandwidth(*a); }; });
 }
 

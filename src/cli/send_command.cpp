@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
-#include "cli/node_process.h"
+#include "cli/exit_code.h"
 #include "cli/run_steering.h"
 #include "config/convex_parts.h"
 #include "config/meshes.h"
@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
 using Numbers = std::vector<double>;
 
-constexpr auto kPatience = 25s;
+constexpr auto kPatienceWithTheRun = 25s;
 
 const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"resume", Kind::kResume},
@@ -30,7 +30,7 @@ const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"reset", Kind::kReset},
                                                {"stop", Kind::kStop}};
 
-struct Arguments {
+struct SendArguments {
   FileArguments files;
   std::string what;
   std::int64_t count = 1;
@@ -56,7 +56,7 @@ struct Arguments {
 
 core::Vec3 vector(const Numbers& v) { return v.size() == 3 ? core::Vec3(v[0], v[1], v[2]) : core::Vec3::Zero(); }
 
-core::Pose pose(const Arguments& a) {
+core::Pose pose(const SendArguments& a) {
   core::Pose pose{vector(a.p), core::Quat::Identity()};
   if (a.q.size() == 4) pose.q_WB = core::Quat(a.q[0], a.q[1], a.q[2], a.q[3]).normalized();
   return pose;
@@ -74,7 +74,7 @@ core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClie
   return {hash, use};
 }
 
-core::ClientShape shape(const Arguments& a, core::MeshUse use, CommandClient& client) {
+core::ClientShape shape(const SendArguments& a, core::MeshUse use, CommandClient& client) {
   if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, client);
   if (a.size.size() == 3) return core::Box{vector(a.size) / 2};
   if (a.radius_m > 0 && a.height_m > 0) return core::Capsule{a.radius_m, a.height_m};
@@ -82,7 +82,7 @@ core::ClientShape shape(const Arguments& a, core::MeshUse use, CommandClient& cl
   fail("which shape? --size X Y Z, --radius R [--height H] or --mesh FILE");
 }
 
-core::Ask ask_for(const Arguments& a, CommandClient& client) {
+core::Ask ask_for(const SendArguments& a, CommandClient& client) {
   if (a.what == "spawn") {
     core::NewBody body;
     body.prototype = a.prototype;
@@ -114,7 +114,7 @@ core::Ask ask_for(const Arguments& a, CommandClient& client) {
   return regions;
 }
 
-nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 [[noreturn]] void print(const Delivery& delivery) {
   if (!delivery.done) fail(delivery.text);
@@ -125,8 +125,8 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
     out["hit"] = delivery.object.has_value();
     out["complete"] = delivery.silent.empty();
     if (delivery.object) {
-      out["p"] = list(delivery.p_W);
-      out["normal"] = list(delivery.normal_W);
+      out["p"] = json_list(delivery.p_W);
+      out["normal"] = json_list(delivery.normal_W);
       out["distance_m"] = delivery.distance_m;
     }
   }
@@ -134,10 +134,10 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
   leave(0);
 }
 
-[[noreturn]] void carry(const Arguments& arguments, dds::Participant& participant, dds::ControlBus& control,
+[[noreturn]] void carry(const SendArguments& arguments, dds::Participant& participant, dds::ControlBus& control,
                         std::uint64_t agreement) {
   CommandClient client(participant, control, agreement);
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
   while (!client.all_listen() && in_time()) client.wait(20ms);
   core::Command command;
@@ -151,16 +151,16 @@ nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
   fail("no answer");
 }
 
-[[noreturn]] void steer(const Arguments& arguments, RunSteering& steering) {
+[[noreturn]] void steer(const SendArguments& arguments, RunSteering& steering) {
   const dds::RunCommand command = steering.send(kSteering.at(arguments.what), arguments.count);
-  if (!steering.wait_for_effect(command, kPatience)) {
+  if (!steering.wait_for_effect(command, kPatienceWithTheRun)) {
     fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
   }
   fmt::print("{}: done at step {}\n", arguments.what, command.at_step);
   leave(0);
 }
 
-int send(const Arguments& arguments) {
+int send(const SendArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   dds::Participant participant(dds_settings(launch));
   dds::ControlBus control(participant, {.agreement = launch.agreement()});
@@ -174,25 +174,25 @@ int send(const Arguments& arguments) {
   });
 }
 
-using Options = std::function<void(CLI::App&, Arguments&)>;
+using Options = std::function<void(CLI::App&, SendArguments&)>;
 
 void vector_option(CLI::App& command, const char* name, Numbers& value, const char* text, int count = 3) {
   command.add_option(name, value, text)->expected(count);
 }
 
-void shape_options(CLI::App& command, Arguments& a) {
+void shape_options(CLI::App& command, SendArguments& a) {
   vector_option(command, "--size", a.size, "a box, side lengths in m");
   command.add_option("--radius", a.radius_m, "a ball, m; with --height a capsule along z");
   command.add_option("--height", a.height_m, "between the centres of the capsule's caps, m");
   command.add_option("--mesh", a.mesh_file, "OBJ, STL or glTF file; bodies take its hull")->check(CLI::ExistingFile);
 }
 
-void place_options(CLI::App& command, Arguments& a) {
+void place_options(CLI::App& command, SendArguments& a) {
   vector_option(command, "--p", a.p, "position, m");
   vector_option(command, "--q", a.q, "rotation, quaternion w x y z", 4);
 }
 
-void spawn_options(CLI::App& command, Arguments& a) {
+void spawn_options(CLI::App& command, SendArguments& a) {
   command.add_option("--prototype", a.prototype, "name of one of the scene's, instead of a shape");
   shape_options(command, a);
   command.add_flag("--parts", a.in_parts, "with --mesh: convex parts that it is taken apart into, instead of its hull");
@@ -202,31 +202,50 @@ void spawn_options(CLI::App& command, Arguments& a) {
   command.add_option("--mass", a.mass_kg, "kg");
 }
 
-void static_options(CLI::App& command, Arguments& a) {
+void static_options(CLI::App& command, SendArguments& a) {
   shape_options(command, a);
   place_options(command, a);
 }
 
-void remove_options(CLI::App& command, Arguments& a) {
+void remove_options(CLI::App& command, SendArguments& a) {
   CLI::Option* body = command.add_option("--body", a.body, "id");
   command.add_option("--static", a.fixed, "id")->excludes(body)->each([&a](const std::string&) { a.is_static = true; });
 }
 
-void impulse_options(CLI::App& command, Arguments& a) {
+void impulse_options(CLI::App& command, SendArguments& a) {
   command.add_option("--body", a.body, "id")->required();
   vector_option(command, "--J", a.J, "impulse, N s");
   vector_option(command, "--p", a.p, "point of attack, m; otherwise the centre of mass");
 }
 
-void velocity_options(CLI::App& command, Arguments& a) {
+void velocity_options(CLI::App& command, SendArguments& a) {
   command.add_option("--body", a.body, "id")->required();
   vector_option(command, "--v", a.v, "m/s");
   vector_option(command, "--w", a.w, "rad/s; otherwise the spin stays");
 }
 
-void ray_options(CLI::App& command, Arguments& a) {
+void ray_options(CLI::App& command, SendArguments& a) {
   vector_option(command, "--from", a.from, "m");
   vector_option(command, "--to", a.to, "m");
+}
+
+/// What follows `aurasim send KIND demo`.
+const std::map<std::string, std::string> kExamples = {
+    {"step", "--count 10"},
+    {"spawn", "--radius 0.5 --p 0 0 10 --v 5 0 0"},
+    {"static", "--size 4 4 1 --p 0 0 0.5"},
+    {"remove", "--body 3"},
+    {"impulse", "--body 3 --J 0 0 20"},
+    {"velocity", "--body 3 --v 0 0 8"},
+    {"rate", "--value 0.5"},
+    {"scene", "--name tower"},
+    {"regions", "--boxes -40 -40 0 0 0 -40 40 0 -40 0 0 40 0 0 40 40"},
+    {"ray", "--from 0 0 20 --to 0 0 0"}};
+
+std::string example_of(const std::string& kind) {
+  const auto options = kExamples.find(kind);
+  return fmt::format("Example:\n  aurasim send {} demo{}", kind,
+                     options == kExamples.end() ? "" : " " + options->second);
 }
 
 }  // namespace
@@ -234,13 +253,14 @@ void ray_options(CLI::App& command, Arguments& a) {
 void add_send(CLI::App& program, Action& action) {
   CLI::App* send_app = program.add_subcommand("send", "tell a run what to do");
   send_app->require_subcommand(1);
-  const auto arguments = std::make_shared<Arguments>();
-  const auto none = [](CLI::App&, Arguments&) {};
+  send_app->footer("Example:\n  aurasim send spawn demo --radius 0.5 --p 0 0 10 --v 5 0 0");
+  const auto arguments = std::make_shared<SendArguments>();
+  const auto none = [](CLI::App&, SendArguments&) {};
   const std::vector<std::tuple<const char*, const char*, Options>> kinds = {
       {"pause", "stand still", none},
       {"resume", "go on", none},
       {"step", "compute some states while paused",
-       [](CLI::App& c, Arguments& a) {
+       [](CLI::App& c, SendArguments& a) {
          c.add_option("--count", a.count, "how many")->check(CLI::Range(1, 1'000'000));
        }},
       {"reset", "begin anew", none},
@@ -251,11 +271,13 @@ void add_send(CLI::App& program, Action& action) {
       {"impulse", "push a body", impulse_options},
       {"velocity", "set a body's velocity", velocity_options},
       {"rate", "slow motion and the like",
-       [](CLI::App& c, Arguments& a) { c.add_option("--value", a.rate, "simulated seconds per second")->required(); }},
+       [](CLI::App& c, SendArguments& a) {
+         c.add_option("--value", a.rate, "simulated seconds per second")->required();
+       }},
       {"scene", "begin anew with another scene",
-       [](CLI::App& c, Arguments& a) { c.add_option("--name", a.scene, "of its file")->required(); }},
+       [](CLI::App& c, SendArguments& a) { c.add_option("--name", a.scene, "of its file")->required(); }},
       {"regions", "give the nodes other regions",
-       [](CLI::App& c, Arguments& a) {
+       [](CLI::App& c, SendArguments& a) {
          c.add_option("--boxes", a.boxes, "x0 y0 x1 y1 of each region, m")->required()->expected(4, 4096);
        }},
       {"ray", "what is first on the way from a point to another?", ray_options}};
@@ -264,6 +286,7 @@ void add_send(CLI::App& program, Action& action) {
     arguments->files.add_to(*command);
     options(*command, *arguments);
     command->add_option("--at", arguments->at_step, "not before this state");
+    command->footer(example_of(name));
     command->callback([arguments, &action, what = std::string(name)] {
       arguments->what = what;
       action = [arguments] { return send(*arguments); };

@@ -4,6 +4,7 @@
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/live_table.h"
+#include "cli/silence.h"
 #include "cli/stop_signal.h"
 #include "dds/control.h"
 
@@ -19,12 +20,16 @@ int watch(const FileArguments& files, double seconds) {
   dds::ControlBus control(participant, {.agreement = launch.agreement()});
   TerminalView view;
   catch_stop_signals();
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  const auto begin = Clock::now();
+  const auto end = begin + std::chrono::duration<double>(seconds);
+  const auto nobody = [&] { return control.statuses().empty() && !stop_requested(); };
   while (!stop_requested() && (seconds <= 0 || Clock::now() < end)) {
     const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
     while (!stop_requested() && Clock::now() < next) control.wait(50ms);
-    if (!view.show(live_table(control.statuses()))) break;
+    if (!view.show(live_table(control.statuses(), view.size()))) break;
+    if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
   }
+  if (nobody()) fail_for_want_of_a_run(files, launch);
   leave(0);
 }
 
@@ -36,6 +41,7 @@ void add_top(CLI::App& program, Action& action) {
   const auto seconds = std::make_shared<double>(0);
   files->add_to(*command);
   command->add_option("--duration", *seconds, "stop after so many seconds; 0: on Ctrl-C");
+  command->footer("Example:\n  aurasim top demo");
   command->callback([files, seconds, &action] { action = [files, seconds] { return watch(*files, *seconds); }; });
 }
 

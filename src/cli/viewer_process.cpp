@@ -42,6 +42,7 @@ void ViewerProcess::look() {
   int status = 0;
   if (::waitpid(pid_, &status, WNOHANG) != pid_) return;
   pid_ = 0;
+  ended_early_ = true;
   said_.clear();
   spdlog::warn("the viewer has ended; the run goes on. `aurasim overseer` starts another");
 }

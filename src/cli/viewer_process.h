@@ -23,11 +23,14 @@ class ViewerProcess {
   void look();
   /// Its address, and its token if it has one; empty before it listens.
   const std::string& said() const { return said_; }
+  /// By itself, before it was stopped.
+  bool has_ended_early() const { return ended_early_; }
   void stop();
 
  private:
   pid_t pid_ = 0;
   int output_ = -1;
+  bool ended_early_ = false;
   std::string said_;
 };
 

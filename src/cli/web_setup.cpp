@@ -1,28 +1,20 @@
 #include "cli/web_setup.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "config/shipped_files.h"
 #include "overseer/http_rules.h"
 
 namespace aurasim::cli {
 namespace {
-
-/// Beside the program, in the source tree around the build folder, or in that which it was built from.
-std::filesystem::path usual_pages() {
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::filesystem::path built = std::filesystem::path("src") / "overseer" / "web" / "dist";
-  const std::filesystem::path of_source = std::filesystem::path(AURASIM_SOURCE_DIR) / built;
-  for (const std::filesystem::path& pages : {folder / "web", folder.parent_path().parent_path() / built, of_source}) {
-    std::error_code error;
-    if (std::filesystem::is_regular_file(pages / "index.html", error)) return pages;
-  }
-  return of_source;
-}
 
 std::vector<std::string> scenes_beside(const std::filesystem::path& scene_file) {
   std::vector<std::string> names;
@@ -59,25 +51,37 @@ overseer::WebSettings web_settings(const config::Launch& launch, const WebArgume
   settings.port = static_cast<std::uint16_t>(arguments.port < 0 ? launch.overseer.port : arguments.port);
   settings.token = arguments.token;
   if (settings.token.empty() && !overseer::is_loopback_address(settings.bind)) settings.token = overseer::make_token();
-  settings.pages = arguments.pages.empty() ? usual_pages() : std::filesystem::path(arguments.pages);
+  settings.pages = arguments.pages.empty() ? config::shipped_page() : std::filesystem::path(arguments.pages);
   settings.scenes = scenes_beside(launch.scene_file);
   return settings;
 }
 
 std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, overseer::ShapeStore& shapes) {
   std::unique_ptr<overseer::WebServer> server;
+  std::string remark;  // beside the address, since launch shows that below its table for as long as it runs
   try {
     server = std::make_unique<overseer::WebServer>(settings, shapes);
   } catch (const overseer::CannotListen& error) {
     if (!error.port_is_taken()) throw;
-    spdlog::warn("{}; taking another port", error.what());
+    remark = fmt::format(" (port {} is taken)", settings.port);
     settings.port = 0;
     server = std::make_unique<overseer::WebServer>(settings, shapes);
   }
-  fmt::print("{}\n", address_of(settings, server->port()));
+  std::error_code missing;
+  if (!std::filesystem::is_regular_file(settings.pages / "index.html", missing)) {
+    remark += " has no page: scripts/build_web.sh says why";
+  }
+  fmt::print("{}{}\n", address_of(settings, server->port()), remark);
   if (!settings.token.empty()) fmt::print("token: {}\n", settings.token);
   std::fflush(stdout);
   return server;
+}
+
+void check_recording(const std::filesystem::path& file) {
+  errno = 0;
+  if (!std::ofstream(file, std::ios::binary | std::ios::app)) {
+    throw std::runtime_error(fmt::format("--record {}: cannot be written: {}", file.string(), std::strerror(errno)));
+  }
 }
 
 }  // namespace aurasim::cli

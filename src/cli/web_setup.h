@@ -1,6 +1,7 @@
 // From launch file and command line to a web server.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -25,5 +26,8 @@ overseer::WebSettings web_settings(const config::Launch& launch, const WebArgume
 
 /// Prints the address, and the token if there is one. Takes another port when the wanted one is taken, and says so.
 std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, overseer::ShapeStore& shapes);
+
+/// Throws std::runtime_error when the file cannot be written.
+void check_recording(const std::filesystem::path& file);
 
 }  // namespace aurasim::cli

@@ -13,6 +13,7 @@
 #include "config/presets.h"
 #include "config/region_layout.h"
 #include "config/scene_file.h"
+#include "config/shipped_files.h"
 
 namespace aurasim::config {
 namespace {
@@ -30,7 +31,8 @@ void apply_preset(const Field& physics, Launch& launch) {
   launch.time.substeps = preset.substeps;
 }
 
-/// The profiles beside the launch files of this project, or those that were built in, if the launch file names none.
+/// The profiles beside the launch files of this project, or those that come with the program, if the launch file names
+/// none.
 std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   std::filesystem::path beside = (folder / "../qos/aurasim.xml").lexically_normal();
   std::error_code error;
@@ -107,8 +109,6 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 }
 
 }  // namespace
-
-std::filesystem::path shipped_profiles() { return std::filesystem::path(AURASIM_QOS_DIR) / "aurasim.xml"; }
 
 int Launch::lookahead() const {
   if (time.lookahead) return *time.lookahead;

@@ -129,7 +129,4 @@ Launch read_launch(const std::filesystem::path& file, const std::vector<std::str
 /// Reads and validates a scene file alone.
 core::Scene read_scene(const std::filesystem::path& file);
 
-/// The QoS profiles of this project, where it was built.
-std::filesystem::path shipped_profiles();
-
 }  // namespace aurasim::config

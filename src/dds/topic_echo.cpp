@@ -103,6 +103,31 @@ std::vector<std::string> topic_names() {
   return names;
 }
 
+std::vector<std::string> partitions_of_topic(const std::string& name, std::size_t regions) {
+  std::vector<std::string> partitions;
+  const auto each_region = [&](const auto& add) {
+    for (std::uint32_t r = 0; r < regions; ++r) add(core::RegionId{r});
+  };
+  switch (checked(name)) {
+    case TopicId::kAura:
+    case TopicId::kNodeStatus:
+    case TopicId::kReplica:
+    case TopicId::kReplicaKey:
+    case TopicId::kBonds:
+      each_region([&](core::RegionId source) { partitions.push_back(partition_of(source)); });
+      break;
+    case TopicId::kMigration:
+    case TopicId::kMigrationAck:
+      each_region([&](core::RegionId source) {
+        each_region([&](core::RegionId destination) { partitions.push_back(partition_of(source, destination)); });
+      });
+      break;
+    default:
+      partitions.push_back(kWorldPartition);
+  }
+  return partitions;
+}
+
 struct TopicEcho::Impl {
   Impl(Participant& participant_in, TopicId topic, const std::string& partition)
       : participant(participant_in),

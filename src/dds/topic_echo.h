@@ -17,6 +17,10 @@ namespace aurasim::dds {
 /// Names of all topics, in the order of `TopicId`.
 std::vector<std::string> topic_names();
 
+/// Where a topic is published in a run of so many regions; never empty. Throws std::invalid_argument when there is no
+/// such topic.
+std::vector<std::string> partitions_of_topic(const std::string& topic, std::size_t regions);
+
 /// Used by one thread. The participant must outlive it.
 class TopicEcho {
  public:

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "config/launch.h"
+#include "config/shipped_files.h"
 #include "experiment/collision.h"
 #include "own_domain.h"
 

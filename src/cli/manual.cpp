@@ -1,0 +1,100 @@
+#include "cli/manual.h"
+
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/program.h"
+
+namespace aurasim::cli {
+namespace {
+
+/// Nothing in it is a macro or a hyphen that man may break.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else {
+      if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += "\\&";
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string option_entry(const CLI::Option& option) {
+  std::string text = ".TP\n\\fB" + plain(name_of(option)) + "\\fR";
+  if (!option.get_positional() && option.get_items_expected_max() > 0) text += " " + plain(option.get_type_name());
+  text += "\n" + plain(option.get_description());
+  if (!option.get_default_str().empty()) text += plain(" (" + option.get_default_str() + ")");
+  return text + "\n";
+}
+
+std::string usage_of(const CLI::App& app, const std::string& path) {
+  std::string text = "\\fB" + plain(path) + "\\fR";
+  for (const CLI::Option* option : options_of(app)) {
+    if (option->get_positional()) text += " " + plain(name_of(*option));
+  }
+  return text + (commands_of(app).empty() ? " [OPTION ...]" : " COMMAND");
+}
+
+std::string command_entries(const CLI::App& app, const std::string& path) {
+  std::string text =
+      fmt::format(".SS {}\n{}.\n.PP\n{}\n", plain(path), plain(app.get_description()), usage_of(app, path));
+  for (const CLI::Option* option : options_of(app)) {
+    if (name_of(*option) != "--help") text += option_entry(*option);
+  }
+  if (!app.get_footer().empty()) text += fmt::format(".PP\n.nf\n{}\n.fi\n", plain(app.get_footer()));
+  for (const CLI::App* command : commands_of(app)) text += command_entries(*command, path + " " + command->get_name());
+  return text;
+}
+
+constexpr const char* kEnd = R"(.SH EXIT STATUS
+.TP
+0
+all well
+.TP
+1
+something broke, a node died or a body was lost (bodies are counted only with \-\-report)
+.TP
+2
+a file or the command line is wrong
+.TP
+3
+refused: a neighbour did not come in time, or a run that does not agree with this one is in the same DDS domain
+.TP
+4
+the others hold this node for dead, or may: it has lost touch with the majority
+)";
+
+}  // namespace
+
+std::string manual_page(const CLI::App& program) {
+  std::string text =
+      ".TH AURASIM 1\n.SH NAME\naurasim \\- one world of rigid bodies, simulated by any number of nodes\n";
+  text +=
+      ".SH SYNOPSIS\n\\fBaurasim\\fR COMMAND [OPTION ...]\n.SH DESCRIPTION\n"
+      "Each node owns one region of the world and runs Bullet for the bodies in it; nodes find each other and talk "
+      "over DDS, and hand bodies over before two of them can touch across a border.\n"
+      "A launch FILE is a path, or the name of one that comes with the program, such as demo.\n.SH COMMANDS\n";
+  for (const CLI::App* command : commands_of(program))
+    text += command_entries(*command, "aurasim " + command->get_name());
+  return text + kEnd;
+}
+
+void add_manual(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("manual", "print the manual page, for man");
+  command->footer("Example:\n  aurasim manual | man -l -");
+  command->callback([&program, &action] {
+    action = [&program] {
+      fmt::print("{}", manual_page(program));
+      return 0;
+    };
+  });
+}
+
+}  // namespace aurasim::cli

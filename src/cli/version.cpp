@@ -1,0 +1,17 @@
+#include "cli/version.h"
+
+#include <fmt/format.h>
+
+#include "cli/commit.h"
+#include "physics/region_world.h"
+
+namespace aurasim::cli {
+
+std::string commit() { return AURASIM_COMMIT; }
+
+std::string version_text() {
+  return fmt::format("aurasim {} (commit {}, {}, {} precision, GCC {})", AURASIM_VERSION, commit(), AURASIM_BUILD_TYPE,
+                     physics::RegionWorld::precision(), __VERSION__);
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,14 @@
+// What this program was made from.
+#pragma once
+
+#include <string>
+
+namespace aurasim::cli {
+
+/// The commit, with "-dirty" when sources were changed after it; "unknown" outside a repository.
+std::string commit();
+
+/// Version, commit, build type, precision, compiler, in one line.
+std::string version_text();
+
+}  // namespace aurasim::cli

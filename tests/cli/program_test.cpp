@@ -1,0 +1,103 @@
+// What the program says of itself: to people who mistype, to shells, to man.
+#include "cli/program.h"
+
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/completion.h"
+#include "cli/manual.h"
+#include "cli/nearest_word.h"
+#include "cli/version.h"
+
+namespace aurasim::cli {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using Words = std::vector<std::string>;
+
+class Program : public ::testing::Test {
+ protected:
+  std::string about(const Words& words) { return unknown_word(*program_, words).value_or(""); }
+
+  template <class Visit>
+  void for_each(const CLI::App& app, const Visit& visit) {
+    for (const CLI::App* command : commands_of(app)) {
+      visit(*command);
+      for_each(*command, visit);
+    }
+  }
+
+  Action action_;
+  std::unique_ptr<CLI::App> program_ = make_program(action_);
+};
+
+TEST(NearestWord, CountsLettersAndSwaps) {
+  EXPECT_EQ(typing_distance("launch", "launch"), 0U);
+  EXPECT_EQ(typing_distance("lunch", "launch"), 1U);
+  EXPECT_EQ(typing_distance("alunch", "launch"), 1U);
+  EXPECT_EQ(typing_distance("", "top"), 3U);
+  EXPECT_EQ(nearest_word("lanuch", {"check", "launch", "top"}), "launch");
+  EXPECT_EQ(nearest_word("fly", {"check", "launch"}), std::nullopt);
+}
+
+TEST_F(Program, AnUnknownCommandIsAnsweredWithTheNearest) {
+  EXPECT_THAT(about({"lunch", "demo"}), AllOf(HasSubstr("'lunch'"), HasSubstr("did you mean 'launch'?")));
+  EXPECT_THAT(about({"send", "puase", "demo"}), HasSubstr("did you mean 'pause'?"));
+  EXPECT_THAT(about({"experiment", "colision"}), HasSubstr("did you mean 'collision'?"));
+  EXPECT_THAT(about({"fly"}), AllOf(HasSubstr("there are check, "), Not(HasSubstr("did you mean"))));
+}
+
+TEST_F(Program, AnUnknownOptionIsAnsweredWithTheNearest) {
+  EXPECT_THAT(about({"launch", "demo", "--headles"}), HasSubstr("did you mean '--headless'?"));
+  EXPECT_THAT(about({"launch", "demo", "--reprot=out"}), HasSubstr("did you mean '--report'?"));
+  EXPECT_THAT(about({"--versoin"}), HasSubstr("did you mean '--version'?"));
+}
+
+TEST_F(Program, WhatIsKnownIsNotComplainedAbout) {
+  for (const Words& words :
+       {Words{"launch", "demo", "--steps", "-5"}, Words{"send", "spawn", "demo", "--p", "-1", "0", ".5"},
+        Words{"check"}, Words{"compare", "a", "b", "--json"}, Words{"-h"}, Words{}}) {
+    EXPECT_EQ(about(words), "");
+  }
+}
+
+TEST_F(Program, EveryCommandHasAnExampleAndSaysWhatItIs) {
+  for_each(*program_, [](const CLI::App& command) {
+    EXPECT_THAT(command.get_footer(), HasSubstr("aurasim ")) << command.get_name();
+    EXPECT_THAT(command.get_description(), Not(IsEmpty())) << command.get_name();
+  });
+}
+
+TEST_F(Program, HelpShowsDefaultsButNotThoseThatMeanNone) {
+  const std::string help = program_->get_subcommand("launch")->help();
+  EXPECT_THAT(help, HasSubstr("30")) << "--start-time-out";
+  const std::string spawn = program_->get_subcommand("send")->get_subcommand("spawn")->help();
+  EXPECT_THAT(spawn, Not(HasSubstr("[]")));
+}
+
+TEST_F(Program, CompletionsAndManualNameEveryCommandAndOption) {
+  const std::string bash = bash_completion(*program_), zsh = zsh_completion(*program_), man = manual_page(*program_);
+  for_each(*program_, [&](const CLI::App& command) {
+    for (const std::string& text : {bash, zsh, man}) EXPECT_THAT(text, HasSubstr(command.get_name()));
+    for (const CLI::Option* option : options_of(command)) {
+      if (option->get_positional() || name_of(*option) == "--help") continue;
+      EXPECT_THAT(bash, HasSubstr(name_of(*option)));
+      EXPECT_THAT(zsh, HasSubstr(name_of(*option)));
+    }
+  });
+  EXPECT_THAT(bash, HasSubstr("'aurasim experiment collision --sync') words='free_running bounded deterministic'"));
+  EXPECT_THAT(man, HasSubstr("\\fB\\-\\-start\\-time\\-out\\fR"));
+}
+
+TEST(Version, NamesCommitBuildPrecisionAndCompiler) {
+  EXPECT_THAT(version_text(),
+              AllOf(HasSubstr("aurasim 0."), HasSubstr(commit()), HasSubstr("double precision"), HasSubstr("GCC 1")));
+}
+
+}  // namespace
+}  // namespace aurasim::cli
