@@ -3,7 +3,7 @@ import { chromium } from "playwright-core";
 
 const CHROMIUM = process.env.AURASIM_CHROMIUM ?? "/usr/bin/chromium";
 
-export const launchBrowser = () => chromium.launch({ executablePath: CHROMIUM, headless: true,
+export const launchBrowser = () => chromium.launch({ executablePath: CHROMIUM, headless: true, ignoreDefaultArgs: ["--hide-scrollbars"],
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 
 /** Drags from here to there, again if the page was too busy to notice, until the selector is visible. */

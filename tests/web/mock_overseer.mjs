@@ -1,6 +1,6 @@
-// An overseer that only pretends: serves the built page and speaks docs/viewer.md for a made-up world of four regions.
+// An overseer that only pretends: serves the built page and speaks docs/viewer.md for a made-up world of a few regions.
 // For development and for the test of the page alone.
-//   node mock_overseer.mjs [--port 8080] [--bodies 300] [--token SECRET] [--replay]
+//   node mock_overseer.mjs [--port 8080] [--bodies 300] [--nodes 4] [--token SECRET] [--replay]
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
@@ -16,9 +16,10 @@ const SCENES = ["corner_stacks", "columns_rain", "falling_piles", "tower"];
 const LAST_REPLAY_STEP = 3600;
 
 export class MockOverseer {
-  constructor({ port = 0, bodies = 300, token = "", replay = false, dist = DIST } = {}) {
+  constructor({ port = 0, bodies = 300, nodes = 4, token = "", replay = false, dist = DIST } = {}) {
     Object.assign(this, { port, token, replay, dist });
-    this.world = new MockWorld({ bodies });
+    this.late = 0; // collisions that region 1 says were late
+    this.world = new MockWorld({ bodies, nodes });
     this.commands = []; // everything that clients sent, for tests
     this.clients = new Map(); // socket -> {show, watch}
     this.state = "running";
@@ -135,7 +136,8 @@ export class MockOverseer {
       const times = { p50: wobble(base, region), p99: wobble(base * 1.7, region + 2), max: wobble(base * 2.2, region) };
       return { region, step: this.world.step, state: this.state, lost: false, bodies: hosted.length, awake: hosted.filter((b) => !b.asleep).length,
         hand_offs_out: this.world.handOffs[region], hand_offs_in: this.world.handOffs[region], hand_offs_per_s: Math.max(0, wobble(6, region)),
-        violations: { speed: 0, latency: 0, frame: region === 1 ? 3 : 0, promise: 0, span: 0 }, frame_ms: times, physics_ms: times,
+        violations: { speed: 0, latency: 0, frame: region === 1 ? 3 : 0, promise: 0, span: 0 },
+        late: region === 1 ? this.late : 0, missed: 0, frame_ms: times, physics_ms: times,
         protocol_ms: times, transport_ms: times, real_time_factor: this.state === "running" ? this.rate : 0, largest_cluster: 48, lookahead: 2, text: "" };
     });
   }
@@ -242,7 +244,8 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
     const at = process.argv.indexOf(`--${name}`);
     return at < 0 ? otherwise : process.argv[at + 1];
   };
-  const mock = new MockOverseer({ port: Number(option("port", 8080)), bodies: Number(option("bodies", 300)), token: option("token", ""),
+  const mock = new MockOverseer({ port: Number(option("port", 8080)), bodies: Number(option("bodies", 300)),
+    nodes: Number(option("nodes", 4)), token: option("token", ""),
     replay: process.argv.includes("--replay") });
   console.log(await mock.start());
 }

@@ -32,10 +32,17 @@ export const SHAPES = [
 ];
 const RESTS_AT = [0.35, 0.25, 0.25, 0.35, 0.45, 0.32, 0.25];
 
+/** So many columns and rows of 12 m, the outermost without an end. */
+function gridOfRegions(count) {
+  const edge = (i) => (i === 0 ? -Infinity : i === count ? Infinity : (i - count / 2) * 12);
+  const indices = [...Array(count).keys()];
+  return indices.flatMap((row) => indices.map((column) => [edge(column), edge(row), edge(column + 1), edge(row + 1)]));
+}
+
 export class MockWorld {
-  /** @param {{bodies?: number, reach?: number, seed?: number}} options */
-  constructor({ bodies = 300, reach = bodies > 2000 ? 75 : 18, seed = 7 } = {}) {
-    Object.assign(this, { wanted: bodies, reach, seed });
+  /** @param {{bodies?: number, nodes?: number, reach?: number, seed?: number}} options  nodes: a square number */
+  constructor({ bodies = 300, nodes = 4, reach = bodies > 2000 ? 75 : 18, seed = 7 } = {}) {
+    Object.assign(this, { wanted: bodies, nodes, reach, seed });
     this.generation = 0;
     this.reset();
   }
@@ -54,8 +61,8 @@ export class MockWorld {
       { id: 1, name: "ramp", shape: 8, p: [-9, 6, 1.1], q: [Math.cos(0.18), 0, Math.sin(0.18), 0] },
       { id: 2, name: "block", shape: 9, p: [9, -8, 1.2], q: [Math.cos(0.3), 0, 0, Math.sin(0.3)] },
       { id: 3, name: "pyramid", shape: 10, p: [10, 9, 0], q: [1, 0, 0, 0] }];
-    this.regions = [[-Infinity, -Infinity, 0, 0], [0, -Infinity, Infinity, 0], [-Infinity, 0, 0, Infinity], [0, 0, Infinity, Infinity]];
-    this.handOffs = [0, 0, 0, 0];
+    this.regions = gridOfRegions(Math.round(Math.sqrt(this.nodes)));
+    this.handOffs = this.regions.map(() => 0);
     this.#forgetChanges();
     const stacked = Math.min(96, this.wanted >> 2);
     for (let i = 0; i < stacked; ++i) this.#stackBrick(i);

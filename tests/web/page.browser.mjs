@@ -262,6 +262,55 @@ test("AReplayHasABarToSeekInAndNothingThatChangesTheRun", mockOnly, async () => 
   noErrors();
 });
 
+/** What of a card, or of the list itself, is drawn beyond the panel's or the card's inner edge. */
+const whatIsCut = () => page.evaluate(() => {
+  const cut = [];
+  const panel = document.getElementById("nodes");
+  const inner = panel.getBoundingClientRect().left + panel.clientLeft + panel.clientWidth;
+  for (const card of document.querySelectorAll(".node")) {
+    const edge = Math.min(inner, card.getBoundingClientRect().right);
+    for (const part of card.querySelectorAll("*")) {
+      const box = part.getBoundingClientRect();
+      if (box.width > 0 && (box.right > edge + 0.5 || part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).display !== "inline")) {
+        cut.push(`${card.dataset.region}: ${part.className || part.tagName} ${part.textContent}`);
+      }
+    }
+  }
+  return cut;
+});
+
+test("NothingInTheNodesCardsIsCut", mockOnly, async () => {
+  for (const nodes of [4, 9]) {
+    await open({ nodes });
+    await haveBodies(BODIES);
+    await page.waitForSelector(`.node[data-region='${nodes - 1}']`);
+    // Letters wider than those of most machines.
+    await page.addStyleTag({ content: "* { letter-spacing: 0.35px; }" });
+    for (const [width, height] of [[1280, 800], [760, 900]]) {
+      await page.setViewportSize({ width, height });
+      await page.evaluate(() => document.body.classList.remove("bare"));
+      await page.waitForTimeout(100);
+      assert.deepEqual(await whatIsCut(), [], `${nodes} nodes, ${width} px`);
+    }
+    noErrors();
+    await end();
+  }
+});
+
+test("OnlyWhatWasLateIsAlarming", mockOnly, async () => {
+  await open();
+  await haveBodies(BODIES);
+  await until(() => /3 warnings/.test(document.getElementById("nodes").innerText));
+  assert.match(await page.textContent(".totals"), /none late/);
+  const colours = () => page.evaluate(() => [...document.querySelectorAll("#nodes .totals span, #nodes .warnings span")].map((e) => getComputedStyle(e).color));
+  const orange = "rgb(255, 176, 46)";
+  assert.ok(!(await colours()).includes(orange), "warnings are no alarm");
+  mock.late = 2;
+  await until(() => /2 late/.test(document.getElementById("nodes").innerText));
+  assert.ok((await colours()).includes(orange));
+  noErrors();
+});
+
 test("WithoutWebGLThePanelsAreThere", mockOnly, async () => {
   mock = new MockOverseer({ bodies: BODIES });
   url = await mock.start();

@@ -1,5 +1,6 @@
 // What comes over the page for a moment: toasts, the question for the token, help, and what to say when there is nothing.
 import { h, iconButton } from "./dom.js";
+import { ABOUT_LATE, ABOUT_WARNINGS, WARNINGS } from "./warnings.js";
 
 const TOAST_MS = { ok: 2600, info: 3200, bad: 7000 };
 const MOST_TOASTS = 5;
@@ -62,6 +63,9 @@ export function toggleHelp() {
   h("header.panel-head", {}, h("h2", {}, "Keys and mouse"), iconButton("close", "Close", () => help.close())),
   h("div.help-grid", {}, ...HELP.map(([title, rows]) => h("section", {}, h("h3", {}, title),
     h("dl", {}, ...rows.flatMap(([key, does]) => [h("dt", {}, ...key.split(", ").flatMap((k, i) => [i ? " " : null, h("kbd", {}, k)])), h("dd", {}, does)]))))),
+  h("h3", {}, "Words"),
+  h("dl.words", {}, ...Object.values(WARNINGS).flatMap(([name, means]) => [h("dt", {}, name), h("dd", {}, means)])),
+  h("p.dim", {}, ABOUT_WARNINGS), h("p.dim", {}, ABOUT_LATE),
   h("p.dim", {}, "A body has the colour of the node that computes it. It flashes when it is handed over, and pales when it sleeps."));
   document.body.append(help);
   help.showModal();

@@ -2,8 +2,10 @@
 import { colourOfHost } from "./colours.js";
 import { clockTime, fixed, grouped, h } from "./dom.js";
 import { Sparkline } from "./sparkline.js";
+import { ABOUT_LATE, ABOUT_WARNINGS, lateOf, sumOf, warningsOf } from "./warnings.js";
 
-const VIOLATIONS = ["speed", "latency", "frame", "promise", "span"];
+/** With more nodes than this a card shows the least, and the rest when it is clicked. */
+const FEW_NODES = 4;
 
 export class TopBar {
   constructor() {
@@ -49,17 +51,23 @@ class NodeCard {
     this.values = {};
     const cell = (key, label, title) => h("div.cell", { title }, (this.values[key] = h("b")), h("span", {}, label));
     this.state = h("span.node-state");
-    this.violations = h("div.violations", { hidden: true });
+    this.warnings = h("div.warnings", { hidden: true });
+    this.brief = h("span.brief");
     this.p50 = h("b.big");
     this.text = h("p.node-text", { hidden: true });
     this.element = h("article.node", { style: `--host: ${colour}`, "data-region": region, "aria-label": `Region ${region}` },
-      h("header", {}, h("i.swatch"), h("h3", {}, `Region ${region}`), this.state),
+      h("header", { tabindex: 0, onclick: () => this.#flip(), onkeydown: (event) => event.key === "Enter" && this.#flip() },
+        h("i.swatch"), h("h3", {}, `Region ${region}`), this.brief, this.state),
       h("div.timing", {}, h("div.frame-time", {}, this.p50, h("span", {}, "ms")), this.spark.canvas),
       h("div.cells", {},
         cell("p99", "p99 ms", "99th percentile of the frame time"), cell("max", "max ms", "Longest frame"),
         cell("rtf", "real time", "Simulated seconds per second"), cell("bodies", "bodies", "Bodies hosted here"),
         cell("awake", "awake", "Bodies that move"), cell("handOffs", "hand-offs/s", "Bodies handed over per second")),
-      this.violations, this.text);
+      this.warnings, this.text);
+  }
+
+  #flip() {
+    this.element.classList.toggle("open");
   }
 
   show(node, step_s) {
@@ -75,27 +83,32 @@ class NodeCard {
     set("awake", grouped(node.awake));
     set("handOffs", fixed(node.hand_offs_per_s, 1));
     set("rtf", `${fixed(node.real_time_factor, 2)}×`);
-    this.values.rtf.classList.toggle("warn", node.state === "running" && node.real_time_factor < 0.95);
-    this.#showViolations(node.violations ?? {});
+    this.brief.textContent = `${grouped(node.bodies)} bodies`;
+    this.#showWarnings(node);
     this.text.hidden = !node.text;
     this.text.textContent = node.text ?? "";
     this.spark.push(frame.p99, step_s * 1000);
   }
 
-  #showViolations(violations) {
-    const broken = VIOLATIONS.filter((kind) => violations[kind] > 0);
-    this.violations.hidden = broken.length === 0;
-    this.violations.replaceChildren(
-      ...broken.map((kind) => h("span", { title: `Broken promises: ${kind}` }, `${kind} `, h("b", {}, grouped(violations[kind])))));
+  #showWarnings(node) {
+    const late = lateOf(node);
+    const chips = warningsOf(node).map(({ name, means, count }) => h("span", { title: means }, `${name} `, h("b", {}, grouped(count))));
+    if (late > 0) chips.unshift(h("span.late", { title: ABOUT_LATE }, "late ", h("b", {}, grouped(late))));
+    this.warnings.hidden = chips.length === 0;
+    this.warnings.replaceChildren(...chips);
+    this.element.classList.toggle("has-late", late > 0);
   }
 }
 
 export class NodesPanel {
   constructor() {
     this.element = document.getElementById("nodes");
-    this.total = h("span.dim");
+    this.handOffs = h("span");
+    this.warnings = h("span", { title: ABOUT_WARNINGS });
+    this.late = h("span", { title: ABOUT_LATE });
     this.list = h("div.node-list");
-    this.element.append(h("header.panel-head", {}, h("h2", {}, "Nodes"), this.total), this.list);
+    this.element.append(h("header.panel-head", {}, h("h2", {}, "Nodes"),
+      h("p.totals", {}, this.handOffs, this.warnings, this.late)), this.list);
     this.cards = new Map();
     this.clear();
   }
@@ -103,7 +116,8 @@ export class NodesPanel {
   clear() {
     this.cards.clear();
     this.list.replaceChildren(h("p.empty", {}, "No node has said anything yet."));
-    this.total.textContent = "";
+    for (const total of [this.handOffs, this.warnings, this.late]) total.textContent = "";
+    this.late.classList.remove("alarm");
   }
 
   show(nodes, step_s) {
@@ -114,9 +128,12 @@ export class NodesPanel {
       this.list.replaceChildren(...[...this.cards.values()].map((card) => card.element));
     }
     for (const node of nodes) this.cards.get(node.region).show(node, step_s);
-    const broken = nodes.reduce((sum, n) => sum + VIOLATIONS.reduce((s, kind) => s + (n.violations?.[kind] ?? 0), 0), 0);
+    this.list.classList.toggle("many", nodes.length > FEW_NODES);
     const handOffs = nodes.reduce((sum, n) => sum + (n.hand_offs_per_s ?? 0), 0);
-    this.total.textContent = `${fixed(handOffs, 1)} hand-offs/s  ·  ${broken ? `${grouped(broken)} broken` : "no violations"}`;
-    this.total.classList.toggle("warn", broken > 0);
+    const { warnings, late } = sumOf(nodes);
+    this.handOffs.textContent = `${fixed(handOffs, 1)} hand-offs/s`;
+    this.warnings.textContent = warnings > 0 ? `${grouped(warnings)} ${warnings === 1 ? "warning" : "warnings"}` : "";
+    this.late.textContent = late > 0 ? `${grouped(late)} late` : late === 0 ? "none late" : "";
+    this.late.classList.toggle("alarm", late > 0);
   }
 }
