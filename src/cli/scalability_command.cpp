@@ -8,8 +8,8 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/launch_setup.h"
 #include "cli/exit_code.h"
+#include "cli/launch_setup.h"
 #include "cli/progress_bar.h"
 #include "cli/rain_processes.h"
 #include "cli/stop_signal.h"

@@ -8,9 +8,9 @@
 
 #include "cli/command_client.h"
 #include "cli/commands.h"
+#include "cli/exit_code.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
-#include "cli/exit_code.h"
 #include "cli/run_steering.h"
 #include "config/convex_parts.h"
 #include "config/meshes.h"
