@@ -6,14 +6,18 @@
 simulation="CMakeLists.txt src/core src/physics src/node src/transport"
 # shellcheck disable=SC2034
 declare -A measures=(
-  [docs/accuracy.md]="$simulation src/config src/experiment/stability src/experiment/pareto.cpp scripts/accuracy.sh"
+  [docs/accuracy.md]="$simulation src/config src/experiment/stability src/experiment/pareto.cpp
+    src/experiment/measured_run.* src/experiment/case.h scripts/accuracy.sh"
   [docs/correctness.md]="$simulation src/experiment :!src/experiment/stability :!src/experiment/scale
     :!src/experiment/pareto.cpp scripts/correctness.sh"
   [docs/correctness_over_dds.md]="$simulation src/dds idl qos src/experiment :!src/experiment/stability
     :!src/experiment/scale :!src/experiment/pareto.cpp scripts/correctness_over_dds.sh"
   [docs/same_bits.md]="$simulation src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh"
-  [docs/scalability.md]="$simulation src/dds idl src/experiment/scale launch_configs/columns_rain.yaml
-    launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
+  [docs/scalability.md]="$simulation src/dds idl src/experiment/scale src/experiment/measured_run.* src/experiment/wire_post.*
+    launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
+  # Packages, megabytes and minutes of a fresh Debian 12.
+  [docs/installing.md]="CMakeLists.txt CMakePresets.json scripts/setup.sh scripts/demo.sh scripts/build.sh scripts/build_web.sh
+    scripts/fetch_npm.cmake"
 )
 
 # PAGE -> the paths, one per line; git expands what stands for several.

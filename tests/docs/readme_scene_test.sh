@@ -1,12 +1,21 @@
 #!/usr/bin/env bash
 # The scene of the README, as its reader types it: written, checked, run on two nodes and on one, compared.
-#   tests/docs/readme_scene_test.sh AURASIM DOMAIN
+#   tests/docs/readme_scene_test.sh AURASIM
 set -euo pipefail
 readme=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/README.md
-aurasim=$1 domain=$2
+aurasim=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+
+# A DDS domain that no other test has: leased as in tests/own_domain.h.
+leases=${TMPDIR:-/tmp}/aurasim_test_domains
+mkdir -p "$leases"
+for domain in $(shuf -i 2-101); do
+  exec {lease}>>"$leases/$domain"
+  flock -n "$lease" && break
+  exec {lease}>&-
+done
 
 # The block of code that begins with LINE.
 block() {
