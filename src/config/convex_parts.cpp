@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -66,14 +68,124 @@ bool is_sound(const TriangleMesh& mesh) {
          std::ranges::all_of(mesh.triangles, inside);
 }
 
+/// For each point the lowest one that it is connected with.
+std::vector<std::uint32_t> pieces_of(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.points.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&parent](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& t : mesh.triangles) {
+    for (const std::uint32_t other : {t[1], t[2]}) {
+      const auto [low, high] = std::minmax({root(t[0]), root(other)});
+      parent[high] = low;
+    }
+  }
+  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
+  return parent;
+}
+
+/// Turned so that the triangles of each piece face out: files have them either way.
+TriangleMesh facing_out(TriangleMesh mesh) {
+  const std::vector<std::uint32_t> piece = pieces_of(mesh);
+  std::map<std::uint32_t, double> volume;
+  for (const auto& t : mesh.triangles) {
+    const Vec3& origin = mesh.points[piece[t[0]]];
+    const Vec3 a = mesh.points[t[0]] - origin, b = mesh.points[t[1]] - origin, c = mesh.points[t[2]] - origin;
+    volume[piece[t[0]]] += a.dot(b.cross(c));
+  }
+  for (auto& t : mesh.triangles) {
+    if (volume.at(piece[t[0]]) < 0) std::swap(t[1], t[2]);
+  }
+  return mesh;
+}
+
+/// Closed, in one piece, and nowhere in front of one of its triangles, by more than a hundred thousandth of its size.
+bool is_convex(const TriangleMesh& mesh, const Scaling& scaling) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) edges.emplace(t[i], t[(i + 1) % 3]);
+  }
+  const bool closed = std::ranges::all_of(edges, [&](const auto& e) { return edges.contains({e.second, e.first}); });
+  if (!closed || std::ranges::any_of(pieces_of(mesh), [](std::uint32_t piece) { return piece != 0; })) return false;
+  const double allowance = 1e-5 * kNormalSize / scaling.factor;
+  return std::ranges::all_of(mesh.triangles, [&](const auto& t) {
+    const Vec3& a = mesh.points[t[0]];
+    const Vec3 normal = (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a);
+    if (normal.norm() == 0) return true;
+    const Vec3 n = normal.normalized();
+    return std::ranges::all_of(mesh.points, [&](const Vec3& p) { return n.dot(p - a) <= allowance; });
+  });
+}
+
+/// HACD's own hulls lose corners of small parts, such as tetrahedra; so this one, of the few points that matter. They
+/// are first shaken by a millionth of their extent, so that no four lie in a plane and every side is one triangle.
+TriangleMesh hull_of(const TriangleMesh& part) {
+  TriangleMesh hull;
+  hull.points = hull_points(part);
+  const Scaling scaling(hull);
+  std::vector<Vec3> shaken;
+  std::minstd_rand random(1);
+  const auto shake = [&random] { return static_cast<double>(random()) / std::minstd_rand::max() - 0.5; };
+  for (const Vec3& p : hull.points) {
+    const double x = shake(), y = shake(), z = shake();
+    shaken.push_back((p - scaling.middle) * scaling.factor + 1e-6 * kNormalSize * Vec3(x, y, z));
+  }
+  const auto count = static_cast<std::uint32_t>(shaken.size());
+  const auto is_side = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+    const Vec3 normal = (shaken[j] - shaken[i]).cross(shaken[k] - shaken[i]);
+    return std::ranges::all_of(shaken, [&](const Vec3& p) {
+      return &p == &shaken[i] || &p == &shaken[j] || &p == &shaken[k] || normal.dot(p - shaken[i]) < 0;
+    });
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t j = i + 1; j < count; ++j) {
+      for (std::uint32_t k = j + 1; k < count; ++k) {
+        if (is_side(i, j, k)) hull.triangles.push_back({i, j, k});
+        if (is_side(i, k, j)) hull.triangles.push_back({i, k, j});
+      }
+    }
+  }
+  return hull;
+}
+
+/// The triangles that HACD has put into one part.
+TriangleMesh triangles_of(const TriangleMesh& mesh, const HACD::HACD& hacd, std::size_t part) {
+  TriangleMesh found;
+  std::map<std::uint32_t, std::uint32_t> place;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (hacd.GetPartition()[t] != static_cast<long>(part)) continue;
+    for (const std::uint32_t point : mesh.triangles[t]) {
+      if (place.try_emplace(point, static_cast<std::uint32_t>(found.points.size())).second) {
+        found.points.push_back(mesh.points[point]);
+      }
+    }
+  }
+  return found;
+}
+
+/// Do the triangles of a convex mesh that faces out have all points of `part` behind them, but for a hundredth?
+bool covers(const TriangleMesh& hull, const TriangleMesh& part, const Scaling& scaling) {
+  const double allowance = 0.01 * kNormalSize / scaling.factor;
+  return std::ranges::all_of(hull.triangles, [&](const auto& t) {
+    const Vec3& a = hull.points[t[0]];
+    const Vec3 normal = (hull.points[t[1]] - a).cross(hull.points[t[2]] - a);
+    if (normal.norm() == 0) return true;
+    const Vec3 n = normal.normalized();
+    return std::ranges::all_of(part.points, [&](const Vec3& p) { return n.dot(p - a) <= allowance; });
+  });
+}
+
 }  // namespace
 
-std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& mesh) {
-  if (mesh.points.empty()) return "it has no points";
-  if (mesh.triangles.size() > kMostTrianglesToDivide) {
-    return fmt::format("it has {} triangles, at most {} are taken apart", mesh.triangles.size(),
-                       kMostTrianglesToDivide);
+std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& as_it_came) {
+  if (as_it_came.points.empty()) return "it has no points";
+  if (as_it_came.triangles.size() > kMostTrianglesToDivide) {
+    return fmt::format("it has {} triangles, at most {} are taken apart", as_it_came.triangles.size(), kMostTrianglesToDivide);
   }
+  const TriangleMesh mesh = facing_out(as_it_came);
+  if (is_convex(mesh, Scaling(mesh))) return mesh;
   std::vector<HACD::Vec3<HACD::Real>> points;
   std::vector<HACD::Vec3<long>> triangles;
   const Scaling scaling(mesh);
@@ -103,7 +215,9 @@ std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& mesh) {
   }
   TriangleMesh pieces;
   for (std::size_t part = 0; part < hacd.GetNClusters(); ++part) {
-    const TriangleMesh hull = part_of(hacd, part, scaling);
+    const TriangleMesh of_part = triangles_of(mesh, hacd, part);
+    TriangleMesh hull = part_of(hacd, part, scaling);
+    if (!is_sound(hull) || !covers(facing_out(hull), of_part, scaling)) hull = hull_of(of_part);
     if (is_sound(hull)) append(hull, pieces);
   }
   if (pieces.triangles.empty()) return "it encloses nothing";
@@ -111,20 +225,11 @@ std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& mesh) {
 }
 
 core::Compound convex_parts(const TriangleMesh& pieces) {
-  std::vector<std::uint32_t> parent(pieces.points.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&parent](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& t : pieces.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
-  }
+  const std::vector<std::uint32_t> piece = pieces_of(pieces);
   const Vec3 centre = centre_of_mass(pieces);
   std::map<std::uint32_t, TriangleMesh> part_of_root;
   for (std::uint32_t i = 0; i < pieces.points.size(); ++i) {
-    part_of_root[root(i)].points.push_back(pieces.points[i] - centre);
+    part_of_root[piece[i]].points.push_back(pieces.points[i] - centre);
   }
   core::Compound compound;
   for (const auto& [first, part] : part_of_root) {

@@ -92,6 +92,43 @@ TEST(ConvexParts, WhatIsConvexStaysWhole) {
   }
 }
 
+TriangleMesh tetrahedron(const Vec3& corner) {
+  TriangleMesh mesh;
+  for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) mesh.points.push_back(p + corner);
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  return mesh;
+}
+
+TEST(ConvexParts, ATetrahedronEnclosesSomething) {
+  EXPECT_NEAR(volume(parts_of(tetrahedron({5, 0, 0}))), 1.0 / 6, 1e-9);
+}
+
+TEST(ConvexParts, TwoTetrahedraInOneMeshAreTwoParts) {
+  TriangleMesh two = tetrahedron({0, 0, 0});
+  const TriangleMesh other = tetrahedron({5, 0, 0});
+  two.points.insert(two.points.end(), other.points.begin(), other.points.end());
+  for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+  const TriangleMesh parts = parts_of(two);
+  EXPECT_EQ(convex_parts(parts).parts.size(), 2U);
+  EXPECT_FALSE(inside_a_part(parts, {3, 0.1, 0.1}));
+  EXPECT_TRUE(inside_a_part(parts, {5.1, 0.1, 0.1}));
+}
+
+/// HACD's own hull of a pyramid loses a corner of its base.
+TEST(ConvexParts, NoCornerIsLost) {
+  TriangleMesh pyramid;
+  pyramid.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}};
+  add(pyramid, {3, 2, 1, 0});
+  for (std::uint32_t i = 0; i < 4; ++i) pyramid.triangles.push_back({i, (i + 1) % 4, 4});
+  EXPECT_NEAR(volume(parts_of(pyramid)), 1.0 / 3, 1e-9);
+}
+
+TEST(ConvexParts, AMeshWhoseTrianglesFaceInwardsIsTurned) {
+  TriangleMesh inside_out = tetrahedron({0, 0, 0});
+  for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
+  EXPECT_NEAR(volume(parts_of(inside_out)), 1.0 / 6, 1e-9);
+}
+
 TEST(ConvexParts, AreTheSameEveryTime) {
   const TriangleMesh once = parts_of(channel()), again = parts_of(channel());
   EXPECT_EQ(content_hash(once), content_hash(again));
