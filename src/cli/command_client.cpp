@@ -12,9 +12,17 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatienceForAnswers = 6s;
-constexpr auto kPatienceAfterIt = 2s;  ///< a host says so when it is done
+constexpr auto kPatienceForMeshes = 20s;  ///< the lead waits for 15 s until all nodes have one, and says who has not
+constexpr auto kPatienceAfterIt = 2s;     ///< once all nodes have computed its state: a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
 constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
+
+bool needs_a_mesh(const core::Ask& ask) {
+  const auto is_mesh = [](const core::ClientShape& shape) { return std::holds_alternative<core::MeshRef>(shape); };
+  if (const auto* body = std::get_if<core::NewBody>(&ask)) return body->shape && is_mesh(*body->shape);
+  const auto* const fixed = std::get_if<core::NewStatic>(&ask);
+  return fixed != nullptr && is_mesh(fixed->shape);
+}
 
 }  // namespace
 
@@ -34,6 +42,13 @@ bool CommandClient::all_listen() {
   return live > 0 && endpoint_.listeners() >= live;
 }
 
+void CommandClient::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
+  const auto live = live_nodes();
+  const bool all_have = std::ranges::all_of(
+      live, [hash](const dds::Status* node) { return std::ranges::find(node->meshes, hash) != node->meshes.end(); });
+  if (!all_have || live.empty()) endpoint_.bring(hash, mesh);
+}
+
 std::uint64_t CommandClient::send(core::Command command) {
   UnderWay under_way;
   under_way.subject = core::body_of(command.ask);
@@ -43,8 +58,10 @@ std::uint64_t CommandClient::send(core::Command command) {
   under_way.delivery.is_ray = ray != nullptr;
   if (ray != nullptr) under_way.asked = ray->regions;
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
-  under_way.deadline =
-      Clock::now() + (under_way.delivery.is_ray ? kPatienceForRays : Clock::duration(kPatienceForAnswers));
+  const Clock::duration patience = under_way.delivery.is_ray   ? Clock::duration(kPatienceForRays)
+                                   : needs_a_mesh(command.ask) ? Clock::duration(kPatienceForMeshes)
+                                                               : Clock::duration(kPatienceForAnswers);
+  under_way.deadline = Clock::now() + patience;
   // Any map: there is one run in a domain, and its map may be changing just now.
   const std::uint64_t request = endpoint_.send(std::move(command), 0);
   under_way.delivery.request = request;
@@ -64,11 +81,13 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
     case core::Outcome::kDone:
       delivery.done = true;
       delivery.at_step = reply.at_step;
+      if (reply.object) delivery.object = reply.object;  // a host may be heard before the lead
       delivery.text = fmt::format("done at step {}", reply.at_step);
       under_way.deadline = {};
       return;
     case core::Outcome::kRefused:
-      delivery.text = reply.text;
+      delivery.done = false;
+      delivery.text = reply.text.empty() ? "refused" : reply.text;
       under_way.deadline = {};
       return;
     case core::Outcome::kSeen:
@@ -83,29 +102,42 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   }
 }
 
+bool CommandClient::ray_has_ended(UnderWay& under_way) {
+  Delivery& delivery = under_way.delivery;
+  if (!delivery.text.empty()) return true;  // refused
+  delivery.silent.clear();
+  const auto is_in = [](const auto& regions, core::RegionId region) {
+    return std::ranges::find(regions, region) != regions.end();
+  };
+  for (const dds::Status* node : live_nodes()) {
+    const bool asked = under_way.asked.empty() || is_in(under_way.asked, node->region);
+    if (asked && !is_in(under_way.answered, node->region)) delivery.silent.push_back(node->region);
+  }
+  const bool late = Clock::now() >= under_way.deadline;
+  if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
+  delivery.done = !under_way.answered.empty();
+  delivery.text = delivery.done ? "" : "no region has answered";
+  return true;
+}
+
+/// In slow motion its state may be many seconds away.
+bool CommandClient::is_on_its_way(const UnderWay& under_way) {
+  return under_way.accepted && !under_way.changes_the_run && under_way.delivery.text.empty() &&
+         std::ranges::any_of(live_nodes(), [&](const dds::Status* node) {
+           return node->state == dds::NodeState::kRunning && node->step < under_way.delivery.at_step;
+         });
+}
+
 bool CommandClient::has_ended(UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
-  const bool late = Clock::now() >= under_way.deadline;
-  if (delivery.is_ray) {
-    delivery.silent.clear();
-    const auto is_in = [](const auto& regions, core::RegionId region) {
-      return std::ranges::find(regions, region) != regions.end();
-    };
-    for (const dds::Status* node : live_nodes()) {
-      const bool asked = under_way.asked.empty() || is_in(under_way.asked, node->region);
-      if (asked && !is_in(under_way.answered, node->region)) delivery.silent.push_back(node->region);
-    }
-    if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
-    delivery.done = !under_way.answered.empty();
-    delivery.text = delivery.done ? "" : "no region has answered";
-    return true;
-  }
+  if (delivery.is_ray) return ray_has_ended(under_way);
   if (under_way.accepted && under_way.has_time && !delivery.done) {
     delivery.done = true;
     delivery.text = fmt::format("takes effect in step {}", delivery.at_step);
     return true;
   }
-  if (!late) {
+  if (is_on_its_way(under_way)) under_way.deadline = std::max(under_way.deadline, Clock::now() + kPatienceAfterIt);
+  if (Clock::now() < under_way.deadline) {
     const auto live = live_nodes();
     const bool paused = !live.empty() && std::ranges::all_of(live, [](const dds::Status* node) {
       return node->state == dds::NodeState::kPaused;

@@ -38,7 +38,8 @@ class CommandClient {
   bool all_listen();
   /// Returns the request's id.
   std::uint64_t send(core::Command command);
-  void bring(std::uint64_t hash, const core::TriangleMesh& mesh) { endpoint_.bring(hash, mesh); }
+  /// Gives a mesh to the nodes, unless all have it.
+  void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
   /// What has come to an end since the last call.
   std::vector<Delivery> take();
   void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
@@ -59,6 +60,8 @@ class CommandClient {
   std::vector<const dds::Status*> live_nodes();
   void note(const core::CommandReply& reply, UnderWay& under_way);
   bool has_ended(UnderWay& under_way);
+  bool ray_has_ended(UnderWay& under_way);
+  bool is_on_its_way(const UnderWay& under_way);
 
   dds::ControlBus& control_;
   std::uint64_t agreement_;

@@ -1,30 +1,29 @@
 #include "cli/command_limits.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "cli/launch_setup.h"
 #include "config/launch_variants.h"
+#include "core/limits.h"
 
 namespace aurasim::cli {
 namespace {
 
-constexpr std::uint64_t kMostBodies = 100'000;
-constexpr std::size_t kMostStatics = 10'000;
-constexpr std::size_t kMostKinds = 10'000;
-constexpr std::size_t kMostTriangles = 200'000;
-constexpr double kSmallest_m = 0.01;
-constexpr double kLargest_m = 200;
-constexpr double kLightest_kg = 1e-3;
-constexpr double kHeaviest_kg = 1e6;
-constexpr double kFarthest_m = 1e6;
-constexpr double kHardest_Ns = 1e7;
-constexpr double kFastestRate = 10;
+using namespace core::limits;
 
-std::string problem_with_place(const core::Vec3& p) {
-  const bool sane = p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m;
-  return sane ? std::string() : fmt::format("too far out, allowed: {} m", kFarthest_m);
+std::string problem_with_place(const core::Vec3& p, const char* what) {
+  const bool sane = p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthestPlace_m;
+  return sane ? std::string()
+              : fmt::format("{} is too far out, allowed: {:g} m along each axis", what, kFarthestPlace_m);
+}
+
+std::string problem_with_pose(const core::Pose& pose) {
+  if (!(std::abs(pose.q_WB.norm() - 1) < 1e-3)) return "its rotation is not a quaternion of length 1";
+  return problem_with_place(pose.p_WB, "its place");
 }
 
 std::string problem_with_speed(const core::Vec3& v, const config::Launch& launch) {
@@ -32,6 +31,13 @@ std::string problem_with_speed(const core::Vec3& v, const config::Launch& launch
   if (v.norm() <= limit_m_s) return {};
   return fmt::format("{:.4g} m/s is faster than this run promises: tolerances.speed is {:.4g} m/s", v.norm(),
                      limit_m_s);
+}
+
+std::string problem_with_spin(const core::Vec3& w, const config::Launch& launch) {
+  const double limit_rad_s = fastest_spin_rad_s(launch.step_s() / launch.time.substeps);
+  if (w.norm() <= limit_rad_s) return {};
+  return fmt::format("{:.4g} rad/s is more than a quarter turn in a substep of this run, allowed: {:.4g} rad/s",
+                     w.norm(), limit_rad_s);
 }
 
 /// A body larger than any other reaches regions that do not listen to each other.
@@ -51,6 +57,32 @@ std::string problem_with_radius(double radius_m, const config::Launch& launch) {
   return {};
 }
 
+/// How thick a shape is along its thinnest axis.
+struct Thickness {
+  double operator()(const core::Sphere& s) const { return 2 * s.radius; }
+  double operator()(const core::Box& s) const { return 2 * s.half_extents.minCoeff(); }
+  double operator()(const core::Capsule& s) const { return s.height > 0 ? 2 * s.radius : 0; }
+  double operator()(const core::Cylinder& s) const { return std::min(2 * s.radius, s.height); }
+  double operator()(const core::ConvexHull& s) const {
+    if (s.points.empty()) return 0;
+    core::Vec3 low = s.points.front(), high = low;
+    for (const core::Vec3& p : s.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    return (high - low).minCoeff();
+  }
+  double operator()(const core::Compound& s) const {
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (const core::CompoundPart& part : s.parts) thinnest = std::min(thinnest, std::visit(*this, part.shape));
+    return s.parts.empty() ? 0 : thinnest;
+  }
+  template <class Other>
+  double operator()(const Other&) const {
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
 std::string problem_with_shape(const core::Shape& shape, bool moves, const config::Launch& launch) {
   if (const auto* mesh = std::get_if<core::TriangleMesh>(&shape)) {
     if (moves) return "a mesh of triangles cannot move; use its hull";
@@ -59,8 +91,12 @@ std::string problem_with_shape(const core::Shape& shape, bool moves, const confi
     }
   }
   const double radius_m = core::bounding_radius(shape);
-  if (!(radius_m >= kSmallest_m && radius_m <= kLargest_m)) {
-    return fmt::format("its radius is {:.4g} m, allowed: {} to {} m", radius_m, kSmallest_m, kLargest_m);
+  if (!(radius_m >= kSmallestRadius_m && radius_m <= kLargestRadius_m)) {
+    return fmt::format("its radius is {:.4g} m, allowed: {} to {} m", radius_m, kSmallestRadius_m, kLargestRadius_m);
+  }
+  const double thickness_m = std::visit(Thickness{}, shape);
+  if (!(thickness_m >= kThinnest_m)) {
+    return fmt::format("it is {:.4g} m thin, allowed: {} m or more", thickness_m, kThinnest_m);
   }
   return moves ? problem_with_radius(radius_m, launch) : std::string();
 }
@@ -87,7 +123,8 @@ struct Problem {
 
   std::string operator()(const core::NewBody& ask) const {
     if (c.bodies >= kMostBodies) return fmt::format("there are {} bodies, allowed: {}", c.bodies, kMostBodies);
-    const std::string where = first_of({problem_with_place(ask.pose.p_WB), problem_with_speed(ask.v_WB, c.launch)});
+    const std::string where = first_of(
+        {problem_with_pose(ask.pose), problem_with_speed(ask.v_WB, c.launch), problem_with_spin(ask.w_WB, c.launch)});
     if (!where.empty()) return where;
     if (!ask.shape) {
       const bool known =
@@ -97,12 +134,12 @@ struct Problem {
     if (!(ask.mass_kg >= kLightest_kg && ask.mass_kg <= kHeaviest_kg)) {
       return fmt::format("its mass is {:.4g} kg, allowed: {} to {} kg", ask.mass_kg, kLightest_kg, kHeaviest_kg);
     }
-    if (c.scene.prototypes.size() >= kMostKinds) return "there are too many kinds of bodies already";
+    if (c.scene.prototypes.size() >= kMostKinds) return fmt::format("there are {} kinds of bodies already", kMostKinds);
     return c.shape ? problem_with_shape(*c.shape, true, c.launch) : "nobody knows its shape";
   }
   std::string operator()(const core::NewStatic& ask) const {
     if (c.scene.statics.size() >= kMostStatics) return fmt::format("there are {} statics already", kMostStatics);
-    if (const std::string where = problem_with_place(ask.pose.p_WB); !where.empty()) return where;
+    if (const std::string where = problem_with_pose(ask.pose); !where.empty()) return where;
     return c.shape ? problem_with_shape(*c.shape, false, c.launch) : "nobody knows its shape";
   }
   std::string operator()(const core::RemoveBody&) const { return {}; }
@@ -111,14 +148,19 @@ struct Problem {
     return known ? std::string() : fmt::format("there is no static {}", core::value_of(ask.id));
   }
   std::string operator()(const core::Impulse& ask) const {
-    if (!(ask.J_W.norm() <= kHardest_Ns)) return fmt::format("harder than {} N s", kHardest_Ns);
-    return ask.p_W ? problem_with_place(*ask.p_W) : std::string();
+    if (!(ask.J_W.norm() <= kHardestImpulse_Ns)) {
+      return fmt::format("an impulse of {:.4g} N s, allowed: {:g} N s", ask.J_W.norm(), kHardestImpulse_Ns);
+    }
+    return ask.p_W ? problem_with_place(*ask.p_W, "the point of attack") : std::string();
   }
-  std::string operator()(const core::SetVelocity& ask) const { return problem_with_speed(ask.v_WB, c.launch); }
+  std::string operator()(const core::SetVelocity& ask) const {
+    return first_of(
+        {problem_with_speed(ask.v_WB, c.launch), ask.w_WB ? problem_with_spin(*ask.w_WB, c.launch) : std::string()});
+  }
   std::string operator()(const core::SetRate& ask) const {
     if (c.launch.time.pace == config::Pace::kNone) return "this run goes as fast as it can (time.pace: none)";
-    const bool fits = ask.rate > 0 && ask.rate <= kFastestRate;
-    return fits ? std::string() : fmt::format("a rate of {:.4g}, allowed: above 0, at most {}", ask.rate, kFastestRate);
+    if (is_rate(ask.rate)) return {};
+    return fmt::format("a rate of {:.4g}, allowed: {} to {}", ask.rate, kSlowestRate, kFastestRate);
   }
   std::string operator()(const core::Repartition& ask) const {
     if (ask.boxes.size() != c.launch.regions.size()) {
@@ -130,13 +172,21 @@ struct Problem {
   std::string operator()(const core::ChangeScene& ask) const {
     return problem_with_change([&] { config::with_scene(c.launch, ask.name); });
   }
-  std::string operator()(const core::Ray&) const { return {}; }
+  std::string operator()(const core::Ray& ask) const { return problem_with(ask); }
 };
 
 }  // namespace
 
-std::string problem_with(const core::Ask& ask, const CommandContext& context) {
-  return std::visit(Problem{context}, ask);
+std::string problem_with(const core::Command& command, const CommandContext& context) {
+  if (command.at_step > context.now + kMostStepsAhead) {
+    return fmt::format("state {} is more than {} ahead", command.at_step, kMostStepsAhead);
+  }
+  return std::visit(Problem{context}, command.ask);
+}
+
+std::string problem_with(const core::Ray& ray) {
+  std::string problem = problem_with_place(ray.from_W, "the beginning of the ray");
+  return problem.empty() ? problem_with_place(ray.to_W, "its end") : problem;
 }
 
 }  // namespace aurasim::cli

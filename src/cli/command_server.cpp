@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/command_limits.h"
 #include "config/meshes.h"
@@ -13,34 +14,12 @@
 namespace aurasim::cli {
 namespace {
 
-constexpr int kRoundsForMesh = 300;
+using namespace std::chrono_literals;
 
-struct Same {
-  bool operator()(const core::Sphere& a, const core::Sphere& b) const { return a.radius == b.radius; }
-  bool operator()(const core::Box& a, const core::Box& b) const { return a.half_extents == b.half_extents; }
-  bool operator()(const core::Capsule& a, const core::Capsule& b) const {
-    return a.radius == b.radius && a.height == b.height;
-  }
-  bool operator()(const core::Cylinder& a, const core::Cylinder& b) const {
-    return a.radius == b.radius && a.height == b.height;
-  }
-  bool operator()(const core::MeshRef& a, const core::MeshRef& b) const { return a.hash == b.hash && a.use == b.use; }
-  template <class A, class B>
-  bool operator()(const A&, const B&) const {
-    return false;
-  }
-};
-
-const core::ClientShape* shape_in(const core::Ask& ask) {
-  if (const auto* body = std::get_if<core::NewBody>(&ask)) return body->shape ? &*body->shape : nullptr;
-  const auto* const fixed = std::get_if<core::NewStatic>(&ask);
-  return fixed != nullptr ? &fixed->shape : nullptr;
-}
-
-const core::MeshRef* mesh_in(const core::Ask& ask) {
-  const core::ClientShape* const shape = shape_in(ask);
-  return shape != nullptr ? std::get_if<core::MeshRef>(shape) : nullptr;
-}
+constexpr auto kPatienceForMesh = 15s;
+constexpr auto kStatusAge = 300ms;  ///< by then every node has said which meshes it has, since the command came
+/// What a node keeps of clients' meshes.
+constexpr dds::MeshCacheLimits kMeshes{1024, std::size_t{256} << 20U};
 
 }  // namespace
 
@@ -48,17 +27,20 @@ CommandServer::CommandServer(const config::Launch& launch, dds::Participant& par
     : launch_(launch),
       region_(region),
       endpoint_(participant, region, launch.regions.version()),
-      mesh_reader_(participant),
+      issuer_(launch),
+      mesh_reader_(participant, kMeshes),
       additions_writer_(participant, region) {}
 
 void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
   additions_ = {generation, {}};
-  closed_ = false;
+  issuer_.begin_generation();
   reply_all_done(0);
-  own_shapes_.clear();
-  own_kinds_.clear();
-  shapes_ = prototypes_ = statics_ = 0;
-  node.use_meshes([this](const core::MeshRef& mesh) { return make_mesh(mesh); });
+  mesh_reader_.meshes().release_all();
+  node.use_meshes([this](const core::MeshRef& mesh) {
+    std::optional<core::Shape> shape = make_mesh(mesh);
+    mesh_reader_.meshes().release(mesh.hash);
+    return shape;
+  });
 }
 
 void CommandServer::change_map(core::Generation generation, core::Step step) {
@@ -66,26 +48,27 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
   additions_.generation = generation;
   reply_all_done(step);
   if (leads_) additions_writer_.send(additions_);
-  closed_ = false;
+  issuer_.reopen();
 }
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
   leads_ = run.leads;
-  shapes_ = std::max(shapes_, node.scene().shapes.size());
-  prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
-  statics_ = std::max(statics_, node.scene().statics.size());
+  dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
-  for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), 0});
+  for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});
   for (Asked& one : asked) {
-    const auto* const mesh = mesh_in(one.command.ask);
-    const bool has_it =
-        mesh == nullptr || has_mesh(mesh->hash);  // also where it is not asked for: the lead wants to know
+    const core::MeshRef* const mesh = mesh_in(one.command.ask);
+    if (mesh != nullptr) meshes.retain(mesh->hash);
     if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
       answer(one.command, *ray, node);
-    } else if (run.leads && has_it && (mesh == nullptr || run.all_have(mesh->hash))) {
+    } else if (!run.leads) {
+      continue;
+    } else if (const auto* rate = std::get_if<core::SetRate>(&one.command.ask)) {
+      take_rate(one.command, *rate, node);
+    } else if (mesh != nullptr && !is_everywhere(mesh->hash, one, run)) {
+      wait_for_mesh(std::move(one), *mesh, run);
+    } else {
       decide(one.command, node, run);
-    } else if (run.leads) {
-      wait_for_mesh(std::move(one));
     }
   }
 }
@@ -93,6 +76,7 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
 void CommandServer::answer(const core::Command& command, const core::Ray& ray, const node::Node& node) {
   const bool asked = ray.regions.empty() || std::ranges::find(ray.regions, region_) != ray.regions.end();
   if (!asked) return;
+  if (std::string why = problem_with(ray); !why.empty()) return refuse(command.request, std::move(why));
   const physics::RayHit hit = node.world().cast(ray.from_W, ray.to_W);
   core::CommandReply seen;
   seen.request = command.request;
@@ -105,116 +89,59 @@ void CommandServer::answer(const core::Command& command, const core::Ray& ray, c
   endpoint_.reply(std::move(seen));
 }
 
+/// Of the clocks alone: whoever drives the node has it done at once (wanted_rate).
+void CommandServer::take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node) {
+  const CommandContext context{launch_, node.scene(), node.current_step(), 0, std::nullopt};
+  if (std::string why = problem_with(command, context); !why.empty()) return refuse(command.request, std::move(why));
+  wanted_rate_ = ask.rate;
+  reply_done(command.request, node.current_step());
+}
+
+/// Has every node that is alive got this mesh, by what it has said since the command came?
+bool CommandServer::is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run) {
+  return Clock::now() >= asked.since + kStatusAge && mesh_reader_.mesh(hash) != nullptr && run.lacking(hash).empty();
+}
+
 /// A mesh is on its way to all nodes; after some seconds it is not.
-void CommandServer::wait_for_mesh(Asked asked) {
-  if (++asked.rounds > kRoundsForMesh) {
-    refuse(asked.command, "not every node has got the mesh; was it sent to /api/shapes?");
-  } else {
+void CommandServer::wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run) {
+  if (Clock::now() < asked.since + kPatienceForMesh) {
     waiting_for_mesh_.push_back(std::move(asked));
+    return;
   }
+  std::vector<std::uint32_t> lacking;
+  for (const core::RegionId region : run.lacking(mesh.hash)) lacking.push_back(core::value_of(region));
+  if (mesh_reader_.mesh(mesh.hash) == nullptr && std::ranges::find(lacking, core::value_of(region_)) == lacking.end()) {
+    lacking.push_back(core::value_of(region_));
+  }
+  refuse(asked.command.request,
+         fmt::format("after {} s the nodes of regions [{}] have not got the mesh; was it sent to /api/shapes? A node "
+                     "keeps {} meshes and {} MiB",
+                     kPatienceForMesh.count(), fmt::join(lacking, ", "), kMeshes.meshes, kMeshes.bytes >> 20U));
 }
 
-bool CommandServer::has_mesh(std::uint64_t hash) {
-  if (std::ranges::find(meshes_, hash) != meshes_.end()) return true;
-  if (mesh_reader_.mesh(hash) == nullptr) return false;
-  meshes_.push_back(hash);
-  return true;
-}
-
-void CommandServer::refuse(const core::Command& command, std::string why) {
+void CommandServer::refuse(std::uint64_t request, std::string why) {
   core::CommandReply reply;
-  reply.request = command.request;
+  reply.request = request;
   reply.outcome = core::Outcome::kRefused;
   reply.text = std::move(why);
   endpoint_.reply(std::move(reply));
 }
 
-void CommandServer::accept(const core::Command& command, const core::Order& order,
-                           std::optional<core::ObjectRef> object) {
+void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  Issued issued = issuer_.issue(
+      command, run.facts, [this](const core::MeshRef& mesh) { return make_mesh(mesh); }, node);
+  if (!issued.order) return refuse(command.request, std::move(issued.refused));
   core::CommandReply reply;
   reply.request = command.request;
   reply.outcome = core::Outcome::kAccepted;
-  reply.at_step = order.at_step;
-  reply.object = object;
+  reply.at_step = issued.order->at_step;
+  reply.object = issued.object;
   endpoint_.reply(std::move(reply));
-  const bool of_a_body = core::body_of(order.action) || std::holds_alternative<core::Spawn>(order.action);
-  if (of_a_body) return;  // what was done to bodies is replied by their hosts
+  const core::Action& action = issued.order->action;
+  if (core::body_of(action) || std::holds_alternative<core::Spawn>(action)) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
-  due_[command.request] = closed_ ? std::numeric_limits<core::Step>::max() : order.at_step;
-}
-
-void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
-  const bool changes_the_run = core::changes_the_run(command.ask);
-  if (closed_) return refuse(command, "the run is being changed; ask again in a moment");
-  if (changes_the_run && !run.complete) return refuse(command, "a node has died: the run can only go on as it is");
-  const core::ClientShape* const own_shape = shape_in(command.ask);
-  const CommandContext context{launch_, node.scene(), run.bodies,
-                               own_shape != nullptr ? make_shape(*own_shape) : std::nullopt};
-  if (std::string why = problem_with(command.ask, context); !why.empty()) return refuse(command, std::move(why));
-  if (const auto* body = std::get_if<core::NewBody>(&command.ask)) return spawn(command, *body, node);
-  if (const auto* fixed = std::get_if<core::NewStatic>(&command.ask)) return place(command, *fixed, node);
-  const core::Action action = std::visit(
-      [](const auto& ask) -> core::Action {
-        if constexpr (std::is_constructible_v<core::Action, decltype(ask)>) {
-          return ask;
-        } else {
-          return core::RemoveBody{};  // a new body, a new static or a ray: not here
-        }
-      },
-      command.ask);
-  closed_ = changes_the_run;
-  accept(command, node.order(action, command.request, command.at_step));
-}
-
-void CommandServer::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
-  const core::PrototypeId prototype = prototype_id(body, command.request, node);
-  const core::BodyId id{core::kFirstClientBody + node.protocol().last_order() + 1};
-  const core::Spawn spawn{id, prototype, body.pose, body.v_WB, body.w_WB};
-  accept(command, node.order(spawn, command.request, command.at_step), core::ref_of(id));
-}
-
-void CommandServer::place(const core::Command& command, const core::NewStatic& fixed, node::Node& node) {
-  const std::uint32_t shape = shape_index(fixed.shape, command.request, node);
-  const core::StaticId id{static_cast<std::uint32_t>(statics_++)};
-  accept(command, node.order(core::AddStatic{id, shape, fixed.pose}, command.request, command.at_step),
-         core::ref_of(id));
-}
-
-std::uint32_t CommandServer::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {
-  for (const OwnShape& known : own_shapes_) {
-    if (std::visit(Same{}, known.shape, shape)) return known.index;
-  }
-  node.order(core::DefineShape{shape}, request);
-  own_shapes_.push_back({shape, static_cast<std::uint32_t>(shapes_++)});
-  return own_shapes_.back().index;
-}
-
-core::PrototypeId CommandServer::prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node) {
-  if (!body.shape) {
-    const auto& known = node.scene().prototypes;
-    const auto found = std::ranges::find(known, body.prototype, &core::Prototype::name);
-    return core::PrototypeId{static_cast<std::uint32_t>(found - known.begin())};
-  }
-  const std::uint32_t shape = shape_index(*body.shape, request, node);
-  for (const OwnKind& kind : own_kinds_) {
-    if (kind.shape == shape && kind.mass_kg == body.mass_kg) return kind.id;
-  }
-  node.order(core::DefinePrototype{shape, body.mass_kg}, request);
-  own_kinds_.push_back({shape, body.mass_kg, core::PrototypeId{static_cast<std::uint32_t>(prototypes_++)}});
-  return own_kinds_.back().id;
-}
-
-std::optional<core::Shape> CommandServer::make_shape(const core::ClientShape& shape) {
-  if (const auto* mesh = std::get_if<core::MeshRef>(&shape)) return make_mesh(*mesh);
-  return std::visit(
-      [](const auto& s) -> core::Shape {
-        if constexpr (std::is_constructible_v<core::Shape, decltype(s)>) {
-          return s;
-        } else {
-          return core::Sphere{};  // a mesh: not here
-        }
-      },
-      shape);
+  due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : reply.at_step,
+                           issued.object};
 }
 
 std::optional<core::Shape> CommandServer::make_mesh(const core::MeshRef& ref) {
@@ -231,8 +158,9 @@ void CommandServer::publish_additions(const node::StepReport& report) {
   if (additions_.orders.size() > before && leads_) additions_writer_.send(additions_);
 }
 
-void CommandServer::reply_done(std::uint64_t request, core::Step step) {
+void CommandServer::reply_done(std::uint64_t request, core::Step step, std::optional<core::ObjectRef> object) {
   core::CommandReply done;
+  done.object = object;
   done.request = request;
   done.outcome = core::Outcome::kDone;
   done.at_step = step;
@@ -240,15 +168,16 @@ void CommandServer::reply_done(std::uint64_t request, core::Step step) {
 }
 
 void CommandServer::reply_all_done(core::Step step) {
-  for (const auto& [request, due] : std::exchange(due_, {})) reply_done(request, step);
+  for (const auto& [request, due] : std::exchange(due_, {})) reply_done(request, step, due.object);
 }
 
 void CommandServer::after_step(const node::StepReport& report) {
   publish_additions(report);
-  for (const std::uint64_t request : report.applied) reply_done(request, report.step);
+  for (const node::Applied& applied : report.applied) reply_done(applied.request, report.step, applied.object);
+  for (const physics::Declined& declined : report.declined) refuse(declined.request, declined.why);
   std::erase_if(due_, [&](const auto& entry) {
-    if (entry.second > report.step) return false;
-    reply_done(entry.first, report.step);
+    if (entry.second.step > report.step) return false;
+    reply_done(entry.first, report.step, entry.second.object);
     return true;
   });
 }

@@ -57,6 +57,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.protocol.neighbour_distance_m = listening_distance_m(launch);
   setup.physics.step_s = launch.step_s();
   setup.physics.substeps = launch.time.substeps;
+  setup.physics.top_speed_m_s = launch.tolerances.speed_m_s;
   setup.physics.solver = physics::solver_named(launch.physics.solver);
   setup.physics.solver_iterations = launch.physics.iterations;
   setup.physics.friction_directions = launch.physics.friction_directions;

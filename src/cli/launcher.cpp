@@ -113,7 +113,8 @@ void Launcher::collect_exits() {
     child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     if (child.told_to_end && child.exit_code == 128 + SIGTERM) child.exit_code = 0;  // told before it could listen
     const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
-    child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig);
+    child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
+                 child.exit_code != static_cast<int>(ExitCode::kBroken);
     if (child.died) {
       spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
                     has_begun_ ? "" : " before the run had begun: the others are ended");

@@ -70,6 +70,18 @@ std::string line(const std::vector<Column>& columns, std::size_t row) {
   return text.substr(1) + "\n";
 }
 
+/// What is wrong, in the nodes' own words.
+std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal) {
+  const std::size_t width = std::max<std::size_t>(terminal, 20) - 1;
+  std::string lines;
+  for (const auto& [region, seen] : statuses) {
+    if (seen.status.text.empty()) continue;
+    const std::string note = fmt::format("region {}: {}", core::value_of(region), seen.status.text);
+    for (std::size_t begin = 0; begin < note.size(); begin += width) lines += note.substr(begin, width) + "\n";
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {
@@ -93,7 +105,7 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
   std::string table;
   for (std::size_t i = 0; i <= shown; ++i) table += line(columns, i);
   if (shown < statuses.size()) table += fmt::format("{:>6} {} more\n", "...", statuses.size() - shown);
-  return table + line(columns, shown + 1);
+  return table + line(columns, shown + 1) + notes(statuses, size.columns);
 }
 
 TerminalView::TerminalView() : is_terminal_(::isatty(STDOUT_FILENO) != 0) {}

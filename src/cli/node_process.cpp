@@ -160,6 +160,8 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
   pacer_.set_epoch(0, begin.epoch_ns, begin.clock_ahead, node::read_clocks());
   hold_at_.reset();
+  hurry_until_ = 0;
+  refusals_noted_ = 0;
   paused_ = {};
   const node::StepReport& report = node_->start();
   observers_->begin_generation(generation);
@@ -193,7 +195,8 @@ ExitCode NodeProcess::run_steps() {
   if (recorder_ && !fenced) recorder_->write_settling(node_->settle());
   if (recorder_) recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead});
   if (!fenced) enter(NodeEvent::kSettled);
-  return fenced ? ExitCode::kFenced : ExitCode::kOk;
+  if (fenced) return ExitCode::kFenced;
+  return broken_bodies_ > 0 ? ExitCode::kBroken : ExitCode::kOk;
 }
 
 /// True when the next state is due, allowed and everything it needs is here. Returns often, so that commands are heard.
@@ -211,16 +214,18 @@ bool NodeProcess::wait_until_due() {
     return false;
   }
   if (phase_ == NodePhase::kPaused) enter(NodeEvent::kGoesOn);
-  const std::chrono::nanoseconds until = pacer_.until(next, node::read_clocks());
-  if (until > 0ns) {
+  if (const std::chrono::nanoseconds until = time_until(next); until > 0ns) {
     transport_->wait_for_arrival(std::min<std::chrono::nanoseconds>(until, 20ms));
     node_->ready();
+    publish_running();
     return false;
   }
   const bool complete = node_->ready();
+  note_refusals();
   if (fence_is_open() && complete) return true;
   transport_->wait_for_arrival(20ms);
   wait_ms_ += milliseconds(Clock::now() - begin);
+  note_waiting();
   publish_running();
   return false;
 }
@@ -235,6 +240,8 @@ void NodeProcess::compute_step() {
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
   if (recorder_) recorder_->write(report, {frame_ms, wait_ms_}, *node_);
   wait_ms_ = 0;
+  computed_at_ = Clock::now();
+  note_faults(report);
   note(report, frame_ms);
   publish_running();
   apply_orders();
@@ -242,46 +249,6 @@ void NodeProcess::compute_step() {
 
 void NodeProcess::execute_commands() {
   for (const dds::RunCommand& command : control_.take_commands()) execute(command);
-}
-
-void NodeProcess::execute(const dds::RunCommand& command) {
-  using Kind = dds::RunCommandKind;
-  if (command.kind == Kind::kStart) {
-    if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of_region_zero(command);
-    return;
-  }
-  if (command.generation != generation_ || !node_) return;  // for a run that is over
-  switch (command.kind) {
-    case Kind::kStart:
-      break;
-    case Kind::kPause:
-      hold_at_ = command.at_step;
-      break;
-    case Kind::kStep:
-      if (hold_at_) {
-        pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
-        hold_at_ = *hold_at_ + command.count;
-      }
-      break;
-    case Kind::kResume:
-      if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
-      hold_at_.reset();
-      break;
-    case Kind::kReset:
-      reset_ = command;
-      break;
-    case Kind::kStop:
-      stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step);
-      break;
-  }
-}
-
-void NodeProcess::reset_if_due() {
-  if (!reset_ || node_->current_step() < reset_->at_step) return;
-  const dds::RunCommand reset = *reset_;
-  reset_.reset();
-  enter(NodeEvent::kReset);
-  begin_generation(reset.generation + 1, reset);
 }
 
 /// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each

@@ -64,9 +64,14 @@ class NodeProcess {
   void begin_generation(core::Generation generation, const dds::RunCommand& begin);
   ExitCode run_steps();
   bool wait_until_due();
+  std::chrono::nanoseconds time_until(core::Step step) const;
+  void note_refusals();
+  void note_waiting();
+  void note_faults(const node::StepReport& report);
   void compute_step();
   void execute_commands();
   void serve_clients();
+  void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
   void reset_if_due();
@@ -116,6 +121,12 @@ class NodeProcess {
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;
+  core::Step hurry_until_ = 0;       ///< somebody waits for this state: no slower than in real time until then
+  std::size_t refusals_noted_ = 0;   ///< of the protocol's
+  std::uint64_t broken_bodies_ = 0;  ///< taken out here since the start
+  std::string fault_;                ///< the last one, for people
+  std::string waiting_;              ///< whom for, if it takes long
+  std::chrono::steady_clock::time_point computed_at_;  ///< the last state
   std::chrono::steady_clock::time_point began_;
   std::chrono::steady_clock::duration paused_{};
   std::chrono::steady_clock::time_point last_published_;

@@ -22,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatienceWithOthers = 20s;
 constexpr auto kRound = 5ms;
+constexpr double kRateNoticeS = 0.1;
 
 /// What went wrong and with whom: the run cannot go on.
 class ChangeFailed : public std::runtime_error {
@@ -50,37 +51,99 @@ std::vector<node::Resident> take_census(const node::RepartitionSettings& setting
 
 }  // namespace
 
+void NodeProcess::execute(const dds::RunCommand& command) {
+  using Kind = dds::RunCommandKind;
+  if (command.kind == Kind::kStart) {
+    if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of_region_zero(command);
+    return;
+  }
+  if (command.generation != generation_ || !node_) return;  // for a run that is over
+  switch (command.kind) {
+    case Kind::kStart:
+      break;
+    case Kind::kPause:
+      hold_at_ = command.at_step;
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kStep:
+      if (hold_at_) {
+        pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
+        hold_at_ = *hold_at_ + command.count;
+      }
+      break;
+    case Kind::kResume:
+      if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
+      hold_at_.reset();
+      break;
+    case Kind::kReset:
+      reset_ = command;
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kStop:
+      stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step);
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kRate:
+      pacer_.set_rate(command.rate, command.at_step, command.epoch_ns, command.clock_ahead, node::read_clocks());
+      status_.rate = command.rate;
+      break;
+  }
+}
+
+void NodeProcess::reset_if_due() {
+  if (!reset_ || node_->current_step() < reset_->at_step) return;
+  const dds::RunCommand reset = *reset_;
+  reset_.reset();
+  enter(NodeEvent::kReset);
+  begin_generation(reset.generation + 1, reset);
+}
+
 /// The live node of the lowest region gives commands their place in time.
 void NodeProcess::serve_clients() {
   const auto& statuses = control_.statuses();
+  const auto is_ours = [this](const dds::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
   RunView run;
   run.leads = true;
   for (const auto& [region, seen] : statuses) {
-    run.complete = run.complete && seen.is_live();
+    if (!is_ours(seen)) continue;
+    run.facts.complete = run.facts.complete && seen.is_live();
     if (!seen.is_live()) continue;
-    run.bodies += seen.status.bodies;
+    run.facts.bodies += seen.status.bodies;
     run.leads = run.leads && region >= options_.region;
   }
-  run.all_have = [&statuses](std::uint64_t mesh) {
-    return std::all_of(statuses.begin(), statuses.end(), [mesh](const auto& entry) {
-      const std::vector<std::uint64_t>& known = entry.second.status.meshes;
-      return !entry.second.is_live() || std::find(known.begin(), known.end(), mesh) != known.end();
-    });
+  run.lacking = [&statuses, is_ours](std::uint64_t mesh) {
+    std::vector<core::RegionId> lacking;
+    for (const auto& [region, seen] : statuses) {
+      const std::vector<std::uint64_t>& known = seen.status.meshes;
+      const bool has_it = std::find(known.begin(), known.end(), mesh) != known.end();
+      if (is_ours(seen) && seen.is_live() && !has_it) lacking.push_back(region);
+    }
+    return lacking;
   };
   command_server_->serve(*node_, run);
   status_.meshes = command_server_->meshes();
+  if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
+}
+
+/// All nodes are told outside the steps, which may be seconds apart. The step that would be due in a moment stays due
+/// then, and from it on the new rate holds.
+void NodeProcess::change_rate(double rate) {
+  const double steps = std::min(pacer_.rate(), 1.0) * kRateNoticeS / launch_.step_s();
+  dds::RunCommand command;
+  command.kind = dds::RunCommandKind::kRate;
+  command.generation = generation_;
+  command.at_step = node_->current_step() + 1 + static_cast<core::Step>(steps);
+  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
+  command.rate = rate;
+  command.request = control_.send(command);
+  execute(command);
 }
 
 /// Orders about the run as a whole whose state has been computed.
 void NodeProcess::apply_orders() {
   std::erase_if(run_orders_, [this](const core::Order& order) {
     if (node_->current_step() < order.at_step) return false;
-    if (const auto* rate = std::get_if<core::SetRate>(&order.action)) {
-      pacer_.set_rate(order.at_step, rate->rate);
-      status_.rate = rate->rate;
-    } else if (core::changes_the_run(order.action)) {
-      change_ = order;
-    }
+    if (core::changes_the_run(order.action)) change_ = order;
     return true;
   });
 }
@@ -207,6 +270,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   observers_->begin_generation(generation_);
   command_server_->change_map(generation_, node_->current_step());
   control_.use_map(launch_.regions.version());
+  refusals_noted_ = 0;
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
   observers_->after_step(*node_, report);
   pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());

@@ -49,7 +49,7 @@ void NodeProcess::publish_running() {
   status_.dead = node_->protocol().intake().dead_regions();
   watch_the_clock();
   watch_the_records();
-  publish(notice_);
+  publish(!waiting_.empty() ? waiting_ : !fault_.empty() ? fault_ : notice_);
 }
 
 void NodeProcess::publish(const std::string& text) {

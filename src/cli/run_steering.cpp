@@ -1,6 +1,7 @@
 #include "cli/run_steering.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,15 +73,18 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   command.kind = kind;
   command.count = count;
   bool running = false;
+  double rate = 0;
   for (const auto& [region, seen] : control_.statuses()) {
     if (!belongs(seen)) continue;
     command.run = seen.status.run;
     command.generation = std::max(command.generation, seen.status.generation);
     command.at_step = std::max(command.at_step, seen.status.step);
+    rate = std::max(rate, seen.status.rate);
     running = running || seen.status.state == dds::NodeState::kRunning;
   }
-  const auto notice =
-      static_cast<core::Step>(kNoticeS * launch_.time.step_hz) + core::horizon::command_notice(launch_.lookahead());
+  // What is computed in that time at this rate; the nodes hurry to the state if that is slow.
+  const auto notice = static_cast<core::Step>(std::ceil(kNoticeS * launch_.time.step_hz * rate)) +
+                      core::horizon::command_notice(launch_.lookahead());
   if (running) command.at_step += notice;
   if (kind == Kind::kStep) command.at_step += count;
   const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);
@@ -102,6 +106,8 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
       return status.state == dds::NodeState::kRunning;
     case Kind::kStop:
       return status.state == dds::NodeState::kFinished;
+    case Kind::kRate:
+      return status.rate == command.rate;
   }
   return false;
 }

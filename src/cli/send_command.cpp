@@ -14,6 +14,7 @@
 #include "cli/run_steering.h"
 #include "config/convex_parts.h"
 #include "config/meshes.h"
+#include "core/limits.h"
 
 namespace aurasim::cli {
 namespace {
@@ -22,7 +23,7 @@ using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
 using Numbers = std::vector<double>;
 
-constexpr auto kPatienceWithTheRun = 25s;
+constexpr auto kPatienceWithTheRun = 60s;  ///< in slow motion an order's state may be so far away
 
 const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"resume", Kind::kResume},
@@ -58,7 +59,10 @@ core::Vec3 vector(const Numbers& v) { return v.size() == 3 ? core::Vec3(v[0], v[
 
 core::Pose pose(const SendArguments& a) {
   core::Pose pose{vector(a.p), core::Quat::Identity()};
-  if (a.q.size() == 4) pose.q_WB = core::Quat(a.q[0], a.q[1], a.q[2], a.q[3]).normalized();
+  if (a.q.size() != 4) return pose;
+  const core::Quat q(a.q[0], a.q[1], a.q[2], a.q[3]);
+  if (!(q.norm() > 1e-6 && q.norm() < 1e6)) fail("--q: this is no rotation; a quaternion w x y z, e.g. 1 0 0 0");
+  pose.q_WB = q.normalized();
   return pose;
 }
 
@@ -272,7 +276,9 @@ void add_send(CLI::App& program, Action& action) {
       {"velocity", "set a body's velocity", velocity_options},
       {"rate", "slow motion and the like",
        [](CLI::App& c, SendArguments& a) {
-         c.add_option("--value", a.rate, "simulated seconds per second")->required();
+         c.add_option("--value", a.rate, "simulated seconds per second")
+             ->required()
+             ->check(CLI::Range(core::limits::kSlowestRate, core::limits::kFastestRate));
        }},
       {"scene", "begin anew with another scene",
        [](CLI::App& c, SendArguments& a) { c.add_option("--name", a.scene, "of its file")->required(); }},

@@ -28,6 +28,10 @@ struct NewStatic {
   ClientShape shape;
   Pose pose;
 };
+/// At once, this many simulated seconds per second: of the clocks, so it is not an order.
+struct SetRate {
+  double rate = 1;
+};
 /// What does the way from one point to another hit first? Each region that is named answers for itself; none named:
 /// all answer.
 struct Ray {

@@ -53,6 +53,7 @@ void Intake::accept(Inbox& inbox) {
     if (ack.destination != vicinity_.self || !belongs(ack.source, ack.generation, map_version_)) return;
     if (!departures_.acknowledge(ack.source, ack.sequence)) ++counters_.copies;
   });
+  take_all(inbox.refusals, settings_.generation, [this](const Refusal& refusal) { accept(refusal); });
   for (const PeerEvent& event : inbox.peers) accept(event);
   inbox.peers.clear();
   receive_deaths();
@@ -71,6 +72,17 @@ void Intake::accept(HandOff& hand_off) {
   });
   // A copy of one adopted long ago: its acknowledgement was lost. One that still waits has not been adopted.
   if (!waits) acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence});
+}
+
+/// What it said is lost, and what it says later is of no use without it: to wait for it would be to wait for ever.
+void Intake::accept(const Refusal& refusal) {
+  Neighbour* const neighbour = find(refusal.source);
+  if (!neighbour || !neighbour->alive() || refusal.generation != settings_.generation) {
+    ++counters_.strangers;
+    return;
+  }
+  refusals_.push_back(refusal);
+  mark_dead(*neighbour);
 }
 
 void Intake::accept(const PeerEvent& event) {

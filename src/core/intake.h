@@ -57,6 +57,8 @@ class Intake {
   std::span<const Neighbour> neighbours() const { return neighbours_; }
   std::vector<RegionId> dead_regions() const;
   bool fenced() const { return fenced_; }
+  /// Messages of neighbours that were alive, refused; each neighbour has been held for dead since.
+  const std::vector<Refusal>& refusals() const { return refusals_; }
   /// Bodies sent to a region that died, which may not be taken back yet.
   const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
   const IntakeCounters& counters() const { return counters_; }
@@ -72,6 +74,7 @@ class Intake {
   bool keeps_waiting(const Neighbour& neighbour, Step n) const;
   bool belongs(RegionId source, Generation generation, std::uint64_t map_version);
   void accept(HandOff& hand_off);
+  void accept(const Refusal& refusal);
   void accept(const PeerEvent& event);
   void mark_dead(Neighbour& neighbour);
   void receive_deaths();
@@ -90,6 +93,7 @@ class Intake {
   std::vector<HandOff> to_reclaim_;  ///< on their way to regions that died; taken back once every neighbour knows
   std::vector<HandOffAck> acks_;
   std::vector<Adoption> adoptions_;
+  std::vector<Refusal> refusals_;
   bool fenced_ = false;
   IntakeCounters counters_;
 };

@@ -2,10 +2,13 @@
 
 namespace aurasim::core {
 
+const char* name_of(MessageKind kind) { return kind == MessageKind::kAura ? "aura batch" : "hand-off"; }
+
 void Inbox::clear() {
   auras.clear();
   hand_offs.clear();
   acks.clear();
+  refusals.clear();
   peers.clear();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "core/body_state.h"
@@ -102,11 +103,25 @@ struct PeerEvent {
   PeerChange change = PeerChange::kLost;
 };
 
+enum class MessageKind : std::uint8_t { kAura, kHandOff };
+const char* name_of(MessageKind kind);
+
+/// A message of this run and this map that the transport has turned down, for what it says. It will not come again as
+/// anything better.
+struct Refusal {
+  RegionId source{};
+  Generation generation = 0;
+  Step stamp = 0;
+  MessageKind kind = MessageKind::kAura;
+  std::string_view why;  ///< a word that lives for ever
+};
+
 /// What a transport delivered since the last look, in order of arrival.
 struct Inbox {
   std::vector<AuraBatch> auras;
   std::vector<HandOff> hand_offs;
   std::vector<HandOffAck> acks;
+  std::vector<Refusal> refusals;
   std::vector<PeerEvent> peers;
 
   void clear();

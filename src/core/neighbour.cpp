@@ -14,9 +14,15 @@ bool by_id(const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; }
 }  // namespace
 
 bool Neighbour::accept(AuraBatch batch) {
-  const Step stamp = batch.stamp;
-  if (stamp <= received_ || !waiting_.try_emplace(stamp, std::move(batch)).second) return false;
-  while (waiting_.contains(received_ + 1)) note_marks(waiting_.at(++received_));
+  if (batch.stamp <= received_) return false;
+  const auto place = std::ranges::lower_bound(waiting_, batch.stamp, {}, &AuraBatch::stamp);
+  if (place != waiting_.end() && place->stamp == batch.stamp) return false;
+  waiting_.insert(place, std::move(batch));
+  auto next = std::ranges::upper_bound(waiting_, received_, {}, &AuraBatch::stamp);
+  for (; next != waiting_.end() && next->stamp == received_ + 1; ++next) {
+    note_marks(*next);
+    ++received_;
+  }
   return true;
 }
 
@@ -32,10 +38,9 @@ void Neighbour::note_marks(const AuraBatch& batch) {
 
 void Neighbour::apply_until(Step last) {
   last = std::min(last, received_);
-  while (!waiting_.empty() && waiting_.begin()->first <= last) {
-    apply(waiting_.begin()->second);
-    waiting_.erase(waiting_.begin());
-  }
+  auto due_end = waiting_.begin();
+  for (; due_end != waiting_.end() && due_end->stamp <= last; ++due_end) apply(*due_end);
+  waiting_.erase(waiting_.begin(), due_end);
 }
 
 void Neighbour::apply(AuraBatch& batch) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "core/messages.h"
@@ -57,7 +56,7 @@ class Neighbour {
   bool alive_ = true;
   Step received_;
   Step applied_;
-  std::map<Step, AuraBatch> waiting_;  ///< received, not yet in effect
+  std::vector<AuraBatch> waiting_;  ///< received, not yet in effect; ascending stamp, a few at most
   struct Mark {
     Step stamp;
     std::uint64_t last_sequence;

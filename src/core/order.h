@@ -67,10 +67,6 @@ struct SetVelocity {
   std::optional<Vec3> w_WB{};  ///< nothing: the spin stays
 };
 
-/// From the order's state on, this many simulated seconds per second.
-struct SetRate {
-  double rate = 1;
-};
 /// Once the order's state has been computed, all nodes take a new map and hand every body to its new host before they
 /// go on. One rectangle for each region.
 struct Repartition {
@@ -82,7 +78,7 @@ struct ChangeScene {
 };
 
 using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse,
-                            SetVelocity, SetRate, Repartition, ChangeScene>;
+                            SetVelocity, Repartition, ChangeScene>;
 
 struct Order {
   std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders

@@ -71,7 +71,6 @@ struct CommandClientEndpoint::Impl {
   TypedWriter<wire::Command> commands;
   TypedReader<wire::CommandReply> replies;
   TypedWriter<wire::MeshShape> shapes;
-  std::set<std::uint64_t> brought;
 };
 
 CommandClientEndpoint::CommandClientEndpoint(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
@@ -97,8 +96,9 @@ std::vector<core::CommandReply> CommandClientEndpoint::take() {
 }
 
 void CommandClientEndpoint::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
-  if (!impl_->brought.insert(hash).second) return;
-  impl_->shapes.send(NamedMesh{hash, mesh});
+  if (impl_->shapes.send(NamedMesh{hash, mesh}) == WriteResult::kFailed) {
+    throw DdsError("cannot send the mesh: topic shape takes no more from this process");
+  }
 }
 
 void CommandClientEndpoint::wait(std::chrono::nanoseconds time_out) {

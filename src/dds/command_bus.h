@@ -43,7 +43,7 @@ class CommandClientEndpoint {
   /// Draws a request id if there is none, and returns it. Throws DdsError when the write failed.
   std::uint64_t send(core::Command command, std::uint64_t map_version);
   std::vector<core::CommandReply> take();
-  /// Gives a mesh to all nodes, now and later, as long as this process lives.
+  /// Gives a mesh to all nodes, now and later, as long as this process lives. Throws DdsError when the write failed.
   void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);

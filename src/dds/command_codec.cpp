@@ -102,7 +102,9 @@ class Get {
       case 2:
         return core::RemoveBody{body};
       case 3:
-        return core::RemoveStatic{StaticId{static_cast<std::uint32_t>(in_.subject())}};
+        return in_.subject() <= 0xffff'ffff
+                   ? std::optional<Ask>(core::RemoveStatic{StaticId{static_cast<std::uint32_t>(in_.subject())}})
+                   : std::nullopt;
       case 4:
         return is_vector(in_.v()) ? std::optional<Ask>(core::Impulse{body, vector_at(in_.v(), 0), maybe(in_.p())})
                                   : std::nullopt;

@@ -24,7 +24,7 @@ const char* name_of(NodeState state) {
 }
 
 const char* name_of(RunCommandKind kind) {
-  static constexpr std::array kNames = {"start", "pause", "resume", "step", "reset", "stop"};
+  static constexpr std::array kNames = {"start", "pause", "resume", "step", "reset", "stop", "rate"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

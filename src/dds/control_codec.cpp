@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "aurasim.h"
+#include "core/limits.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
 
@@ -95,7 +96,8 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
     return WireError::kEnum;
   }
   const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
-                        in.lookahead() >= 0 && all_below(in.dead(), expected.region_count);
+                        in.lookahead() >= 0 && all_below(in.dead(), expected.region_count) &&
+                        all_below(in.refused_source(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -106,8 +108,11 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
   if (const auto error = check_source(in, expected)) {
     return error;
   }
-  if (in.dead().size() > kMaxRows) {
+  if (std::max(in.dead().size(), in.refused_source().size()) > kMaxRows) {
     return WireError::kTooLarge;
+  }
+  if (in.refused_source().size() != in.refused_count().size()) {
+    return WireError::kLength;
   }
   return check_values(in, expected);
 }
@@ -129,6 +134,8 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.real_time_factor(status.real_time_factor);
   out.rate(status.rate);
   out.meshes(status.meshes);
+  fill(out.refused_source(), status.refused, [](const auto& refused) { return value_of(refused.first); });
+  fill(out.refused_count(), status.refused, [](const auto& refused) { return refused.second; });
   out.footprint_x0(status.footprint.x0);
   out.footprint_y0(status.footprint.y0);
   out.footprint_x1(status.footprint.x1);
@@ -156,6 +163,9 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   status.real_time_factor = in.real_time_factor();
   status.rate = in.rate();
   status.meshes = in.meshes();
+  for (std::size_t i = 0; i < in.refused_source().size(); ++i) {
+    status.refused.emplace_back(RegionId{in.refused_source()[i]}, in.refused_count()[i]);
+  }
   status.footprint = {in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()};
   status.lookahead = in.lookahead();
   status.text = in.text().to_string();
@@ -213,6 +223,7 @@ void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& o
   out.kind(static_cast<std::uint8_t>(command.kind));
   out.count(command.count);
   out.epoch_ns(command.epoch_ns);
+  out.rate(command.rate);
 }
 
 Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected) {
@@ -223,10 +234,11 @@ Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected)
   if (const auto error = check_header(in, any_map)) {
     return *error;
   }
-  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kStop)) {
+  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kRate)) {
     return WireError::kEnum;
   }
-  if (in.request() == 0 || in.count() < 0 || in.epoch_ns() < 0) {
+  const bool is_rate = in.kind() == static_cast<std::uint8_t>(RunCommandKind::kRate);
+  if (in.request() == 0 || in.count() < 0 || in.epoch_ns() < 0 || (is_rate && !core::limits::is_rate(in.rate()))) {
     return WireError::kRange;
   }
   return RunCommand{.request = in.request(),
@@ -236,7 +248,8 @@ Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected)
                     .run = in.run(),
                     .at_step = in.stamp(),
                     .count = in.count(),
-                    .epoch_ns = in.epoch_ns()};
+                    .epoch_ns = in.epoch_ns(),
+                    .rate = in.rate()};
 }
 
 }  // namespace aurasim::dds

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
@@ -57,7 +58,8 @@ struct Status {
   std::int32_t lookahead = 0;
   std::string text;  ///< e.g. why it failed; cut at 256 bytes
   std::vector<core::RegionId> dead;
-  std::vector<std::uint64_t> meshes;  ///< hashes of clients' meshes that it has
+  std::vector<std::uint64_t> meshes;                              ///< hashes of clients' meshes that it has
+  std::vector<std::pair<core::RegionId, std::uint64_t>> refused;  ///< messages that it has refused, by source
 };
 
 /// The last status of one region, and whether its node is still there.
@@ -83,7 +85,7 @@ struct WorldMap {
   std::vector<core::Rectangle> regions;
 };
 
-enum class RunCommandKind : std::uint8_t { kStart, kPause, kResume, kStep, kReset, kStop };
+enum class RunCommandKind : std::uint8_t { kStart, kPause, kResume, kStep, kReset, kStop, kRate };
 const char* name_of(RunCommandKind kind);
 
 struct RunCommand {
@@ -95,6 +97,7 @@ struct RunCommand {
   core::Step at_step = 0;         ///< takes effect when this state has been computed
   std::int64_t count = 0;         ///< kStep: how many steps
   std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume: of the first step after it
+  double rate = 1;  ///< kRate: from `at_step` on, which is due at `epoch_ns`, simulated seconds per second
   /// How far the sender's wall clock was ahead of ours when it came, less its way. Not sent.
   std::chrono::nanoseconds clock_ahead{0};
 };

@@ -38,6 +38,7 @@ struct Link {
 
   std::uint64_t match = 0;  ///< RemoteWriter::order of the neighbour's aura writer that we know; 0: none yet
   bool lost = false;
+  std::uint64_t refused = 0;  ///< samples of its
 };
 
 void count_sent(TopicCounters& counters, WriteResult result, std::size_t bytes) {
@@ -55,16 +56,41 @@ std::size_t bytes_of(const WireMessage& sample) {
   return WireMessage::getCdrSerializedSize(sample);
 }
 
-/// Takes all samples of a reader into `inbox`; what decode refuses is counted.
+/// Is it a message of this run, map and source that is refused for what it says?
+bool is_our_own(WireError error) {
+  switch (error) {
+    case WireError::kMalformed:
+    case WireError::kVersion:
+    case WireError::kGeneration:
+    case WireError::kMapVersion:
+    case WireError::kSource:
+      return false;
+    default:
+      return true;
+  }
+}
+
+template <class WireMessage>
+constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
+  if constexpr (std::is_same_v<WireMessage, wire::AuraBatch>) return core::MessageKind::kAura;
+  if constexpr (std::is_same_v<WireMessage, wire::Migration>) return core::MessageKind::kHandOff;
+  return {};  // a lost acknowledgement is asked for again
+}
+
+/// Takes all samples of a reader into `inbox`; what decode refuses is counted, by topic and by link.
 template <class WireMessage, class Message>
 void drain(Reader& reader, WireMessage& sample, const Expected& expected, std::vector<Message>& inbox,
-           TopicCounters& counters) {
+           TopicCounters& counters, std::uint64_t& refused, std::vector<core::Refusal>& refusals) {
   while (reader.take(&sample)) {
     ++counters.received;
     counters.received_bytes += bytes_of(sample);
     auto decoded = decode(sample, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       counters.refused.add(*error);
+      ++refused;
+      const auto kind = kind_of(sample);
+      if (!kind || !is_our_own(*error)) continue;
+      refusals.push_back({*expected.source, sample.generation(), sample.stamp(), *kind, name_of(*error)});
     } else {
       inbox.push_back(std::move(std::get<Message>(decoded)));
     }
@@ -246,9 +272,12 @@ void DdsTransport::take(core::Inbox& inbox) {
   for (const auto& link : impl_->links) {
     Expected expected = impl_->expected;
     expected.source = link->region;
-    drain(link->aura_reader, impl_->aura, expected, inbox.auras, counters.aura);
-    drain(link->migration_reader, impl_->migration, expected, inbox.hand_offs, counters.migration);
-    drain(link->ack_reader, impl_->ack, expected, inbox.acks, counters.migration_ack);
+    const auto take_all = [&](Reader& reader, auto& sample, auto& messages, TopicCounters& topic) {
+      drain(reader, sample, expected, messages, topic, link->refused, inbox.refusals);
+    };
+    take_all(link->aura_reader, impl_->aura, inbox.auras, counters.aura);
+    take_all(link->migration_reader, impl_->migration, inbox.hand_offs, counters.migration);
+    take_all(link->ack_reader, impl_->ack, inbox.acks, counters.migration_ack);
   }
   impl_->take_peer_changes(inbox.peers);
 }
@@ -271,5 +300,13 @@ void DdsTransport::wait_for_arrival(std::chrono::nanoseconds time_out) {
 }
 
 const TransportCounters& DdsTransport::counters() const { return impl_->counters; }
+
+std::vector<std::pair<RegionId, std::uint64_t>> DdsTransport::refused() const {
+  std::vector<std::pair<RegionId, std::uint64_t>> refused;
+  for (const auto& link : impl_->links) {
+    if (link->refused > 0) refused.emplace_back(link->region, link->refused);
+  }
+  return refused;
+}
 
 }  // namespace aurasim::dds

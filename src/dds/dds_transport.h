@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
@@ -70,6 +71,7 @@ class DdsTransport final : public transport::Transport {
   /// True when wait_until_matched would return at once.
   bool all_matched() const;
 
+  /// Messages of a neighbour that are of this run and map but not sound go to Inbox::refusals.
   /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back and
   /// matched. A process that dies is lost after one and a half leases of its aura writer, one that hangs after
   /// Settings::hang_limit more, one that leaves at once; one that was restarted before that gives kLost and then
@@ -81,6 +83,8 @@ class DdsTransport final : public transport::Transport {
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
 
   const TransportCounters& counters() const;
+  /// Neighbours that samples were refused of, and how many.
+  std::vector<std::pair<core::RegionId, std::uint64_t>> refused() const;
 
  private:
   struct Impl;

@@ -86,7 +86,6 @@ struct ToRow {
     put(row, a.v_WB);
     if (a.w_WB) put(row, *a.w_WB);
   }
-  void operator()(const core::SetRate& a) const { row.numbers = {a.rate}; }
   void operator()(const core::Repartition& a) const {
     for (const core::Rectangle& r : a.boxes) row.numbers.insert(row.numbers.end(), {r.x0, r.y0, r.x1, r.y1});
   }
@@ -147,7 +146,7 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
   const StaticId fixed{static_cast<std::uint32_t>(row.subject)};
   const bool about_a_mesh = kind == 0;
   if (!about_a_mesh && row.subject > kMostSubjects) return {};
-  if (kind == 9) return regions_of(n);
+  if (kind == 8) return regions_of(n);
   if (!finite) return {};
   switch (kind) {
     case 0:
@@ -168,9 +167,7 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
     case 7:
       return count == 3 || count == 6 ? Maybe(core::SetVelocity{BodyId{row.subject}, n.vector(0), second_vector(n)})
                                       : Maybe();
-    case 8:
-      return count == 1 && n.are_positive() ? Maybe(core::SetRate{n.all[0]}) : Maybe();
-    case 10:
+    case 9:
       return count == 0 && !row.text.empty() ? Maybe(core::ChangeScene{row.text}) : Maybe();
     default:
       return {};

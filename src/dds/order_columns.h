@@ -8,9 +8,8 @@
 //    4, 5 remove         body or static
 //    6 impulse           body; -; J and, if it is not the centre of mass, the point of attack
 //    7 set velocity      body; -; v and, if it changes, w
-//    8 set rate          -; -; rate
-//    9 repartition       -; -; x0 y0 x1 y1 of each region
-//   10 change scene      -; -; - ; text: its name
+//    8 repartition       -; -; x0 y0 x1 y1 of each region
+//    9 change scene      -; -; - ; text: its name
 #pragma once
 
 #include <optional>

@@ -52,23 +52,27 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
 }
 
 struct MeshReader::Impl {
-  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kShape), wakeup) {}
+  Impl(Participant& participant, const MeshCacheLimits& limits)
+      : reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
 
   Wakeup wakeup;
   TypedReader<wire::MeshShape> reader;
-  std::map<std::uint64_t, core::TriangleMesh> meshes;
+  MeshCache meshes;
+  std::uint64_t without_room = 0;
 };
 
-MeshReader::MeshReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+MeshReader::MeshReader(Participant& participant, const MeshCacheLimits& limits)
+    : impl_(std::make_unique<Impl>(participant, limits)) {}
 
 MeshReader::~MeshReader() = default;
 
-const core::TriangleMesh* MeshReader::mesh(std::uint64_t hash) {
-  impl_->reader.take_each({}, [&](NamedMesh&& named) { impl_->meshes.try_emplace(named.hash, std::move(named.mesh)); });
-  const auto found = impl_->meshes.find(hash);
-  return found == impl_->meshes.end() ? nullptr : &found->second;
+MeshCache& MeshReader::meshes() {
+  impl_->reader.take_each({}, [&](NamedMesh&& named) {
+    if (!impl_->meshes.add(named.hash, std::move(named.mesh))) ++impl_->without_room;
+  });
+  return impl_->meshes;
 }
 
-std::uint64_t MeshReader::refused() const { return impl_->reader.refused().total(); }
+std::uint64_t MeshReader::refused() const { return impl_->reader.refused().total() + impl_->without_room; }
 
 }  // namespace aurasim::dds

@@ -10,6 +10,7 @@
 
 #include "core/order.h"
 #include "core/scene.h"
+#include "dds/mesh_cache.h"
 #include "dds/participant.h"
 
 namespace aurasim::dds {
@@ -48,10 +49,13 @@ class SceneAdditionsReader {
 /// Meshes that clients have brought. Used by one thread. The participant must outlive it.
 class MeshReader {
  public:
-  explicit MeshReader(Participant& participant);
+  explicit MeshReader(Participant& participant, const MeshCacheLimits& limits = {});
   ~MeshReader();
-  /// Takes in what has come; null if there is no such mesh (yet).
-  const core::TriangleMesh* mesh(std::uint64_t hash);
+  /// Takes in what has come.
+  MeshCache& meshes();
+  /// Null if it has not come (yet).
+  const core::TriangleMesh* mesh(std::uint64_t hash) { return meshes().find(hash); }
+  /// Meshes that were not sound, or that there was no room for.
   std::uint64_t refused() const;
 
  private:

@@ -113,7 +113,7 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
     case TopicId::kNodeStatus:
     case TopicId::kReplica:
     case TopicId::kReplicaKey:
-    case TopicId::kBonds:
+    case TopicId::kClusterGraph:
       each_region([&](core::RegionId source) { partitions.push_back(partition_of(source)); });
       break;
     case TopicId::kMigration:

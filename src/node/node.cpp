@@ -134,16 +134,15 @@ void Node::announce_spawns(core::Step birth) {
     world_.add({&record, 1});
     watch_.newborn(record.id, record.birth);
     report_.births.push_back({record.id, record.birth});
-    report_.applied.push_back(order.request);
+    report_.applied.push_back({order.request, core::ref_of(record.id)});
     return true;
   });
 }
 
 void Node::note_removals() {
   report_.removals = world_.take_removed();
-  for (const physics::Removal& removal : report_.removals) touched_.erase(removal.body);
-  const std::vector<std::uint64_t> applied = world_.take_applied();
-  report_.applied.insert(report_.applied.end(), applied.begin(), applied.end());
+  for (const std::uint64_t request : world_.take_applied()) report_.applied.push_back({request, {}});
+  report_.declined = world_.take_declined();
 }
 
 void Node::take_mail() {
@@ -196,6 +195,7 @@ void Node::clear_report() {
   report_.removals.clear();
   report_.orders.clear();
   report_.applied.clear();
+  report_.declined.clear();
 }
 
 const StepReport& Node::step() {
@@ -273,23 +273,42 @@ void Node::finish_state() {
   report_.foreign_auras = protocol_->matching().foreign_auras();
   report_.projecting = protocol_->projection().projecting();
   report_.largest_cluster = protocol_->largest_cluster();
-  for (const core::Departure& departure : *departures) release(departure);
+  release(*departures);
   const Timed timed(report_.durations.transport_s, setup_.clock);
   transport_->send(protocol_->outbox());
 }
 
+/// Bodies of both lists are in ascending order, and most are in both.
 void Node::note_contacts(const core::Snapshot& snapshot) {
-  for (const core::Contact& contact : snapshot.contacts) {
-    for (const core::BodyId id : {snapshot.bodies[contact.a].id, snapshot.bodies[contact.b].id}) touched_.insert(id);
+  std::swap(touched_, touched_before_);
+  touched_.clear();
+  auto before = touched_before_.begin();
+  for (const core::BodyState& body : snapshot.bodies) {
+    while (before != touched_before_.end() && before->id < body.id) ++before;
+    touched_.push_back({body.id, before != touched_before_.end() && before->id == body.id && before->touched});
   }
+  for (const core::Contact& contact : snapshot.contacts)
+    touched_[contact.a].touched = touched_[contact.b].touched = true;
 }
 
-void Node::release(const core::Departure& departure) {
-  core::ClusterState cluster;
+bool Node::take_touched(core::BodyId id) {
+  const auto found = std::ranges::lower_bound(touched_, id, {}, &Touch::id);
+  return found != touched_.end() && found->id == id && std::exchange(found->touched, false);
+}
+
+void Node::release(std::span<const core::Departure> departures) {
+  if (departures.empty()) return;
+  std::vector<core::ClusterState> clusters;
   {
     const Timed timed(report_.durations.physics_s, setup_.clock);
-    cluster = world_.release(departure.bodies);
+    std::vector<std::span<const core::BodyId>> leaving;
+    for (const core::Departure& departure : departures) leaving.emplace_back(departure.bodies);
+    clusters = world_.release(leaving);
   }
+  for (std::size_t i = 0; i < departures.size(); ++i) hand_over(departures[i], std::move(clusters[i]));
+}
+
+void Node::hand_over(const core::Departure& departure, core::ClusterState cluster) {
   for (const core::BodyRecord& body : cluster.bodies) {
     HandOffRow& row = report_.departures.emplace_back();
     row.stamp = current_step();
@@ -298,7 +317,7 @@ void Node::release(const core::Departure& departure) {
     row.source = region();
     row.destination = departure.destination;
     row.reason = departure.reason;
-    row.touched = touched_.erase(body.id) > 0;
+    row.touched = take_touched(body.id);
     report_.departed.push_back(body);
   }
   const Timed timed(report_.durations.protocol_s, setup_.clock);

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <unordered_set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -58,6 +58,12 @@ struct HashPart {
   std::uint64_t sum = 0;
 };
 
+/// A client's request that has taken effect here.
+struct Applied {
+  std::uint64_t request = 0;
+  std::optional<core::ObjectRef> object;  ///< the body that it has made
+};
+
 /// Seconds spent in the phases of one step, by NodeSetup::clock.
 struct Durations {
   double physics_s = 0;    ///< apply, step, snapshot, release
@@ -78,10 +84,11 @@ struct StepReport {
   std::size_t foreign_auras = 0;
   std::size_t projecting = 0;
   std::size_t largest_cluster = 0;
-  std::vector<Birth> births;               ///< bodies that this node has announced or taken over at the start
-  std::vector<physics::Removal> removals;  ///< bodies that orders took out
-  std::vector<core::Order> orders;         ///< received
-  std::vector<std::uint64_t> applied;      ///< requests that were applied to bodies here
+  std::vector<Birth> births;                ///< bodies that this node has announced or taken over at the start
+  std::vector<physics::Removal> removals;   ///< bodies taken out, by orders or because they broke down
+  std::vector<core::Order> orders;          ///< received
+  std::vector<Applied> applied;             ///< requests that were applied here
+  std::vector<physics::Declined> declined;  ///< and those that bodies here could not bear
   std::vector<HandOffRow> departures;
   std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
   std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
@@ -146,7 +153,9 @@ class Node {
   void finish_state();
   void note_contacts(const core::Snapshot& snapshot);
   void note_arrivals(const core::Adoption& adoption);
-  void release(const core::Departure& departure);
+  void release(std::span<const core::Departure> departures);
+  void hand_over(const core::Departure& departure, core::ClusterState cluster);
+  bool take_touched(core::BodyId id);
   void count(const core::Snapshot& snapshot);
 
   NodeSetup setup_;
@@ -161,8 +170,12 @@ class Node {
   core::Inbox inbox_;
   std::vector<core::Order> to_spawn_;
   std::vector<std::uint64_t> next_injection_;  ///< by injector: first index not yet announced
-  std::unordered_set<core::BodyId> touched_;   ///< had a contact since they came here; asked by id only
-  double mail_s_ = 0;                          ///< time spent with the mail since the last step
+  struct Touch {
+    core::BodyId id{};
+    bool touched = false;  ///< had a contact since it came here
+  };
+  std::vector<Touch> touched_, touched_before_;  ///< ascending id: of the last state, and of the one before it
+  double mail_s_ = 0;                            ///< time spent with the mail since the last step
   StepReport report_;
 };
 

@@ -23,9 +23,8 @@ std::chrono::steady_clock::time_point Pacer::due(core::Step step) const {
   return epoch_ + nanoseconds(std::llround(static_cast<double>(step - first_) * step_s_ / rate_ * 1e9));
 }
 
-void Pacer::set_rate(core::Step step, double rate) {
-  epoch_ = due(step);
-  first_ = step;
+void Pacer::set_rate(double rate, core::Step step, std::int64_t epoch_ns, nanoseconds clock_ahead, const Instant& now) {
+  set_epoch(step, epoch_ns, clock_ahead, now);
   rate_ = rate;
 }
 

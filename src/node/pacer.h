@@ -33,8 +33,10 @@ class Pacer {
   /// the wall clock of whoever named the epoch is ahead of ours.
   void set_epoch(core::Step first, std::int64_t epoch_ns, std::chrono::nanoseconds clock_ahead, const Instant& now);
 
-  /// From `step` on, so many simulated seconds per second; its own time stays.
-  void set_rate(core::Step step, double rate);
+  /// Step `step` is due at `epoch_ns`, those after it at so many simulated seconds per second.
+  void set_rate(double rate, core::Step step, std::int64_t epoch_ns, std::chrono::nanoseconds clock_ahead,
+                const Instant& now);
+  double rate() const { return rate_; }
 
   /// When `step` is due, or was.
   std::chrono::steady_clock::time_point due(core::Step step) const;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/limits.h"
 #include "overseer/shape_json.h"
 
 namespace aurasim::overseer {
@@ -25,7 +26,8 @@ StepOn read_step(const Json& json) {
 
 SetRate read_rate(const Json& json) {
   const double value = number_of(field(json, "value"), "value");
-  if (!(value > 0 && value <= 10)) throw BadField("value is not above 0 and at most 10");
+  using namespace core::limits;
+  if (!is_rate(value)) throw BadField(fmt::format("value is not from {} to {}", kSlowestRate, kFastestRate));
   return {value};
 }
 
@@ -94,7 +96,10 @@ Spawn read_spawn(const Json& json) {
     return spawn;
   }
   const double mass_kg = number_of(field(json, "mass_kg"), "mass_kg");
-  if (!(mass_kg > 0 && mass_kg <= 1e9)) throw BadField("mass_kg is not above 0 and at most 1e9");
+  using namespace core::limits;
+  if (!(mass_kg >= kLightest_kg && mass_kg <= kHeaviest_kg)) {
+    throw BadField(fmt::format("mass_kg is not from {} to {}", kLightest_kg, kHeaviest_kg));
+  }
   spawn.kind = NewKind{read_shape_choice(json.at("shape"), true), mass_kg};
   return spawn;
 }

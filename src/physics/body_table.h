@@ -25,6 +25,9 @@ struct HostedBody {
   core::BodyState state(const LocalFrame& frame) const;
 };
 
+/// Statics have negative user indices.
+inline bool is_static(int user_index) { return user_index < 0; }
+
 class BodyTable {
  public:
   std::span<HostedBody> bodies() { return bodies_; }

@@ -58,6 +58,10 @@ core::ClusterState RegionWorld::release(std::span<const core::BodyId> bodies) {
   return impl_->simulation.release(bodies);
 }
 
+std::vector<core::ClusterState> RegionWorld::release(std::span<const std::span<const core::BodyId>> clusters) {
+  return impl_->simulation.release(clusters);
+}
+
 core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const {
   return impl_->simulation.peek(bodies);
 }
@@ -80,6 +84,13 @@ std::vector<std::uint64_t> RegionWorld::take_applied() {
   const std::vector<std::uint64_t> on_the_way = impl_->scratch.take_applied();
   applied.insert(applied.end(), on_the_way.begin(), on_the_way.end());
   return applied;
+}
+
+std::vector<Declined> RegionWorld::take_declined() {
+  std::vector<Declined> declined = impl_->simulation.take_declined();
+  const std::vector<Declined> on_the_way = impl_->scratch.take_declined();
+  declined.insert(declined.end(), on_the_way.begin(), on_the_way.end());
+  return declined;
 }
 
 RayHit RegionWorld::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {

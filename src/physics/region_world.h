@@ -46,6 +46,8 @@ class RegionWorld {
   /// is thrown with nothing done. Contacts and joints with bodies that stay behind are cut and counted (see
   /// severed_contacts).
   core::ClusterState release(std::span<const core::BodyId> bodies);
+  /// Several clusters in one go. No body may be in two of them.
+  std::vector<core::ClusterState> release(std::span<const std::span<const core::BodyId>> clusters);
 
   /// The same record of bodies that stay (tests, key frames, state hash).
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
@@ -53,9 +55,11 @@ class RegionWorld {
   /// An order to apply in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
   /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
   void schedule(const core::Order& order);
-  /// What orders took out, and the requests that were applied to bodies here, since the last call.
+  /// Since the last call: bodies taken out, by orders or because no world can bear them; requests that were
+  /// applied to bodies here, and those that were not.
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();
+  std::vector<Declined> take_declined();
 
   /// The nearest body or static between two points, in the present state.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;

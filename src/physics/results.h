@@ -1,9 +1,11 @@
 // What a world has to say besides the state of its bodies.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/body_state.h"
 #include "core/ids.h"
@@ -21,10 +23,17 @@ struct Collision {
   core::Vec3 p_W = core::Vec3::Zero();
 };
 
-/// A body that an order took out: state `step` is the first without it.
+/// A body that was taken out: state `step` is the first without it.
 struct Removal {
   core::Step step = 0;
   core::BodyId body{};
+  std::string fault;  ///< what physics has made of it (core/limits.h); empty: an order took it out
+};
+
+/// A request that a body here has not obeyed.
+struct Declined {
+  std::uint64_t request = 0;
+  std::string why;
 };
 
 struct RayHit {

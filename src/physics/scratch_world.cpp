@@ -14,6 +14,10 @@ std::vector<std::uint64_t> ScratchWorld::take_applied() {
   return simulation_ ? simulation_->take_applied() : std::vector<std::uint64_t>{};
 }
 
+std::vector<Declined> ScratchWorld::take_declined() {
+  return simulation_ ? simulation_->take_declined() : std::vector<Declined>{};
+}
+
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                                           const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
   if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, timeline_);

@@ -22,6 +22,7 @@ class ScratchWorld {
 
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();
+  std::vector<Declined> take_declined();
 
  private:
   const core::Scene* scene_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/body_state.h"
+#include "core/limits.h"
 
 namespace aurasim::physics {
 
@@ -29,6 +30,8 @@ struct Settings {
   /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
   /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
   core::Vec3 p_WO = core::Vec3::Zero();
+  /// An impulse or a velocity of a client that would make a body faster is not obeyed.
+  double top_speed_m_s = core::limits::kFastestBody_m_s;
 };
 
 }  // namespace aurasim::physics

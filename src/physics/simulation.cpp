@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -46,8 +47,6 @@ btScalar half_thickness(const btCollisionShape& shape) {
 }
 
 constexpr std::uint64_t kRoomForStatics = 1U << 20U;
-
-bool is_static(int user_index) { return user_index < 0; }
 
 [[noreturn]] void refuse_twin(core::BodyId id) {
   throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is here already");
@@ -182,20 +181,6 @@ btVector3 Simulation::slid(core::ObjectRef ref) const {
   return ref < 0 ? to_bullet(slid_[static_cast<std::size_t>(-1 - ref)]) : btVector3(0, 0, 0);
 }
 
-/// Points on statics are in the statics' frames, and those differ between worlds with different origins.
-void Simulation::put_back_slid(core::ClusterState& cluster) const {
-  const auto put_back = [&](core::ObjectRef ref, double* local) {
-    if (ref < 0) Eigen::Map<core::Vec3>(local) += slid_[static_cast<std::size_t>(-1 - ref)];
-  };
-  for (const core::ManifoldRecord& manifold : cluster.manifolds) {
-    for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
-      double* const row = &cluster.points[(manifold.first_point + i) * core::kContactPointDoubles];
-      put_back(manifold.object0, row + kLocalPointA);
-      put_back(manifold.object1, row + kLocalPointB);
-    }
-  }
-}
-
 /// Two compounds may have manifolds in both orders, so records are grouped by pair first.
 void Simulation::restore_contacts(const core::ClusterState& cluster) {
   std::vector<std::uint32_t> order(cluster.manifolds.size());
@@ -238,64 +223,6 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
   }
 }
 
-std::vector<bool> Simulation::places_of(std::span<const core::BodyId> bodies) const {
-  std::vector<bool> members(table_.size());
-  for (const core::BodyId id : bodies) {
-    const HostedBody* const body = table_.find(id);
-    if (body == nullptr) throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is not here");
-    members[static_cast<std::size_t>(body - table_.bodies().data())] = true;
-  }
-  return members;
-}
-
-struct Simulation::Copy {
-  core::ClusterState cluster;
-  std::uint64_t across = 0;  ///< contacts and joints with bodies that are no members
-};
-
-Simulation::Copy Simulation::copy(const std::vector<bool>& members) const {
-  Copy copy;
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (members[i]) copy.cluster.bodies.push_back(table_[i].record(frame_));
-  }
-  std::vector<KeyedManifold> manifolds;
-  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
-    const int index0 = manifold.getBody0()->getUserIndex();
-    const int index1 = manifold.getBody1()->getUserIndex();
-    const bool member0 = !is_static(index0) && members[static_cast<std::size_t>(index0)];
-    const bool member1 = !is_static(index1) && members[static_cast<std::size_t>(index1)];
-    if (!member0 && !member1) return;
-    if ((member0 || is_static(index0)) && (member1 || is_static(index1))) {
-      manifolds.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
-    } else {
-      ++copy.across;
-    }
-  });
-  append_manifolds(std::move(manifolds), frame_, copy.cluster);
-  if (!settings_.p_WO.isZero()) put_back_slid(copy.cluster);
-  copy.across += joints_.append_to(copy.cluster);
-  return copy;
-}
-
-core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const {
-  return copy(places_of(bodies)).cluster;
-}
-
-core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
-  const std::vector<bool> members = places_of(bodies);
-  Copy leaving = copy(members);
-  severed_contacts_ += leaving.across;
-  std::vector<btRigidBody*> born;
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (members[i] && table_[i].born) born.push_back(table_[i].rigid.get());
-  }
-  joints_.disconnect(leaving.cluster, table_, world_);
-  world_.remove(born);
-  table_.erase(members);
-  snapshot_is_fresh_ = records_are_fresh_ = false;
-  return std::move(leaving.cluster);
-}
-
 std::vector<core::BodyId> Simulation::body_ids() const {
   std::vector<core::BodyId> ids;
   for (const HostedBody& body : table_.bodies()) ids.push_back(body.id);
@@ -311,6 +238,7 @@ void Simulation::step() {
   }
   ++step_;
   collect_collisions();
+  take_out_what_broke();
   insert_born();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
@@ -318,6 +246,7 @@ void Simulation::step() {
 void Simulation::collect_collisions() {
   collisions_.clear();
   for (const FirstContact& found : world_.first_contacts().found()) {
+    if (!std::isfinite(found.penetration_m + found.relative_speed_m_s)) continue;  // of what is breaking down
     const auto [a, b] = std::minmax(found.body0, found.body1);
     collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
                            found.penetration_m, found.relative_speed_m_s, frame_.to_world(found.p_O)});

@@ -36,6 +36,7 @@ class Simulation {
   /// As add, but with contacts. The cluster's state is that of step_number().
   void join(const core::ClusterState& cluster);
   core::ClusterState release(std::span<const core::BodyId> bodies);
+  std::vector<core::ClusterState> release(std::span<const std::span<const core::BodyId>> clusters);
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
 
   bool contains(core::BodyId id) const { return table_.find(id) != nullptr; }
@@ -49,9 +50,9 @@ class Simulation {
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
 
-  /// Bodies that orders took out, and the requests that were applied to bodies, since the last call.
   std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
   std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
+  std::vector<Declined> take_declined() { return std::exchange(declined_, {}); }
 
   /// The nearest body or static on the way from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
@@ -61,7 +62,8 @@ class Simulation {
   void insert_born();
   void apply_orders(core::Step n);
   void kick(btRigidBody& body, const core::Order& order);
-  void take_out(core::BodyId id);
+  void take_out(const Removal& removal);
+  void take_out_what_broke();
   void show_statics(core::Step n);
   void wake_around(const btRigidBody& changing);
   double coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const;
@@ -74,9 +76,9 @@ class Simulation {
   void put_back_slid(core::ClusterState& cluster) const;
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
-  std::vector<bool> places_of(std::span<const core::BodyId> bodies) const;
-  struct Copy;
-  Copy copy(const std::vector<bool>& members) const;
+  std::vector<std::uint32_t> membership(std::span<const std::span<const core::BodyId>> clusters) const;
+  struct Copies;
+  Copies copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count) const;
   void collect_collisions();
   void list_contacts();
 
@@ -97,6 +99,7 @@ class Simulation {
   std::vector<Collision> collisions_;
   std::vector<Removal> removed_;
   std::vector<std::uint64_t> applied_;
+  std::vector<Declined> declined_;
 
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

@@ -1,9 +1,11 @@
 // What a simulation does with orders (core/order.h) when they are due.
 #include <algorithm>
+#include <cstdio>
 #include <variant>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "physics/breakdown.h"
 #include "physics/bullet_convert.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
@@ -39,6 +41,53 @@ btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const Lo
   return frame.to_local(*impulse.p_W) - body.getCenterOfMassPosition();
 }
 
+double fastest_spin(const Settings& settings) {
+  return core::limits::fastest_spin_rad_s(settings.step_s / settings.substeps);
+}
+
+struct Motion {
+  core::Vec3 v_WB;
+  core::Vec3 w_WB;
+};
+
+Motion motion_of(const btRigidBody& body) {
+  return {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())};
+}
+
+Motion motion_after(const core::Action& action, const btRigidBody& body, const LocalFrame& frame) {
+  Motion motion = motion_of(body);
+  if (const auto* impulse = std::get_if<core::Impulse>(&action)) {
+    const btVector3 J = to_bullet(impulse->J_W);
+    motion.v_WB += from_bullet(J * body.getInvMass());
+    motion.w_WB += from_bullet(body.getInvInertiaTensorWorld() * arm_of(*impulse, body, frame).cross(J));
+  } else if (const auto* velocity = std::get_if<core::SetVelocity>(&action)) {
+    motion.v_WB = velocity->v_WB;
+    motion.w_WB = velocity->w_WB.value_or(motion.w_WB);
+  }
+  return motion;
+}
+
+std::string more_than(double is, double allowed, const char* unit, const char* limit) {
+  char text[120];
+  std::snprintf(text, sizeof(text), "it would make the body %.4g %s fast, allowed: %.4g (%s)", is, unit, allowed,
+                limit);
+  return text;
+}
+
+/// Who is too fast already may be slowed down.
+std::string problem_with(const Motion& after, const Motion& before, const Settings& settings) {
+  const double spin_limit = fastest_spin(settings);
+  const double v = after.v_WB.norm();
+  const double w = after.w_WB.norm();
+  if (!(v <= std::max(settings.top_speed_m_s, before.v_WB.norm()))) {
+    return more_than(v, settings.top_speed_m_s, "m/s", "tolerances.speed");
+  }
+  if (!(w <= std::max(spin_limit, before.w_WB.norm()))) {
+    return more_than(w, spin_limit, "rad/s", "a quarter turn in a substep");
+  }
+  return {};
+}
+
 }  // namespace
 
 /// Before state `n` is computed.
@@ -47,12 +96,17 @@ void Simulation::apply_orders(core::Step n) {
   for (const core::Order& order : timeline_.due(n)) {
     HostedBody* const body = table_.find(*core::body_of(order.action));
     if (body == nullptr) continue;
-    applied_.push_back(order.request);
     if (std::holds_alternative<core::RemoveBody>(order.action)) {
-      take_out(body->id);
+      take_out({step_ + 1, body->id, {}});
     } else if (body->born) {
+      const Motion after = motion_after(order.action, *body->rigid, frame_);
+      if (std::string why = problem_with(after, motion_of(*body->rigid), settings_); !why.empty()) {
+        declined_.push_back({order.request, std::move(why)});
+        continue;
+      }
       kick(*body->rigid, order);
     }
+    applied_.push_back(order.request);
   }
 }
 
@@ -67,7 +121,19 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
-void Simulation::take_out(core::BodyId id) {
+/// After state step_ has been computed. On every host alike: what a body comes to hangs on its island alone.
+void Simulation::take_out_what_broke() {
+  std::vector<Removal> broken;
+  for (const HostedBody& body : table_.bodies()) {
+    if (body.born && has_broken_down(*body.rigid, frame_)) {
+      broken.push_back({step_, body.id, fault_of(*body.rigid, frame_)});
+    }
+  }
+  for (const Removal& removal : broken) take_out(removal);
+}
+
+void Simulation::take_out(const Removal& removal) {
+  const core::BodyId id = removal.body;
   for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] :
@@ -79,7 +145,7 @@ void Simulation::take_out(core::BodyId id) {
   const std::uint64_t severed = severed_contacts_;
   release({&id, 1});
   severed_contacts_ = severed;  // nothing was cut that should have gone along
-  removed_.push_back({step_ + 1, id});
+  removed_.push_back(removal);
 }
 
 /// Puts in and takes out what stands in state `n`; wakes the bodies that it touches or that rested on it.
@@ -121,7 +187,9 @@ double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);
       const btVector3 spin = rigid.getInvInertiaTensorWorld() * arm_of(*impulse, rigid, frame_).cross(J);
-      kick += static_cast<double>(J.length() * rigid.getInvMass()) + radius * static_cast<double>(spin.length());
+      // More than that is not obeyed, unless the body is too fast already.
+      kick += std::min(static_cast<double>(J.length() * rigid.getInvMass()), 2 * settings_.top_speed_m_s) +
+              radius * std::min(static_cast<double>(spin.length()), 2 * fastest_spin(settings_));
     } else if (const auto* velocity = std::get_if<core::SetVelocity>(&order.action)) {
       kick += (velocity->v_WB - from_bullet(rigid.getLinearVelocity())).norm();
       if (velocity->w_WB) kick += radius * (*velocity->w_WB - from_bullet(rigid.getAngularVelocity())).norm();

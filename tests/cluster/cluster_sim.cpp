@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cluster/wire_check.h"
+
 namespace aurasim::test {
 
 using core::BodyId;
@@ -30,7 +32,14 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.physics.solver = options_.solver;
     setup.physics.friction_directions = options_.friction_directions;
     setup.physics.solver_iterations = options_.solver_iterations;
-    members_.push_back({std::make_unique<node::Node>(setup, scene_, options_.map, network_->endpoint(RegionId{r}))});
+    setup.physics.top_speed_m_s = options_.aura.top_speed_m_s;
+    Member& member = members_.emplace_back();
+    transport::Transport* transport = &network_->endpoint(RegionId{r});
+    if (options_.over_the_wire) {
+      member.wire = std::make_unique<WireCheck>(*transport);
+      transport = member.wire.get();
+    }
+    member.node = std::make_unique<node::Node>(setup, scene_, options_.map, *transport);
   }
 }
 
@@ -76,6 +85,12 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   const double now = network_->now_s();
   if (!member.alive || now < member.busy_until_s || member.node->current_step() >= last) return;
   const Step next = member.node->current_step() + 1;
+  if (member.node->protocol().fenced()) {
+    member.alive = false;
+    outcome_.fenced.push_back(member.node->region());
+    for (const core::BodyState& body : member.node->world().snapshot().bodies) with_dead_.insert(body.id);
+    return;
+  }
   if (now < static_cast<double>(next) * options_.aura.step_s || !member.node->ready()) return;
   const double frame = options_.frame_s + options_.frame_jitter_s * chance();
   network_->set_send_delay(frame);
@@ -96,7 +111,10 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
     if (part.step < static_cast<Step>(outcome_.hash.size()))
       outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
   }
-  for (const physics::Removal& removal : report.removals) removed_.insert(removal.body);
+  for (const physics::Removal& removal : report.removals) {
+    removed_.insert(removal.body);
+    if (!removal.fault.empty()) outcome_.broken.push_back(removal);
+  }
   outcome_.applied += report.applied.size();
   outcome_.largest_cluster = std::max(outcome_.largest_cluster, report.largest_cluster);
   moves.insert(moves.end(), report.departures.begin(), report.departures.end());

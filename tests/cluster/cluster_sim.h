@@ -46,7 +46,8 @@ struct ClusterOptions {
   std::optional<Crash> crash;
   std::optional<LinkCut> cut;
   std::vector<std::pair<core::Step, core::Action>>
-      orders;  ///< given to region 0 before state 0, by the state they name
+      orders;                  ///< given to region 0 before state 0, by the state they name
+  bool over_the_wire = false;  ///< what the wire would refuse arrives as a refusal
 };
 
 struct Outcome {
@@ -60,9 +61,11 @@ struct Outcome {
   std::uint64_t lost = 0;
   std::uint64_t with_dead = 0;
   std::uint64_t reclaimed = 0;
-  std::uint64_t removed = 0;  ///< by orders
-  std::uint64_t applied = 0;  ///< orders, by bodies
-  std::uint64_t severed = 0;  ///< contacts cut by a hand-off
+  std::uint64_t removed = 0;             ///< by orders, or because they broke down
+  std::vector<physics::Removal> broken;  ///< of those the latter
+  std::vector<core::RegionId> fenced;    ///< nodes that the others hold for dead
+  std::uint64_t applied = 0;             ///< orders, by bodies
+  std::uint64_t severed = 0;             ///< contacts cut by a hand-off
   std::uint64_t bad_phases = 0;
   std::size_t largest_cluster = 0;
   double slowest_s = 0;                                               ///< virtual time at the end
@@ -86,6 +89,7 @@ class ClusterSim {
 
  private:
   struct Member {
+    std::unique_ptr<transport::Transport> wire;  ///< with over_the_wire
     std::unique_ptr<node::Node> node;
     double busy_until_s = 0;
     bool alive = true;

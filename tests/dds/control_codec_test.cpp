@@ -131,7 +131,14 @@ TEST(CommandCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto&) {}), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(0); }), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(78); }), "map_version");
-  EXPECT_EQ(after([](auto& w) { w.kind(6); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.kind(7); }), "enum");
+  for (const double rate : {0.0, 1e-300, 0.009, 10.1, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto ask = [rate](auto& w) {
+      w.kind(6);
+      w.rate(rate);
+    };
+    EXPECT_EQ(after(ask), "range") << rate;
+  }
   EXPECT_EQ(after([](auto& w) { w.request(0); }), "range");
   EXPECT_EQ(after([](auto& w) { w.count(-1); }), "range");
   EXPECT_EQ(after([](auto& w) { w.epoch_ns(-1); }), "range");

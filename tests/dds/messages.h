@@ -55,7 +55,6 @@ inline std::vector<core::Order> one_order_of_each_kind() {
       core::Impulse{core::BodyId{9}, v, pose.p_WB},
       core::SetVelocity{core::BodyId{8}, v, {}},
       core::SetVelocity{core::BodyId{8}, v, -v},
-      core::SetRate{0.25},
       core::Repartition{{{-1, -2, 0, 3}, {0, -2, 4, 3}}},
       core::ChangeScene{"tower"}};
   std::vector<core::Order> orders;

@@ -44,7 +44,7 @@ TEST(Pacer, AWallClockThatJumpsChangesNothing) {
     host.set_wall_clock(jump);
     EXPECT_EQ(pacer.until(10, host.now), 0ns);
     EXPECT_EQ(pacer.until(11, host.now), 100ms);
-    pacer.set_rate(10, 0.5);
+    pacer.set_rate(0.5, 10, host.now.wall_ns, 0ns, host.now);
     EXPECT_EQ(pacer.until(11, host.now), 200ms);
   }
 }
@@ -63,6 +63,33 @@ TEST(Pacer, WhatAMessageTookIsNotHeldForAWrongClock) {
   Pacer pacer(kStep_s, true);
   pacer.set_epoch(0, kNoon + kSecond / 2, -100ms, host.now);
   EXPECT_EQ(pacer.until(0, host.now), 500ms);
+}
+
+TEST(Pacer, ARateHoldsFromItsOwnStepAndTime) {
+  Host host;
+  Pacer pacer(kStep_s, true);
+  pacer.set_epoch(0, kNoon, 0ns, host.now);
+  pacer.set_rate(0.5, 10, kNoon + kSecond, 0ns, host.now);
+  EXPECT_EQ(pacer.until(10, host.now), 1s);
+  EXPECT_EQ(pacer.until(15, host.now), 2s);
+}
+
+/// However slow it was: the next step is not minutes away.
+TEST(Pacer, ASlowRateIsUndoneAtOnce) {
+  Host host;
+  Pacer pacer(kStep_s, true);
+  pacer.set_rate(0.01, 10, kNoon, 0ns, host.now);
+  EXPECT_EQ(pacer.until(12, host.now), 20s);
+  pacer.set_rate(1, 11, kNoon + kSecond, 0ns, host.now);
+  EXPECT_EQ(pacer.until(12, host.now), 1100ms);
+}
+
+TEST(Pacer, ANewEpochKeepsTheRate) {
+  Host host;
+  Pacer pacer(kStep_s, true);
+  pacer.set_rate(2, 10, kNoon, 0ns, host.now);
+  pacer.set_epoch(0, kNoon + kSecond, 0ns, host.now);
+  EXPECT_EQ(pacer.until(20, host.now), 2s);
 }
 
 TEST(Pacer, WithoutPaceEveryStepIsDue) {

@@ -1,4 +1,5 @@
 // Commands of clients to a real run: `aurasim send spawn, static, impulse, remove, rate, regions, scene, ray`.
+#include <set>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -105,6 +106,28 @@ TEST_F(Commands, ARayFindsWhatEveryRegionHosts) {
   EXPECT_NE(last_error_.find("there is no body 3000001"), std::string::npos) << last_error_;
   send({"velocity", "--body", "5", "--v", "100", "0", "0"}, 1);
   EXPECT_NE(last_error_.find("faster than this run promises"), std::string::npos) << last_error_;
+  send({"velocity", "--body", "5", "--v", "0", "0", "0", "--w", "1e6", "1e6", "1e6"}, 1);
+  EXPECT_NE(last_error_.find("quarter turn in a substep"), std::string::npos) << last_error_;
+  send({"impulse", "--body", "5", "--J", "9e6", "0", "0"}, 1);
+  EXPECT_NE(last_error_.find("it would make the body"), std::string::npos) << last_error_;
+  send({"rate", "--value", "0.01"});  // the end does not wait for states that are seconds apart
+  start(Words{"send", "stop", file_} + in_own_domain());
+  expect_exit(*run_, 0);
+}
+
+/// No node has seen it: the lead waits until all have.
+TEST_F(Commands, ABodyOfANewMeshIsSpawnedAndNamed) {
+  run("meshes", {}, 100'000);
+  wait_for(4, 30);
+  const std::string meshes = std::string(AURASIM_SOURCE_DIR) + "/tests/config/meshes/";
+  std::set<std::int64_t> ids;
+  for (const Words& mesh : {Words{meshes + "wedge.obj"}, Words{meshes + "wedge.obj", "--parts"},
+                            Words{meshes + "wedge.stl"}, Words{meshes + "wedge.gltf"}}) {
+    const auto reply = send(Words{"spawn", "--p", "0", "0", "40", "--mesh"} + mesh);
+    EXPECT_GE(reply.value("body", std::int64_t{0}), 1'000'000'000) << reply;
+    ids.insert(reply.value("body", std::int64_t{0}));
+  }
+  EXPECT_EQ(ids.size(), 4U);
   start(Words{"send", "stop", file_} + in_own_domain());
   expect_exit(*run_, 0);
 }
@@ -112,7 +135,9 @@ TEST_F(Commands, ARayFindsWhatEveryRegionHosts) {
 TEST_F(Commands, ASceneIsChosenAndTheRunGoesOn) {
   run("scenes", {}, 400);
   wait_for(4, 60);
-  send({"rate", "--value", "2"});
+  send({"rate", "--value", "0.000001"}, 2);
+  send({"rate", "--value", "0.01"});
+  send({"rate", "--value", "2"});  // the states until an order's own would take half a minute
   send({"scene", "--name", "nosuch"}, 1);
   EXPECT_NE(last_error_.find("there is no scene"), std::string::npos) << last_error_;
   send({"scene", "--name", "tower"});

@@ -1,0 +1,72 @@
+// What a node says when something is wrong, while it runs: it never waits, or loses a body, in silence.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/node_process.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kLongWait = 2s;
+
+}  // namespace
+
+/// Messages of neighbours that cannot be used. Each such neighbour is held for dead: what it said is lost for good.
+void NodeProcess::note_refusals() {
+  status_.refused = transport_->refused();
+  const std::vector<core::Refusal>& refusals = node_->protocol().intake().refusals();
+  for (; refusals_noted_ < refusals.size(); ++refusals_noted_) {
+    const core::Refusal& refusal = refusals[refusals_noted_];
+    const std::uint32_t source = core::value_of(refusal.source);
+    fault_ = fmt::format("refused the {} of region {} for state {}: {}. Region {} is held for dead",
+                         core::name_of(refusal.kind), source, refusal.stamp, refusal.why, source);
+    spdlog::error("region {} {}", core::value_of(options_.region), fault_);
+  }
+}
+
+void NodeProcess::note_waiting() {
+  const auto waited = Clock::now() - computed_at_;
+  const core::Step next = node_->current_step() + 1;
+  const std::vector<core::RegionId> missing = node_->protocol().missing(next);
+  if (waited < kLongWait || missing.empty()) return;
+  std::vector<std::string> whom;
+  for (const core::RegionId region : missing) {
+    std::string text = fmt::format("{}", core::value_of(region));
+    for (const auto& [source, count] : status_.refused) {
+      if (source == region) text += fmt::format(" ({} of its messages were refused)", count);
+    }
+    whom.push_back(std::move(text));
+  }
+  const bool is_news = waiting_.empty();
+  waiting_ = fmt::format("waits for regions [{}] before state {}, for {} s", fmt::join(whom, ", "), next,
+                         std::chrono::duration_cast<std::chrono::seconds>(waited).count());
+  if (is_news) spdlog::warn("region {} {}", core::value_of(options_.region), waiting_);
+}
+
+/// Bodies that no world can bear (core/limits.h).
+void NodeProcess::note_faults(const node::StepReport& report) {
+  waiting_.clear();
+  for (const physics::Removal& removal : report.removals) {
+    if (removal.fault.empty()) continue;
+    ++broken_bodies_;
+    fault_ =
+        fmt::format("body {} was taken out in state {}: {}", core::value_of(removal.body), removal.step, removal.fault);
+    spdlog::error("region {}: {}", core::value_of(options_.region), fault_);
+  }
+}
+
+/// Until `step` is due. In slow motion nobody waits for a pause, a reset or the end longer than in real time.
+std::chrono::nanoseconds NodeProcess::time_until(core::Step step) const {
+  const std::chrono::nanoseconds until = pacer_.until(step, node::read_clocks());
+  if (step > hurry_until_) return until;
+  const auto in_real_time = computed_at_ + std::chrono::duration<double>(launch_.step_s()) - Clock::now();
+  return std::min(until, std::max(0ns, std::chrono::duration_cast<std::chrono::nanoseconds>(in_real_time)));
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,134 @@
+#include "cli/order_issuer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/command_limits.h"
+
+namespace aurasim::cli {
+namespace {
+
+struct Same {
+  bool operator()(const core::Sphere& a, const core::Sphere& b) const { return a.radius == b.radius; }
+  bool operator()(const core::Box& a, const core::Box& b) const { return a.half_extents == b.half_extents; }
+  bool operator()(const core::Capsule& a, const core::Capsule& b) const {
+    return a.radius == b.radius && a.height == b.height;
+  }
+  bool operator()(const core::Cylinder& a, const core::Cylinder& b) const {
+    return a.radius == b.radius && a.height == b.height;
+  }
+  bool operator()(const core::MeshRef& a, const core::MeshRef& b) const { return a.hash == b.hash && a.use == b.use; }
+  template <class A, class B>
+  bool operator()(const A&, const B&) const {
+    return false;
+  }
+};
+
+const core::ClientShape* shape_in(const core::Ask& ask) {
+  if (const auto* body = std::get_if<core::NewBody>(&ask)) return body->shape ? &*body->shape : nullptr;
+  const auto* const fixed = std::get_if<core::NewStatic>(&ask);
+  return fixed != nullptr ? &fixed->shape : nullptr;
+}
+
+/// As orders say it: of length 1 to the last bits.
+core::Pose sound(const core::Pose& pose) { return {pose.p_WB, pose.q_WB.normalized()}; }
+
+Issued refusal(std::string why) { return {std::move(why), {}, {}}; }
+
+}  // namespace
+
+const core::MeshRef* mesh_in(const core::Ask& ask) {
+  const core::ClientShape* const shape = shape_in(ask);
+  return shape != nullptr ? std::get_if<core::MeshRef>(shape) : nullptr;
+}
+
+void OrderIssuer::begin_generation() {
+  closed_ = false;
+  own_shapes_.clear();
+  own_kinds_.clear();
+  shapes_ = prototypes_ = statics_ = 0;
+}
+
+Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, const node::MeshSource& meshes,
+                          node::Node& node) {
+  shapes_ = std::max(shapes_, node.scene().shapes.size());
+  prototypes_ = std::max(prototypes_, node.scene().prototypes.size());
+  statics_ = std::max(statics_, node.scene().statics.size());
+  const bool changes_the_run = core::changes_the_run(command.ask);
+  if (closed_) return refusal("the run is being changed; ask again in a moment");
+  if (changes_the_run && !run.complete) return refusal("a node has died: the run can only go on as it is");
+  const core::ClientShape* const own_shape = shape_in(command.ask);
+  const CommandContext context{launch_, node.scene(), node.current_step(), run.bodies,
+                               own_shape != nullptr ? shape_of(*own_shape, meshes, node.scene()) : std::nullopt};
+  if (std::string why = problem_with(command, context); !why.empty()) return refusal(std::move(why));
+  if (const auto* body = std::get_if<core::NewBody>(&command.ask)) return spawn(command, *body, node);
+  if (const auto* fixed = std::get_if<core::NewStatic>(&command.ask)) return place(command, *fixed, node);
+  const std::optional<core::Action> action = std::visit(
+      [](const auto& ask) -> std::optional<core::Action> {
+        if constexpr (std::is_constructible_v<core::Action, decltype(ask)>) return ask;
+        return {};
+      },
+      command.ask);
+  if (!action) return refusal("this is no order");
+  closed_ = changes_the_run;
+  return {{}, node.order(*action, command.request, command.at_step), {}};
+}
+
+Issued OrderIssuer::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
+  const core::PrototypeId prototype = prototype_id(body, command.request, node);
+  const core::BodyId id{core::kFirstClientBody + node.protocol().last_order() + 1};
+  const core::Spawn spawn{id, prototype, sound(body.pose), body.v_WB, body.w_WB};
+  return {{}, node.order(spawn, command.request, command.at_step), core::ref_of(id)};
+}
+
+Issued OrderIssuer::place(const core::Command& command, const core::NewStatic& fixed, node::Node& node) {
+  const std::uint32_t shape = shape_index(fixed.shape, command.request, node);
+  const core::StaticId id{static_cast<std::uint32_t>(statics_++)};
+  return {{},
+          node.order(core::AddStatic{id, shape, sound(fixed.pose)}, command.request, command.at_step),
+          core::ref_of(id)};
+}
+
+std::uint32_t OrderIssuer::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {
+  for (const OwnShape& known : own_shapes_) {
+    if (std::visit(Same{}, known.shape, shape)) return known.index;
+  }
+  node.order(core::DefineShape{shape}, request);
+  own_shapes_.push_back({shape, static_cast<std::uint32_t>(shapes_++)});
+  return own_shapes_.back().index;
+}
+
+core::PrototypeId OrderIssuer::prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node) {
+  if (!body.shape) {
+    const auto& known = node.scene().prototypes;
+    const auto found = std::ranges::find(known, body.prototype, &core::Prototype::name);
+    return core::PrototypeId{static_cast<std::uint32_t>(found - known.begin())};
+  }
+  const std::uint32_t shape = shape_index(*body.shape, request, node);
+  for (const OwnKind& kind : own_kinds_) {
+    if (kind.shape == shape && kind.mass_kg == body.mass_kg) return kind.id;
+  }
+  node.order(core::DefinePrototype{shape, body.mass_kg}, request);
+  own_kinds_.push_back({shape, body.mass_kg, core::PrototypeId{static_cast<std::uint32_t>(prototypes_++)}});
+  return own_kinds_.back().id;
+}
+
+std::optional<core::Shape> OrderIssuer::shape_of(const core::ClientShape& shape, const node::MeshSource& meshes,
+                                                 const core::Scene& scene) const {
+  for (const OwnShape& known : own_shapes_) {  // its mesh may have been given up
+    if (std::visit(Same{}, known.shape, shape) && known.index < scene.shapes.size()) {
+      return scene.shapes[known.index].shape;
+    }
+  }
+  return std::visit(
+      [&](const auto& s) -> std::optional<core::Shape> {
+        if constexpr (std::is_constructible_v<core::Shape, decltype(s)>) {
+          return s;
+        } else {
+          return meshes(s);
+        }
+      },
+      shape);
+}
+
+}  // namespace aurasim::cli

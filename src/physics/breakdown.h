@@ -1,0 +1,18 @@
+// Bodies that no world can bear any more: not a number, or out of all bounds (core/limits.h).
+#pragma once
+
+#include <string>
+
+class btRigidBody;
+
+namespace aurasim::physics {
+
+class LocalFrame;
+
+/// Cheap: asked of every body in every state.
+bool has_broken_down(const btRigidBody& body, const LocalFrame& frame);
+
+/// What is wrong with a body that has broken down, and its state.
+std::string fault_of(const btRigidBody& body, const LocalFrame& frame);
+
+}  // namespace aurasim::physics

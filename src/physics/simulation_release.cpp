@@ -1,0 +1,106 @@
+// How bodies leave a simulation, with everything that a hand-off has to carry.
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "physics/bullet_convert.h"
+#include "physics/prefetch.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Of a body that is in none of the clusters that leave.
+constexpr std::uint32_t kStays = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+/// Points on statics are in the statics' frames, and those differ between worlds with different origins.
+void Simulation::put_back_slid(core::ClusterState& cluster) const {
+  const auto put_back = [&](core::ObjectRef ref, double* local) {
+    if (ref < 0) Eigen::Map<core::Vec3>(local) += slid_[static_cast<std::size_t>(-1 - ref)];
+  };
+  for (const core::ManifoldRecord& manifold : cluster.manifolds) {
+    for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
+      double* const row = &cluster.points[(manifold.first_point + i) * core::kContactPointDoubles];
+      put_back(manifold.object0, row + kLocalPointA);
+      put_back(manifold.object1, row + kLocalPointB);
+    }
+  }
+}
+
+/// For each place in the table the cluster that its body is in, or kStays.
+std::vector<std::uint32_t> Simulation::membership(std::span<const std::span<const core::BodyId>> clusters) const {
+  std::vector<std::uint32_t> cluster_at(table_.size(), kStays);
+  for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster) {
+    for (const core::BodyId id : clusters[cluster]) {
+      const HostedBody* const body = table_.find(id);
+      if (body == nullptr) throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is not here");
+      cluster_at[static_cast<std::size_t>(body - table_.bodies().data())] = cluster;
+    }
+  }
+  return cluster_at;
+}
+
+struct Simulation::Copies {
+  std::vector<core::ClusterState> clusters;
+  std::uint64_t across = 0;  ///< contacts and joints with bodies outside the cluster
+};
+
+Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count) const {
+  Copies copies;
+  copies.clusters.resize(count);
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    if (cluster_at[i] != kStays) copies.clusters[cluster_at[i]].bodies.push_back(table_[i].record(frame_));
+  }
+  std::vector<std::vector<KeyedManifold>> manifolds(count);
+  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
+    const int index0 = manifold.getBody0()->getUserIndex();
+    const int index1 = manifold.getBody1()->getUserIndex();
+    const std::uint32_t cluster0 = is_static(index0) ? kStays : cluster_at[static_cast<std::size_t>(index0)];
+    const std::uint32_t cluster1 = is_static(index1) ? kStays : cluster_at[static_cast<std::size_t>(index1)];
+    if (cluster0 == kStays && cluster1 == kStays) return;
+    if (is_static(index0) || is_static(index1) || cluster0 == cluster1) {
+      const std::uint32_t cluster = cluster0 != kStays ? cluster0 : cluster1;
+      manifolds[cluster].push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+    } else {
+      ++copies.across;
+    }
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    core::ClusterState& cluster = copies.clusters[i];
+    append_manifolds(std::move(manifolds[i]), frame_, cluster);
+    if (!settings_.p_WO.isZero()) put_back_slid(cluster);
+    copies.across += joints_.append_to(cluster);
+  }
+  return copies;
+}
+
+core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const {
+  return std::move(copy(membership({&bodies, 1}), 1).clusters.front());
+}
+
+core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
+  return std::move(release({&bodies, 1}).front());
+}
+
+std::vector<core::ClusterState> Simulation::release(std::span<const std::span<const core::BodyId>> clusters) {
+  const std::vector<std::uint32_t> cluster_at = membership(clusters);
+  Copies leaving = copy(cluster_at, clusters.size());
+  severed_contacts_ += leaving.across;
+  std::vector<bool> leaves(table_.size());
+  std::vector<btRigidBody*> born;
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    leaves[i] = cluster_at[i] != kStays;
+    if (leaves[i] && table_[i].born) born.push_back(table_[i].rigid.get());
+  }
+  for (const core::ClusterState& cluster : leaving.clusters) joints_.disconnect(cluster, table_, world_);
+  world_.remove(born);
+  table_.erase(leaves);
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+  return std::move(leaving.clusters);
+}
+
+}  // namespace aurasim::physics
