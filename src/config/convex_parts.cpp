@@ -182,7 +182,8 @@ bool covers(const TriangleMesh& hull, const TriangleMesh& part, const Scaling& s
 std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& as_it_came) {
   if (as_it_came.points.empty()) return "it has no points";
   if (as_it_came.triangles.size() > kMostTrianglesToDivide) {
-    return fmt::format("it has {} triangles, at most {} are taken apart", as_it_came.triangles.size(), kMostTrianglesToDivide);
+    return fmt::format("it has {} triangles, at most {} are taken apart", as_it_came.triangles.size(),
+                       kMostTrianglesToDivide);
   }
   const TriangleMesh mesh = facing_out(as_it_came);
   if (is_convex(mesh, Scaling(mesh))) return mesh;
