@@ -22,7 +22,7 @@ TEST(DdsSettings, AreThoseOfTheFile) {
   const dds::Settings settings = dds_settings(launch_of(
       "dds: {domain: 7, discovery: peers, interfaces: [10.0.0.1], peers: [10.0.0.2], impair: {loss: 0.1}}\n"));
   EXPECT_EQ(settings.domain, 7U);
-  EXPECT_EQ(settings.discovery, dds::Discovery::kPeers);
+  EXPECT_EQ(settings.discovery, config::Discovery::kPeers);
   EXPECT_THAT(settings.interfaces, ElementsAre("10.0.0.1"));
   EXPECT_THAT(settings.peers, ElementsAre("10.0.0.2"));
   EXPECT_EQ(settings.impairment.loss, 0.1);
