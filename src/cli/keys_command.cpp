@@ -10,13 +10,13 @@
 namespace aurasim::cli {
 namespace {
 
-struct Arguments {
+struct KeysArguments {
   std::string section;
   bool markdown = false;
   std::string schema;
 };
 
-int print_keys(const Arguments& arguments) {
+int print_keys(const KeysArguments& arguments) {
   std::string text;
   if (arguments.markdown) {
     text = config::keys_as_markdown();
@@ -36,12 +36,13 @@ int print_keys(const Arguments& arguments) {
 void add_keys(CLI::App& program, Action& action) {
   CLI::App* command =
       program.add_subcommand("keys", "every key of launch and scene files: unit, range, default, meaning");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<KeysArguments>();
   command->add_option("SECTION", arguments->section, "only sections with this in their title, e.g. time, injector");
   auto* markdown = command->add_flag("--markdown", arguments->markdown, "as docs/scenes.md has them");
   command->add_option("--schema", arguments->schema, "as a JSON schema for editors: of launch files, or of scene files")
       ->check(CLI::IsMember({"launch", "scene"}))
       ->excludes(markdown);
+  command->footer("Example:\n  aurasim keys injector");
   command->callback([arguments, &action] { action = [arguments] { return print_keys(*arguments); }; });
 }
 

@@ -8,7 +8,7 @@
 namespace aurasim::config {
 namespace {
 
-constexpr std::size_t kMostParts = 1000;
+constexpr std::size_t kMostPartsOfCompound = 1000;
 constexpr std::size_t kMostPoints = 1000;
 
 const KeyTable& sphere_keys() {
@@ -36,7 +36,7 @@ const KeyTable& compound_keys() {
   static const KeyTable keys{
       .title = "shape: compound",
       .about = "Convex parts that stick together. The origin is the centre of mass.",
-      .keys = {required("parts", list(1, kMostParts, map(part_keys).with(pose_keys)), "what it is made of")}};
+      .keys = {required("parts", list(1, kMostPartsOfCompound, map(part_keys).with(pose_keys)), "what it is made of")}};
   return keys;
 }
 

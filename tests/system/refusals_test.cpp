@@ -1,4 +1,4 @@
-// What cannot be done is refused by name, and never called done. Domains 210 to 213.
+// What cannot be done is refused by name, and never called done.
 #include <algorithm>
 #include <csignal>
 #include <stdexcept>
@@ -44,19 +44,21 @@ class Refusals : public SystemTest {
  protected:
   void expect_refused(const Words& words, int code, const std::string& why) {
     Process& program = start(words);
-    expect_exit(program, code, 60s);
+    expect_exit(program, code, kGenerous);
     EXPECT_THAT(program.err(), HasSubstr(why)) << program.said();
   }
   const std::string file_ = launch_file("two_spheres");
 };
 
 TEST_F(Refusals, WhoWatchesARunThatIsNotThereIsToldSo) {
-  const Words in_domain = set({"dds.domain=210"});
+  const Words in_domain = in_own_domain();
   Process& top = start(Words{"top", file_} + in_domain);
   Process& echo = start(Words{"echo", "aura", file_} + in_domain);
   for (Process* program : {&top, &echo}) {
-    expect_exit(*program, 1, 60s);
-    EXPECT_THAT(program->err(), AllOf(HasSubstr("no node of"), HasSubstr("DDS domain 210"))) << program->said();
+    expect_exit(*program, 1, kGenerous);
+    EXPECT_THAT(program->err(),
+                AllOf(HasSubstr("no node of"), HasSubstr("DDS domain " + std::to_string(test::own_domain()))))
+        << program->said();
   }
   expect_refused(Words{"top", file_, "--duration", "1"} + in_domain, 1, "no node of");
 }
@@ -68,37 +70,37 @@ TEST_F(Refusals, APartitionThatNobodyCanPublishInIsNamed) {
 }
 
 TEST_F(Refusals, ARecordingThatCannotBeWrittenStopsTheLaunch) {
-  expect_refused(Words{"launch", file_, "--headless", "--record", (folder() / "none" / "run.rec").string()} +
-                     set({"dds.domain=211"}),
-                 1, "No such file or directory");
+  expect_refused(
+      Words{"launch", file_, "--headless", "--record", (folder() / "none" / "run.rec").string()} + in_own_domain(), 1,
+      "No such file or directory");
 }
 
 TEST_F(Refusals, AnAddressThatIsNotOursStopsTheLaunch) {
-  expect_refused(Words{"launch", file_} + set({"dds.domain=211", "overseer.bind=192.0.2.1"}), 1, "192.0.2.1:8080");
+  expect_refused(Words{"launch", file_} + in_own_domain() + set({"overseer.bind=192.0.2.1"}), 1, "192.0.2.1:8080");
 }
 
 TEST_F(Refusals, MoreRegionsThanOneHostHasPortsForStartNothing) {
-  expect_refused(Words{"launch", file_, "--headless", "--report", (folder() / "report").string()} +
-                     set({"dds.domain=211", "regions.count=120"}),
+  expect_refused(Words{"launch", file_, "--headless", "--report", (folder() / "report").string()} + in_own_domain() +
+                     set({"regions.count=120"}),
                  2, "found 120, allowed: at most 97");
   EXPECT_FALSE(std::filesystem::exists(folder() / "report"));
 }
 
 TEST_F(Refusals, ATakenPortIsSaidBesideTheOneThatIsUsed) {
   const TakenPort port;
-  Process& run = start(Words{"launch", file_} + set({"dds.domain=212", "overseer.port=" + port.number()}));
-  EXPECT_TRUE(
-      wait_until([&] { return run.out().find("(port " + port.number() + " is taken)") != std::string::npos; }, 60s))
+  Process& run = start(Words{"launch", file_} + in_own_domain() + set({"overseer.port=" + port.number()}));
+  EXPECT_TRUE(wait_until([&] { return run.out().find("(port " + port.number() + " is taken)") != std::string::npos; },
+                         kGenerous))
       << run.said();
   run.signal(SIGINT);
-  expect_exit(run, 0, 60s);
+  expect_exit(run, 0, kGenerous);
 }
 
 TEST_F(Refusals, RegionsThatTakeTurnsAreWarnedOf) {
   const std::string count = std::to_string(std::max(2L, ::sysconf(_SC_NPROCESSORS_ONLN) + 1));
   Process& run =
-      start(Words{"launch", file_, "--headless", "--steps", "5"} + set({"dds.domain=213", "regions.count=" + count}));
-  expect_exit(run, 0, 60s);
+      start(Words{"launch", file_, "--headless", "--steps", "5"} + in_own_domain() + set({"regions.count=" + count}));
+  expect_exit(run, 0, kGenerous);
   EXPECT_THAT(run.err(), HasSubstr(count + " regions on "));
 }
 
