@@ -45,6 +45,8 @@ struct HandOffRow {
   core::HandOffReason reason{};
   bool reclaimed = false;
   bool touched = false;  ///< it had a contact since its last change of host (sender's rows)
+
+  bool is_pull() const { return reason == core::HandOffReason::kAuraCollision; }
 };
 
 /// A body's first host, and the state in which it exists first.

@@ -14,6 +14,7 @@
 #include "node/durations.h"
 #include "node/recorder.h"
 #include "node/row_file.h"
+#include "node/thrashing.h"
 
 namespace aurasim::node {
 namespace {
@@ -34,7 +35,9 @@ struct Move {
   bool pulled = false;  ///< by AC
   bool reclaimed = false;
   bool touched = true;
-  bool adopted = false;  ///< the destination has said so
+  bool adopted = false;  ///< the destination has acknowledged
+
+  bool is_pull() const { return pulled; }
 };
 
 std::filesystem::path of_region(const std::filesystem::path& folder, std::size_t region, const char* name) {
@@ -189,16 +192,13 @@ class Merge {
     }
   }
 
-  /// Two pulls in opposite directions with no contact between them: thesis section 3.7.
   void count_thrashing() {
     for (auto& [body, moves] : moves_) {
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.epoch < b.epoch; });
       for (std::size_t i = 0; i < moves.size(); ++i) {
         accounts_.hand_offs += !moves[i].reclaimed;
         accounts_.reclaimed += moves[i].reclaimed;
-        if (i == 0 || !moves[i].pulled || !moves[i - 1].pulled || moves[i].touched) continue;
-        accounts_.thrashed +=
-            moves[i].destination == moves[i - 1].source && moves[i].source == moves[i - 1].destination;
+        accounts_.thrashed += i > 0 && is_thrashing(moves[i - 1], moves[i]);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "cluster/wire_check.h"
+#include "node/thrashing.h"
 
 namespace aurasim::test {
 
@@ -122,9 +123,7 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
   for (const node::HandOffRow& row : report.departures) {
     const auto [before, first] = last_departure_.try_emplace(row.body, row);
     if (first) continue;
-    const node::HandOffRow& last = before->second;
-    const bool both_pulled = row.reason == core::HandOffReason::kAuraCollision && last.reason == row.reason;
-    if (both_pulled && row.destination == last.source && !row.touched) ++outcome_.thrashed;
+    outcome_.thrashed += node::is_thrashing(before->second, row);
     before->second = row;
   }
 }
