@@ -26,6 +26,7 @@ void add_send(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 void add_completion(CLI::App& program, Action& action);
 void add_manual(CLI::App& program, Action& action);
+void add_mesh_loader(CLI::App& program, Action& action);
 /// Below `experiment`.
 void add_stability(CLI::App& experiment, Action& action);
 void add_pareto(CLI::App& experiment, Action& action);

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
+#include "cli/mesh_process.h"
 #include "cli/run_command_sink.h"
 #include "cli/stop_signal.h"
 #include "cli/web_setup.h"
@@ -23,7 +24,7 @@ struct OverseerArguments {
 int oversee(const OverseerArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   const overseer::WebSettings settings = web_settings(launch, arguments.web);
-  overseer::ShapeStore shapes;
+  overseer::ShapeStore shapes(read_mesh_apart);
   const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, shapes);
   dds::Participant participant(dds_settings(launch));
   dds::ControlBus control(participant, {launch.regions.version(), {}, launch.agreement()});

@@ -2,15 +2,29 @@
 
 #include <chrono>
 
+#include "cli/mesh_process.h"
+
 namespace aurasim::cli {
+namespace {
+
+constexpr std::size_t kMostKept = 64;
+constexpr std::chrono::seconds kLimit{60};
+
+}  // namespace
 
 const PartFinder::Parts* PartFinder::parts_of(std::uint64_t hash,
                                               const std::shared_ptr<const core::TriangleMesh>& mesh) {
+  const auto is_found = [](const auto& parts) {
+    return parts.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  if (!found_.contains(hash) && found_.size() >= kMostKept)
+    std::erase_if(found_, [&](const auto& entry) { return is_found(entry.second); });
   auto& parts = found_[hash];
   if (!parts.valid()) {
-    parts = std::async(std::launch::async, [mesh] { return config::decompose(*mesh); }).share();
+    const MeshProcess process{.limit = kLimit};
+    parts = std::async(std::launch::async, [mesh, process] { return process.decompose(*mesh); }).share();
   }
-  return parts.wait_for(std::chrono::seconds(0)) == std::future_status::ready ? &parts.get() : nullptr;
+  return is_found(parts) ? &parts.get() : nullptr;
 }
 
 }  // namespace aurasim::cli

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "config/convex_parts.h"
+#include "core/scene.h"
 
 namespace aurasim::cli {
 
@@ -17,7 +17,8 @@ class PartFinder {
  public:
   using Parts = std::variant<core::TriangleMesh, std::string>;
 
-  /// The mesh's parts or why there are none; null while they are being found. `hash`: of the mesh.
+  /// The mesh's parts or why there are none; null while they are being found. `hash`: of the mesh. Valid until the next
+  /// call.
   const Parts* parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh);
 
  private:

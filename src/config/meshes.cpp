@@ -28,6 +28,8 @@ constexpr std::uintmax_t kLargestMeshBytes = 256u << 20;
 constexpr std::size_t kMostTriangles = 1'000'000;
 constexpr std::size_t kMostHullPoints = 200;
 constexpr double kFarthest = 1e7;
+constexpr unsigned kMostCorners = 1000;       ///< of a face: finding its triangles takes time with the square of them
+constexpr std::size_t kDeepestNesting = 100;  ///< of a glTF's JSON: assimp reads it by recursion
 const std::set<std::string> kFormats = {".obj", ".stl", ".gltf", ".glb"};
 const std::string kUnknownFormat = "its name ends neither in .obj, .stl, .gltf nor .glb";
 
@@ -88,11 +90,39 @@ class MeshBuilder {
   bool is_finite_ = true;
 };
 
+unsigned most_corners(const aiScene& scene) {
+  unsigned most = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& part = *scene.mMeshes[m];
+    for (unsigned f = 0; f < part.mNumFaces; ++f) most = std::max(most, part.mFaces[f].mNumIndices);
+  }
+  return most;
+}
+
+/// How deep brackets lie in brackets, outside of texts. Of bytes that are no JSON it means nothing, but is no deeper
+/// than a reader of JSON would go.
+std::size_t nesting_of(std::string_view json) {
+  std::size_t depth = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_text && c == '\\') ++i;
+    if (c == '"') in_text = !in_text;
+    if (in_text) continue;
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if ((c == ']' || c == '}') && depth > 0) --depth;
+  }
+  return deepest;
+}
+
 std::variant<TriangleMesh, std::string> triangles_of(Assimp::Importer& importer, const std::string& file,
                                                      const MeshRequest& request) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene =
-      importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  const aiScene* scene = importer.ReadFile(file, 0);
+  if (scene == nullptr) return fmt::format("it cannot be read: {}", importer.GetErrorString());
+  if (const unsigned corners = most_corners(*scene); corners > kMostCorners)
+    return fmt::format("it has a face of {} corners, at most {}", corners, kMostCorners);
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
   if (scene == nullptr) return fmt::format("it cannot be read: {}", importer.GetErrorString());
   std::size_t triangles = 0;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) triangles += scene->mMeshes[m]->mNumFaces;
@@ -129,6 +159,8 @@ std::variant<TriangleMesh, std::string> load_mesh(const MeshRequest& request) {
 std::variant<TriangleMesh, std::string> read_mesh(const std::string& name, std::string_view bytes) {
   const std::string extension = lower_extension(name);
   if (!kFormats.contains(extension)) return kUnknownFormat;
+  if (extension == ".gltf" && nesting_of(bytes) > kDeepestNesting)
+    return fmt::format("its brackets are nested deeper than {}", kDeepestNesting);
   Assimp::Importer importer;
   // Without a file system below it: the importer takes it over.
   importer.SetIOHandler(

@@ -1,5 +1,7 @@
 #include "overseer/shape_store.h"
 
+#include <algorithm>
+
 #include "config/meshes.h"
 
 namespace aurasim::overseer {
@@ -18,20 +20,39 @@ std::variant<ShapeStore::Stored, std::string> ShapeStore::add(const std::string&
   if (bytes.size() > kLargestMeshFile) return "it is larger than 16 MiB";
   const std::uint64_t hash = config::content_hash(bytes);
   if (const auto known = find(hash)) return summary_of(hash, *known);
-  auto read = config::read_mesh(name, bytes);
+  auto read = read_(name, bytes);
   if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);
   auto mesh = std::make_shared<const core::TriangleMesh>(std::get<core::TriangleMesh>(std::move(read)));
   const std::lock_guard lock(mutex_);
-  if (meshes_.size() >= kMostMeshes || points_ + mesh->points.size() > kMostPointsOfAll)
-    return "there is no room for more";
-  if (meshes_.emplace(hash, mesh).second) points_ += mesh->points.size();
+  if (mesh->points.size() > kMostPointsOfAll) return "it has too many points";
+  if (!meshes_.contains(hash)) {
+    make_room(mesh->points.size());
+    points_ += mesh->points.size();
+    meshes_[hash] = {mesh, ++questions_};
+  }
   return summary_of(hash, *mesh);
+}
+
+void ShapeStore::make_room(std::size_t points) {
+  while (!meshes_.empty() && (meshes_.size() >= kMostMeshes || points_ + points > kMostPointsOfAll)) {
+    const auto oldest = std::min_element(meshes_.begin(), meshes_.end(),
+                                         [](const auto& a, const auto& b) { return a.second.asked < b.second.asked; });
+    points_ -= oldest->second.mesh->points.size();
+    meshes_.erase(oldest);
+  }
 }
 
 std::shared_ptr<const core::TriangleMesh> ShapeStore::find(std::uint64_t hash) const {
   const std::lock_guard lock(mutex_);
   const auto found = meshes_.find(hash);
-  return found == meshes_.end() ? nullptr : found->second;
+  if (found == meshes_.end()) return nullptr;
+  found->second.asked = ++questions_;
+  return found->second.mesh;
+}
+
+std::size_t ShapeStore::count() const {
+  const std::lock_guard lock(mutex_);
+  return meshes_.size();
 }
 
 }  // namespace aurasim::overseer

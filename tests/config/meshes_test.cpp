@@ -1,3 +1,7 @@
+#include "config/meshes.h"
+
+#include <cmath>
+
 #include "config/workspace.h"
 
 namespace aurasim::config {
@@ -74,6 +78,29 @@ TEST(Meshes, AHullOfManyPointsKeepsItsExtremes) {
     for (const core::Vec3& p : hull.points) farthest = std::max(farthest, p.dot(d.normalized()));
     EXPECT_GT(farthest, 0.97);
   }
+}
+
+TEST(Meshes, AFaceOfVeryManyCornersIsRefusedAtOnce) {
+  std::string circle;
+  std::string face = "f";
+  for (int i = 0; i < 60'000; ++i) {
+    circle += "v " + std::to_string(std::cos(i * 1e-4)) + " " + std::to_string(std::sin(i * 1e-4)) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  const auto read = read_mesh("circle.obj", circle + face + "\n");
+  ASSERT_TRUE(std::holds_alternative<std::string>(read));
+  EXPECT_EQ(std::get<std::string>(read), "it has a face of 60000 corners, at most 1000");
+}
+
+TEST(Meshes, NestingIsRefusedBeforeItIsRead) {
+  const auto why = [](const std::string& text) {
+    const auto read = read_mesh("a.gltf", text);
+    const auto* refused = std::get_if<std::string>(&read);
+    return refused == nullptr ? std::string() : *refused;
+  };
+  EXPECT_EQ(why(std::string(200'000, '[')), "its brackets are nested deeper than 100");
+  EXPECT_NE(why("{\"asset\": \"" + std::string(200'000, '[') + "\"}"), "its brackets are nested deeper than 100")
+      << "within a text they are letters";
 }
 
 TEST(Meshes, BrokenFilesAreRefused) {
