@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/leave.h"
+#include "cli/mesh_process.h"
 #include "cli/stop_signal.h"
 #include "cli/web_setup.h"
 #include "overseer/page_messages.h"
@@ -26,8 +27,11 @@ struct ReplayArguments {
 };
 
 std::string replay_message(const overseer::Replay& replay) {
-  return nlohmann::json{
-      {"type", "replay"}, {"step", replay.step()}, {"playing", replay.playing()}, {"speed", replay.speed()}}
+  return nlohmann::json{{"type", "replay"},
+                        {"at", replay.at()},
+                        {"step", replay.step()},
+                        {"playing", replay.playing()},
+                        {"speed", replay.speed()}}
       .dump();
 }
 
@@ -37,8 +41,9 @@ overseer::Hello hello_of(const overseer::Replay& replay) {
   hello.scene = replay.run().scene;
   hello.step_s = replay.run().step_s;
   hello.tick_hz = replay.run().tick_hz;
-  hello.first_step = replay.first_step();
-  hello.last_step = replay.last_step();
+  hello.first = replay.first();
+  hello.last = replay.last();
+  hello.resets = replay.resets();
   return hello;
 }
 
@@ -56,7 +61,7 @@ void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
 
 int replay(const ReplayArguments& arguments) {
   overseer::Replay replay(arguments.file);
-  overseer::ShapeStore shapes;
+  overseer::ShapeStore shapes(read_mesh_apart);
   const auto web = open_web_server(web_settings({}, arguments.web), shapes);
   web->publish(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
   catch_stop_signals();

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "overseer/frame_codec.h"
+#include "overseer/page_input.h"
 
 namespace aurasim::overseer {
 
@@ -31,12 +32,14 @@ class ClientOutbox {
   /// False: there are too many already; the page does not read.
   bool reply(std::string text);
   void note(const WorldFrame& frame) { frames_.note(frame); }
+  /// A page that nobody looks at is sent nothing but replies; what it missed comes when it is looked at again.
+  void look(const View& view);
   void show(SharedBytes overlays) { overlays_ = std::move(overlays); }
 
   /// What to send next, or nothing. `frames_too`: false when the last frame was sent only a moment ago.
   std::optional<Message> next(const SlotTable& table, bool frames_too);
 
-  bool has_frame() const { return frames_.has_news(); }
+  bool has_frame() const { return frames_.has_news() && !hidden_; }
   std::uint64_t frames_merged() const { return frames_.merged(); }
 
  private:
@@ -44,6 +47,7 @@ class ClientOutbox {
   std::deque<std::string> replies_;
   ClientFrames frames_;
   SharedBytes overlays_;
+  bool hidden_ = false;
 };
 
 }  // namespace aurasim::overseer

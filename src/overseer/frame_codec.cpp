@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 namespace aurasim::overseer {
@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
 constexpr std::uint8_t kFrame = 1;
 constexpr std::uint8_t kOverlays = 2;
 constexpr std::uint8_t kKeyFrame = 1;
@@ -25,10 +25,16 @@ constexpr std::uint8_t kHostNews = 4;
 constexpr std::uint8_t kMoveNews = 8;
 constexpr std::uint8_t kHandOffNews = 16;
 constexpr std::uint8_t kListed = 32;
+constexpr std::uint8_t kNew = 64;  ///< within encode(): its pose has to be told whole
 
-/// Positions are sent as float: beyond this from the origin they would lose millimetres.
-constexpr double kNearM = 2000;
-constexpr double kOriginGridM = 1000;
+// How a pose is told, in the head of its row.
+constexpr std::uint8_t kByteSteps = 1, kWordSteps = 2, kWholePosition = 3;
+constexpr std::uint8_t kByteLevels = 1 << 2, kWholeRotation = 2 << 2;
+constexpr std::uint8_t kFarSlot = 15;  ///< the slot follows; less: so many slots are passed over
+/// One level of a component, seen as an angle.
+constexpr double kLevel_rad = 2 * std::numbers::sqrt2 / 1023;
+/// What turns with a body is seen so far from its centre, metres.
+constexpr double kReach_m = 1;
 
 class Writer {
  public:
@@ -47,15 +53,21 @@ class Writer {
   Bytes bytes_;
 };
 
-core::Vec3 origin_of(const SlotTable& table, const std::vector<Slot>& moved) {
-  core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Slot slot : moved) {
-    low = low.cwiseMin(table.body(slot)->p_WB);
-    high = high.cwiseMax(table.body(slot)->p_WB);
-  }
-  if (moved.empty() || std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) <= kNearM)
-    return core::Vec3::Zero();
-  return ((low + high) / (2 * kOriginGridM)).array().round().matrix() * kOriginGridM;
+ToldPose told_pose(const ViewBody& body) {
+  ToldPose told;
+  for (std::size_t i = 0; i < 3; ++i) told.p[i] = std::llround(body.p_WB[static_cast<Eigen::Index>(i)] / kGrid_m);
+  told.q = pack_rotation(body.q_WB);
+  return told;
+}
+
+int level(std::uint32_t packed, unsigned shift) { return static_cast<int>((packed >> shift) & 1023U); }
+
+/// The greatest difference of a component in levels; more than there are if another one is left out.
+int levels_between(std::uint32_t a, std::uint32_t b) {
+  if (a >> 30U != b >> 30U) return 1024;
+  int most = 0;
+  for (const unsigned shift : {20U, 10U, 0U}) most = std::max(most, std::abs(level(a, shift) - level(b, shift)));
+  return most;
 }
 
 void put_host(const ViewBody& body, bool handed_over, Writer& out) {
@@ -69,12 +81,56 @@ void put_host(const ViewBody& body, bool handed_over, Writer& out) {
   out.put(body.epoch);
 }
 
-void put_pose(const ViewBody& body, const core::Vec3& origin, Writer& out) {
-  const Eigen::Vector3f p = (body.p_WB - origin).cast<float>();
-  out.put(body.slot);
-  for (int i = 0; i < 3; ++i) out.put(p[i]);
-  out.put(pack_rotation(body.q_WB));
-}
+/// Rows come by ascending slot.
+class PoseRows {
+ public:
+  explicit PoseRows(Writer& out) : out_(out) {}
+
+  void put(Slot slot, const ToldPose& before, const ToldPose& now, bool is_new) {
+    const std::uint8_t position = is_new ? kWholePosition : way_of_position(before, now);
+    const std::uint8_t rotation = is_new ? kWholeRotation : way_of_rotation(before.q, now.q);
+    const Slot gap = slot - next_;
+    next_ = slot + 1;
+    const auto passed = static_cast<std::uint8_t>(gap < kFarSlot ? gap : kFarSlot);
+    out_.put(static_cast<std::uint8_t>(position | rotation | passed << 4U));
+    if (passed == kFarSlot) out_.put(slot);
+    put_position(position, before, now);
+    put_rotation(rotation, before.q, now.q);
+  }
+
+ private:
+  static std::uint8_t way_of_position(const ToldPose& before, const ToldPose& now) {
+    std::int64_t most = 0;
+    for (std::size_t i = 0; i < 3; ++i) most = std::max(most, std::abs(now.p[i] - before.p[i]));
+    if (most == 0) return 0;
+    return most <= 127 ? kByteSteps : most <= 32767 ? kWordSteps : kWholePosition;
+  }
+
+  static std::uint8_t way_of_rotation(std::uint32_t before, std::uint32_t now) {
+    if (before == now) return 0;
+    return levels_between(before, now) <= 127 ? kByteLevels : kWholeRotation;
+  }
+
+  void put_position(std::uint8_t way, const ToldPose& before, const ToldPose& now) {
+    for (std::size_t i = 0; i < 3 && way != 0; ++i) {
+      if (way == kByteSteps) out_.put(static_cast<std::int8_t>(now.p[i] - before.p[i]));
+      if (way == kWordSteps) out_.put(static_cast<std::int16_t>(now.p[i] - before.p[i]));
+      if (way != kWholePosition) continue;
+      out_.put(static_cast<std::uint32_t>(now.p[i]));
+      out_.put(static_cast<std::int16_t>(now.p[i] >> 32));
+    }
+  }
+
+  void put_rotation(std::uint8_t way, std::uint32_t before, std::uint32_t now) {
+    if (way == kWholeRotation) out_.put(now);
+    if (way != kByteLevels) return;
+    for (const unsigned shift : {20U, 10U, 0U})
+      out_.put(static_cast<std::int8_t>(level(now, shift) - level(before, shift)));
+  }
+
+  Writer& out_;
+  Slot next_ = 0;
+};
 
 }  // namespace
 
@@ -141,8 +197,23 @@ void ClientFrames::list_everything(const SlotTable& table) {
   for (Slot slot = 0; slot < table.slot_count(); ++slot) state(slot);
 }
 
+ClientFrames::Move ClientFrames::move_of(const ViewBody& body) const {
+  const ToldPose now = told_pose(body);
+  const ToldPose& told = told_[body.slot];
+  if (now.p == told.p && now.q == told.q) return Move::kNone;
+  if (!eye_) return Move::kSeen;
+  const core::Vec3 off(static_cast<double>(now.p[0] - told.p[0]), static_cast<double>(now.p[1] - told.p[1]),
+                       static_cast<double>(now.p[2] - told.p[2]));
+  const double unseen_m = unseen_error_m(*eye_, body.p_WB);
+  const double turned_m = kReach_m * kLevel_rad * levels_between(now.q, told.q);
+  return off.norm() * kGrid_m <= unseen_m && turned_m <= unseen_m ? Move::kUnseen : Move::kSeen;
+}
+
 ClientFrames::Lists ClientFrames::sort_out(const SlotTable& table) {
   Lists lists;
+  told_.resize(table.slot_count());
+  std::vector<Slot> unseen;
+  std::sort(listed_.begin(), listed_.end());
   for (const Slot slot : listed_) {
     std::uint8_t& bits = states_[slot];
     const bool is_new = (bits & kKnown) == 0 || (bits & kOutlived) != 0;
@@ -153,9 +224,14 @@ ClientFrames::Lists ClientFrames::sort_out(const SlotTable& table) {
     }
     if (is_new) lists.created.push_back(slot);
     if (is_new || (bits & (kHostNews | kHandOffNews)) != 0) lists.hosts.push_back(slot);
-    if (is_new || (bits & kMoveNews) != 0) lists.moved.push_back(slot);
-    bits = static_cast<std::uint8_t>(kKnown | (bits & kHandOffNews));
+    const Move move = is_new ? Move::kSeen : (bits & kMoveNews) != 0 ? move_of(*table.body(slot)) : Move::kNone;
+    if (move == Move::kSeen) lists.moved.push_back(slot);
+    bits = static_cast<std::uint8_t>(kKnown | (bits & kHandOffNews) | (is_new ? kNew : 0));
+    if (move != Move::kUnseen) continue;
+    bits |= kMoveNews | kListed;
+    unseen.push_back(slot);
   }
+  listed_ = std::move(unseen);
   return lists;
 }
 
@@ -164,16 +240,13 @@ Bytes ClientFrames::encode(const SlotTable& table) {
   has_news_ = false;
   if (key) list_everything(table);
   const Lists lists = sort_out(table);
-  listed_.clear();
-  const core::Vec3 origin = origin_of(table, lists.moved);
-  Writer out(56 + 4 * lists.deleted.size() + 16 * lists.created.size() + 12 * lists.hosts.size() +
-             20 * lists.moved.size());
+  Writer out(32 + 4 * lists.deleted.size() + 16 * lists.created.size() + 12 * lists.hosts.size() +
+             12 * lists.moved.size());
   out.put(kFrame);
   out.put(key ? kKeyFrame : std::uint8_t{0});
   out.put(kVersion);
   out.put(table.generation());
   out.put(static_cast<double>(table.stamp()));
-  for (int i = 0; i < 3; ++i) out.put(origin[i]);
   for (const auto* list : {&lists.deleted, &lists.created, &lists.hosts, &lists.moved}) out.put_count(list->size());
   for (const Slot slot : lists.deleted) out.put(slot);
   for (const Slot slot : lists.created) {
@@ -185,9 +258,15 @@ Bytes ClientFrames::encode(const SlotTable& table) {
   }
   for (const Slot slot : lists.hosts) {
     put_host(*table.body(slot), (states_[slot] & kHandOffNews) != 0, out);
-    states_[slot] = kKnown;
+    states_[slot] = static_cast<std::uint8_t>(states_[slot] & ~kHandOffNews);
   }
-  for (const Slot slot : lists.moved) put_pose(*table.body(slot), origin, out);
+  PoseRows rows(out);
+  for (const Slot slot : lists.moved) {
+    const ToldPose now = told_pose(*table.body(slot));
+    rows.put(slot, told_[slot], now, (states_[slot] & kNew) != 0);
+    told_[slot] = now;
+    states_[slot] = static_cast<std::uint8_t>(states_[slot] & ~kNew);
+  }
   return out.take();
 }
 

@@ -39,7 +39,8 @@ class Reader {
 
 class FrameReader {
  public:
-  FrameReader(std::span<const std::uint8_t> bytes, const SlotTable& before) : in_(bytes), before_(before) {}
+  FrameReader(std::span<const std::uint8_t> bytes, const SlotTable& before, std::vector<ToldPose>& told)
+      : in_(bytes), before_(before), told_(told) {}
 
   std::optional<WorldFrame> read() {
     read_header();
@@ -60,12 +61,10 @@ class FrameReader {
     const auto version = in_.get<std::uint16_t>();
     frame_.generation = in_.get<std::uint32_t>();
     const auto stamp = in_.get<double>();
-    for (int i = 0; i < 3; ++i) origin_[i] = in_.get<double>();
     for (std::uint32_t& count : counts_) count = in_.get<std::uint32_t>();
     frame_.restart = (flags & 1) != 0;
     const std::uint64_t rows = std::uint64_t{counts_[0]} + counts_[1] + counts_[2] + counts_[3];
-    const bool sound =
-        type == 1 && version == 1 && stamp >= 0 && stamp < 1e15 && origin_.allFinite() && rows * 4 <= in_.left();
+    const bool sound = type == 1 && version == 2 && stamp >= 0 && stamp < 1e15 && rows <= in_.left();
     if (!sound) return in_.refuse();
     frame_.stamp = static_cast<core::Step>(stamp);
   }
@@ -86,7 +85,8 @@ class FrameReader {
     change.body.prototype = core::PrototypeId{in_.get<std::uint32_t>()};
     const std::uint64_t low = in_.get<std::uint32_t>();
     change.body.id = core::BodyId{low | std::uint64_t{in_.get<std::uint32_t>()} << 32U};
-    if (slot >= kMostSlots || !changes_.emplace(slot, change).second) in_.refuse();
+    if (slot >= kMostSlots || !changes_.emplace(slot, change).second) return in_.refuse();
+    if (slot >= told_.size()) told_.resize(slot + 1);
   }
 
   BodyChange& change_of(Slot slot) {
@@ -113,17 +113,48 @@ class FrameReader {
   }
 
   void read_pose() {
-    BodyChange& change = change_of(in_.get<Slot>());
+    const auto head = in_.get<std::uint8_t>();
+    const auto passed = static_cast<std::uint8_t>(head >> 4U);
+    const Slot slot = passed == 15 ? in_.get<Slot>() : next_ + passed;
+    next_ = slot + 1;
+    BodyChange& change = change_of(slot);
+    if (!in_.ok()) return;
+    ToldPose& told = told_.at(slot);
+    read_position(head & 3U, told);
+    read_rotation((head >> 2U) & 3U, told.q);
     change.moved = true;
-    for (int i = 0; i < 3; ++i) change.body.p_WB[i] = origin_[i] + static_cast<double>(in_.get<float>());
-    if (!change.body.p_WB.allFinite()) in_.refuse();
-    change.body.q_WB = unpack_rotation(in_.get<std::uint32_t>());
+    for (std::size_t i = 0; i < 3; ++i)
+      change.body.p_WB[static_cast<Eigen::Index>(i)] = static_cast<double>(told.p[i]) * kGrid_m;
+    change.body.q_WB = unpack_rotation(told.q);
+  }
+
+  void read_position(unsigned way, ToldPose& told) {
+    for (std::int64_t& p : told.p) {
+      if (way == 1) p += in_.get<std::int8_t>();
+      if (way == 2) p += in_.get<std::int16_t>();
+      if (way != 3) continue;
+      const std::int64_t low = in_.get<std::uint32_t>();
+      p = low + (std::int64_t{in_.get<std::int16_t>()} << 32);
+    }
+  }
+
+  void read_rotation(unsigned way, std::uint32_t& packed) {
+    if (way == 3) in_.refuse();
+    if (way == 2) packed = in_.get<std::uint32_t>();
+    if (way != 1) return;
+    std::uint32_t turned = packed & 3U << 30U;
+    for (const unsigned shift : {20U, 10U, 0U}) {
+      const std::uint32_t level = ((packed >> shift) & 1023U) + static_cast<std::uint32_t>(in_.get<std::int8_t>());
+      turned |= (level & 1023U) << shift;
+    }
+    packed = turned;
   }
 
   Reader in_;
   const SlotTable& before_;
+  std::vector<ToldPose>& told_;
   WorldFrame frame_;
-  core::Vec3 origin_ = core::Vec3::Zero();
+  Slot next_ = 0;  ///< of the poses
   std::array<std::uint32_t, 4> counts_{};
   std::map<Slot, BodyChange> changes_;
   BodyChange nowhere_;
@@ -131,8 +162,9 @@ class FrameReader {
 
 }  // namespace
 
-std::optional<WorldFrame> decode_frame(std::span<const std::uint8_t> bytes, const SlotTable& before) {
-  return FrameReader(bytes, before).read();
+std::optional<WorldFrame> FrameDecoder::decode(std::span<const std::uint8_t> bytes, const SlotTable& before) {
+  if (told_.size() < before.slot_count()) told_.resize(before.slot_count());
+  return FrameReader(bytes, before, told_).read();
 }
 
 }  // namespace aurasim::overseer

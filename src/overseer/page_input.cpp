@@ -179,14 +179,37 @@ Command read_command(const Json& json) {
   throw BadField(fmt::format("kind '{}' is unknown", kind));
 }
 
+bool flag_in(const Json& json, const char* name) {
+  if (!json.contains(name)) return false;
+  if (!json.at(name).is_boolean()) throw BadField(fmt::format("{} is neither true nor false", name));
+  return json.at(name).get<bool>();
+}
+
 Show read_show(const Json& json) {
   only(json, {"type", "auras", "links", "contacts"});
-  const auto flag = [&](const char* name) {
-    if (!json.contains(name)) return false;
-    if (!json.at(name).is_boolean()) throw BadField(fmt::format("{} is neither true nor false", name));
-    return json.at(name).get<bool>();
-  };
-  return {flag("auras"), flag("links"), flag("contacts")};
+  return {flag_in(json, "auras"), flag_in(json, "links"), flag_in(json, "contacts")};
+}
+
+double angle_in(const Json& json, const char* name) {
+  const double angle_rad = number_of(field(json, name), name);
+  if (!(angle_rad >= 0 && angle_rad <= 4)) throw BadField(fmt::format("{} is not from 0 to 4", name));
+  return angle_rad;
+}
+
+View read_view(const Json& json) {
+  only(json, {"type", "hidden", "eye", "towards", "half_angle", "pixel"});
+  View view;
+  view.hidden = flag_in(json, "hidden");
+  if (!json.contains("eye")) return view;
+  Eye eye;
+  eye.p_W = vector_of(json.at("eye"), "eye");
+  eye.towards_W = vector_of(field(json, "towards"), "towards");
+  if (eye.towards_W.norm() < 1e-6) throw BadField("towards has no direction");
+  eye.towards_W.normalize();
+  eye.half_angle_rad = angle_in(json, "half_angle");
+  eye.pixel_rad = angle_in(json, "pixel");
+  view.eye = eye;
+  return view;
 }
 
 Watch read_watch(const Json& json) {
@@ -222,6 +245,7 @@ PageMessage read_message(const Json& json) {
   if (!json.is_object()) throw BadField("the message is not an object");
   const std::string type = text_of(field(json, "type"), "type", 20);
   if (type == "show") return read_show(json);
+  if (type == "view") return read_view(json);
   if (type == "watch") return read_watch(json);
   if (type == "command") return read_command_message(json);
   if (type == "replay") return read_replay(json);

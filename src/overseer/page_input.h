@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "overseer/commands.h"
+#include "overseer/eye.h"
 #include "overseer/world_frame.h"
 
 namespace aurasim::overseer {
@@ -18,6 +19,11 @@ struct Show {
   bool auras = false;
   bool links = false;
   bool contacts = false;
+};
+/// What the page looks at.
+struct View {
+  bool hidden = false;     ///< nobody sees it
+  std::optional<Eye> eye;  ///< nothing: it wants everything as it is
 };
 struct Watch {
   std::optional<Slot> slot;
@@ -32,7 +38,7 @@ struct ReplayControl {
   Action action = Action::kPlay;
   double value = 0;  ///< step, or steps per step of the recorded time
 };
-using PageMessage = std::variant<Show, Watch, CommandMessage, ReplayControl>;
+using PageMessage = std::variant<Show, View, Watch, CommandMessage, ReplayControl>;
 
 struct BadMessage {
   std::string why;

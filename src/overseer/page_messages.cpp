@@ -68,8 +68,9 @@ std::string hello_message(const Hello& hello) {
                {"tick_hz", hello.tick_hz},
                {"token_needed", hello.token_needed}};
   if (hello.replay) {
-    json["first_step"] = hello.first_step;
-    json["last_step"] = hello.last_step;
+    json["first"] = hello.first;
+    json["last"] = hello.last;
+    json["resets"] = hello.resets;
   }
   return text_of(json);
 }
@@ -147,7 +148,9 @@ std::string node_metrics(const RunStatus& status) {
       [](const Seen& s) { return s.status.frame.p99_ms; });
   add("real_time_factor", "gauge", "Simulated seconds per second.",
       [](const Seen& s) { return s.status.real_time_factor; });
-  text += "# HELP aurasim_violations_total Broken promises.\n# TYPE aurasim_violations_total counter\n";
+  text +=
+      "# HELP aurasim_violations_total Warnings: limits and predictions that did not hold.\n# TYPE "
+      "aurasim_violations_total counter\n";
   for (const auto& [region, seen] : status.nodes) {
     const dds::Violations& v = seen.status.violations;
     for (const auto& [kind, count] :

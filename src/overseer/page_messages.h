@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/region_map.h"
 #include "core/scene.h"
@@ -20,8 +21,9 @@ struct Hello {
   double step_s = 0;
   double tick_hz = 0;
   bool token_needed = false;
-  core::Step first_step = 0;  ///< of a replay
-  core::Step last_step = 0;
+  core::Step first = 0;  ///< place in a replay at which it begins
+  core::Step last = 0;
+  std::vector<core::Step> resets;  ///< places in it at which the run was begun anew
 };
 std::string hello_message(const Hello& hello);
 

@@ -9,7 +9,7 @@
 namespace aurasim::overseer {
 namespace {
 
-constexpr std::array<char, 8> kMagic = {'A', 'U', 'R', 'A', 'R', 'E', 'C', '1'};
+constexpr std::array<char, 8> kMagic = {'A', 'U', 'R', 'A', 'R', 'E', 'C', '2'};
 constexpr std::uint32_t kLargestChunk = 256U << 20U;
 constexpr double kKeyFramePeriodS = 2;
 
@@ -64,7 +64,9 @@ void RecordingWriter::write(ChunkKind kind, const void* bytes, std::size_t size,
 RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
   std::array<char, 8> magic{};
   in_.read(magic.data(), magic.size());
-  if (!in_ || magic != kMagic) throw BadRecording(fmt::format("{}: not a recording", file.string()));
+  if (!in_ || !std::equal(magic.begin(), magic.end() - 1, kMagic.begin()))
+    throw BadRecording(fmt::format("{}: not a recording", file.string()));
+  if (magic != kMagic) throw BadRecording(fmt::format("{}: a recording of another version", file.string()));
   const std::uint64_t end = std::filesystem::file_size(file);
   std::uint64_t at = magic.size();
   bool any_frame = false;

@@ -1,6 +1,6 @@
 // A run as pages saw it, in a file: texts and frames as in docs/viewer.md, each with its step and time.
 //
-// "AURAREC1", then chunks: kind u8, zero u8[3], size u32, generation u32, zero u32, step i64, time f64 (s since the
+// "AURAREC2", then chunks: kind u8, zero u8[3], size u32, generation u32, zero u32, step i64, time f64 (s since the
 // recording began), then `size` bytes. Little-endian. Every few seconds a key frame, so that a reader can start there.
 // The index is made on opening, by jumping from chunk to chunk: a recording that was cut off is whole up to there.
 #pragma once

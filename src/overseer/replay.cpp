@@ -68,22 +68,32 @@ Replay::Replay(const std::filesystem::path& file) : reader_(file) {
       std::find_if(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.kind == ChunkKind::kAbout; });
   if (about == chunks.end()) throw BadRecording("the recording does not say what it is of");
   run_ = read_run(reader_.read(*about));
-  const auto first = std::find_if(chunks.begin(), chunks.end(), is_frame);
-  first_step_ = last_step_ = first->step;
-  for (const Chunk& chunk : chunks) {
-    if (!is_frame(chunk)) continue;
-    first_step_ = std::min(first_step_, chunk.step);
-    last_step_ = std::max(last_step_, chunk.step);
+  lay_out();
+  position_ = static_cast<double>(first_);
+}
+
+/// A place for each chunk: that of the frame before it for a text. Where the run was begun anew its steps go back, and
+/// the places go on.
+void Replay::lay_out() {
+  const Chunk* before = nullptr;
+  first_ = std::ranges::find_if(reader_.chunks(), is_frame)->step;
+  core::Step place = first_;
+  for (const Chunk& chunk : reader_.chunks()) {
+    if (is_frame(chunk)) {
+      const bool anew = before != nullptr && (chunk.generation != before->generation || chunk.step < before->step);
+      if (before != nullptr) place += anew ? 1 : chunk.step - before->step;
+      if (anew) resets_.push_back(place);
+      before = &chunk;
+    }
+    places_.push_back(place);
   }
-  generation_ = first->generation;
-  position_ = static_cast<double>(first->step);
 }
 
 void Replay::apply(const ReplayControl& control) {
   using Action = ReplayControl::Action;
   switch (control.action) {
     case Action::kPlay:
-      if (next_ >= reader_.chunks().size()) seek(first_step_);
+      if (next_ >= reader_.chunks().size()) seek(first_);
       playing_ = true;
       break;
     case Action::kPause:
@@ -93,63 +103,63 @@ void Replay::apply(const ReplayControl& control) {
       speed_ = control.value;
       break;
     case Action::kSeek:
-      seek(static_cast<core::Step>(
-          std::clamp(control.value, static_cast<double>(first_step_), static_cast<double>(last_step_))));
+      seek(
+          static_cast<core::Step>(std::clamp(control.value, static_cast<double>(first_), static_cast<double>(last()))));
       break;
   }
 }
 
-/// To the last key frame up to `step`, in the generation that is being shown if it went so far; advance() does the
-/// rest.
-void Replay::seek(core::Step step) {
+/// To the last key frame up to there; advance() does the rest.
+void Replay::seek(core::Step at) {
   const auto& chunks = reader_.chunks();
-  std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const Chunk& chunk = chunks[i];
-    if (chunk.kind != ChunkKind::kKeyFrame || chunk.step > step) continue;
-    const bool is_shown = chunk.generation == generation_;
-    if (!best || (is_shown && chunks[*best].generation != generation_) ||
-        (is_shown == (chunks[*best].generation == generation_) && chunk.step >= chunks[*best].step))
-      best = i;
+  next_ = 0;
+  for (std::size_t i = 0; i < chunks.size() && places_[i] <= at; ++i) {
+    if (chunks[i].kind == ChunkKind::kKeyFrame) next_ = i;
   }
-  if (!best) best = static_cast<std::size_t>(std::find_if(chunks.begin(), chunks.end(), is_frame) - chunks.begin());
-  next_ = *best;
-  generation_ = chunks[next_].generation;
-  position_ = static_cast<double>(std::max(step, chunks[next_].step));
+  position_ = static_cast<double>(at);
   jumped_ = true;
+}
+
+/// After a jump: scene, map and status as they are there, if they are others than those told last.
+void Replay::tell_what_holds(Output& out) {
+  std::map<Notice, std::size_t> holding;
+  for (std::size_t i = 0; i < places_.size() && static_cast<double>(places_[i]) <= position_; ++i) {
+    if (const auto notice = notice_of(reader_.chunks()[i].kind)) holding[*notice] = i;
+  }
+  for (const auto& [notice, chunk] : holding) tell(notice, chunk, out);
+}
+
+void Replay::tell(Notice notice, std::size_t chunk, Output& out) {
+  const auto told = told_.find(notice);
+  if (told != told_.end() && told->second == chunk) return;
+  told_[notice] = chunk;
+  out.texts[notice] = reader_.read(reader_.chunks()[chunk]);
 }
 
 Replay::Output Replay::advance(double now_s) {
   Output out;
   if (playing_ && now_s_ >= 0) position_ += (now_s - now_s_) * speed_ / run_.step_s;
   now_s_ = now_s;
+  const bool texts_are_told = jumped_;
+  if (jumped_) tell_what_holds(out);
   const auto& chunks = reader_.chunks();
-  for (; next_ < chunks.size(); ++next_) {
-    const Chunk& chunk = chunks[next_];
-    if (is_frame(chunk) && chunk.generation != generation_) {  // the run was reset here
-      if (!playing_) break;
-      generation_ = chunk.generation;
-      position_ = static_cast<double>(chunk.step);
-    }
-    if (is_frame(chunk) && static_cast<double>(chunk.step) > position_) break;
-    emit(chunk, out);
+  for (; next_ < chunks.size() && static_cast<double>(places_[next_]) <= position_; ++next_) {
+    const auto notice = notice_of(chunks[next_].kind);
+    if (is_frame(chunks[next_])) emit_frame(chunks[next_], out);
+    if (notice && !texts_are_told) tell(*notice, next_, out);
   }
   if (next_ >= chunks.size()) playing_ = false;
   return out;
 }
 
-void Replay::emit(const Chunk& chunk, Output& out) {
-  if (is_frame(chunk)) return emit_frame(chunk, out);
-  if (const auto notice = notice_of(chunk.kind)) out.texts[*notice] = reader_.read(chunk);
-}
-
 void Replay::emit_frame(const Chunk& chunk, Output& out) {
   const std::string bytes = reader_.read(chunk);
-  auto frame = decode_frame({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, table_);
+  auto frame = decoder_.decode({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, table_);
   if (!frame || (jumped_ && !frame->restart)) return;
   if (!jumped_ && frame->restart && frame->generation == table_.generation()) make_difference(*frame, table_);
   jumped_ = false;
   table_.apply(*frame);
+  at_ = places_[next_];
   out.frames.push_back(std::move(*frame));
 }
 

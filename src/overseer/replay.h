@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <optional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "overseer/client_outbox.h"
 #include "overseer/page_input.h"
@@ -27,8 +27,12 @@ class Replay {
   explicit Replay(const std::filesystem::path& file);
 
   const RecordedRun& run() const { return run_; }
-  core::Step first_step() const { return first_step_; }
-  core::Step last_step() const { return last_step_; }
+  /// The places in the recording at which it begins and ends: steps, until the run is begun anew, which turns its steps
+  /// back, but not the place in the recording.
+  core::Step first() const { return first_; }
+  core::Step last() const { return places_.back(); }
+  /// The places at which the run was begun anew, ascending.
+  const std::vector<core::Step>& resets() const { return resets_; }
 
   void apply(const ReplayControl& control);
 
@@ -40,25 +44,32 @@ class Replay {
   Output advance(double now_s);
 
   core::Step step() const { return table_.stamp(); }
+  /// The place of what is shown, from first() to last().
+  core::Step at() const { return at_; }
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
 
  private:
-  void seek(core::Step step);
-  void emit(const Chunk& chunk, Output& out);
+  void lay_out();
+  void seek(core::Step at);
+  void tell_what_holds(Output& out);
+  void tell(Notice notice, std::size_t chunk, Output& out);
   void emit_frame(const Chunk& chunk, Output& out);
 
   RecordingReader reader_;
   RecordedRun run_;
-  core::Step first_step_ = 0;
-  core::Step last_step_ = 0;
-  std::size_t next_ = 0;  ///< chunk
-  double position_ = 0;   ///< step
+  std::vector<core::Step> places_;  ///< of each chunk
+  std::vector<core::Step> resets_;
+  core::Step first_ = 0;
+  std::map<Notice, std::size_t> told_;  ///< chunk of the latest text of each kind
+  std::size_t next_ = 0;                ///< chunk
+  double position_ = 0;                 ///< place up to which all is due
+  core::Step at_ = 0;
   double now_s_ = -1;
   bool playing_ = true;
   double speed_ = 1;
   bool jumped_ = true;  ///< the next frame has to be a key frame
-  core::Generation generation_ = 0;
+  FrameDecoder decoder_;
   SlotTable table_;
 };
 

@@ -22,7 +22,8 @@ namespace websocket = beast::websocket;
 using Clock = std::chrono::steady_clock;
 using Error = beast::error_code;
 
-constexpr std::chrono::seconds kHttpLimit{15};
+constexpr std::chrono::seconds kHandshakeLimit{5};
+constexpr std::chrono::seconds kIdleLimit{15};  // of a connection that has been answered, and may ask again
 constexpr std::chrono::seconds kUploadLimit{60};
 constexpr std::chrono::seconds kSilenceLimit{30};
 constexpr std::uint32_t kLongestHeader = 16 * 1024;
@@ -36,15 +37,15 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 /// A page with its WebSocket.
 class PageSocket final : public PageConnection, public std::enable_shared_from_this<PageSocket> {
  public:
-  PageSocket(beast::tcp_stream stream, WebHub& hub)
-      : socket_(std::move(stream)), hub_(hub), spacing_(socket_.get_executor()) {}
+  PageSocket(beast::tcp_stream stream, WebHub& hub, Place place)
+      : socket_(std::move(stream)), hub_(hub), place_(std::move(place)), spacing_(socket_.get_executor()) {}
 
   void start(const http::request<http::string_body>& upgrade) {
     beast::get_lowest_layer(socket_).expires_never();
     Error ignored;
     beast::get_lowest_layer(socket_).socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
     beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-    socket_.set_option(websocket::stream_base::timeout{kHttpLimit, kSilenceLimit, true});
+    socket_.set_option(websocket::stream_base::timeout{kHandshakeLimit, kSilenceLimit, true});
     socket_.read_message_max(kLongestMessage);
     socket_.auto_fragment(false);
     socket_.async_accept(upgrade, [self = shared_from_this()](Error error) {
@@ -118,6 +119,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
 
   websocket::stream<beast::tcp_stream> socket_;
   WebHub& hub_;
+  Place place_;
   beast::flat_buffer buffer_{kLongestMessage};
   Message in_flight_;
   asio::steady_timer spacing_;
@@ -128,35 +130,40 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   Clock::time_point last_frame_;
 };
 
-class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+class HttpConnection final : public WebCaller, public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(asio::ip::tcp::socket socket, WebHub& hub, asio::any_io_executor worker)
-      : stream_(std::move(socket)), hub_(hub), worker_(std::move(worker)) {}
+  HttpConnection(asio::ip::tcp::socket socket, std::string address, WebHub& hub, asio::any_io_executor worker)
+      : WebCaller(std::move(address)), stream_(std::move(socket)), hub_(hub), worker_(std::move(worker)) {}
 
-  ~HttpConnection() { hub_.close_connection(); }
-  HttpConnection(const HttpConnection&) = delete;
-  HttpConnection& operator=(const HttpConnection&) = delete;
+  void start() { read_header(hub_.settings().header_limit); }
 
-  void read_header() {
-    parser_.emplace();
-    parser_->header_limit(kLongestHeader);
-    parser_->body_limit(kLargestMeshFile);
-    stream_.expires_after(kHttpLimit);
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
-      if (!error) return self->route();
-      if (error != http::error::end_of_stream && error != beast::error::timeout) self->hub_.refuse();
-      self->close();
-    });
-  }
+  void drop() override { stream_.close(); }
 
  private:
   using Request = http::request<http::string_body>;
+
+  /// `limit`: for the whole of it.
+  void read_header(Clock::duration limit) {
+    set_silent(true);
+    parser_.emplace();
+    parser_->header_limit(kLongestHeader);
+    parser_->body_limit(kLargestMeshFile);
+    stream_.expires_after(limit);
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
+      if (!error) return self->route();
+      const bool is_fault = error != http::error::end_of_stream && error != beast::error::timeout &&
+                            error != asio::error::operation_aborted;
+      if (is_fault) self->hub_.refuse();
+      self->close();
+    });
+  }
 
   std::string_view header(http::field name) const { return view_of(parser_->get()[name]); }
   std::string_view target() const { return view_of(parser_->get().target()); }
 
   /// The body has not been read yet: what is refused here costs nothing more.
   void route() {
+    set_silent(false);
     const std::string why = hub_.why_not(header(http::field::host), header(http::field::origin));
     if (!why.empty()) return refuse(403, why);
     const http::verb method = parser_->get().method();
@@ -164,19 +171,24 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     if (method == http::verb::post && path_of(target()) == "/api/shapes") return receive_mesh();
     if (method != http::verb::get && method != http::verb::head) return refuse(405, "only GET is answered here");
     if (!parser_->is_done()) return refuse(400, "a request of this kind has no body");
-    answer(hub_.get(target()), parser_->get().keep_alive());
+    const FileRequest request{takes_gzip(header(http::field::accept_encoding)),
+                              std::string(header(http::field::if_none_match))};
+    answer(hub_.get(target(), request), parser_->get().keep_alive());
   }
 
   void upgrade() {
     if (!websocket::is_upgrade(parser_->get())) return refuse(400, "this is a WebSocket");
-    if (!hub_.has_room()) return refuse(503, "too many pages are connected");
     if (buffer_.size() > 0) return refuse(400, "nothing may come before the upgrade is answered");
-    std::make_shared<PageSocket>(std::move(stream_), hub_)->start(parser_->release());
+    Place place = hub_.page_place();
+    if (!place) return refuse(503, "too many pages are connected");
+    std::make_shared<PageSocket>(std::move(stream_), hub_, std::move(place))->start(parser_->release());
   }
 
   void receive_mesh() {
     if (!hub_.knows_token(bearer_token(header(http::field::authorization))))
       return refuse(401, "the token is missing or wrong");
+    upload_ = hub_.upload_place();
+    if (!upload_) return refuse(503, "too many meshes are being sent: try again");
     stream_.expires_after(kUploadLimit);
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
       if (error == http::error::body_limit) return self->refuse(413, "it is larger than 16 MiB");
@@ -199,29 +211,33 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     const auto& shape = std::get<ShapeStore::Stored>(stored);
     const nlohmann::json json = {
         {"hash", fmt::format("{:016x}", shape.hash)}, {"points", shape.points}, {"triangles", shape.triangles}};
-    answer({200, "application/json", json.dump() + "\n"}, parser_->get().keep_alive());
+    answer({200, "application/json", json.dump() + "\n", {}, {}}, parser_->get().keep_alive());
   }
 
   void refuse(unsigned status, const std::string& why) {
     hub_.refuse();
-    answer({status, "text/plain; charset=utf-8", why + "\n"}, false);
+    answer({status, "text/plain; charset=utf-8", why + "\n", {}, {}}, false);
   }
 
   void answer(HttpAnswer answer, bool keep_alive) {
+    upload_.release();
     response_.emplace(http::int_to_status(answer.status), 11);
     response_->set(http::field::content_type, answer.content_type);
-    response_->set(http::field::cache_control, "no-cache");
+    response_->set(http::field::cache_control, "no-cache");  // ask whether it has changed
+    if (!answer.etag.empty()) response_->set(http::field::etag, answer.etag);
+    if (!answer.etag.empty()) response_->set(http::field::vary, "Accept-Encoding");
+    if (!answer.encoding.empty()) response_->set(http::field::content_encoding, answer.encoding);
     response_->set("X-Content-Type-Options", "nosniff");
     response_->set("X-Frame-Options", "DENY");
     response_->set("Cross-Origin-Resource-Policy", "same-origin");
     response_->keep_alive(keep_alive);
     const std::size_t length = answer.body.size();
     if (parser_->get().method() != http::verb::head) response_->body() = std::move(answer.body);
-    response_->content_length(length);
+    if (answer.status != 304) response_->content_length(length);
     stream_.expires_after(kUploadLimit);
     http::async_write(stream_, *response_, [self = shared_from_this(), keep_alive](Error error, std::size_t) {
       if (error || !keep_alive) return self->close();
-      self->read_header();
+      self->read_header(kIdleLimit);
     });
   }
 
@@ -233,6 +249,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   beast::tcp_stream stream_;
   WebHub& hub_;
   asio::any_io_executor worker_;
+  Place upload_;
   beast::flat_buffer buffer_{64 * 1024};
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::response<http::string_body>> response_;
@@ -241,8 +258,11 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 }  // namespace
 
 void serve_connection(asio::ip::tcp::socket socket, WebHub& hub, const asio::any_io_executor& worker) {
-  if (!hub.open_connection()) return hub.refuse();
-  std::make_shared<HttpConnection>(std::move(socket), hub, worker)->read_header();
+  Error unknown;  // it has gone again, and will be noticed soon
+  std::string address = socket.remote_endpoint(unknown).address().to_string();
+  const auto connection = std::make_shared<HttpConnection>(std::move(socket), std::move(address), hub, worker);
+  hub.enter(connection);
+  connection->start();
 }
 
 }  // namespace aurasim::overseer

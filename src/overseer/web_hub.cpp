@@ -1,7 +1,5 @@
 #include "overseer/web_hub.h"
 
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +11,6 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr std::size_t kMostRequests = 1000;
-constexpr std::uint64_t kMostConnections = 256;  // that ask by HTTP, pages not counted
 
 template <class... Functions>
 struct Overloaded : Functions... {
@@ -21,12 +18,6 @@ struct Overloaded : Functions... {
 };
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
-
-std::string whole_file(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return std::move(text).str();
-}
 
 }  // namespace
 
@@ -84,6 +75,10 @@ void WebHub::handle(PageConnection& page, PageMessage& message) {
                           page.show = show;
                           note_wanted();
                         },
+                        [&](const View& view) {
+                          page.outbox.look(view);
+                          page.pump();
+                        },
                         [&](const Watch& wanted) { watch(page, wanted); },
                         [&](CommandMessage& command) { take_command(page, command); },
                         [&](const ReplayControl& control) {
@@ -115,11 +110,9 @@ bool WebHub::enqueue(PageRequest request) {
   return true;
 }
 
-bool WebHub::open_connection() {
+void WebHub::enter(const std::shared_ptr<WebCaller>& caller) {
   ++connections_;
-  if (open_ >= kMostConnections) return false;
-  ++open_;
-  return true;
+  if (callers_.enter(caller)) ++refused_;
 }
 
 std::vector<PageRequest> WebHub::take_requests() {
@@ -207,20 +200,28 @@ std::string WebHub::why_not(std::string_view host, std::string_view origin) cons
   return {};
 }
 
-HttpAnswer WebHub::get(std::string_view target) {
+HttpAnswer WebHub::get(std::string_view target, const FileRequest& request) {
   const std::string_view path = path_of(target);
-  if (path == "/healthz") return {200, "text/plain; charset=utf-8", "ok\n"};
-  if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", metrics()};
+  if (path == "/healthz") return {200, "text/plain; charset=utf-8", "ok\n", {}, {}};
+  if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", metrics(), {}, {}};
   if (path == "/api/scenes")
-    return {200, "application/json", nlohmann::json{{"scenes", settings_.scenes}}.dump() + "\n"};
-  return get_file(target);
+    return {200, "application/json", nlohmann::json{{"scenes", settings_.scenes}}.dump() + "\n", {}, {}};
+  return get_file(target, request);
 }
 
-HttpAnswer WebHub::get_file(std::string_view target) const {
-  if (const auto file = file_for(settings_.pages, target))
-    return {200, std::string(mime_type(*file)), whole_file(*file)};
-  if (path_of(target) == "/") return {200, "text/html; charset=utf-8", page_is_not_built(settings_.pages)};
-  return {404, "text/plain; charset=utf-8", "no such page\n"};
+HttpAnswer WebHub::get_file(std::string_view target, const FileRequest& request) {
+  if (const auto file = files_.get(target, request)) {
+    HttpAnswer answer{200, file->content_type, {}, {}, file->etag};
+    if (!file->bytes) {
+      answer.status = 304;
+    } else {
+      answer.body = *file->bytes;
+      if (file->is_gzip) answer.encoding = "gzip";
+    }
+    return answer;
+  }
+  if (path_of(target) == "/") return {200, "text/html; charset=utf-8", page_is_not_built(settings_.pages), {}, {}};
+  return {404, "text/plain; charset=utf-8", "no such page\n", {}, {}};
 }
 
 std::string WebHub::metrics() const {

@@ -9,11 +9,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "overseer/web_server.h"
+#include "overseer/client_outbox.h"
+#include "overseer/page_files.h"
+#include "overseer/shape_store.h"
+#include "overseer/web_callers.h"
+#include "overseer/web_settings.h"
 
 namespace aurasim::overseer {
+
+inline constexpr std::size_t kMostCallers = 256;  // that ask by HTTP, pages not counted
 
 /// A page with a WebSocket, as the hub sees it.
 class PageConnection {
@@ -34,27 +41,64 @@ struct HttpAnswer {
   unsigned status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::string body;
+  std::string encoding;  ///< of the body; empty: as it is
+  std::string etag;      ///< empty: of something that changes
+};
+
+/// One of so many places. Given back when it ends; in any thread.
+class Place {
+ public:
+  Place() = default;
+  /// Holds nothing if all are taken.
+  Place(std::atomic<std::size_t>& taken, std::size_t most) : taken_(&taken) {
+    if (taken.fetch_add(1) < most) return;
+    release();
+  }
+  Place(Place&& other) noexcept : taken_(std::exchange(other.taken_, nullptr)) {}
+  Place& operator=(Place&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    taken_ = std::exchange(other.taken_, nullptr);
+    return *this;
+  }
+  ~Place() { release(); }
+
+  explicit operator bool() const { return taken_ != nullptr; }
+  void release() {
+    if (taken_ != nullptr) --*std::exchange(taken_, nullptr);
+  }
+
+ private:
+  std::atomic<std::size_t>* taken_ = nullptr;
 };
 
 class WebHub {
  public:
-  WebHub(const WebSettings& settings, ShapeStore& shapes) : settings_(settings), shapes_(shapes) {}
+  WebHub(const WebSettings& settings, ShapeStore& shapes)
+      : settings_(settings), shapes_(shapes), files_(settings.pages) {}
 
   // -- for connections
   const WebSettings& settings() const { return settings_; }
   ShapeStore& shapes() { return shapes_; }
   const SlotTable& table() const { return table_; }
-  bool has_room() const { return pages_.size() < settings_.most_clients; }
+  /// For a page that is about to join. Asked for before its WebSocket is accepted, or more would join than there are
+  /// places for.
+  Place page_place() { return {page_places_, settings_.most_clients}; }
+  /// For a mesh that is about to be sent: it is held in memory until it has been read.
+  Place upload_place() { return {upload_places_, settings_.most_uploads}; }
   void join(const std::shared_ptr<PageConnection>& page);
   void leave(ClientId id);
   /// A text message of a page.
   void read(PageConnection& page, std::string_view text);
   void refuse() { ++refused_; }
   /// The answer to GET.
-  HttpAnswer get(std::string_view target);
+  HttpAnswer get(std::string_view target, const FileRequest& request);
   /// Why a request with these headers may not be served; empty: it may.
   std::string why_not(std::string_view host, std::string_view origin) const;
   bool knows_token(std::string_view token) const;
+
+  /// A new connection.
+  void enter(const std::shared_ptr<WebCaller>& caller);
 
   // -- for the server
   void publish(Notice notice, SharedText text);
@@ -71,9 +115,6 @@ class WebHub {
   WebCounters counters() const;
   /// What any page wants to have drawn.
   Show wanted() const { return {auras_wanted_, links_wanted_, contacts_wanted_}; }
-  /// False: there are so many that this one has to go.
-  bool open_connection();
-  void close_connection() { --open_; }
   void count_sent(const Message& message, std::size_t bytes);
 
  private:
@@ -85,10 +126,12 @@ class WebHub {
   void note_wanted();
   bool enqueue(PageRequest request);
   std::string metrics() const;
-  HttpAnswer get_file(std::string_view target) const;
+  HttpAnswer get_file(std::string_view target, const FileRequest& request);
 
   const WebSettings settings_;
   ShapeStore& shapes_;
+  PageFiles files_;
+  WebCallers callers_{kMostCallers};
   SlotTable table_;
   std::array<SharedText, kNotices> notices_;
   std::string metrics_;
@@ -97,7 +140,7 @@ class WebHub {
 
   std::mutex requests_mutex_;
   std::vector<PageRequest> requests_;
-  std::atomic<std::uint64_t> open_{0};
+  std::atomic<std::size_t> page_places_{0}, upload_places_{0};
   std::atomic<bool> auras_wanted_ = false, links_wanted_ = false, contacts_wanted_ = false;
   std::atomic<std::uint64_t> clients_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0}, bytes_sent_{0},
       refused_{0}, dropped_{0};

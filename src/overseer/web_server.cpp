@@ -21,6 +21,7 @@ using Error = boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{500};  // stalled pages
+constexpr std::size_t kReaders = 4;                   // of meshes: one that takes long does not hold up the others
 
 void open(tcp::acceptor& acceptor, const WebSettings& settings) {
   Error error;
@@ -89,7 +90,7 @@ struct WebServer::Impl {
   }
 
   WebHub hub;
-  asio::thread_pool worker{1};
+  asio::thread_pool worker{kReaders};
   asio::io_context io{1};
   tcp::acceptor acceptor;
   asio::steady_timer timer;

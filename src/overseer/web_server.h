@@ -2,43 +2,17 @@
 // over frames and texts that never change again, and fetches what pages ask for. Boost stays behind this header.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "overseer/client_outbox.h"
-#include "overseer/commands.h"
-#include "overseer/page_input.h"
 #include "overseer/shape_store.h"
+#include "overseer/web_settings.h"
 
 namespace aurasim::overseer {
-
-struct WebSettings {
-  std::string bind = "127.0.0.1";
-  std::uint16_t port = 8080;    ///< 0: any that is free
-  std::string token;            ///< what a page must know to change the world; empty: nothing
-  std::filesystem::path pages;  ///< folder of the built page
-  std::vector<std::string> scenes;
-  std::size_t most_clients = 64;
-  /// A page that takes nothing for so long is dropped.
-  std::chrono::milliseconds stall_limit{10'000};
-};
-
-/// Since the start, but for `clients`.
-struct WebCounters {
-  std::uint64_t clients = 0;
-  std::uint64_t connections = 0;
-  std::uint64_t frames_sent = 0;
-  std::uint64_t frames_skipped = 0;  ///< merged into later ones
-  std::uint64_t bytes_sent = 0;      ///< in WebSocket messages
-  std::uint64_t refused = 0;         ///< requests and messages
-  std::uint64_t dropped = 0;         ///< pages that took nothing
-};
 
 /// The address is in use, or is not one of this host.
 class CannotListen : public std::runtime_error {
@@ -49,8 +23,6 @@ class CannotListen : public std::runtime_error {
  private:
   bool port_is_taken_;
 };
-
-using PageRequest = std::variant<Request, ReplayControl>;
 
 class WebServer {
  public:

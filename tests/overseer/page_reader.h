@@ -38,6 +38,7 @@ struct PageBody {
   std::uint16_t flags = 0;
   std::uint32_t epoch = 0;
   core::Vec3 p = core::Vec3::Zero();
+  std::uint32_t packed = 0;
   Eigen::Quaternionf q;
 };
 
@@ -48,11 +49,9 @@ class PageWorld {
     BytesIn in(bytes);
     expect(in.get<std::uint8_t>() == 1, "type");
     const auto flags = in.get<std::uint8_t>();
-    expect(in.get<std::uint16_t>() == 1, "version");
+    expect(in.get<std::uint16_t>() == 2, "version");
     generation = in.get<std::uint32_t>();
     stamp = in.get<double>();
-    core::Vec3 origin;
-    for (int i = 0; i < 3; ++i) origin[i] = in.get<double>();
     std::array<std::uint32_t, 4> counts{};
     for (std::uint32_t& count : counts) count = in.get<std::uint32_t>();
     if ((flags & 1) != 0) bodies.clear();
@@ -66,10 +65,13 @@ class PageWorld {
       body.flags = in.get<std::uint16_t>();
       body.epoch = in.get<std::uint32_t>();
     }
+    std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < counts[3]; ++i) {
-      PageBody& body = known(in.get<std::uint32_t>());
-      for (int k = 0; k < 3; ++k) body.p[k] = origin[k] + static_cast<double>(in.get<float>());
-      body.q = unpack_rotation(in.get<std::uint32_t>());
+      const auto head = in.get<std::uint8_t>();
+      const std::uint32_t slot = head >> 4 == 15 ? in.get<std::uint32_t>() : next + (head >> 4);
+      next = slot + 1;
+      ++poses;
+      read_pose(in, head, known(slot));
     }
     expect(in.at_end(), "more bytes than counted");
   }
@@ -86,6 +88,7 @@ class PageWorld {
   double stamp = -1;
   int frames = 0;
   int key_frames = 0;
+  int poses = 0;  ///< rows, so far
 
  private:
   static void expect(bool holds, const char* what) {
@@ -100,6 +103,24 @@ class PageWorld {
       body.id = low | std::uint64_t{in.get<std::uint32_t>()} << 32U;
       expect(bodies.emplace(slot, body).second, "created twice");
     }
+  }
+  static void read_pose(BytesIn& in, std::uint8_t head, PageBody& body) {
+    for (int k = 0; k < 3; ++k) {
+      const int how = head & 3;
+      if (how == 1) body.p[k] += in.get<std::int8_t>() / 2048.0;
+      if (how == 2) body.p[k] += in.get<std::int16_t>() / 2048.0;
+      if (how != 3) continue;
+      const double low = in.get<std::uint32_t>();
+      body.p[k] = (low + 4294967296.0 * in.get<std::int16_t>()) / 2048;
+    }
+    const int turn = (head >> 2) & 3;
+    expect(turn < 3, "way of a rotation");
+    if (turn == 2) body.packed = in.get<std::uint32_t>();
+    for (int k = 0, shift = 20; k < 3 && turn == 1; ++k, shift -= 10) {
+      const std::uint32_t level = (body.packed >> shift & 1023U) + static_cast<std::uint32_t>(in.get<std::int8_t>());
+      body.packed = (body.packed & ~(1023U << shift)) | (level & 1023U) << shift;
+    }
+    body.q = unpack_rotation(body.packed);
   }
   PageBody& known(std::uint32_t slot) {
     const auto found = bodies.find(slot);

@@ -83,8 +83,9 @@ class Recording : public ::testing::Test {
 TEST_F(Recording, PlaysInItsTimeToItsEnd) {
   Replay replay(file_);
   EXPECT_EQ(replay.run().scene, "flight");
-  EXPECT_EQ(replay.first_step(), 0);
-  EXPECT_EQ(replay.last_step(), kLast);
+  EXPECT_EQ(replay.last(), kLast);
+  EXPECT_EQ(replay.first(), 0);
+  EXPECT_TRUE(replay.resets().empty());
   play(replay, 5.005);
   EXPECT_NEAR(static_cast<double>(table_.stamp()), 300, 6);
   expect_world_of(table_.stamp());
@@ -127,10 +128,78 @@ TEST_F(Recording, ShowsAnyStepThatIsSought) {
 TEST_F(Recording, ThatWasCutOffIsWholeUpToThere) {
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
   Replay replay(file_);
-  EXPECT_GT(replay.last_step(), 200);
-  EXPECT_LT(replay.last_step(), 400);
+  EXPECT_GT(replay.last(), 200);
+  EXPECT_LT(replay.last(), 400);
   play(replay, 11);
-  expect_world_of(replay.last_step());
+  expect_world_of(replay.last());
+}
+
+/// A run that was reset at step 120, under another scene, and went on to 60.
+class RecordingOfAReset : public Recording {
+ protected:
+  void SetUp() override {
+    Recording::SetUp();
+    RecordingWriter writer(file_);
+    writer.write(ChunkKind::kAbout, recorded_run_text({"two runs", 1.0 / 60, 20}), 0);
+    writer.write(ChunkKind::kScene, "first scene", 0);
+    for (core::Step step = 0; step <= 120; step += 3) write(writer, 0, step);
+    for (core::Step step = 0; step <= 60; step += 3) {
+      write(writer, 1, step);
+      if (step == 0) writer.write(ChunkKind::kScene, "second scene", 0);
+    }
+  }
+  static void write(RecordingWriter& writer, core::Generation generation, core::Step step) {
+    WorldFrame frame;
+    frame.generation = generation;
+    frame.stamp = step;
+    frame.restart = step == 0;
+    BodyChange& change = frame.changed.emplace_back();
+    change.body.p_WB.x() = static_cast<double>(1000 * generation) + static_cast<double>(step);
+    change.created = change.host_changed = frame.restart;
+    change.moved = true;
+    writer.write(frame, static_cast<double>(step) / 60);
+  }
+  double x() const { return table_.body(0)->p_WB.x(); }
+};
+
+TEST_F(RecordingOfAReset, TheBarGoesOnWhereTheStepsBeginAnew) {
+  Replay replay(file_);
+  EXPECT_EQ(replay.last(), 181) << "120, one for the reset, 60";
+  EXPECT_EQ(replay.resets(), std::vector<core::Step>{121});
+  core::Step before = 0;
+  while (replay.playing()) {
+    play(replay, 0.05);
+    EXPECT_GE(replay.at(), before);
+    before = replay.at();
+  }
+  EXPECT_EQ(replay.at(), 181);
+  EXPECT_EQ(replay.step(), 60);
+  EXPECT_EQ(x(), 1060);
+}
+
+TEST_F(RecordingOfAReset, EveryPlaceOfTheBarShowsItsOwnRun) {
+  Replay replay(file_);
+  replay.apply({Action::kPause, 0});
+  for (const auto& [at, shown] : std::vector<std::pair<double, double>>{{60, 60}, {121, 1000}, {30, 30}, {151, 1030}}) {
+    replay.apply({Action::kSeek, at});
+    play(replay, 0.02);
+    EXPECT_EQ(x(), shown) << at;
+    EXPECT_EQ(replay.at(), static_cast<core::Step>(at));
+  }
+}
+
+TEST_F(RecordingOfAReset, AJumpTellsTheSceneOfThere) {
+  Replay replay(file_);
+  replay.apply({Action::kPause, 0});
+  const auto scene_at = [&](double at) {
+    replay.apply({Action::kSeek, at});
+    const Replay::Output output = replay.advance(now_s_ += 0.01);
+    return output.texts.contains(Notice::kScene) ? output.texts.at(Notice::kScene) : "as before";
+  };
+  EXPECT_EQ(scene_at(10), "first scene");
+  EXPECT_EQ(scene_at(150), "second scene");
+  EXPECT_EQ(scene_at(170), "as before");
+  EXPECT_EQ(scene_at(20), "first scene");
 }
 
 TEST_F(Recording, OtherFilesAreRefused) {

@@ -14,6 +14,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
+#include <zlib.h>
 
 #include "overseer/page_reader.h"
 
@@ -31,6 +32,8 @@ struct HttpReply {
   unsigned status = 0;  ///< 0: none came
   std::string type;
   std::string body;
+  std::string encoding;
+  std::string etag;
 };
 
 /// One request in a connection of its own. `fields` replace those that a browser would send.
@@ -55,7 +58,9 @@ inline HttpReply request(std::uint16_t port, http::verb verb, const std::string&
       http::async_read(stream, buffer, response, [&](beast::error_code not_read, std::size_t) {
         if (not_read) return;
         const auto& answer = response.get();
-        reply = {answer.result_int(), std::string(answer[http::field::content_type]), answer.body()};
+        const auto field = [&](http::field name) { return std::string(answer[name]); };
+        reply = {answer.result_int(), field(http::field::content_type), answer.body(),
+                 field(http::field::content_encoding), field(http::field::etag)};
       });
     });
   });
@@ -75,6 +80,36 @@ inline std::string raw(std::uint16_t port, const std::string& bytes) {
   asio::async_read(socket, asio::dynamic_buffer(answer), [](beast::error_code, std::size_t) {});
   io.run_for(1s);
   return answer;
+}
+
+/// The first bytes that come, or none in 10 s.
+inline std::string answer_of(asio::ip::tcp::socket& socket) {
+  auto& io = static_cast<asio::io_context&>(socket.get_executor().context());
+  std::string answer(1000, '\0');
+  std::size_t size = 0;
+  socket.async_read_some(asio::buffer(answer), [&](beast::error_code, std::size_t bytes) {
+    size = bytes;
+    io.stop();
+  });
+  io.restart();
+  io.run_for(10s);
+  answer.resize(size);
+  return answer;
+}
+
+/// What gzip has packed.
+inline std::string unpacked(const std::string& packed) {
+  z_stream stream{};
+  inflateInit2(&stream, 15 + 16);
+  std::string plain(1 << 20, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(plain.data());
+  stream.avail_out = static_cast<uInt>(plain.size());
+  const int ended = inflate(&stream, Z_FINISH);
+  plain.resize(ended == Z_STREAM_END ? stream.total_out : 0);
+  inflateEnd(&stream);
+  return plain;
 }
 
 /// A page that reads whatever it is sent.

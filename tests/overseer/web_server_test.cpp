@@ -1,6 +1,7 @@
 // The server alone, with pages of all manners: what each gets, what none gets, and who is shown the door.
 #include "overseer/web_server.h"
 
+#include <atomic>
 #include <fstream>
 #include <thread>
 
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "config/meshes.h"
 #include "overseer/web_client.h"
 
 namespace aurasim::overseer {
@@ -21,6 +23,10 @@ using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
 constexpr const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+constexpr const char* kUpgrade =
+    "GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
 
 class Web : public ::testing::Test {
  protected:
@@ -64,6 +70,21 @@ class Web : public ::testing::Test {
     server_->show(frame);
   }
 
+  std::vector<testing::asio::ip::tcp::socket> connect_many(testing::asio::io_context& io, int count) {
+    std::vector<testing::asio::ip::tcp::socket> sockets;
+    for (int i = 0; i < count; ++i) sockets.emplace_back(io).connect(testing::local(port()));
+    return sockets;
+  }
+
+  /// One that is named slow.obj takes until the test lets it end.
+  std::variant<core::TriangleMesh, std::string> read(const std::string& name, std::string_view bytes) {
+    if (name == "slow.obj") {
+      slow_has_begun_ = true;
+      while (!slow_may_end_) std::this_thread::sleep_for(1ms);
+    }
+    return config::read_mesh(name, bytes);
+  }
+
   template <class Condition>
   static bool holds_in_time(Condition condition) {
     const auto deadline = testing::Clock::now() + 10s;
@@ -73,9 +94,11 @@ class Web : public ::testing::Test {
 
   std::filesystem::path folder_;
   WebSettings settings_;
-  ShapeStore shapes_;
+  ShapeStore shapes_{[this](const std::string& name, std::string_view bytes) { return read(name, bytes); }};
   std::optional<WebServer> server_;
   core::Step stamp_ = 0;
+  std::atomic<bool> slow_has_begun_ = false;
+  std::atomic<bool> slow_may_end_ = false;
 };
 
 TEST_F(Web, FilesAreServedWithTheirTypes) {
@@ -223,6 +246,32 @@ TEST_F(Web, MeshesAreKeptByTheHashOfTheirBytes) {
   EXPECT_THAT(testing::raw(port(), head), ::testing::Not(HasSubstr("200")));
 }
 
+TEST_F(Web, AMeshThatTakesLongHoldsUpNothingElse) {
+  serve();
+  unsigned slow_status = 0;
+  std::thread slow(
+      [&] { slow_status = request(port(), verb::post, "/api/shapes?name=slow.obj", {}, kTetrahedron).status; });
+  ASSERT_TRUE(holds_in_time([&] { return slow_has_begun_.load(); }));
+  const std::string other = std::string("# another\n") + kTetrahedron;
+  EXPECT_EQ(request(port(), verb::post, "/api/shapes?name=quick.obj", {}, other).status, 200U);
+  EXPECT_EQ(request(port(), verb::get, "/").status, 200U);
+  slow_may_end_ = true;
+  slow.join();
+  EXPECT_EQ(slow_status, 200U);
+}
+
+TEST_F(Web, SoManyMeshesAtATimeAndNoMore) {
+  settings_.most_uploads = 1;
+  serve();
+  std::thread slow([&] { request(port(), verb::post, "/api/shapes?name=slow.obj", {}, kTetrahedron); });
+  ASSERT_TRUE(holds_in_time([&] { return slow_has_begun_.load(); }));
+  EXPECT_EQ(request(port(), verb::post, "/api/shapes?name=quick.obj", {}, kTetrahedron).status, 503U);
+  slow_may_end_ = true;
+  slow.join();
+  EXPECT_TRUE(holds_in_time(
+      [&] { return request(port(), verb::post, "/api/shapes?name=quick.obj", {}, kTetrahedron).status == 200U; }));
+}
+
 TEST_F(Web, APageThatDoesNotReadIsDroppedAndOthersDoNotNotice) {
   settings_.stall_limit = 1000ms;
   serve();
@@ -232,9 +281,7 @@ TEST_F(Web, APageThatDoesNotReadIsDroppedAndOthersDoNotNotice) {
   deaf.open(testing::asio::ip::tcp::v4());
   deaf.set_option(testing::asio::socket_base::receive_buffer_size(4096));
   deaf.connect(testing::local(port()));
-  testing::asio::write(deaf, testing::asio::buffer(std::string(
-                                 "GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                                 "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n")));
+  testing::asio::write(deaf, testing::asio::buffer(std::string(kUpgrade)));
   Page page(port());
   ASSERT_TRUE(holds_in_time([&] { return server_->counters().clients == 2; }));
   auto next = testing::Clock::now();
@@ -258,19 +305,71 @@ TEST_F(Web, NoMorePagesThanAllowed) {
   EXPECT_FALSE(Page(port()).open());
 }
 
-TEST_F(Web, IdleConnectionsAreLimited) {
+TEST_F(Web, PagesThatAskAtTheSameMomentGetNoMoreThanTheirPlaces) {
+  settings_.most_clients = 8;
   serve();
   testing::asio::io_context io;
-  std::vector<testing::asio::ip::tcp::socket> idle;
-  for (int i = 0; i < 300; ++i) {
-    idle.emplace_back(io);
-    testing::beast::error_code ignored;
-    idle.back().connect(testing::local(port()), ignored);
+  auto pages = connect_many(io, 60);
+  for (auto& page : pages) testing::asio::write(page, testing::asio::buffer(std::string(kUpgrade)));
+  int accepted = 0;
+  for (auto& page : pages) accepted += testing::answer_of(page).starts_with("HTTP/1.1 101");
+  EXPECT_EQ(accepted, 8);
+  EXPECT_TRUE(holds_in_time([&] { return server_->counters().clients == 8; }));
+  pages.clear();
+  EXPECT_TRUE(holds_in_time([&] { return Page(port()).open(); })) << "places are given back";
+}
+
+TEST_F(Web, ConnectionsThatSayNothingKeepNoPageOut) {
+  settings_.header_limit = 10min;
+  serve();
+  testing::asio::io_context io;
+  auto silent = connect_many(io, 600);
+  for (auto& half_open : silent) {
+    testing::beast::error_code dropped;
+    testing::asio::write(half_open, testing::asio::buffer(std::string("GET / HTTP/1.1\r\nHos")), dropped);
   }
-  ASSERT_TRUE(holds_in_time([&] { return server_->counters().connections == 300; }));
-  EXPECT_EQ(server_->counters().refused, 44U);
-  idle.clear();
-  EXPECT_TRUE(holds_in_time([&] { return request(port(), verb::get, "/healthz").status == 200; }));
+  ASSERT_TRUE(holds_in_time([&] { return server_->counters().connections == 600; }));
+  EXPECT_EQ(request(port(), verb::get, "/").body, "<p>the page");
+  EXPECT_TRUE(Page(port()).open());
+  EXPECT_GE(server_->counters().refused, 344U) << "600 for 256 places";
+}
+
+TEST_F(Web, AHeaderThatDripsInIsNotWaitedFor) {
+  settings_.header_limit = 300ms;
+  serve();
+  testing::asio::io_context io;
+  auto slow = connect_many(io, 1);
+  testing::beast::error_code closed;
+  const auto deadline = testing::Clock::now() + 30s;
+  while (!closed && testing::Clock::now() < deadline) {
+    testing::asio::write(slow[0], testing::asio::buffer(std::string("X")), closed);
+    std::this_thread::sleep_for(20ms);
+  }
+  EXPECT_TRUE(closed);
+}
+
+TEST_F(Web, FilesAreCompressedForThoseWhoTakeIt) {
+  const std::string script(100'000, 'x');
+  std::ofstream(settings_.pages / "assets" / "main.js") << script;
+  serve();
+  const auto plain = request(port(), verb::get, "/assets/main.js");
+  EXPECT_EQ(plain.body, script);
+  EXPECT_EQ(plain.encoding, "");
+  const auto packed = request(port(), verb::get, "/assets/main.js", {{"Accept-Encoding", "deflate, gzip;q=0.5"}});
+  EXPECT_EQ(packed.encoding, "gzip");
+  EXPECT_LT(packed.body.size(), 1000U);
+  EXPECT_EQ(testing::unpacked(packed.body), script);
+  EXPECT_EQ(request(port(), verb::get, "/assets/main.js", {{"Accept-Encoding", "gzip;q=0"}}).encoding, "");
+  EXPECT_EQ(request(port(), verb::get, "/", {{"Accept-Encoding", "gzip"}}).encoding, "") << "too small to be worth it";
+}
+
+TEST_F(Web, WhatAPageHasAlreadyIsNotSentAgain) {
+  serve();
+  const auto first = request(port(), verb::get, "/");
+  ASSERT_FALSE(first.etag.empty());
+  EXPECT_EQ(request(port(), verb::get, "/", {{"If-None-Match", first.etag}}).status, 304U);
+  std::ofstream(settings_.pages / "index.html") << "<p>another page";
+  EXPECT_EQ(request(port(), verb::get, "/", {{"If-None-Match", first.etag}}).body, "<p>another page");
 }
 
 TEST_F(Web, AWatchedBodyIsToldWithEachStatusUntilItIsGone) {
@@ -298,6 +397,26 @@ TEST_F(Web, OverlaysGoToThePagesThatWantThem) {
   server_->show_overlays(encode_overlays(auras, {}, {}));
   EXPECT_TRUE(page.wait_until([&] { return !page.overlays.empty(); }));
   EXPECT_FALSE(other.wait_until([&] { return !other.overlays.empty(); }, 100ms));
+}
+
+TEST_F(Web, AHiddenPageIsSentNothingAndMissesNothing) {
+  serve();
+  show(50);
+  Page page(port()), other(port());
+  ASSERT_TRUE(page.wait_until([&] { return page.world.frames > 0; }));
+  page.send(Json{{"type", "view"}, {"hidden", true}});
+  page.ask({{"kind", "nonsense"}});  // replies come all the same, and then it is known to be hidden
+  const std::uint64_t bytes = page.bytes;
+  for (int i = 0; i < 20; ++i) {
+    show(50);
+    server_->tell(Notice::kStatus, R"({"type":"status"})");
+  }
+  ASSERT_TRUE(
+      other.wait_until([&] { return other.world.stamp == static_cast<double>(stamp_) && other.has("status"); }));
+  EXPECT_FALSE(page.wait_until([&] { return page.bytes > bytes; }, 300ms));
+  page.send(Json{{"type", "view"}});
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == static_cast<double>(stamp_) && page.has("status"); }));
+  EXPECT_EQ(page.world.bodies.at(7).p.x(), static_cast<double>(stamp_));
 }
 
 TEST_F(Web, ATakenPortIsSaid) {

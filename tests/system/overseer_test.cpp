@@ -186,7 +186,7 @@ TEST_F(Overseers, WhatTheyRecordIsShownAgain) {
   const Json hello = page.latest["hello"];
   EXPECT_EQ(hello.at("mode"), "replay");
   EXPECT_EQ(hello.at("scene"), "corner_stacks");
-  EXPECT_EQ(hello.at("last_step"), 240);
+  EXPECT_EQ(hello.at("last"), 240);
   page.send(Json{{"type", "replay"}, {"action", "pause"}});
   page.send(Json{{"type", "replay"}, {"action", "seek"}, {"value", 240}});
   EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == 240; }));

@@ -107,3 +107,13 @@ test("NothingIsSentWhileThereIsNobody", () => {
   expect(connection.send({ type: "show" })).toBe(true);
   expect(JSON.parse(sockets[0].sent[0])).toEqual({ type: "show" });
 });
+
+test("AHiddenPageDoesNotTakeSilenceForDeath", () => {
+  greet();
+  connection.rest(true);
+  time.pass(600_000);
+  expect(sockets.length).toBe(1);
+  connection.rest(false);
+  time.pass(8500);
+  expect(sockets.length).toBe(2);
+});

@@ -74,7 +74,7 @@ export class MockOverseer {
     socket.on("close", () => this.clients.delete(socket));
     socket.on("message", (data) => this.#receive(socket, JSON.parse(String(data))));
     this.#say(socket, { type: "hello", version: 1, mode: this.replay ? "replay" : "live", scene: this.scene, step_s: STEP_S, tick_hz: 20,
-      token_needed: this.token !== "", ...(this.replay ? { first_step: 0, last_step: LAST_REPLAY_STEP } : {}) });
+      token_needed: this.token !== "", ...(this.replay ? { first: 0, last: LAST_REPLAY_STEP, resets: [LAST_REPLAY_STEP / 3] } : {}) });
     this.#say(socket, this.#sceneMessage());
     this.#say(socket, this.#mapMessage());
     // Others have not had the latest changes yet; whoever comes now has them in the key frame.
@@ -119,7 +119,7 @@ export class MockOverseer {
 
   #status() {
     this.#sayAll({ type: "status", step: this.world.step, state: this.state, rate: this.rate, clients: this.clients.size, nodes: this.#nodes() });
-    if (this.replay) this.#sayAll({ type: "replay", step: this.world.step, playing: this.state === "running", speed: this.speed });
+    if (this.replay) this.#sayAll({ type: "replay", at: this.world.step, step: this.world.step, playing: this.state === "running", speed: this.speed });
     for (const [socket, { watch }] of this.clients) {
       const body = this.world.bodies.get(watch);
       if (!body) continue;

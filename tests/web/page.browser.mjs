@@ -256,9 +256,29 @@ test("AReplayHasABarToSeekInAndNothingThatChangesTheRun", mockOnly, async () => 
   await open({ replay: true });
   await haveBodies(BODIES);
   assert.ok(await page.isHidden("#throw"));
-  await page.fill("input.seek", "900");
+  await page.fill(".seek input", "900");
   await until(() => window.aurasim.lastStamp >= 900 && window.aurasim.lastStamp < 1200);
   assert.ok(mock.commands.some((c) => c.action === "seek" && c.value === 900));
+  noErrors();
+});
+
+test("AHiddenTabIsToldToTheOverseer", mockOnly, async () => {
+  await open();
+  await haveBodies(BODIES);
+  assert.ok((await commanded("view")).eye.every(Number.isFinite));
+  const hide = (hidden) => page.evaluate((value) => {
+    Object.defineProperty(document, "hidden", { value, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, hidden);
+  await hide(true);
+  await until(() => true);
+  for (const deadline = Date.now() + 15000; !mock.commands.some((c) => c.hidden === true);) {
+    assert.ok(Date.now() < deadline, "it has not told that it is hidden");
+    await new Promise((resolve) => setTimeout(resolve, 30));
+  }
+  const { stamp } = await state();
+  await hide(false);
+  await until((before) => window.aurasim.lastStamp > before, stamp);
   noErrors();
 });
 

@@ -30,6 +30,7 @@ export class Connection {
     this.attempts = 0;
     this.refused = 0; // messages that could not be read
     this.connected = false;
+    this.resting = false;
     this.socket = null;
   }
 
@@ -56,6 +57,12 @@ export class Connection {
     if (!this.connected && this.socket === null) this.start();
   }
 
+  /** While the page is hidden the overseer says nothing: silence is no sign of death then. */
+  rest(resting) {
+    this.resting = resting;
+    if (this.connected) this.#listen();
+  }
+
   /** @returns {boolean} false if there is nobody to send it to */
   send(message) {
     if (!this.connected) return false;
@@ -66,6 +73,7 @@ export class Connection {
   /** A page that was busy has messages waiting: they are read before the rest of the silence is over. */
   #listen() {
     this.never(this.silence);
+    if (this.resting) return;
     this.silence = this.later(() => {
       this.silence = this.later(() => {
         const socket = this.socket;

@@ -1,11 +1,18 @@
 // Reads the binary messages of the overseer (docs/viewer.md, "Frames"). Pure: bytes in, plain data out.
 // What comes over the wire is checked and refused, with a reason; nothing here throws for bad bytes.
 
-const VERSION = 1;
+const VERSION = 2;
 const FRAME = 1;
 const OVERLAY = 2;
-const FRAME_HEADER = 56;
+const FRAME_HEADER = 32;
 const OVERLAY_HEADER = 16;
+
+/** Metres: positions are whole numbers of this, so that no sum of them is rounded. */
+export const GRID_M = 1 / 2048;
+// How a pose is told: bits 0 and 1 of its head say how its position is, 2 and 3 how its rotation.
+export const BYTE_STEPS = 1, WORD_STEPS = 2, WHOLE_POSITION = 3;
+export const BYTE_LEVELS = 1, WHOLE_ROTATION = 2;
+const FAR_SLOT = 15;
 
 export const ASLEEP = 1;
 export const UNDER_WAY = 2;
@@ -24,13 +31,13 @@ const MAX_SLOTS = 1 << 20;
  * @property {number} createdCount
  * @property {number} hostsCount
  * @property {number} movedCount
- * @property {Float64Array} origin
  * @property {Uint32Array} deleted  slots
  * @property {{slot: number, prototype: number, id: number}[]} created
  * @property {{slot: number, host: number, flags: number, epoch: number}[]} hosts
  * @property {Uint32Array} movedSlots
- * @property {Float64Array} movedP  [n * 3], world frame, origin added
- * @property {Float32Array} movedQ  [n * 4], w x y z
+ * @property {Uint8Array} movedHow  [n], bits as above
+ * @property {Float64Array} movedP  [n * 3], in GRID_M: where it is, or how far it has come since it was told last
+ * @property {Int32Array} movedQ  [n * 3]: differences in levels, or the first is the packed rotation
  */
 
 /**
@@ -63,12 +70,11 @@ function refused(why) {
 
 function decodeFrame(view) {
   if (view.byteLength < FRAME_HEADER) return refused("shorter than a frame's header");
-  const [deletedCount, createdCount, hostsCount, movedCount] = [40, 44, 48, 52].map((at) => view.getUint32(at, true));
-  const expected = FRAME_HEADER + deletedCount * 4 + createdCount * 16 + hostsCount * 12 + movedCount * 20;
-  if (view.byteLength !== expected) return refused(`a frame of ${view.byteLength} bytes, its counts say ${expected}`);
+  const [deletedCount, createdCount, hostsCount, movedCount] = [16, 20, 24, 28].map((at) => view.getUint32(at, true));
+  const posesAt = FRAME_HEADER + deletedCount * 4 + createdCount * 16 + hostsCount * 12;
+  if (view.byteLength < posesAt + movedCount) return refused(`a frame of ${view.byteLength} bytes, its counts say more`);
   const stamp = view.getFloat64(8, true);
-  const origin = Float64Array.of(view.getFloat64(16, true), view.getFloat64(24, true), view.getFloat64(32, true));
-  if (!Number.isFinite(stamp) || !origin.every(Number.isFinite)) return refused("stamp or origin is not finite");
+  if (!Number.isFinite(stamp)) return refused("the stamp is not finite");
 
   let at = FRAME_HEADER;
   const deleted = new Uint32Array(deletedCount);
@@ -76,11 +82,11 @@ function decodeFrame(view) {
   const created = readCreated(view, at, createdCount);
   at += createdCount * 16;
   const hosts = readHosts(view, at, hostsCount);
-  at += hostsCount * 12;
-  const moved = readMoved(view, at, movedCount, origin);
-  if (!created || !hosts || !moved) return refused("a slot beyond the limit, or a position that is not finite");
+  const moved = readMoved(view, posesAt, movedCount);
+  if (!created) return refused("a slot beyond the limit");
+  if (!moved) return refused("its bytes do not fit to its counts");
   return {
-    kind: "frame", key: (view.getUint8(1) & 1) !== 0, generation: view.getUint32(4, true), stamp, origin,
+    kind: "frame", key: (view.getUint8(1) & 1) !== 0, generation: view.getUint32(4, true), stamp,
     deletedCount, createdCount, hostsCount, movedCount, deleted, created, hosts, ...moved,
   };
 }
@@ -108,20 +114,48 @@ function readHosts(view, start, count) {
   return hosts;
 }
 
-function readMoved(view, start, count, origin) {
+const POSITION_BYTES = [0, 3, 6, 18];
+const ROTATION_BYTES = [0, 3, 4];
+
+/** @returns null if it does not end where the message ends */
+function readMoved(view, start, count) {
   const movedSlots = new Uint32Array(count);
+  const movedHow = new Uint8Array(count);
   const movedP = new Float64Array(count * 3);
-  const movedQ = new Float32Array(count * 4);
-  for (let i = 0, at = start; i < count; ++i, at += 20) {
-    movedSlots[i] = view.getUint32(at, true);
-    for (let axis = 0; axis < 3; ++axis) {
-      const value = view.getFloat32(at + 4 + 4 * axis, true) + origin[axis];
-      if (!Number.isFinite(value)) return null;
-      movedP[3 * i + axis] = value;
-    }
-    unpackRotation(view.getUint32(at + 16, true), movedQ, 4 * i);
+  const movedQ = new Int32Array(count * 3);
+  let at = start;
+  for (let i = 0, next = 0; i < count; ++i) {
+    if (at >= view.byteLength) return null;
+    const head = view.getUint8(at++);
+    const [position, rotation, passed] = [head & 3, (head >> 2) & 3, head >> 4];
+    const size = (passed === FAR_SLOT ? 4 : 0) + POSITION_BYTES[position] + ROTATION_BYTES[rotation];
+    if (!(at + size <= view.byteLength)) return null;
+    const slot = passed === FAR_SLOT ? view.getUint32(at, true) : next + passed;
+    if (passed === FAR_SLOT) at += 4;
+    next = slot + 1;
+    movedSlots[i] = slot;
+    movedHow[i] = head & 15;
+    readPosition(view, at, position, movedP, 3 * i);
+    at += POSITION_BYTES[position];
+    if (rotation === WHOLE_ROTATION) movedQ[3 * i] = view.getInt32(at, true);
+    else if (rotation === BYTE_LEVELS) for (let k = 0; k < 3; ++k) movedQ[3 * i + k] = view.getInt8(at + k);
+    at += ROTATION_BYTES[rotation];
   }
-  return { movedSlots, movedP, movedQ };
+  return at === view.byteLength ? { movedSlots, movedHow, movedP, movedQ } : null;
+}
+
+function readPosition(view, start, how, out, to) {
+  for (let axis = 0, at = start; axis < 3; ++axis) {
+    if (how === BYTE_STEPS) out[to + axis] = view.getInt8(at + axis);
+    else if (how === WORD_STEPS) out[to + axis] = view.getInt16(at + 2 * axis, true);
+    else if (how === WHOLE_POSITION) out[to + axis] = view.getUint32(at + 6 * axis, true) + view.getInt16(at + 6 * axis + 4, true) * 2 ** 32;
+  }
+}
+
+/** A packed rotation whose levels have changed by so much. */
+export function turnPacked(packed, levels, at = 0) {
+  const part = (shift, difference) => ((((packed >>> shift) & 1023) + difference) & 1023) << shift;
+  return ((packed & 0xc0000000) | part(20, levels[at]) | part(10, levels[at + 1]) | part(0, levels[at + 2])) >>> 0;
 }
 
 /**

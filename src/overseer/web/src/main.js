@@ -12,6 +12,7 @@ import { Selection } from "./selection.js";
 import { Toolbox, TOOLS } from "./toolbox.js";
 import { Tools } from "./tools.js";
 import { Transport } from "./transport.js";
+import { ViewTeller } from "./view_teller.js";
 import { World } from "./world.js";
 
 const world = new World();
@@ -30,6 +31,7 @@ const topBar = new TopBar();
 const nodes = new NodesPanel();
 const connection = new Connection(new URL("ws", location.href.replace(/^http/, "ws")).href,
   { state: showLink, json: receive, binary: receiveBinary });
+const viewTeller = new ViewTeller((message) => connection.send(message));
 const commands = new Commands((message) => connection.send(message), toast, askForToken);
 const transport = new Transport({
   command: (command, options) => commands.send(command, options),
@@ -81,7 +83,7 @@ function onHello(message) {
   if (editor?.open) editor.close();
   selection.choose(null);
   commands.tokenNeeded = Boolean(message.token_needed);
-  transport.setMode(message.mode, message.first_step, message.last_step, message.step_s);
+  transport.setMode(message.mode, message.first, message.last, message.resets, message.step_s);
   toolbox.setMode(message.mode);
   document.body.dataset.mode = message.mode;
   document.title = `${message.scene} · aurasim`;
@@ -91,6 +93,8 @@ function onHello(message) {
     picture.clock.expect(1 / message.step_s / 1000, 1 / message.step_s / message.tick_hz);
   }
   sendShow();
+  viewTeller.forget();
+  if (document.hidden) viewTeller.hide();
   listScenes(message.scene);
 }
 
@@ -249,6 +253,7 @@ function draw(now_ms) {
   if (picture) {
     fps = picture.draw(now_ms, (at) => toolbox.tool === "place" && tools.previewPlace(at), input.hover);
     if (editor.open) editor.draw();
+    if (connection.connected && hello) viewTeller.look(picture.eye, now_ms);
   }
   if (now_ms - shown_ms < 250) return;
   shown_ms = now_ms;
@@ -256,8 +261,14 @@ function draw(now_ms) {
   hint(hello && linkState === "open" && status && status.state !== "starting" && world.size === 0 ? "The world is empty. Press T to throw something in." : null);
 }
 requestAnimationFrame(draw);
-document.addEventListener("visibilitychange", () => !document.hidden && connection.hurry());
+document.addEventListener("visibilitychange", () => {
+  connection.rest(document.hidden);
+  if (document.hidden) return viewTeller.hide();
+  viewTeller.look(picture?.eye ?? {}, performance.now());
+  connection.hurry();
+});
 updateCurtain();
+connection.rest(document.hidden); // a tab that is opened behind another
 connection.start();
 
 // For tests and the curious: what the page believes, to be read only.

@@ -1,6 +1,7 @@
 // The picture of the world: what is drawn and when. Holds everything that needs WebGL, so that the page works without.
 import * as THREE from "three";
 import { CameraRig } from "./camera.js";
+import { GRID_M } from "./frames.js";
 import { StampClock } from "./clock.js";
 import { Instances } from "./instances.js";
 import { Overlays } from "./overlays.js";
@@ -11,6 +12,8 @@ import { extentOf, boxesOfMap } from "./region_maths.js";
 
 /** Beyond this many metres the origin of the picture moves to the bodies: floats are too coarse there. */
 const FAR_OUT = 2000;
+/** Radians around the picture in which bodies are told as exactly as within: the camera may turn. */
+const BESIDE_PICTURE = 0.15;
 
 export class Picture {
   /** @param {HTMLCanvasElement} canvas @param {import("./world.js").World} world @throws without WebGL */
@@ -114,7 +117,7 @@ export class Picture {
   }
 
   #chooseOrigin(frame) {
-    const middle = [0, 1, 2].map((axis) => median(frame.movedP, axis));
+    const middle = [0, 1, 2].map((axis) => median(frame.movedP, axis) * GRID_M);
     const origin = middle.map((x) => (Math.abs(x) > FAR_OUT ? Math.round(x / 1000) * 1000 : 0));
     if (origin.every((x, i) => x === this.view.origin[i])) return;
     this.view.moveOrigin(origin);
@@ -164,6 +167,20 @@ export class Picture {
     this.view.render(this.rig.camera, focus, this.rig.fromAbove ? this.rig.topHeight : this.rig.shown.distance);
     if (this.view.quality.frame(dt_ms)) this.#applyQuality();
     return this.view.quality.frame_ms ? 1000 / this.view.quality.frame_ms : 0;
+  }
+
+  /**
+   * What the overseer has to know of the picture to leave out what nobody would see: docs/viewer.md, "view". Nothing of
+   * the view from above, where all is shown.
+   */
+  get eye() {
+    if (this.rig.fromAbove) return {};
+    const camera = this.rig.perspective;
+    const half = THREE.MathUtils.degToRad(camera.fov / 2);
+    const towards = camera.getWorldDirection(new THREE.Vector3());
+    return { eye: this.view.toWorld(camera.position), towards: towards.toArray(),
+      half_angle: Math.atan(Math.tan(half) * Math.hypot(1, camera.aspect)) + BESIDE_PICTURE,
+      pixel: (2 * Math.tan(half)) / Math.max(1, this.canvas.clientHeight) };
   }
 
   /** Where a body is on the page, in pixels: for tests. */

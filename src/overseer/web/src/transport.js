@@ -22,8 +22,9 @@ export class Transport {
     this.setMode("live");
   }
 
-  setMode(mode, first = 0, last = 1, step_s = 1 / 60) {
-    Object.assign(this, { first, last, step_s });
+  /** @param {number} first  place in a replay at which it begins @param {number[]} resets  places in it */
+  setMode(mode, first = 0, last = 1, resets = [], step_s = 1 / 60) {
+    Object.assign(this, { first, last: Math.max(last, first + 1), resets, step_s, at: first });
     this.mode = mode;
     this.element.dataset.mode = mode;
     this.play = iconButton("pause", "Pause (space)", () => this.toggle(), { class: "icon primary" });
@@ -46,7 +47,7 @@ export class Transport {
 
   #buildReplay() {
     this.position = h("span.number");
-    this.seekBar = h("input.seek", { type: "range", min: this.first, max: Math.max(this.last, this.first + 1), step: 1,
+    this.seekBar = h("input", { type: "range", min: this.first, max: this.last, step: 1,
       value: this.first, "aria-label": "Position in the replay",
       oninput: () => {
         this.seekingUntil = performance.now() + 600;
@@ -55,12 +56,17 @@ export class Transport {
       } });
     this.speed = choice("Replay speed", [0.25, 0.5, 1, 2, 4].map((x) => ({ value: String(x), text: `${x}×` })), "1",
       (value) => this.out.replay("speed", Number(value)));
-    this.element.replaceChildren(this.play, this.seekBar, this.position, this.speed.element);
+    const marks = this.resets.map((at) => h("i", { style: `left: ${this.#percent(at)}%`, title: "The run was reset here" }));
+    this.element.replaceChildren(this.play, h("div.seek", {}, this.seekBar, ...marks), this.position, this.speed.element);
     this.#showPosition(this.first);
   }
 
-  #showPosition(step) {
-    this.position.textContent = `${clockTime(step * this.step_s)} / ${clockTime(this.last * this.step_s)}`;
+  #percent(at) {
+    return (100 * (at - this.first)) / (this.last - this.first);
+  }
+
+  #showPosition(at) {
+    this.position.textContent = `${clockTime(at * this.step_s)} / ${clockTime(this.last * this.step_s)}`;
   }
 
   #showRate(rate) {
@@ -87,7 +93,7 @@ export class Transport {
 
   step(count) {
     if (this.mode === "live") return void this.out.command({ kind: "step", count }, { quiet: true });
-    this.out.replay("seek", Math.min(this.last, (this.at ?? this.first) + count));
+    this.out.replay("seek", Math.min(this.last, this.at + count));
   }
 
   /** From the status. */
@@ -108,13 +114,13 @@ export class Transport {
     this.#showRate(this.rate);
   }
 
-  showReplay({ step, playing, speed }) {
-    this.at = step;
+  showReplay({ at, playing, speed }) {
+    this.at = at;
     this.showRunning(playing);
     this.speed?.set(String(speed));
     if (performance.now() < (this.seekingUntil ?? 0)) return;
-    this.seekBar.value = String(step);
-    this.seekBar.style.setProperty("--fill", `${(100 * (step - this.first)) / Math.max(1, this.last - this.first)}%`);
-    this.#showPosition(step);
+    this.seekBar.value = String(at);
+    this.seekBar.style.setProperty("--fill", `${this.#percent(at)}%`);
+    this.#showPosition(at);
   }
 }

@@ -1,11 +1,14 @@
 // The bodies that the page knows, by slot, with their last few states for interpolation. Pure: no drawing, no clock.
-import { ASLEEP, JUST_HANDED_OVER, UNDER_WAY } from "./frames.js";
+import { ASLEEP, BYTE_LEVELS, BYTE_STEPS, GRID_M, JUST_HANDED_OVER, UNDER_WAY, WHOLE_POSITION, WHOLE_ROTATION, WORD_STEPS, turnPacked,
+  unpackRotation } from "./frames.js";
 
 /** States kept per body. Four span three intervals: more than the picture is behind. */
 const RING = 4;
 
 /** How a frame changed the world, for whoever draws it. */
 const nothingChanged = () => ({ cleared: false, added: [], removed: [], rehosted: [], handedOver: [] });
+
+const pose = { p: new Float64Array(3), q: new Float32Array(4) };
 
 export class World {
   constructor(capacity = 256) {
@@ -29,6 +32,8 @@ export class World {
     this.epoch = grown(this.epoch, Uint32Array, 1);
     this.head = grown(this.head, Uint8Array, 1);
     this.held = grown(this.held, Uint8Array, 1);
+    this.toldP = grown(this.toldP, Float64Array, 3); // in GRID_M: what the next difference is added to
+    this.toldQ = grown(this.toldQ, Uint32Array, 1);
     this.stamps = grown(this.stamps, Float64Array, RING);
     this.ringP = grown(this.ringP, Float64Array, RING * 3);
     this.ringQ = grown(this.ringQ, Float32Array, RING * 4);
@@ -89,6 +94,8 @@ export class World {
     this.id[slot] = id;
     this.prototype[slot] = prototype;
     this.host[slot] = this.flags[slot] = this.epoch[slot] = this.head[slot] = this.held[slot] = 0;
+    this.toldP.fill(0, 3 * slot, 3 * slot + 3);
+    this.toldQ[slot] = 0;
     this.slotOfId.set(id, slot);
     ++this.size;
     ++this.counts.created;
@@ -108,20 +115,35 @@ export class World {
   }
 
   #move(frame, previous) {
-    const { movedSlots, movedP, movedQ } = frame;
+    const { movedSlots } = frame;
     for (let i = 0; i < movedSlots.length; ++i) {
       const slot = movedSlots[i];
       if (!this.isAlive(slot)) {
         ++this.counts.ignored;
         continue;
       }
+      this.#take(frame, i, slot);
       const head = this.head[slot];
       if (this.held[slot] > 0 && this.stamps[slot * RING + head] < previous) {
         // It was at rest until the previous frame. Without this it would seem to have drifted since its last one.
         this.#push(slot, previous, this.ringP, (slot * RING + head) * 3, this.ringQ, (slot * RING + head) * 4);
       }
-      this.#push(slot, frame.stamp, movedP, 3 * i, movedQ, 4 * i);
+      this.#push(slot, frame.stamp, pose.p, 0, pose.q, 0);
     }
+  }
+
+  /** What row `i` makes of the pose that was told last, into `pose`. */
+  #take({ movedHow, movedP, movedQ }, i, slot) {
+    const position = movedHow[i] & 3, rotation = movedHow[i] >> 2;
+    for (let axis = 0; axis < 3; ++axis) {
+      const at = 3 * slot + axis;
+      if (position === BYTE_STEPS || position === WORD_STEPS) this.toldP[at] += movedP[3 * i + axis];
+      else if (position === WHOLE_POSITION) this.toldP[at] = movedP[3 * i + axis];
+      pose.p[axis] = this.toldP[at] * GRID_M;
+    }
+    if (rotation === WHOLE_ROTATION) this.toldQ[slot] = movedQ[3 * i];
+    else if (rotation === BYTE_LEVELS) this.toldQ[slot] = turnPacked(this.toldQ[slot], movedQ, 3 * i);
+    unpackRotation(this.toldQ[slot], pose.q);
   }
 
   #push(slot, stamp, p, pAt, q, qAt) {

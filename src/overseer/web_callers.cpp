@@ -1,0 +1,54 @@
+#include "overseer/web_callers.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+namespace aurasim::overseer {
+namespace {
+
+using Callers = std::vector<std::shared_ptr<WebCaller>>;
+
+/// The oldest of the address that has most. Null: there are none.
+std::shared_ptr<WebCaller> oldest_of_the_greediest(const Callers& callers) {
+  std::map<std::string, Callers> by_address;
+  for (const auto& caller : callers) by_address[caller->address()].push_back(caller);
+  const auto fewer = [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); };
+  const auto greediest = std::max_element(by_address.begin(), by_address.end(), fewer);
+  return greediest == by_address.end() ? nullptr : greediest->second.front();
+}
+
+}  // namespace
+
+bool WebCallers::enter(const std::shared_ptr<WebCaller>& caller) {
+  forget_the_gone();
+  bool dropped = false;
+  if (callers_.size() >= most_) {
+    const std::shared_ptr<WebCaller> leaving = whom_to_drop();
+    std::erase_if(callers_, [&](const auto& known) { return known.lock() == leaving; });
+    if (leaving) leaving->drop();
+    dropped = leaving != nullptr;
+  }
+  callers_.push_back(caller);
+  return dropped;
+}
+
+std::size_t WebCallers::count() {
+  forget_the_gone();
+  return callers_.size();
+}
+
+void WebCallers::forget_the_gone() {
+  std::erase_if(callers_, [](const auto& caller) { return caller.expired(); });
+}
+
+std::shared_ptr<WebCaller> WebCallers::whom_to_drop() const {
+  Callers all, silent;
+  for (const auto& known : callers_) {
+    if (auto caller = known.lock()) all.push_back(std::move(caller));
+  }
+  std::copy_if(all.begin(), all.end(), std::back_inserter(silent), [](const auto& c) { return c->is_silent(); });
+  return oldest_of_the_greediest(silent.empty() ? all : silent);
+}
+
+}  // namespace aurasim::overseer
