@@ -41,6 +41,8 @@ void NodeProcess::publish_running() {
   status_.violations = {log.count(core::ViolationKind::kSpeed), log.count(core::ViolationKind::kLatency),
                         log.count(core::ViolationKind::kFrame), log.count(core::ViolationKind::kPromise),
                         log.count(core::ViolationKind::kSpan)};
+  status_.late_collisions = node_->collision_watch().late();
+  status_.missed_collisions = node_->collision_watch().missed();
   status_.frame = summary_of(window_.frame);
   status_.physics = summary_of(window_.physics);
   status_.protocol = summary_of(window_.protocol);

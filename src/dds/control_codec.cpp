@@ -70,6 +70,8 @@ void encode_counts(const Status& status, wire::NodeStatus& out) {
   out.violations_frame(status.violations.frame);
   out.violations_promise(status.violations.promise);
   out.violations_span(status.violations.span);
+  out.late_collisions(status.late_collisions);
+  out.missed_collisions(status.missed_collisions);
   out.largest_cluster(status.largest_cluster);
 }
 
@@ -81,6 +83,8 @@ void decode_counts(const wire::NodeStatus& in, Status& status) {
   status.hand_offs_in = in.hand_offs_in();
   status.violations = {in.violations_speed(), in.violations_latency(), in.violations_frame(), in.violations_promise(),
                        in.violations_span()};
+  status.late_collisions = in.late_collisions();
+  status.missed_collisions = in.missed_collisions();
   status.largest_cluster = in.largest_cluster();
 }
 

@@ -47,6 +47,8 @@ struct Status {
   std::uint64_t hand_offs_out = 0;
   std::uint64_t hand_offs_in = 0;
   Violations violations;
+  std::uint64_t late_collisions = 0;    ///< since the start, as the node itself can see them (node/collision_watch.h)
+  std::uint64_t missed_collisions = 0;  ///< likewise
   Durations frame;
   Durations physics;
   Durations protocol;

@@ -47,6 +47,8 @@ Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
             {"frame", s.violations.frame},
             {"promise", s.violations.promise},
             {"span", s.violations.span}}},
+          {"late", s.late_collisions},
+          {"missed", s.missed_collisions},
           {"frame_ms", durations_json(s.frame)},
           {"physics_ms", durations_json(s.physics)},
           {"protocol_ms", durations_json(s.protocol)},
@@ -142,6 +144,10 @@ std::string node_metrics(const RunStatus& status) {
   add("awake_bodies", "gauge", "Bodies hosted and awake.", [](const Seen& s) { return s.status.awake; });
   add("hand_offs_out_total", "counter", "Bodies handed over.", [](const Seen& s) { return s.status.hand_offs_out; });
   add("hand_offs_in_total", "counter", "Bodies adopted.", [](const Seen& s) { return s.status.hand_offs_in; });
+  add("late_collisions_total", "counter", "Collisions seen late.",
+      [](const Seen& s) { return s.status.late_collisions; });
+  add("missed_collisions_total", "counter", "Overlaps of bodies of two nodes.",
+      [](const Seen& s) { return s.status.missed_collisions; });
   add("frame_p50_ms", "gauge", "Median frame time of the last second.",
       [](const Seen& s) { return s.status.frame.p50_ms; });
   add("frame_p99_ms", "gauge", "99th percentile of the frame time.",

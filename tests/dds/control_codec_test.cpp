@@ -38,6 +38,8 @@ TEST(StatusCodec, RoundTripKeepsEverything) {
   EXPECT_EQ(std::get<Status>(decoded).text, "all is well");
   EXPECT_EQ(std::get<Status>(decoded).footprint.x0, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(std::get<Status>(decoded).violations.span, 5U);
+  EXPECT_EQ(std::get<Status>(decoded).late_collisions, 6U);
+  EXPECT_EQ(std::get<Status>(decoded).missed_collisions, 7U);
   EXPECT_EQ(std::get<Status>(decoded).transport.max_ms, 0.9);
 }
 

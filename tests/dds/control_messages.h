@@ -21,6 +21,8 @@ inline Status status_of(std::uint32_t region) {
   status.hand_offs_out = 7;
   status.hand_offs_in = 6;
   status.violations = {1, 2, 3, 4, 5};
+  status.late_collisions = 6;
+  status.missed_collisions = 7;
   status.frame = {1.5, 2.5, 3.5};
   status.physics = {0.1, 0.2, 0.3};
   status.protocol = {0.4, 0.5, 0.6};
