@@ -118,7 +118,9 @@ std::optional<std::string> unknown_word(const CLI::App& program, const std::vect
       if (!has_option(*app, word)) return complaint(*app, "option", word, typed_names(options_of(*app)));
       continue;
     }
-    const CLI::App* below = app->get_subcommand_no_throw(word);
+    const std::vector<const CLI::App*> named =
+        app->get_subcommands([&word](const CLI::App* command) { return command->check_name(word); });
+    const CLI::App* below = named.empty() ? nullptr : named.front();
     if (below == nullptr && !commands_of(*app).empty()) {
       return complaint(*app, "command", word, typed_names(commands_of(*app)));
     }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "config/workspace.h"
 
 namespace aurasim::config {
@@ -84,8 +86,8 @@ TEST(Meshes, AFaceOfVeryManyCornersIsRefusedAtOnce) {
   std::string circle;
   std::string face = "f";
   for (int i = 0; i < 60'000; ++i) {
-    circle += "v " + std::to_string(std::cos(i * 1e-4)) + " " + std::to_string(std::sin(i * 1e-4)) + " 0\n";
-    face += " " + std::to_string(i + 1);
+    circle += fmt::format("v {} {} 0\n", std::cos(i * 1e-4), std::sin(i * 1e-4));
+    face += fmt::format(" {}", i + 1);
   }
   const auto read = read_mesh("circle.obj", circle + face + "\n");
   ASSERT_TRUE(std::holds_alternative<std::string>(read));

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "aurasim.h"
-#include "control_messages.h"
+#include "control_samples.h"
 
 namespace aurasim::dds {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "child.h"
-#include "control_messages.h"
+#include "control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "aurasimPubSubTypes.h"
-#include "control_messages.h"
+#include "control_samples.h"
 #include "dds/codec.h"
 #include "dds/command_codec.h"
 #include "dds/control_codec.h"

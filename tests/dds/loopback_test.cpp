@@ -14,7 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "control_messages.h"
+#include "control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <string>
 
-#include "control_messages.h"
+#include "control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds::testing {

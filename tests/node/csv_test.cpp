@@ -17,11 +17,11 @@ using ::testing::HasSubstr;
 
 struct Crate {
   core::RegionId region{};
-  std::string_view kind;
+  std::string_view kind{};
   double mass_kg = 0;
   double length_m = 0;
   bool open = false;
-  std::optional<core::Step> seen;
+  std::optional<core::Step> seen{};
   Hex64 hash{};
 
   double density_kg_m() const { return mass_kg / length_m; }
