@@ -409,7 +409,7 @@ TEST_F(Web, AHiddenPageIsSentNothingAndMissesNothing) {
   const std::uint64_t bytes = page.bytes;
   for (int i = 0; i < 20; ++i) {
     show(50);
-    server_->tell(Notice::kStatus, R"({"type":"status"})");
+    server_->publish(Notice::kStatus, R"({"type":"status"})");
   }
   ASSERT_TRUE(
       other.wait_until([&] { return other.world.stamp == static_cast<double>(stamp_) && other.has("status"); }));
