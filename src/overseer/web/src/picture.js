@@ -170,7 +170,7 @@ export class Picture {
   }
 
   /**
-   * What the overseer has to know of the picture to leave out what nobody would see: docs/viewer.md, "view". Nothing of
+   * What the overseer has to know of the picture to leave out what nobody would see: docs/viewer.md, "JSON from the page". Nothing of
    * the view from above, where all is shown.
    */
   get eye() {
