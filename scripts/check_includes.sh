@@ -30,7 +30,6 @@ awk '
     wrap("cli", "CLI")
     wrap("overseer", "boost")
 
-    may_circle["overseer/web_hub", "overseer/web_server"] = 1  # for its settings
   }
 
   function allow(folder, others,    list, n, i) {
@@ -77,7 +76,7 @@ awk '
   }
 
   function note_arrow(from, to) {
-    if (from == to || (from, to) in may_circle || (from, to) in arrow) return
+    if (from == to || (from, to) in arrow) return
     arrow[from, to] = FILENAME ":" FNR
     targets[from] = targets[from] " " to
   }
