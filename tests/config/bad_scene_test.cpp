@@ -58,6 +58,12 @@ const std::vector<BadCase> kBadScenes = {
     {"FlatHull",
      shape("{convex_hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}"),
      {"scene.yaml:2:21: shapes.it.convex_hull: found a map of 1, allowed: at least 4 points that do not lie in one"}},
+    {"HullOfPointsWithTheKeysOfAMesh",
+     shape("{convex_hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], scale: 2}}"),
+     {"scene.yaml:2:76: shapes.it.convex_hull.scale: unknown key, allowed: points"}},
+    {"HullOfNothing",
+     shape("{convex_hull: {}}"),
+     {"scene.yaml:2:21: shapes.it.convex_hull: found a map of 0, allowed: one of points, mesh"}},
     {"MeshFileMissing",
      shape("{mesh: {file: nowhere.obj}}"),
      {"scene.yaml:2:21: shapes.it.mesh.file: found \"nowhere.obj\", allowed: a mesh file with triangles (no such "
