@@ -173,7 +173,7 @@ void CommandServer::reply_all_done(core::Step step) {
 
 void CommandServer::after_step(const node::StepReport& report) {
   publish_additions(report);
-  for (const node::Applied& applied : report.applied) reply_done(applied.request, report.step, applied.object);
+  for (const node::Applied& applied : report.applied) reply_done(applied.request, applied.step, applied.object);
   for (const physics::Declined& declined : report.declined) refuse(declined.request, declined.why);
   std::erase_if(due_, [&](const auto& entry) {
     if (entry.second.step > report.step) return false;

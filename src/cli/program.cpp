@@ -42,7 +42,7 @@ std::string path_of(const CLI::App& app) {
 std::string complaint(const CLI::App& app, const char* what, const std::string& word,
                       const std::vector<std::string>& known) {
   const std::string where = path_of(app);
-  const std::optional<std::string> nearest = nearest_word(word, known);
+  const std::optional<std::string> nearest = nearest_word(word.substr(0, word.find('=')), known);
   if (nearest) return fmt::format("{}: no {} '{}'; did you mean '{}'?", where, what, word, *nearest);
   return fmt::format("{}: no {} '{}'; there are {}", where, what, word, fmt::join(known, ", "));
 }

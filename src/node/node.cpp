@@ -134,14 +134,14 @@ void Node::announce_spawns(core::Step birth) {
     world_.add({&record, 1});
     watch_.newborn(record.id, record.birth);
     report_.births.push_back({record.id, record.birth});
-    report_.applied.push_back({order.request, core::ref_of(record.id)});
+    report_.applied.push_back({order.request, order.at_step, core::ref_of(record.id)});
     return true;
   });
 }
 
 void Node::note_removals() {
   report_.removals = world_.take_removed();
-  for (const std::uint64_t request : world_.take_applied()) report_.applied.push_back({request, {}});
+  for (const std::uint64_t request : world_.take_applied()) report_.applied.push_back({request, current_step(), {}});
   report_.declined = world_.take_declined();
 }
 

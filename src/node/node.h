@@ -63,6 +63,7 @@ struct HashPart {
 /// A client's request that has taken effect here.
 struct Applied {
   std::uint64_t request = 0;
+  core::Step step = 0;                    ///< the first state that shows the effect
   std::optional<core::ObjectRef> object;  ///< the body that it has made
 };
 

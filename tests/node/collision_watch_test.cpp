@@ -334,7 +334,7 @@ TEST_F(Missed, IsNobodyWhoOnlyTouches) { EXPECT_TRUE(next({foreign(50, Vec3(-0.0
 TEST_F(Missed, IsNobodyWhoIsNear) { EXPECT_TRUE(next({foreign(50, Vec3(0.1, 0, 0))}).empty()); }
 
 TEST_F(Missed, IsJudgedByWhereOursWasThen) {
-  state_of(1).pose.p_WB = Vec3(-3, 0, 0);
+  state_of(1).pose.p_WB = Vec3(-1.52, 0, 0);
   EXPECT_EQ(next({foreign(50, Vec3(-0.5, 0, 0))}).size(), 1u) << "in state 10 they overlapped";
 }
 

@@ -35,15 +35,17 @@ class Commands : public SystemTest {
     expect_all_bodies_accounted_for(report_of(name_));
   }
 
-  /// The same commands in the same states, wherever the bodies are hosted.
+  /// The same commands in the same states, wherever the bodies are hosted and however long each takes to be sent.
   void send_one_of_each() {
     const Words at = {"--at", "400"};
+    send({"pause"});
     EXPECT_EQ(send(Words{"spawn", "--radius", "0.5", "--mass", "3", "--p", "1", "1", "8", "--v", "2", "0", "0"} + at)
                   .value("step", 0),
               400);
     send(Words{"spawn", "--size", "0.6", "0.6", "0.6", "--p", "-1", "-0.2", "9"} + at);
     send(Words{"static", "--size", "4", "0.5", "3", "--p", "0", "3", "1.5"} + at);
     send(Words{"impulse", "--body", "1", "--J", "0", "3", "2"} + at);
+    send({"resume"});
   }
 
   Process* run_ = nullptr;

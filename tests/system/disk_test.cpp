@@ -17,7 +17,7 @@ TEST_F(FullDisk, EndsTheRecordsAndNotTheRun) {
                               " --set dds.domain=" + std::to_string(test::own_domain());
   Process& run = start_program({"/bin/bash", "-c", command});
   expect_exit(run, 1);
-  EXPECT_THAT(run.err(), HasSubstr("nothing is recorded after step"));
+  EXPECT_THAT(run.err(), HasSubstr("end after step"));
   EXPECT_THAT(run.err(), HasSubstr("steps.csv: File too large"));
   EXPECT_EQ(report.count("steps"), 1500) << "the world goes on";
   const nlohmann::json incomplete = report.entry("incomplete_regions");

@@ -203,7 +203,7 @@ TEST_F(Overseers, ALaunchBringsOneAndTakesAnotherPortWhenItsOwnIsTaken) {
   Process& second = start(Words{"overseer", file_, "--port", std::to_string(port)} + in_own_domain());
   const std::uint16_t other = port_of(second);
   EXPECT_NE(other, port);
-  EXPECT_THAT(second.err(), HasSubstr(std::to_string(port)));
+  EXPECT_THAT(second.out(), HasSubstr("port " + std::to_string(port) + " is taken"));
   for (const std::uint16_t each : {port, other}) {
     Page page(each);
     EXPECT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96; })) << each;
