@@ -118,6 +118,7 @@ TEST(Status, OfAStrangerDoesNotTouchThatOfTheRun) {
   };
   ASSERT_TRUE(launcher.wait_until([&] { return step_seen_by(launcher) == 10; }));
   ASSERT_TRUE(tool.wait_until([&] { return step_seen_by(tool) == 10; }));
+  ASSERT_TRUE(node.wait_until([&] { return step_seen_by(node) == 10; }));
 
   ASSERT_TRUE(stranger->bus.publish_status(status_of_run(6, 999)));
   for (Member* member : {&launcher, &tool, &node}) {

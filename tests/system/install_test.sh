@@ -30,21 +30,20 @@ inside() {
   [[ ! -f usr/share/aurasim/web/index.html ]] || serves_its_page
 }
 
-serves_its_page() {
+serves_its_page() (
   aurasim overseer demo --port 0 --set dds.domain="$domain" >address &
-  local overseer=$!
+  overseer=$!
   # shellcheck disable=SC2064
-  trap "kill $overseer; wait $overseer" RETURN
+  trap "kill $overseer; wait $overseer || true" EXIT
   for ((i = 0; i < 600; ++i)); do
     [[ ! -s address ]] || break
     sleep 0.1
   done
-  local port
   port=$(sed -n 's|^http://127.0.0.1:\([0-9]*\)/.*|\1|p' address)
   exec 3<>"/dev/tcp/127.0.0.1/$port"
   printf 'GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n' >&3
   grep -q "<title>aurasim</title>" <&3 || fail "the page is not served"
-}
+)
 
 # Again in a view of the files in which the sources are hidden.
 if [[ -n ${AURASIM_HIDE:-} ]]; then
