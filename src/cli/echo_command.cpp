@@ -29,7 +29,7 @@ struct EchoArguments {
   bool json = false;
 };
 
-void print(const nlohmann::ordered_json& sample, bool json) {
+void print_sample(const nlohmann::ordered_json& sample, bool json) {
   if (json) {
     fmt::print("{}\n", sample.dump());
   } else {
@@ -67,7 +67,7 @@ int echo(const EchoArguments& arguments) {
   while (!stop_requested() && (arguments.duration_s <= 0 || Clock::now() < end)) {
     if (const auto sample = topic.take()) {
       has_heard = true;
-      print(*sample, arguments.json);
+      print_sample(*sample, arguments.json);
       if (arguments.count > 0 && --left == 0) break;
     } else {
       topic.wait(50ms);

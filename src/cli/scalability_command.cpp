@@ -37,7 +37,7 @@ experiment::RainPlace place_of(const RainArguments& arguments) {
   return place;
 }
 
-void print(const nlohmann::json& speed_ups) {
+void print_speed_ups(const nlohmann::json& speed_ups) {
   fmt::print("{:<9} {:<7} {:>5}  {:>9} {:>9} {:>9} {:>9} {:>7}\n", "series", "aura", "nodes", "max frame", "p95",
              "last", "fitted", "thesis");
   for (const auto& row : speed_ups) {
@@ -85,7 +85,7 @@ int exit_code(bool finished) { return static_cast<int>(finished ? ExitCode::kOk 
 int run_scalability(const RainArguments& arguments) {
   const std::vector<experiment::Rain> rains = experiment::rains_of(arguments.plan);
   const bool finished = arguments.processes ? run_as_processes(rains, arguments) : run(rains, arguments);
-  print(experiment::summarise_rains(rains, arguments.out)["speed_up"]);
+  print_speed_ups(experiment::summarise_rains(rains, arguments.out)["speed_up"]);
   return exit_code(finished);
 }
 

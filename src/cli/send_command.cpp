@@ -120,7 +120,7 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
 
 nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-[[noreturn]] void print(const Delivery& delivery) {
+[[noreturn]] void print_delivery(const Delivery& delivery) {
   if (!delivery.done) fail(delivery.text);
   nlohmann::json out = {{"step", delivery.at_step}};
   if (delivery.object)
@@ -150,7 +150,7 @@ nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
   client.send(std::move(command));
   while (in_time()) {
     client.wait(20ms);
-    for (const Delivery& delivery : client.take()) print(delivery);
+    for (const Delivery& delivery : client.take()) print_delivery(delivery);
   }
   fail("no answer");
 }

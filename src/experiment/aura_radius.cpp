@@ -10,20 +10,20 @@
 namespace aurasim::experiment {
 namespace {
 
-constexpr double kRadius_m = 1;
+constexpr double kUnitRadius_m = 1;
 
 class Spheres final : public core::ClearanceQuery {
  public:
-  double bounding_radius(core::PrototypeId) const override { return kRadius_m; }
+  double bounding_radius(core::PrototypeId) const override { return kUnitRadius_m; }
   double clearance(core::PrototypeId, const core::Pose& a, core::PrototypeId, const core::Pose& b,
                    double) const override {
-    return (a.p_WB - b.p_WB).norm() - 2 * kRadius_m;
+    return (a.p_WB - b.p_WB).norm() - 2 * kUnitRadius_m;
   }
 };
 
 core::Path flying(double x_m, double v_m_s, double age_steps) {
   core::Path path;
-  path.radius_m = kRadius_m;
+  path.radius_m = kUnitRadius_m;
   path.pose.p_WB.x() = x_m;
   path.v_WB.x() = v_m_s;
   path.speed_m_s = std::abs(v_m_s);
@@ -42,7 +42,7 @@ double head_on_reach_m(AuraChoice choice, const Conditions& conditions) {
   if (choice == AuraChoice::kNone) return 0;
   while (far_m - near_m > 1e-6) {
     const double gap_m = (near_m + far_m) / 2;
-    const bool meets = aura->meets(flying(gap_m + 2 * kRadius_m, -v, rules.lookahead), flying(0, v, 0), 1);
+    const bool meets = aura->meets(flying(gap_m + 2 * kUnitRadius_m, -v, rules.lookahead), flying(0, v, 0), 1);
     (meets ? near_m : far_m) = gap_m;
   }
   return near_m;
