@@ -187,6 +187,7 @@ test("PauseStepAndGoOn", limit, async () => {
   assert.deepEqual(await witness.steps(), Array(NODES).fill(stood), "nobody goes on");
   await step(3);
   await until(async () => (await witness.steps()).every((at) => at === stood + 3), "all nodes three steps on");
+  await seen(() => window.aurasim.status.state === "paused");  // what the key does is what the page shows
   await page.keyboard.press("Space");
   await until(async () => Math.min(...await witness.steps()) > stood + 20, "steps after going on");
   await seen((stamp) => window.aurasim.status.state === "running" && window.aurasim.lastStamp > stamp, stood + 20);
