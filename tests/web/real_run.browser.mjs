@@ -33,9 +33,16 @@ before(async () => {
   page = await open();
 });
 beforeEach(async () => {
-  if (witness.status.state === "paused") await run.send("resume");
+  // A step that ends just now makes a run that stands look as if it went on: looked at until it does.
+  await until(async () => {
+    if (witness.status.state === "paused") {
+      await run.send("resume");
+      await until(() => witness.status.state !== "paused", "a run that has heard it");
+    }
+    return page.isClosed() || page.evaluate(() =>
+      window.aurasim.status?.state === "running" && document.querySelector('button[aria-label="Pause (space)"]') !== null);
+  }, "a run that goes on");
   if (page.isClosed()) return;
-  await seen(() => window.aurasim.status?.state === "running" && document.querySelector('button[aria-label="Pause (space)"]'));
   await page.evaluate(() => document.querySelectorAll(".toast").forEach((toast) => toast.remove()));
   page.errors.length = 0;
 });
