@@ -1,6 +1,7 @@
 #include "dds/liveliness_asserter.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
 
@@ -37,21 +38,22 @@ void LivelinessAsserter::progress() { last_progress_ns_.store(now_ns(), std::mem
 
 void LivelinessAsserter::run() {
   std::unique_lock lock(mutex_);
+  std::int64_t woken_ns = now_ns();
   while (!stopping_) {
     if (!owner_hangs()) {
       for (auto* writer : writers_) {
         writer->assert_liveliness();
       }
     }
-    const std::int64_t started_ns = now_ns();
     const auto planned = interval_;
     condition_.wait_for(lock, planned);
-    note_stall(started_ns, planned);
+    // From waking to waking: a process may be stopped while it asserts as well as while it waits.
+    const std::int64_t previous_ns = std::exchange(woken_ns, now_ns());
+    note_stall(woken_ns - previous_ns - planned.count());
   }
 }
 
-void LivelinessAsserter::note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned) {
-  const std::int64_t stall_ns = now_ns() - started_ns - planned.count();
+void LivelinessAsserter::note_stall(std::int64_t stall_ns) {
   if (stall_ns > longest_stall_ns_.load()) {
     longest_stall_ns_.store(stall_ns);
   }

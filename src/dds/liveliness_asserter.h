@@ -33,7 +33,7 @@ class LivelinessAsserter {
 
  private:
   void run();
-  void note_stall(std::int64_t started_ns, std::chrono::nanoseconds planned);
+  void note_stall(std::int64_t stall_ns);
   bool owner_hangs() const;
   static std::int64_t now_ns();
 
