@@ -31,7 +31,8 @@ struct ClusterRules {
   std::optional<double> bandwidth_B_s;
   double shortest_frame_s = 0;
   double longest_frame_s = 0;
-  std::vector<double> phase_s;  ///< by region: how much later than the shared epoch its steps are due
+  std::vector<double> phase_s;         ///< by region: how much later than the shared epoch its steps are due
+  core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often; 0: as in a real run
   std::uint64_t seed = 1;
 };
 
@@ -53,6 +54,8 @@ class VirtualCluster {
 
   std::size_t size() const { return members_.size(); }
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
+  /// To give it orders between two events; region 0 is the lead.
+  node::Node& node(std::size_t region) { return *members_[region].node; }
   /// Bodies of a region in the state that it is in. Valid until its next step.
   std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
   /// Only where messages are coded.

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "experiment/scale/round_trips.h"
-#include "experiment/virtual_cluster.h"
 
 namespace aurasim::experiment {
 namespace {
@@ -56,12 +55,7 @@ StepLoad load_of(const node::StepReport& report, const Counts& before, const Cou
 }
 
 ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const RainPlace& place) {
-  ClusterRules rules;
-  const node::NodeSetup setup = place.setup_of(launch, core::RegionId{0});
-  rules.aura = setup.protocol.aura;
-  rules.sync = setup.protocol.sync;
-  rules.neighbour_distance_m = setup.protocol.neighbour_distance_m;
-  rules.physics = setup.physics;
+  ClusterRules rules = launch_rules(launch, place.setup_of);
   rules.clock = node::PhaseClock::kThreadCpu;
   rules.network.latency_s = kLatency_s;
   rules.shortest_frame_s = rules.longest_frame_s = kFrame_s;

@@ -7,15 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "config/launch.h"
+#include "experiment/launch_rules.h"
 #include "experiment/scale/rain.h"
 #include "experiment/scale/window.h"
-#include "node/node.h"
 
 namespace aurasim::experiment {
-
-/// A launch's rules for one of its nodes.
-using SetupOf = std::function<node::NodeSetup(const config::Launch&, core::RegionId)>;
 
 inline constexpr double kWindow_s = 5;  ///< as the thesis
 
