@@ -1,0 +1,19 @@
+// What the bodies of a random world stand on.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "experiment/pair.h"
+#include "experiment/scenes/json.h"
+#include "experiment/scenes/random_layout.h"
+
+namespace aurasim::experiment {
+
+/// Mesh files that a scene names: their text by their names.
+using MeshTexts = std::map<std::string, std::string>;
+
+/// "statics" of the scene: a plane, boxes, a heightfield or a mesh, none above z = 0, and at times walls around it all.
+void add_ground(const RandomLayout& layout, Json& scene, MeshTexts& meshes, Chance& chance);
+
+}  // namespace aurasim::experiment
