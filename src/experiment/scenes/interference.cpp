@@ -1,0 +1,129 @@
+#include "experiment/scenes/interference.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "experiment/scenes/json.h"
+#include "node/node.h"
+
+namespace aurasim::experiment {
+namespace {
+
+using core::Vec3;
+
+Vec3 vec3_in(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+Vec3 vec3_or_zero(const Json& map, const char* key) { return map.contains(key) ? vec3_in(map.at(key)) : Vec3::Zero(); }
+
+core::Pose pose_in(const Json& map) { return {vec3_in(map.at("position")), core::Quat::Identity()}; }
+
+core::BodyId body_in(const Json& json) { return core::BodyId{json.get<std::uint64_t>()}; }
+
+/// Numbers what orders add as nodes will.
+class RequestReader {
+ public:
+  explicit RequestReader(const core::Scene& scene)
+      : scene_(scene),
+        shapes_(scene.shapes.size()),
+        prototypes_(scene.prototypes.size()),
+        statics_(scene.statics.size()) {}
+
+  Request read(const Json& order) {
+    Request request;
+    request.at_step = order.at("at_step");
+    if (order.contains("spawn")) return spawn(request, order["spawn"]);
+    if (order.contains("add_static")) return add_static(request, order["add_static"]);
+    request.actions = {action_in(order)};
+    return request;
+  }
+
+ private:
+  core::Action action_in(const Json& order) const {
+    if (order.contains("remove_body")) return core::RemoveBody{body_in(order["remove_body"])};
+    if (order.contains("remove_static")) return core::RemoveStatic{named_.at(order["remove_static"])};
+    if (order.contains("impulse")) {
+      const Json& impulse = order["impulse"];
+      return core::Impulse{body_in(impulse.at("body")), vec3_in(impulse.at("value")), {}};
+    }
+    const Json& velocity = order.at("set_velocity");
+    core::SetVelocity action{body_in(velocity.at("body")), vec3_in(velocity.at("value")), {}};
+    if (velocity.contains("spin")) action.w_WB = vec3_in(velocity["spin"]);
+    return action;
+  }
+
+  Request spawn(Request request, const Json& what) {
+    core::Spawn spawn{
+        body_in(what.at("id")), {}, pose_in(what), vec3_or_zero(what, "velocity"), vec3_or_zero(what, "spin")};
+    if (what.contains("prototype")) {
+      spawn.prototype = prototype_named(what["prototype"]);
+    } else {
+      request.actions.push_back(core::DefineShape{core::Sphere{what.at("sphere").at("radius")}});
+      request.actions.push_back(core::DefinePrototype{shapes_++, what.at("mass")});
+      spawn.prototype = core::PrototypeId{prototypes_++};
+    }
+    request.actions.push_back(spawn);
+    return request;
+  }
+
+  Request add_static(Request request, const Json& what) {
+    const core::StaticId id{statics_++};
+    named_[what.at("name")] = id;
+    request.actions.push_back(core::DefineShape{core::Box{vec3_in(what.at("box").at("size")) / 2}});
+    request.actions.push_back(core::AddStatic{id, shapes_++, pose_in(what)});
+    return request;
+  }
+
+  core::PrototypeId prototype_named(const std::string& name) const {
+    const auto found = std::ranges::find(scene_.prototypes, name, &core::Prototype::name);
+    if (found == scene_.prototypes.end()) throw std::runtime_error(fmt::format("no prototype \"{}\"", name));
+    return core::PrototypeId{static_cast<std::uint32_t>(found - scene_.prototypes.begin())};
+  }
+
+  const core::Scene& scene_;
+  std::uint32_t shapes_, prototypes_, statics_;
+  std::map<std::string, core::StaticId> named_;
+};
+
+/// In the order in which they will be given, since what they add is numbered.
+Interference interference_in(Json json, const core::Scene& scene) {
+  Interference interference;
+  interference.shuffle_ranks_steps = json.value("shuffle_ranks_steps", core::Step{0});
+  if (!json.contains("orders")) return interference;
+  auto orders = json["orders"].get<std::vector<Json>>();
+  std::ranges::stable_sort(orders, {}, [](const Json& order) { return order.at("at_step").get<core::Step>(); });
+  RequestReader reader(scene);
+  for (const Json& order : orders) interference.requests.push_back(reader.read(order));
+  return interference;
+}
+
+}  // namespace
+
+Interference read_interference(const std::filesystem::path& file, const core::Scene& scene) {
+  std::ifstream in(file);
+  if (!in) return {};
+  try {
+    return interference_in(Json::parse(in), scene);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+void ImpatientClient::speak(node::Node& lead) {
+  for (; next_ < requests_.size(); ++next_) {
+    Request& request = requests_[next_];
+    if (request.at_step > lead.protocol().earliest_effect()) return;
+    for (std::size_t i = 0; i < request.actions.size(); ++i) {
+      const bool is_last = i + 1 == request.actions.size();
+      const core::Order& order = lead.order(request.actions[i], next_ + 1, is_last ? request.at_step : 0);
+      if (is_last) request.at_step = order.at_step;
+    }
+  }
+}
+
+}  // namespace aurasim::experiment

@@ -1,0 +1,54 @@
+// What happens to a world in mid-run: interference.json beside its launch file.
+//   {"shuffle_ranks_steps": 30,
+//    "orders": [{"at_step": 120, "remove_body": 7},
+//               {"at_step": 90, "spawn": {"id": 1000000001, "prototype": "box_3", "position": [..], "velocity": [..]}},
+//               {"at_step": 95, "spawn": {"id": 1000000002, "sphere": {"radius": 0.2}, "mass": 3, ...}},
+//               {"at_step": 150, "impulse": {"body": 3, "value": [..]}},
+//               {"at_step": 150, "set_velocity": {"body": 3, "value": [..], "spin": [..]}},
+//               {"at_step": 200, "add_static": {"name": "wall_0", "box": {"size": [..]}, "position": [..]}},
+//               {"at_step": 300, "remove_static": "wall_0"}]}
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/order.h"
+#include "core/scene.h"
+
+namespace aurasim::node {
+class Node;
+}
+
+namespace aurasim::experiment {
+
+/// Orders that are given together: a new kind of body and the first one of it.
+struct Request {
+  core::Step at_step = 0;  ///< of the last one; the others hold from when they are known
+  std::vector<core::Action> actions;
+};
+
+struct Interference {
+  core::Step shuffle_ranks_steps = 0;
+  std::vector<Request> requests;  ///< ascending at_step
+};
+
+/// The scene that the launch file names, as it is at the start: orders refer to its prototypes by name, and add to
+/// them. Without the file there is no interference. Throws std::runtime_error that names the file and what is wrong.
+Interference read_interference(const std::filesystem::path& file, const core::Scene& scene);
+
+/// Gives the requests to the lead, each at the last moment, as an impatient client does: so late that it can just take
+/// effect in its state. One that comes too late for that takes effect later, and the request says so from then on.
+class ImpatientClient {
+ public:
+  explicit ImpatientClient(std::vector<Request>& requests) : requests_(requests) {}
+
+  /// Before each step of the lead.
+  void speak(node::Node& lead);
+
+ private:
+  std::vector<Request>& requests_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace aurasim::experiment
