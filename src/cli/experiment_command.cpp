@@ -127,6 +127,7 @@ void add_experiment(CLI::App& program, Action& action) {
   add_pareto(*command, action);
   add_scalability(*command, action);
   add_bandwidth(*command, action);
+  add_scenes(*command, action);
 }
 
 }  // namespace aurasim::cli
