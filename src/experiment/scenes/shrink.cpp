@@ -16,26 +16,24 @@ bool fails_like(const WorldOutcome& outcome, const WorldOutcome& failure) {
   return failure.first_difference ? outcome.first_difference.has_value() : outcome.has_failed();
 }
 
-/// Lists of a world whose entries can be left out. Orders first: they refer to bodies, as joints do.
-enum class Part { kOrders, kInjectors, kJoints, kBodies, kStatics, kPrototypes };
+/// A list of a world whose entries can be left out.
+struct Part {
+  Json World::*file;
+  const char* key;
 
-Json& part_of(World& world, Part part) {
-  switch (part) {
-    case Part::kOrders:
-      return world.interference["orders"];
-    case Part::kInjectors:
-      return world.scene["injectors"];
-    case Part::kJoints:
-      return world.scene["joints"];
-    case Part::kBodies:
-      return world.scene["bodies"];
-    case Part::kStatics:
-      return world.scene["statics"];
-    case Part::kPrototypes:
-      break;
+  /// Null if the world has none.
+  Json* in(World& world) const {
+    Json& json = world.*file;
+    return json.contains(key) ? &json[key] : nullptr;
   }
-  return world.scene["prototypes"];
-}
+  std::size_t size_in(World& world) const {
+    const Json* const entries = in(world);
+    return entries != nullptr ? entries->size() : 0;
+  }
+};
+constexpr Part kOrders = {&World::interference, "orders"}, kInjectors = {&World::scene, "injectors"},
+               kJoints = {&World::scene, "joints"}, kBodies = {&World::scene, "bodies"},
+               kStatics = {&World::scene, "statics"}, kPrototypes = {&World::scene, "prototypes"};
 
 /// The entries of a list, or of a map, but for [begin, end).
 Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
@@ -101,14 +99,14 @@ class Shrinker {
   }
 
   /// Chunks of a half, a quarter and so on, down to single entries.
-  bool thin_out(Part part) {
+  bool thin_out(const Part& part) {
     bool any = false;
-    for (std::size_t chunk = std::max<std::size_t>(1, part_of(best_.world, part).size()); chunk > 0; chunk /= 2) {
-      for (std::size_t begin = 0; begin < part_of(best_.world, part).size() && !time_is_up();) {
+    for (std::size_t chunk = part.size_in(best_.world); chunk > 0; chunk /= 2) {
+      for (std::size_t begin = 0; begin < part.size_in(best_.world) && !time_is_up();) {
         World smaller = best_.world;
-        Json& entries = part_of(smaller, part);
+        Json& entries = *part.in(smaller);
         entries = without_entries(entries, begin, begin + chunk);
-        if (part == Part::kBodies) drop_joints_without_bodies(smaller);
+        drop_joints_without_bodies(smaller);
         if (accept(std::move(smaller))) {
           any = true;
         } else {
@@ -168,14 +166,14 @@ void make_plain(Shrinker& shrinker) {
 
 Shrunk shrink(const World& world, const WorldOutcome& failure, const TrialRules& rules, std::uint64_t seed,
               double budget_s, const std::filesystem::path& directory, const std::atomic<bool>& stop) {
-  constexpr std::array kParts = {Part::kOrders, Part::kInjectors, Part::kBodies, Part::kJoints, Part::kStatics};
+  constexpr std::array kParts = {kOrders, kInjectors, kBodies, kJoints, kStatics};
   Shrinker shrinker(world, failure, rules, seed, budget_s, directory, stop);
   for (bool again = true; again && !shrinker.time_is_up();) {
     again = false;
-    for (const Part part : kParts) again |= shrinker.thin_out(part);
+    for (const Part& part : kParts) again |= shrinker.thin_out(part);
   }
   make_plain(shrinker);
-  shrinker.thin_out(Part::kPrototypes);
+  shrinker.thin_out(kPrototypes);
   return shrinker.best();
 }
 
