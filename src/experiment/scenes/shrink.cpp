@@ -33,7 +33,8 @@ struct Part {
 };
 constexpr Part kOrders = {&World::interference, "orders"}, kInjectors = {&World::scene, "injectors"},
                kJoints = {&World::scene, "joints"}, kBodies = {&World::scene, "bodies"},
-               kStatics = {&World::scene, "statics"}, kPrototypes = {&World::scene, "prototypes"};
+               kStatics = {&World::scene, "statics"}, kPrototypes = {&World::scene, "prototypes"},
+               kShapes = {&World::scene, "shapes"}, kMaterials = {&World::scene, "materials"};
 
 /// The entries of a list, or of a map, but for [begin, end).
 Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
@@ -146,9 +147,11 @@ void make_plain(Shrinker& shrinker) {
       try_world([&](World& world) { world.launch["physics"].erase(key); });
     }
   }
-  for (const int substeps : {1, 2}) {
-    if (shrinker.best().world.launch["time"]["substeps"] > substeps) {
-      try_world([&](World& world) { world.launch["time"]["substeps"] = substeps; });
+  for (const char* key : {"lookahead", "substeps"}) {
+    for (const int fewer : {1, 2}) {
+      if (shrinker.best().world.launch["time"][key] > fewer) {
+        try_world([&](World& world) { world.launch["time"][key] = fewer; });
+      }
     }
   }
   for (const char* key :
@@ -173,7 +176,7 @@ Shrunk shrink(const World& world, const WorldOutcome& failure, const TrialRules&
     for (const Part& part : kParts) again |= shrinker.thin_out(part);
   }
   make_plain(shrinker);
-  shrinker.thin_out(kPrototypes);
+  for (const Part& part : {kPrototypes, kShapes, kMaterials}) shrinker.thin_out(part);
   return shrinker.best();
 }
 

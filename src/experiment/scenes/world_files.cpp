@@ -13,7 +13,7 @@ std::string in_lines(const Json& world) {
     if (section != world.begin()) text += ",\n";
     text += Json(section.key()).dump() + ": ";
     const Json& entries = section.value();
-    if (!entries.is_structured() || entries.empty()) {
+    if (!entries.is_structured() || entries.empty() || !entries.begin()->is_structured()) {
       text += entries.dump();
       continue;
     }
