@@ -1,7 +1,9 @@
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -72,14 +74,14 @@ int run_case(const experiment::ScenesPlan& plan, const ScenesArguments& argument
 int run_seeds(const experiment::ScenesPlan& plan, const ScenesArguments& arguments) {
   catch_stop_signals();
   std::atomic<bool> stop = false;
+  const std::jthread watch([&stop](const std::stop_token& done) {  // a world may be made smaller for a minute
+    for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
+      if (stop_requested()) stop = true;
+    }
+  });
   ProgressBar bar;
   const bool finished = experiment::run_scenes(
-      plan, arguments.out, arguments.threads,
-      [&](const experiment::Progress& progress) {
-        bar.show(progress);
-        if (stop_requested()) stop = true;
-      },
-      stop);
+      plan, arguments.out, arguments.threads, [&](const experiment::Progress& progress) { bar.show(progress); }, stop);
   bar.end();
   const nlohmann::json sums = experiment::summarise_scenes(plan, arguments.out);
   fmt::print("{} seeds: {} differ from one node; {} late, {} missed, {} of them without a flag\n",
