@@ -67,11 +67,11 @@ TEST_F(Scenes, ASeedMeansTheSameWorldEverywhere) {
       hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
     }
   }
-  EXPECT_EQ(hash, 8652619387545058790ull);
+  EXPECT_EQ(hash, 13525904428398079825ull);
 }
 
 TEST_F(Scenes, EveryWorldIsRead) {
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     write_world(random_world(seed), folder_);
     const config::Launch launch = config::read_launch(folder_ / kLaunchFile);
     EXPECT_GE(launch.regions.size(), 2u);
@@ -161,7 +161,7 @@ TEST_F(Scenes, WithoutAurasAWorldDiffersAndShrinksToOneThatStillDoes) {
   world.scene.erase("injectors");  // not every world has all lists
   const WorldOutcome failure = outcome_of(world, blind);
   ASSERT_TRUE(failure.first_difference);
-  constexpr double kBudget_s = 8;
+  constexpr double kBudget_s = 5;
   const Shrunk shrunk = shrink(world, failure, blind, 1, kBudget_s, folder_, kGoOn);
   EXPECT_LT(shrunk.world.scene["bodies"].size(), world.scene["bodies"].size() / 2);
   EXPECT_LE(shrunk.steps, *failure.first_difference);

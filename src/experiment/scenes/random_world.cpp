@@ -48,7 +48,7 @@ Dials random_dials(Chance& chance) {
 }
 
 /// So wide a region has to be for points at the promised speed (docs/design.md, "The aura and its reach"), rounded up.
-double way_m(const Dials& dials) { return 2 * dials.promised_m_s * (dials.lookahead + 1) / dials.step_hz + 0.1; }
+double way_m(const Dials& dials) { return 3 * dials.promised_m_s * dials.lookahead / dials.step_hz + 0.1; }
 
 Json launch_of(const Dials& dials, const Json& regions, Chance& chance) {
   constexpr std::array kIterations = {4, 10, 10, 20};

@@ -167,13 +167,25 @@ void write_readme(const Shrunk& shrunk, const TrialRules& rules, std::uint64_t s
       << "runs it in virtual time. `aurasim launch launch.yaml` runs it on real nodes (without interference.json).\n";
 }
 
+/// Files that nobody can read are that seed's failure, not the end of all others.
+std::optional<WorldOutcome> outcome_in(const std::filesystem::path& folder, const TrialRules& rules, std::uint64_t seed,
+                                       const std::atomic<bool>& stop) {
+  try {
+    return run_world(folder, rules, seed, stop);
+  } catch (const std::exception& error) {
+    WorldOutcome outcome;
+    outcome.error = error.what();
+    return outcome;
+  }
+}
+
 /// The folder stays if the seed fails, and if the process does not come back from it.
 std::optional<SeedRow> run_seed(const ScenesPlan& plan, std::uint64_t seed, const std::filesystem::path& directory,
                                 const std::atomic<bool>& stop) {
   const World world = random_world(seed);
   const std::filesystem::path folder = directory / fmt::format("seed_{}", seed);
   write_world(world, folder);
-  const auto outcome = run_world(folder, plan.rules, seed, stop);
+  const std::optional<WorldOutcome> outcome = outcome_in(folder, plan.rules, seed, stop);
   if (!outcome || !outcome->has_failed()) std::filesystem::remove_all(folder);
   if (!outcome) return std::nullopt;
   if (outcome->has_failed() && plan.shrink_s > 0) {
