@@ -1,5 +1,8 @@
 #include "physics/dynamics_world.h"
 
+#include <algorithm>
+#include <span>
+
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
@@ -46,6 +49,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
 
   /// Bullet moves all bodies; those that do not turn evenly are then turned as they should.
   void integrateTransforms(btScalar dt) override {
+    if (sweeps_) sort_by_rank();
     tumbling_.clear();
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       btRigidBody& body = *m_nonStaticRigidBodies[i];
@@ -65,13 +69,24 @@ class Stepper final : public btDiscreteDynamicsWorld {
   }
 
   FirstContacts& first_contacts() { return first_contacts_; }
+  void stop_fast_bodies() { sweeps_ = true; }
 
  private:
+  /// A fast body stops at others where they are at that moment: some have been moved already. Which, may not depend on
+  /// the order in which they came here.
+  void sort_by_rank() {
+    const auto rank = [](const btRigidBody* body) { return body->getBroadphaseProxy()->m_uniqueId; };
+    btRigidBody** const first = m_nonStaticRigidBodies.size() > 0 ? &m_nonStaticRigidBodies[0] : nullptr;
+    const std::span<btRigidBody*> bodies(first, static_cast<std::size_t>(m_nonStaticRigidBodies.size()));
+    if (!std::ranges::is_sorted(bodies, {}, rank)) std::ranges::sort(bodies, {}, rank);
+  }
+
   struct Tumbling {
     btRigidBody* body;
     Rotation after;
   };
 
+  bool sweeps_ = false;
   ContactIslands* islands_ = nullptr;
   FirstContacts first_contacts_;
   std::vector<Tumbling> tumbling_;
@@ -130,6 +145,7 @@ DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings
   if (settings.friction_directions > 1) {
     bullet_->world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   }
+  if (settings.continuous) bullet_->world.stop_fast_bodies();
   bullet_->world.getSolverInfo().m_erp2 = static_cast<btScalar>(settings.contact_erp);
 }
 
