@@ -35,6 +35,8 @@ core::AuraRules aura_rules(const config::Launch& launch) {
   rules.latency_s = launch.tolerances.latency_s;
   rules.uncertainty = launch.aura.uncertainty;
   rules.gravity = launch.scene.gravity;
+  rules.sweeps = launch.physics.continuous;
+  rules.redo = launch.redoes();
   return rules;
 }
 

@@ -162,16 +162,39 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   hold_at_.reset();
   hurry_until_ = 0;
   refusals_noted_ = 0;
+  frame_times_.clear();
   paused_ = {};
   const node::StepReport& report = node_->start();
   observers_->begin_generation(generation);
   observers_->after_step(*node_, report);
-  if (recorder_) recorder_->write(report, {}, *node_);
+  record(node_->confirmed());
   began_ = std::max(pacer_.due(0), Clock::now());
 }
 
 bool NodeProcess::finished() const {
-  return stop_requested() || (stop_at_ && node_->current_step() >= *stop_at_) || fence_.closed();
+  return stop_requested() || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
+}
+
+/// The state is there, and nothing can come to question it.
+bool NodeProcess::has_reached(core::Step step) const {
+  return node_->current_step() >= step && node_->confirmed_step() >= step;
+}
+
+/// The next state in which the run ends or changes, as far as it is known.
+void NodeProcess::keep_the_end() {
+  if (stop_at_) node_->keep(*stop_at_);
+  for (const core::Order& order : run_orders_) {
+    if (core::changes_the_run(order.action)) node_->keep(order.at_step);
+  }
+}
+
+void NodeProcess::record(std::span<const node::StepReport> reports) {
+  for (const node::StepReport& report : reports) {
+    note_faults(report);
+    const auto times = frame_times_.find(report.step);
+    if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : node::FrameTimes{});
+    if (times != frame_times_.end() && !report.put_back_from) frame_times_.erase(times);
+  }
 }
 
 ExitCode NodeProcess::run_steps() {
@@ -192,7 +215,9 @@ ExitCode NodeProcess::run_steps() {
   // Whoever leaves from now on has finished, too: that is no death.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (!fenced) linger();
-  if (recorder_ && !fenced) recorder_->write_settling(node_->settle());
+  const core::Step last = stop_at_ && !fenced && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
+  record(node_->finish(last));
+  if (recorder_ && !fenced && !node_->settled()) recorder_->write_settling(node_->settle());
   if (recorder_) recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead});
   if (!fenced) enter(NodeEvent::kSettled);
   if (fenced) return ExitCode::kFenced;
@@ -231,20 +256,41 @@ bool NodeProcess::wait_until_due() {
 }
 
 void NodeProcess::compute_step() {
+  const auto died = [](const auto& seen) { return seen.second.lost; };
+  if (std::ranges::any_of(control_.statuses(), died)) node_->give_up_redo();
   const auto begin = Clock::now();
+  keep_the_end();
   const node::StepReport& report = node_->step();
+  if (report.put_back_from) return note_redo(report);
   observers_->after_step(*node_, report);
   command_server_->after_step(report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
-  if (recorder_) recorder_->write(report, {frame_ms, wait_ms_}, *node_);
+  frame_times_[report.step] = {frame_ms, wait_ms_};
+  record(node_->confirmed());
   wait_ms_ = 0;
   computed_at_ = Clock::now();
-  note_faults(report);
+  waiting_.clear();
   note(report, frame_ms);
   publish_running();
   apply_orders();
+}
+
+/// All nodes do so after the same state. Observers stay with what they have seen until the run is there again.
+void NodeProcess::note_redo(const node::StepReport& report) {
+  const core::TogetherPair first = report.put_back_for.empty() ? core::TogetherPair{} : report.put_back_for.front();
+  notice_ =
+      fmt::format("put back from state {} to {} (redo {}): bodies {} and {}{} have touched on two nodes",
+                  *report.put_back_from, report.step, node_->redos(), core::value_of(first.a), core::value_of(first.b),
+                  report.put_back_for.size() > 1 ? fmt::format(" and {} more pairs", report.put_back_for.size() - 1)
+                                                 : std::string());
+  spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+  status_.redos = node_->redos();
+  observers_->put_back();
+  record(node_->confirmed());
+  computed_at_ = Clock::now();
+  publish_running();
 }
 
 void NodeProcess::execute_commands() {

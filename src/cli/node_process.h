@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,11 @@ class NodeProcess {
   void wait_until_all_stand();
   void connect_anew(const dds::TransportSettings& settings);
   bool finished() const;
+  bool has_reached(core::Step step) const;
+  void keep_the_end();
+  bool is_about_to_change() const;
+  void record(std::span<const node::StepReport> reports);
+  void note_redo(const node::StepReport& report);
   void linger();
   dds::RunCommand with_clock_of_region_zero(dds::RunCommand start);
   void compare_clocks();
@@ -121,6 +127,7 @@ class NodeProcess {
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;
+  std::map<core::Step, node::FrameTimes> frame_times_;  ///< of states that are not recorded yet
   core::Step hurry_until_ = 0;       ///< somebody waits for this state: no slower than in real time until then
   std::size_t refusals_noted_ = 0;   ///< of the protocol's
   std::uint64_t broken_bodies_ = 0;  ///< taken out here since the start

@@ -98,8 +98,17 @@ void NodeProcess::reset_if_due() {
   begin_generation(reset.generation + 1, reset);
 }
 
+/// The state of a change has been computed, and is still to be confirmed: what is ordered now would not reach all
+/// before they stop for it.
+bool NodeProcess::is_about_to_change() const {
+  return std::ranges::any_of(run_orders_, [this](const core::Order& order) {
+    return core::changes_the_run(order.action) && node_->current_step() >= order.at_step;
+  });
+}
+
 /// The live node of the lowest region gives commands their place in time.
 void NodeProcess::serve_clients() {
+  if (is_about_to_change()) return;
   const auto& statuses = control_.statuses();
   const auto is_ours = [this](const dds::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
   RunView run;
@@ -142,8 +151,12 @@ void NodeProcess::change_rate(double rate) {
 /// Orders about the run as a whole whose state has been computed.
 void NodeProcess::apply_orders() {
   std::erase_if(run_orders_, [this](const core::Order& order) {
-    if (node_->current_step() < order.at_step) return false;
-    if (core::changes_the_run(order.action)) change_ = order;
+    const bool changes = core::changes_the_run(order.action);
+    if (changes ? !has_reached(order.at_step) : node_->current_step() < order.at_step) return false;
+    if (changes) {
+      record(node_->finish(order.at_step));
+      change_ = order;
+    }
     return true;
   });
 }
@@ -193,6 +206,7 @@ void NodeProcess::wait_until_all_stand() {
 
 /// Waits until every body that was on its way to us is here.
 void NodeProcess::settle_all() {
+  if (node_->settled()) return;
   const auto deadline = Clock::now() + kPatienceWithOthers;
   while (!node_->ready_to_settle()) {
     if (Clock::now() > deadline || stop_requested()) {
@@ -273,6 +287,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   refusals_noted_ = 0;
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
   observers_->after_step(*node_, report);
+  record(node_->confirmed());
   pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
   dds::WorldMap map = world_map(launch_);
   map.agreement = status_.agreement;

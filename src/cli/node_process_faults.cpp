@@ -51,7 +51,6 @@ void NodeProcess::note_waiting() {
 
 /// Bodies that no world can bear (core/limits.h).
 void NodeProcess::note_faults(const node::StepReport& report) {
-  waiting_.clear();
   for (const physics::Removal& removal : report.removals) {
     if (removal.fault.empty()) continue;
     ++broken_bodies_;

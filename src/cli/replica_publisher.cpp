@@ -25,13 +25,18 @@ void ReplicaPublisher::begin_generation(core::Generation generation) {
   published_ = -1;
 }
 
+void ReplicaPublisher::put_back() {
+  if (feed_) feed_->forget();
+  last_key_frame_ = {};
+}
+
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
   if (!writer_.anybody_listens()) {
     feed_->forget();
     return;
   }
   feed_->note(report);
-  if (report.step % tick_steps_ == 0) publish(node);
+  if (report.step % tick_steps_ == 0 && report.step > published_) publish(node);
 }
 
 void ReplicaPublisher::while_paused(node::Node& node) {

@@ -17,6 +17,8 @@ class ReplicaPublisher {
   ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   void begin_generation(core::Generation generation);
+  /// The run goes back: nothing is published until it is where it was, and then everything anew.
+  void put_back();
   /// The bodies that are here, whoever listens, as a key frame of `generation`.
   void publish_census(node::Node& node, core::Generation generation);
   void use_map(std::uint64_t map_version) { map_version_ = map_version; }

@@ -186,6 +186,7 @@ void add_settings(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(launch.time.substeps));
   d.bytes(static_cast<std::uint64_t>(launch.time.sync));
   d.bytes(static_cast<std::uint64_t>(launch.time.pace));
+  d.bytes(launch.redoes());
   d.bytes(static_cast<std::uint64_t>(launch.lookahead()));
   d.add(launch.tolerances.speed_m_s);
   d.add(launch.tolerances.latency_s);

@@ -110,6 +110,11 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 
 }  // namespace
 
+bool Launch::redoes() const {
+  const bool on = time.redo == Redo::kOn || (time.redo == Redo::kAuto && time.sync == core::SyncMode::kDeterministic);
+  return on && regions.size() > 1;
+}
+
 int Launch::lookahead() const {
   if (time.lookahead) return *time.lookahead;
   const double steps = (tolerances.frame_s + tolerances.latency_s) * time.step_hz;

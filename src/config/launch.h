@@ -19,6 +19,8 @@ namespace aurasim::config {
 
 enum class Pace { kWall, kNone };
 enum class Origin { kWorld, kRegion };
+/// kAuto: where the run is to have the bits of one node.
+enum class Redo { kAuto, kOn, kOff };
 
 struct Time {
   double step_hz = 60;
@@ -26,6 +28,7 @@ struct Time {
   core::SyncMode sync = core::SyncMode::kBounded;
   std::optional<int> lookahead;  ///< K; nothing: from the tolerances
   Pace pace = Pace::kWall;
+  Redo redo = Redo::kAuto;
 };
 
 struct Tolerances {
@@ -108,6 +111,8 @@ struct Launch {
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
+  /// Is every state checked, and computed again where two bodies touched on two hosts?
+  bool redoes() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;
 };

@@ -10,8 +10,6 @@
 namespace aurasim::config {
 namespace {
 
-constexpr std::size_t kMostNeighbours = 64;
-
 double largest_radius_m(const core::Scene& scene) {
   double radius = 0;
   for (const core::Prototype& prototype : scene.prototypes) {
@@ -30,17 +28,6 @@ core::TightAura top_speed_aura(const Launch& launch) {
   return {rules, no_shapes};
 }
 
-void check_neighbour_count(const Field& regions, const Launch& launch) {
-  for (std::size_t i = 0; i < launch.regions.size(); ++i) {
-    const core::RegionId id{static_cast<std::uint32_t>(i)};
-    const std::size_t count = launch.regions.neighbours(id, launch.neighbour_distance_m).size();
-    if (count <= kMostNeighbours) continue;
-    regions.complain(fmt::format("region {} has {} neighbours within {:.3g} m, allowed: at most {}", i, count,
-                                 launch.neighbour_distance_m, kMostNeighbours));
-    return;
-  }
-}
-
 }  // namespace
 
 double reach_m(const Launch& launch) { return top_speed_aura(launch).reach(1) + 2 * largest_radius_m(launch.scene); }
@@ -57,8 +44,12 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
                                  launch.lookahead(), kLargestLookahead));
     return;
   }
+  if (launch.time.redo == Redo::kOn && launch.time.sync == core::SyncMode::kFreeRunning) {
+    regions.complain("time.redo is on, allowed: auto or off where time.sync is free_running: nodes do not agree there");
+    return;
+  }
   const double reach = reach_m(launch);
-  if (launch.regions.narrowest_m() < reach) {
+  if (launch.regions.narrowest_m() < reach && !launch.redoes()) {
     regions.complain(fmt::format(
         "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
         "lookahead {}, {} substeps, largest bounding radius {:.4g} m",
@@ -76,7 +67,6 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
                     *neighbour_distance_m, zone));
     return;
   }
-  check_neighbour_count(regions, launch);
 }
 
 }  // namespace aurasim::config

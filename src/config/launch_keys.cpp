@@ -44,6 +44,10 @@ const KeysOf<Time>& time_keys() {
                    "K, how many steps neighbours may be apart; auto: ceil((tolerances.frame + tolerances.latency) * "
                    "step_hz)")
               .usual("auto"),
+          optional("redo", &Time::redo, choice<Redo>({{"auto", Redo::kAuto}, {"on", Redo::kOn}, {"off", Redo::kOff}}),
+                   "on: every state is checked, and where two bodies have touched on two hosts all nodes go back and "
+                   "compute on with the two on one: the result is that of one node; off: such a touch is counted, if "
+                   "it is seen; auto: on where sync is deterministic. Not for free_running"),
           optional("pace", &Time::pace, choice<Pace>({{"wall", Pace::kWall}, {"none", Pace::kNone}}),
                    "wall: a simulated second takes a second of the clock; none: as fast as it goes"),
       });
@@ -76,7 +80,7 @@ const KeysOf<Aura>& aura_keys() {
                                            {"tight", core::AuraKind::kTight},
                                            {"swept", core::AuraKind::kSwept}}),
                    "swept: along the path of the body; tight and thesis: a sphere around it, by our and by the thesis' "
-                   "formula; none: the control that must fail"),
+                   "formula; none: the control that must fail, with time.redo off"),
           optional("uncertainty", &Aura::uncertainty, number(Range::from_to(0, 10)),
                    "U, share of its speed by which a body may leave its foreseen path before that counts as broken"),
       });

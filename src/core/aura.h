@@ -29,6 +29,9 @@ struct AuraRules {
   double uncertainty = 0.5;        ///< U: share of its speed by which a body may leave its predicted path
   double contact_margin_m = 0.03;  ///< contacts begin at 0.02 (physics/), shapes are given to 1 mm, and a little more
   double reach_scale = 1;          ///< tests only: auras that are a little too small must fail
+  double check_scale = 1;          ///< tests only: a check without its margin must miss something
+  bool sweeps = false;             ///< physics stops fast bodies at what is in their way, without a contact
+  bool redo = false;               ///< what was computed with two bodies apart that touched is computed again
   Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
 };
 

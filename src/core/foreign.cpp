@@ -59,6 +59,13 @@ void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura
   most_blur_m_ = std::max(most_blur_m_, f.path.blur_m);
 }
 
+std::optional<std::uint32_t> ForeignBodies::find(BodyId id) const {
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    if (bodies_[i].id == id && !bodies_[i].ghost) return i;
+  }
+  return std::nullopt;
+}
+
 void ForeignBodies::build() {
   paths_.clear();
   for (const Foreign& foreign : bodies_) paths_.push_back(foreign.path);

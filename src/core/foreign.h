@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -42,6 +43,8 @@ class ForeignBodies {
   const Foreign& operator[](std::uint32_t i) const { return bodies_[i]; }
   std::span<const ForeignBlock> blocks() const { return blocks_; }
   const NearIndex& near() const { return near_; }
+  /// The index of a body; nothing if no aura tells of it.
+  std::optional<std::uint32_t> find(BodyId id) const;
   double oldest_steps() const { return oldest_steps_; }
   double most_blur_m() const { return most_blur_m_; }
 

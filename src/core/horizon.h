@@ -37,6 +37,23 @@ constexpr int impact(int lookahead, int hops) { return announcing(lookahead, hop
 /// what is decided then takes effect 2K later.
 constexpr int lookahead_at_start(int lookahead) { return 4 * lookahead; }
 
+/// Between an introduction and the state from which on the two listen to each other: both have received it, and have
+/// had half a second, at 60 steps a second, to find each other on the network.
+constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
+
+// Checking, and computing again.
+
+/// A state is checked so many states later: the others' are here K states later, and whoever joins late has made up its
+/// states after K, and published them K - 1 later.
+constexpr Step check(int lookahead) { return 2 * lookahead - 1; }
+/// States between two cuts.
+inline constexpr Step kBetweenCuts = 30;
+/// A cut is so much older than the touch that it is to prevent: the pair comes to one host through at most so many
+/// pulls, each of which is decided a state after what it follows from is known.
+constexpr Step before_touch(int lookahead) { return 2 + kMostHops * (lookahead + 1); }
+/// So long after their touch a pair is held together: from then on contacts and auras tell.
+constexpr Step together_after_touch(int lookahead) { return 2 * lookahead + 2; }
+
 // Remembering.
 
 /// A body just sent away stays a ghost until the first aura of its new host can have come: there and back.

@@ -7,12 +7,12 @@
 namespace aurasim::core {
 namespace {
 
-/// Moves the messages that are for a later generation to the front and cuts the rest off.
+/// Moves the messages that are for later, for another generation or another redo, to the front and cuts the rest off.
 template <class Message, class Take>
-void take_all(std::vector<Message>& messages, Generation generation, Take take) {
+void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Take take) {
   auto kept = messages.begin();
   for (Message& message : messages) {
-    if (message.generation > generation) {
+    if (std::pair(message.generation, message.redo) > std::pair(settings.generation, settings.redo)) {
       if (&*kept != &message) *kept = std::move(message);
       ++kept;
     } else {
@@ -29,31 +29,59 @@ Intake::Intake(const IntakeSettings& settings, const Vicinity& vicinity, Departu
   for (const RegionId id : vicinity.neighbours) neighbours_.emplace_back(id, vicinity.self, settings.start);
 }
 
-Neighbour* Intake::find(RegionId id) {
+const Neighbour* Intake::find(RegionId id) const {
   const auto found = std::lower_bound(neighbours_.begin(), neighbours_.end(), id,
                                       [](const Neighbour& n, RegionId region) { return n.id() < region; });
   return found != neighbours_.end() && found->id() == id ? &*found : nullptr;
 }
 
-bool Intake::belongs(RegionId source, Generation generation, std::uint64_t map_version) {
-  const Neighbour* neighbour = find(source);
-  if (neighbour && neighbour->alive() && generation == settings_.generation && map_version == map_version_) return true;
+Neighbour* Intake::find(RegionId id) { return const_cast<Neighbour*>(std::as_const(*this).find(id)); }
+
+template <class Message>
+bool Intake::belongs(const Message& message, std::uint64_t map_version) {
+  const Neighbour* neighbour = find(message.source);
+  const bool is_current = message.generation == settings_.generation && map_version == map_version_;
+  if (neighbour && neighbour->alive() && is_current) return message.redo == settings_.redo;
   ++counters_.strangers;
   return false;
 }
 
+/// A region that has been introduced to us may have received that before us.
+template <class Message>
+bool Intake::is_early(const Message& message) const {
+  const bool is_region = value_of(message.source) < vicinity_.map.size() && message.source != vicinity_.self;
+  return is_region && find(message.source) == nullptr && message.generation == settings_.generation &&
+         message.redo == settings_.redo && message.map_version == map_version_;
+}
+
+/// What nobody has asked for is not kept for ever.
+void Intake::forget_early(Step before) {
+  std::erase_if(early_.auras, [before](const AuraBatch& batch) { return batch.stamp < before; });
+  std::erase_if(early_.hand_offs, [before](const HandOff& hand_off) { return hand_off.stamp < before; });
+}
+
+void Intake::listen_to(RegionId region, Step begin) {
+  if (find(region) != nullptr) return;
+  const auto place = std::lower_bound(neighbours_.begin(), neighbours_.end(), region,
+                                      [](const Neighbour& n, RegionId id) { return n.id() < id; });
+  neighbours_.insert(place, Neighbour(region, vicinity_.self, begin));
+  Inbox came = std::exchange(early_, {});
+  accept(came);
+}
+
 void Intake::accept(Inbox& inbox) {
-  take_all(inbox.auras, settings_.generation, [this](AuraBatch& batch) {
-    if (!belongs(batch.source, batch.generation, batch.map_version)) return;
+  take_all(inbox.auras, settings_, [this](AuraBatch& batch) {
+    if (is_early(batch)) return early_.auras.push_back(std::move(batch));
+    if (!belongs(batch, batch.map_version)) return;
     Neighbour& neighbour = *find(batch.source);
     if (!neighbour.accept(std::move(batch))) ++counters_.copies;
   });
-  take_all(inbox.hand_offs, settings_.generation, [this](HandOff& hand_off) { accept(hand_off); });
-  take_all(inbox.acks, settings_.generation, [this](const HandOffAck& ack) {
-    if (ack.destination != vicinity_.self || !belongs(ack.source, ack.generation, map_version_)) return;
+  take_all(inbox.hand_offs, settings_, [this](HandOff& hand_off) { accept(hand_off); });
+  take_all(inbox.acks, settings_, [this](const HandOffAck& ack) {
+    if (ack.destination != vicinity_.self || !belongs(ack, map_version_)) return;
     if (!departures_.acknowledge(ack.source, ack.sequence)) ++counters_.copies;
   });
-  take_all(inbox.refusals, settings_.generation, [this](const Refusal& refusal) { accept(refusal); });
+  take_all(inbox.refusals, settings_, [this](const Refusal& refusal) { accept(refusal); });
   for (const PeerEvent& event : inbox.peers) accept(event);
   inbox.peers.clear();
   receive_deaths();
@@ -61,7 +89,8 @@ void Intake::accept(Inbox& inbox) {
 
 void Intake::accept(HandOff& hand_off) {
   if (hand_off.destination != vicinity_.self) return;
-  if (!belongs(hand_off.source, hand_off.generation, hand_off.map_version)) return;
+  if (is_early(hand_off)) return early_.hand_offs.push_back(std::move(hand_off));
+  if (!belongs(hand_off, hand_off.map_version)) return;
   if (arrivals_.first_copy(hand_off.source, hand_off.sequence)) {
     waiting_.push_back(std::move(hand_off));
     return;
@@ -71,7 +100,9 @@ void Intake::accept(HandOff& hand_off) {
     return h.source == hand_off.source && h.sequence == hand_off.sequence;
   });
   // A copy of one adopted long ago: its acknowledgement was lost. One that still waits has not been adopted.
-  if (!waits) acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence});
+  if (!waits) {
+    acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence, settings_.redo});
+  }
 }
 
 /// What it said is lost, and what it says later is of no use without it: to wait for it would be to wait for ever.
@@ -115,8 +146,13 @@ void Intake::receive_deaths() {
   }
 }
 
+/// The stamp up to which everything has to be here.
+Step Intake::needed_for(Step n) const {
+  return settings_.knows_start ? std::max(n - settings_.lookahead, settings_.start) : n - settings_.lookahead;
+}
+
 bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
-  const Step needed = n - settings_.lookahead;
+  const Step needed = needed_for(n);
   if (!neighbour.alive() || needed < settings_.start) return false;
   return neighbour.received() < needed || !arrivals_.has_all_up_to(neighbour.id(), neighbour.hand_offs_until(needed));
 }
@@ -136,15 +172,15 @@ std::vector<RegionId> Intake::missing(Step n) const {
 
 /// Stamps up to this one take effect in state `n`: exactly K steps late in deterministic mode, else as soon as they
 /// are here, but never before the state that they describe.
-Step Intake::effect_limit(Step n) const {
-  return settings_.sync == SyncMode::kDeterministic ? n - settings_.lookahead : n - 1;
-}
+Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
-std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations) {
+std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen) {
   const Step limit = effect_limit(n);
   for (Neighbour& neighbour : neighbours_) {
     if (!neighbour.alive()) continue;
-    neighbour.apply_until(limit);
+    neighbour.apply_until(limit, [&](const Neighbour& now) {
+      if (seen) seen(now);
+    });
     const Step age = n - neighbour.applied();
     if (age > settings_.lookahead && n - settings_.start > settings_.lookahead) {
       violations.add({ViolationKind::kLatency, n, neighbour.id(), {}, double(age), double(settings_.lookahead)});
@@ -152,6 +188,8 @@ std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations) {
   }
   adopt_due(limit, n, violations);
   reclaim(n, violations);
+  constexpr Step kEarlyMemory = 256;
+  forget_early(n - kEarlyMemory);
   arrivals_.forget_adoptions_before(n - settings_.adoption_memory_steps);
   return std::exchange(adoptions_, {});
 }
@@ -166,7 +204,7 @@ void Intake::adopt_due(Step limit, Step n, ViolationLog& violations) {
       violations.add(
           {ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp), double(settings_.lookahead)});
     }
-    acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence});
+    acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence, settings_.redo});
     adopt(*due_end, n, false);
   }
   waiting_.erase(waiting_.begin(), due_end);
@@ -189,7 +227,7 @@ void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
 void Intake::reclaim(Step n, ViolationLog& violations) {
   const auto all_know = [this](RegionId dead) {
     return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
-      return !q.alive() || !vicinity_.are_neighbours(q.id(), dead) || q.holds_for_dead(dead);
+      return !q.alive() || !vicinity_.are_near(q.id(), dead) || q.holds_for_dead(dead);
     });
   };
   const auto claims = [](std::span<const BodyEpoch> claims, const BodyRecord& body) {
@@ -231,6 +269,24 @@ std::vector<Order> Intake::take_orders() {
     orders.insert(orders.end(), received.begin(), received.end());
   }
   return orders;
+}
+
+std::vector<Neighbour::Introduced> Intake::take_introductions() {
+  std::vector<Neighbour::Introduced> introductions;
+  for (Neighbour& neighbour : neighbours_) {
+    const std::vector<Neighbour::Introduced> received = neighbour.take_introductions();
+    introductions.insert(introductions.end(), received.begin(), received.end());
+  }
+  return introductions;
+}
+
+std::vector<Alarm> Intake::take_alarms() {
+  std::vector<Alarm> alarms;
+  for (Neighbour& neighbour : neighbours_) {
+    const std::vector<Alarm> received = neighbour.take_alarms();
+    alarms.insert(alarms.end(), received.begin(), received.end());
+  }
+  return alarms;
 }
 
 void Intake::fill(Outbox& outbox, Step stamp) {

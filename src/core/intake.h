@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,9 +18,11 @@ namespace aurasim::core {
 
 struct IntakeSettings {
   Generation generation = 0;
+  std::uint32_t redo = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
   Step start = 0;                     ///< the first state that anybody publishes
+  bool knows_start = false;           ///< what is published of it takes effect in the next: nothing is under way
   Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
 };
 
@@ -52,7 +55,9 @@ class Intake {
   std::vector<RegionId> missing(Step n) const;
 
   /// Lets messages take effect before state `n` is computed; who joins, in the order in which they join.
-  std::vector<Adoption> receive(Step n, ViolationLog& violations);
+  /// `seen` is told of each batch that takes effect.
+  using Seen = std::function<void(const Neighbour&)>;
+  std::vector<Adoption> receive(Step n, ViolationLog& violations, const Seen& seen = {});
 
   std::span<const Neighbour> neighbours() const { return neighbours_; }
   std::vector<RegionId> dead_regions() const;
@@ -65,14 +70,24 @@ class Intake {
 
   /// Orders that took effect with the last receive(), by neighbour, each neighbour's in sequence.
   std::vector<Order> take_orders();
+  /// Likewise the alarms.
+  std::vector<Alarm> take_alarms();
+  std::vector<Neighbour::Introduced> take_introductions();
+  /// Another region is heard, from its state `begin` on.
+  void listen_to(RegionId region, Step begin);
 
   /// For the step's outbox: acknowledgements, deaths and claims. Acks are given out once, claims as long as useful.
   void fill(Outbox& outbox, Step stamp);
 
  private:
   Neighbour* find(RegionId id);
+  const Neighbour* find(RegionId id) const;
   bool keeps_waiting(const Neighbour& neighbour, Step n) const;
-  bool belongs(RegionId source, Generation generation, std::uint64_t map_version);
+  template <class Message>
+  bool belongs(const Message& message, std::uint64_t map_version);
+  template <class Message>
+  bool is_early(const Message& message) const;
+  void forget_early(Step before);
   void accept(HandOff& hand_off);
   void accept(const Refusal& refusal);
   void accept(const PeerEvent& event);
@@ -81,12 +96,14 @@ class Intake {
   void adopt_due(Step limit, Step n, ViolationLog& violations);
   void adopt(HandOff& hand_off, Step n, bool reclaimed);
   void reclaim(Step n, ViolationLog& violations);
+  Step needed_for(Step n) const;
   Step effect_limit(Step n) const;
 
   IntakeSettings settings_;
   const Vicinity& vicinity_;
   std::uint64_t map_version_;
   std::vector<Neighbour> neighbours_;
+  Inbox early_;  ///< of regions that we do not listen to yet
   DepartureLedger& departures_;
   ArrivalLedger arrivals_;
   std::vector<HandOff> waiting_;     ///< received, not yet in effect

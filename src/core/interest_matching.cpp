@@ -19,8 +19,8 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
 
 }  // namespace
 
-InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity)
-    : aura_(aura), vicinity_(vicinity), clusters_(aura) {}
+InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together)
+    : aura_(aura), vicinity_(vicinity), together_(together), clusters_(aura) {}
 
 void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                             std::span<const AuraRecord> ghosts, const Ranks& ranks) {
@@ -29,7 +29,8 @@ void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour>
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions(hops_each);
-  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, snapshot.joints, hops_each);
+  bring_together(snapshot);
+  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, joined_, hops_each);
   complete_near_boundaries();
   pair_up();
   widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
@@ -106,6 +107,32 @@ void InterestMatching::mark_regions(int hops_each) {
 
 void InterestMatching::complete_near_boundaries() {
   for (const std::uint32_t i : near_) clusters_.complete(i);
+  for (const std::uint32_t i : expecting_) clusters_.complete(i);
+}
+
+std::optional<std::uint32_t> InterestMatching::own_index(BodyId id) const {
+  const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+  if (found == ids_.end() || *found != id) return std::nullopt;
+  return static_cast<std::uint32_t>(found - ids_.begin());
+}
+
+/// Pairs that a redo brings together: of ours as if a joint held them, with others' as if their auras met.
+void InterestMatching::bring_together(const Snapshot& snapshot) {
+  joined_.assign(snapshot.joints.begin(), snapshot.joints.end());
+  expecting_.clear();
+  together_pairs_.clear();
+  for (const TogetherPair& pair : together_) {
+    if (pair.until < snapshot.step) continue;
+    const std::optional<std::uint32_t> a = own_index(pair.a);
+    const std::optional<std::uint32_t> b = own_index(pair.b);
+    if (a && b) joined_.push_back({*a, *b});
+    for (const auto& [own, other] : {std::pair(a, pair.b), std::pair(b, pair.a)}) {
+      if (!own) continue;
+      expecting_.push_back(*own);
+      if (const std::optional<std::uint32_t> foreign = foreign_.find(other))
+        together_pairs_.push_back({*foreign, *own});
+    }
+  }
 }
 
 /// Foreign auras and our bodies near them. A cluster that is completed here, or hit, may turn out faster, and then
@@ -113,6 +140,7 @@ void InterestMatching::complete_near_boundaries() {
 void InterestMatching::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
+  for (const std::uint32_t i : expecting_) noticed_[i] = 1;
   clusters_.take_grown(grown_);  // seen below as they are now
   changed_.clear();
   for (const ForeignBlock& block : foreign_.blocks()) notice(block);
@@ -277,6 +305,17 @@ void InterestMatching::judge(const Ranks& ranks) {
   expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
   for (const Pair& pair : pairs_) judge(pair, ranks);
+  for (const Pair& pair : together_pairs_) judge_touched(pair, ranks);
+}
+
+/// The host of a body that ours meets keeps it, or gets ours.
+void InterestMatching::judge_touched(const Pair& pair, const Ranks& ranks) {
+  const RegionId host = foreign_[pair.foreign].host;
+  const std::uint32_t cluster = clusters_.of(pair.own);
+  touched_[cluster] = 1;
+  const bool pulls = host != pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), host) &&
+                     ranks.pulls(host) && ranks.outranks(host, pulled_to_[cluster]);
+  if (pulls) pulled_to_[cluster] = host;
 }
 
 bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/messages.h"
 #include "core/neighbour.h"
 #include "core/ranks.h"
+#include "core/redo.h"
 #include "core/vicinity.h"
 
 namespace aurasim::core {
@@ -24,7 +26,8 @@ class InterestMatching {
     std::uint32_t own;
   };
 
-  InterestMatching(const Aura& aura, const Vicinity& vicinity);
+  /// `together`: pairs that share a host until their time, as if their auras met; a < b.
+  InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together = {});
 
   /// Looks at a state, given what the neighbours have published and our own ghosts (bodies just sent away).
   void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts,
@@ -51,6 +54,8 @@ class InterestMatching {
   std::span<const Pair> pairs() const { return pairs_; }
   const Foreign& foreign(std::uint32_t i) const { return foreign_[i]; }
 
+  const ForeignBodies& all_foreign() const { return foreign_; }
+  double others_top_speed() const { return others_top_speed_; }
   std::size_t foreign_auras() const { return foreign_.size(); }
   double top_speed() const { return clusters_.near().top_speed(); }
   double top_radius() const { return clusters_.near().top_radius(); }
@@ -93,11 +98,18 @@ class InterestMatching {
   std::size_t take_hits(std::size_t first);
   void judge(const Ranks& ranks);
   void judge(const Pair& pair, const Ranks& ranks);
+  void judge_touched(const Pair& pair, const Ranks& ranks);
+  void bring_together(const Snapshot& snapshot);
+  std::optional<std::uint32_t> own_index(BodyId id) const;
   bool meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps = 0) const;
   double band(double speed_m_s, int hops) const;
 
   const Aura& aura_;
   const Vicinity& vicinity_;
+  std::span<const TogetherPair> together_;
+  std::vector<Contact> joined_;           ///< joints, and pairs of ours that belong together
+  std::vector<std::uint32_t> expecting_;  ///< ours whose partner is to come to the same host
+  std::vector<Pair> together_pairs_;      ///< with those that others host
   Clusters clusters_;
   std::vector<BodyId> ids_;
   std::vector<Path> paths_;

@@ -9,6 +9,7 @@ namespace aurasim::core {
 std::unique_ptr<const Aura> make_aura(const AuraRules& rules, const ClearanceQuery& clearance) {
   switch (rules.kind) {
     case AuraKind::kNone:
+      if (rules.redo) return std::make_unique<BlindAura>(rules, clearance);
       return std::make_unique<NoneAura>(rules, clearance);
     case AuraKind::kThesis:
       return std::make_unique<ThesisAura>(rules, clearance);

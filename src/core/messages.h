@@ -8,8 +8,10 @@
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/introduction.h"
 #include "core/order.h"
 #include "core/ranks.h"
+#include "core/redo.h"
 
 namespace aurasim::core {
 
@@ -53,6 +55,7 @@ struct BodyEpoch {
 struct AuraBatch {
   RegionId source{};
   Generation generation = 0;
+  std::uint32_t redo = 0;  ///< how often this generation has been put back
   Step stamp = 0;
   std::uint64_t map_version = 0;
   bool full = false;  ///< `updates` is the whole set; forget what was known of this source
@@ -64,9 +67,13 @@ struct AuraBatch {
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;
-  std::vector<RegionId> dead;     ///< regions that the source holds for dead
-  std::vector<BodyEpoch> claims;  ///< bodies adopted from regions now dead, so that nobody takes them back
-  std::vector<Order> orders;      ///< received since the last batch, in sequence
+  std::vector<RegionId> dead;               ///< regions that the source holds for dead
+  std::vector<BodyEpoch> claims;            ///< bodies adopted from regions now dead, so that nobody takes them back
+  std::vector<Order> orders;                ///< received since the last batch, in sequence
+  std::vector<Alarm> alarms;                ///< raised or received since the last batch
+  std::vector<Introduction> introductions;  ///< regions that are to listen to each other, as of this state
+  /// States earlier than the stamp, made up for bodies that have joined late: for whoever checks those states.
+  std::vector<AuraRecord> past;
 };
 
 enum class HandOffReason : std::uint8_t {
@@ -79,6 +86,7 @@ struct HandOff {
   RegionId source{};
   RegionId destination{};
   Generation generation = 0;
+  std::uint32_t redo = 0;
   Step stamp = 0;
   std::uint64_t map_version = 0;
   std::uint64_t sequence = 0;
@@ -93,6 +101,7 @@ struct HandOffAck {
   Generation generation = 0;
   Step stamp = 0;
   std::uint64_t sequence = 0;  ///< of the hand-off it answers
+  std::uint32_t redo = 0;
 };
 
 enum class PeerChange : std::uint8_t { kLost, kJoined };
@@ -114,6 +123,7 @@ struct Refusal {
   Step stamp = 0;
   MessageKind kind = MessageKind::kAura;
   std::string_view why;  ///< a word that lives for ever
+  std::uint32_t redo = 0;
 };
 
 /// What a transport delivered since the last look, in order of arrival.
@@ -129,6 +139,8 @@ struct Inbox {
 
 /// What one step of one node publishes. The aura batch goes to every neighbour, the rest to its destination.
 struct Outbox {
+  std::vector<RegionId> listeners;  ///< to whom the batch goes, ascending
+  std::vector<RegionId> expected;   ///< that will soon be listeners, too
   AuraBatch aura;
   std::vector<HandOff> hand_offs;
   std::vector<HandOffAck> acks;

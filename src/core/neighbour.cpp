@@ -36,13 +36,6 @@ void Neighbour::note_marks(const AuraBatch& batch) {
   claims_ = batch.claims;
 }
 
-void Neighbour::apply_until(Step last) {
-  last = std::min(last, received_);
-  auto due_end = waiting_.begin();
-  for (; due_end != waiting_.end() && due_end->stamp <= last; ++due_end) apply(*due_end);
-  waiting_.erase(waiting_.begin(), due_end);
-}
-
 void Neighbour::apply(AuraBatch& batch) {
   applied_ = batch.stamp;
   while (marks_.size() > 1 && marks_[1].stamp < applied_ - kGateHistory) marks_.erase(marks_.begin());
@@ -51,6 +44,9 @@ void Neighbour::apply(AuraBatch& batch) {
   violations_ = batch.violations;
   if (batch.full) auras_.clear();
   orders_.insert(orders_.end(), batch.orders.begin(), batch.orders.end());
+  alarms_.insert(alarms_.end(), batch.alarms.begin(), batch.alarms.end());
+  for (const Introduction& pair : batch.introductions) introductions_.push_back({batch.stamp, pair});
+  past_ = std::move(batch.past);
   merge(batch);
 }
 
@@ -83,6 +79,10 @@ std::uint64_t Neighbour::hand_offs_until(Step stamp) const {
 }
 
 std::vector<Order> Neighbour::take_orders() { return std::exchange(orders_, {}); }
+
+std::vector<Alarm> Neighbour::take_alarms() { return std::exchange(alarms_, {}); }
+
+std::vector<Neighbour::Introduced> Neighbour::take_introductions() { return std::exchange(introductions_, {}); }
 
 void Neighbour::mark_dead() {
   alive_ = false;

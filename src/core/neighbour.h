@@ -1,6 +1,7 @@
 // What one neighbour has published: its aura batches in order of stamp, and the auras that they add up to.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,20 @@ class Neighbour {
   Step applied() const { return applied_; }
 
   /// Lets the received batches with stamp <= `last` take effect, in order.
-  void apply_until(Step last);
+  /// Calls `applied(*this)` after each.
+  template <class Applied>
+  void apply_until(Step last, Applied&& applied) {
+    last = std::min(last, received_);
+    auto due_end = waiting_.begin();
+    for (; due_end != waiting_.end() && due_end->stamp <= last; ++due_end) {
+      apply(*due_end);
+      applied(*this);
+    }
+    waiting_.erase(waiting_.begin(), due_end);
+  }
+  void apply_until(Step last) {
+    apply_until(last, [](const Neighbour&) {});
+  }
 
   /// Sequence of its last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
   std::uint64_t hand_offs_until(Step stamp) const;
@@ -35,6 +49,8 @@ class Neighbour {
   void mark_dead();
 
   const std::vector<AuraRecord>& auras() const { return auras_; }  ///< ascending id
+  /// Earlier states of bodies that have joined it late; of the last batch in effect.
+  const std::vector<AuraRecord>& past() const { return past_; }
   double top_speed_m_s() const { return top_speed_m_s_; }
   double top_radius_m() const { return top_radius_m_; }
   std::uint64_t violations() const { return violations_; }
@@ -45,6 +61,12 @@ class Neighbour {
   const std::vector<BodyEpoch>& claims() const { return claims_; }
   /// Orders in the batches that took effect since the last call.
   std::vector<Order> take_orders();
+  std::vector<Alarm> take_alarms();
+  struct Introduced {
+    Step stamp = 0;
+    Introduction pair;
+  };
+  std::vector<Introduced> take_introductions();
 
  private:
   void apply(AuraBatch& batch);
@@ -70,6 +92,9 @@ class Neighbour {
   std::vector<RegionId> dead_;
   std::vector<BodyEpoch> claims_;
   std::vector<Order> orders_;
+  std::vector<Alarm> alarms_;
+  std::vector<Introduced> introductions_;
+  std::vector<AuraRecord> past_;
 };
 
 }  // namespace aurasim::core

@@ -1,4 +1,4 @@
-// The naive control: nobody is warned of anything.
+// Without auras: the naive control, in which nobody is warned of anything, and what a redo makes of it.
 #pragma once
 
 #include <limits>
@@ -22,6 +22,35 @@ class NoneAura final : public Aura {
   Steps steps(Question, int) const override { return {}; }
   /// Nothing is near anything.
   Range span(double) const override { return {-std::numeric_limits<double>::infinity(), 0}; }
+};
+
+/// For computing again: others are told of what could touch theirs within a step or two, so that it can be checked, but
+/// nobody looks ahead. What touches moves together.
+class BlindAura final : public Aura {
+ public:
+  BlindAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
+
+  double calm_speed(bool) const override { return 0; }
+  double own_speed_of(const BodyState& body) const override { return body.v_WB.norm() + body.coming_kick_m_s; }
+  bool meets(const Path& foreign, const Path& own, int, int) const override { return touch(foreign, own); }
+  bool linked(const Path& a, const Path& b, int) const override { return touch(a, b); }
+  bool meets_ghost(const Path& ghost, const Path& own, int, int) const override { return touch(ghost, own); }
+
+ private:
+  bool touch(const Path& a, const Path& b) const {
+    const double margin = rules().contact_margin_m + a.blur_m + b.blur_m;
+    if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m + margin) return false;
+    return clearance().clearance(a.prototype, a.pose, b.prototype, b.pose, margin) <= margin;
+  }
+  /// A state to be seen, and another in which it happens; the age of what is known comes on top.
+  Steps steps(Question question, int) const override {
+    const double k = rules().lookahead;
+    return question == Question::kZone || question == Question::kNotice ? Steps{k + 2, k + 2} : Steps{0, 0};
+  }
+  Range span(double steps) const override {
+    const double t = steps * rules().step_s;
+    return {0.5 * gravity_m_s2() * t * (t + rules().step_s), t};
+  }
 };
 
 }  // namespace aurasim::core

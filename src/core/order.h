@@ -10,6 +10,7 @@
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/redo.h"
 #include "core/region_map.h"
 #include "core/scene.h"
 
@@ -77,8 +78,14 @@ struct ChangeScene {
   std::string name;
 };
 
+/// Once the order's state has been computed, all nodes go back to their cuts of state `cut` and compute on from there.
+struct Redo {
+  Step cut = 0;
+  std::vector<TogetherPair> pairs;  ///< all that hold from then on
+};
+
 using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse,
-                            SetVelocity, Repartition, ChangeScene>;
+                            SetVelocity, Repartition, ChangeScene, Redo>;
 
 struct Order {
   std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders

@@ -5,10 +5,24 @@
 
 namespace aurasim::core {
 
+namespace {
+
+/// Orders are as many as clients ask for in a second or two.
+constexpr std::size_t kMostRecent = 4096;
+
+}  // namespace
+
 void OrderLog::add(const Order& order) {
   last_ = order.sequence;
   news_.push_back(order);
   to_publish_.push_back(order);
+  recent_.push_back(order);
+  if (recent_.size() > kMostRecent) recent_.erase(recent_.begin());
+}
+
+void OrderLog::put_back(Step after) {
+  std::erase_if(recent_, [after](const Order& order) { return order.at_step <= after; });
+  to_publish_ = recent_;
 }
 
 const Order& OrderLog::announce(Order order) {

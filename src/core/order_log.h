@@ -18,6 +18,9 @@ class OrderLog {
 
   /// Our own: gives it the next number.
   const Order& announce(Order order);
+  /// The run has been put back after state `after`: orders for later states go round once more, for whoever has not
+  /// received them before.
+  void put_back(Step after);
   /// From a neighbour's batch. Copies and anything out of sequence are left out.
   void receive(std::span<const Order> orders);
 
@@ -31,6 +34,7 @@ class OrderLog {
   void add(const Order& order);
 
   std::uint64_t last_;
+  std::vector<Order> recent_;  ///< those that may not have gone round yet
   std::vector<Order> news_;
   std::vector<Order> to_publish_;
 };

@@ -86,7 +86,7 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
   aura.stamp = stamp;
   aura.birth = body.birth;
   aura.pose = body.pose;
-  if (aura_.predicts()) {  // otherwise the others ask for places and sizes only
+  if (aura_.predicts() || aura_.rules().redo) {  // otherwise the others ask for places and sizes only
     aura.v_WB = body.v_WB;
     aura.w_WB = body.w_WB;
   }
@@ -98,8 +98,8 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
   return aura;
 }
 
-void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch) {
-  if (track.projected() && !has_news(track.published->newest, aura)) return;
+void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch, bool full) {
+  if (!full && track.projected() && !has_news(track.published->newest, aura)) return;
   ++(track.projected() ? counters_.updated : counters_.created);
   if (!track.projected()) track.published = std::make_unique<Track::Published>(aura, aura);
   track.published->newest = aura;
@@ -115,7 +115,7 @@ void Projection::classify(const Snapshot& snapshot, const InterestMatching& matc
 }
 
 void Projection::publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch,
-                         ViolationLog& violations) {
+                         ViolationLog& violations, bool full) {
   projecting_ = 0;
   for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
     if (i + kPrefetchDistance < tracks_.size() && tracks_[i + kPrefetchDistance].projected()) {
@@ -129,7 +129,7 @@ void Projection::publish(const Snapshot& snapshot, const InterestMatching& match
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
-      publish(track, describe(body, i, matching.clusters(), snapshot.step), batch);
+      publish(track, describe(body, i, matching.clusters(), snapshot.step), batch, full);
     } else if (track.projected()) {
       ++counters_.deleted;
       track.published.reset();
@@ -138,6 +138,10 @@ void Projection::publish(const Snapshot& snapshot, const InterestMatching& match
   }
   take_back_gone(batch);
   expire_ghosts(snapshot, batch);
+  if (!full) return;
+  for (const AuraRecord& ghost : ghosts_) {
+    if (ghost.stamp < snapshot.step) batch.updates.push_back(ghost);
+  }
 }
 
 void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination,

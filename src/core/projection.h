@@ -54,8 +54,9 @@ class Projection {
   /// Moves every body to the phase that its place asks for.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
-  /// Writes creations, updates and deletions of the bodies that stay into `batch`.
-  void publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch, ViolationLog& violations);
+  /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: all that are projected.
+  void publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch, ViolationLog& violations,
+               bool full);
 
   /// Body i leaves for `destination`: the others keep its last aura, as a ghost, for 2K steps.
   void depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination, PhaseEvent why,
@@ -67,7 +68,7 @@ class Projection {
 
  private:
   void move(Track& track, PhaseEvent event);
-  void publish(Track& track, const AuraRecord& aura, AuraBatch& batch);
+  void publish(Track& track, const AuraRecord& aura, AuraBatch& batch, bool full);
   void note_gone(const Track& track);
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();

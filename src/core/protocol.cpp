@@ -1,33 +1,86 @@
 #include "core/protocol.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/horizon.h"
 #include "core/make_aura.h"
 
 namespace aurasim::core {
+namespace {
+
+Vicinity vicinity_of(const ProtocolSettings& settings, const RegionMap& map) {
+  Vicinity vicinity(map, settings.self, settings.neighbour_distance_m);
+  for (const RegionId related : settings.related) vicinity.listen_to(related);
+  return vicinity;
+}
+
+}  // namespace
+
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)
     : settings_(settings),
-      vicinity_(map, settings.self, settings.neighbour_distance_m),
+      vicinity_(vicinity_of(settings, map)),
       map_version_(map.version()),
       aura_(make_aura(settings.aura, clearance)),
-      intake_({settings.generation, settings.sync, settings.aura.lookahead, settings.start}, vicinity_, departures_),
-      matching_(*aura_, vicinity_),
+      intake_({settings.generation, settings.redo, settings.sync, settings.aura.lookahead, settings.start,
+               settings.redo > 0},
+              vicinity_, departures_),
+      matching_(*aura_, vicinity_, settings_.together),
       projection_(*aura_, vicinity_),
       orders_(settings.last_order),
       claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
       ranks_(settings.aura.lookahead),
-      hops_across_(hops_across(map, settings.neighbour_distance_m)) {}
+      hops_across_(hops_across(map, settings.neighbour_distance_m)),
+      introducer_(*aura_, vicinity_),
+      check_(*aura_, vicinity_, settings.start) {}
+
+Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
+                   Continuation continuation)
+    : Protocol(settings, map, clearance) {
+  alarms_given_up_ = !continuation.dead.empty();
+  orders_ = std::move(continuation.orders);
+  alarms_ = std::move(continuation.alarms);
+  claimer_ = continuation.claimer;
+  violations_ = std::move(continuation.violations);
+  counters_ = continuation.counters;
+  Inbox news;
+  for (const RegionId dead : continuation.dead) news.peers.push_back({dead, PeerChange::kLost});
+  intake_.accept(news);
+}
+
+Continuation Protocol::continuation(Step put_back_to, const RankClaimer& claimer) const {
+  const Step now = outbox_.aura.stamp;
+  Continuation next{orders_, alarms_, claimer, violations_, counters_, intake_.dead_regions(), vicinity_.neighbours};
+  for (const Related& related : related_) {
+    // Where nodes receive messages as they come, the other one may not have received a later introduction.
+    if (related.introduced <= now - aura_->rules().lookahead) next.related.push_back(related.region);
+  }
+  next.orders.put_back(now);
+  next.alarms.put_back(put_back_to);
+  return next;
+}
+
+void Protocol::listen_to(const std::vector<RegionId>& regions) {
+  for (const RegionId region : regions) {
+    vicinity_.listen_to(region);
+    intake_.listen_to(region, settings_.start);
+  }
+}
 
 const Changes& Protocol::receive(Step n) {
   violations_.start_step();
   changes_.adoptions.clear();
   changes_.let_go.clear();
-  std::vector<Adoption> arrived = intake_.receive(n, violations_);
+  const bool checks = aura_->rules().redo;
+  std::vector<Adoption> arrived = intake_.receive(n, violations_, [&](const Neighbour& neighbour) {
+    if (checks) check_.take(neighbour);
+  });
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   receive_violations();
   orders_.receive(intake_.take_orders());
+  alarms_.receive(intake_.take_alarms());
+  receive_introductions();
   changes_.orders = orders_.take_news();
   for (Order& order : changes_.orders) apply_late(order, n);
   return changes_;
@@ -102,13 +155,15 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   departing_.clear();
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
+  full_ = meet_the_introduced(snapshot.step) || snapshot.step == settings_.start;
   rank(snapshot.step);
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
+  check(snapshot);
   projection_.classify(snapshot, matching_);
   note_who_waits(snapshot);
   decide(snapshot);
   claimer_.reconsider(snapshot.step, {largest_cluster_, largest_guest_}, ranks_);
-  projection_.publish(snapshot, matching_, outbox_.aura, violations_);
+  projection_.publish(snapshot, matching_, outbox_.aura, violations_, full_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
   return departing_;
@@ -215,6 +270,7 @@ void Protocol::hand_over(const Departure& departure, ClusterState cluster) {
   hand_off.source = vicinity_.self;
   hand_off.destination = departure.destination;
   hand_off.generation = settings_.generation;
+  hand_off.redo = settings_.redo;
   hand_off.stamp = outbox_.aura.stamp;
   hand_off.map_version = map_version_;
   hand_off.reason = departure.reason;
@@ -229,8 +285,9 @@ void Protocol::fill_header() {
   AuraBatch& batch = outbox_.aura;
   batch.source = vicinity_.self;
   batch.generation = settings_.generation;
+  batch.redo = settings_.redo;
   batch.map_version = map_version_;
-  batch.full = batch.stamp == settings_.start;
+  batch.full = full_;
   batch.top_speed_m_s = matching_.top_speed();
   batch.top_radius_m = matching_.top_radius();
   batch.violations = violations_.warnings();
@@ -240,7 +297,84 @@ void Protocol::fill_header() {
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
   intake_.fill(outbox_, batch.stamp);
   batch.orders = orders_.take_to_publish();
+  batch.alarms = alarms_.take_to_publish();
+  batch.past = std::exchange(past_, {});
+  batch.introductions = introducer_.look(matching_.all_foreign(), matching_.others_top_speed());
+  outbox_.listeners = vicinity_.neighbours;
+  outbox_.expected.clear();
+  for (const Related& related : related_) outbox_.expected.push_back(related.region);
 }
+
+/// Both receive an introduction by the same state, since both hear who has made it.
+void Protocol::receive_introductions() {
+  const std::vector<Neighbour::Introduced> introductions = intake_.take_introductions();
+  if (settings_.sync == SyncMode::kFreeRunning) return;  // no state is agreed there
+  for (const auto& [stamp, pair] : introductions) {
+    if (pair.a != vicinity_.self && pair.b != vicinity_.self) continue;
+    const RegionId other = pair.a == vicinity_.self ? pair.b : pair.a;
+    const bool known =
+        vicinity_.is_neighbour(other) ||
+        std::any_of(related_.begin(), related_.end(), [&](const Related& r) { return r.region == other; });
+    if (known) continue;
+    const Step begin = stamp + horizon::introduction(aura_->rules().lookahead);
+    related_.push_back({other, stamp, begin});
+    intake_.listen_to(other, begin);
+  }
+}
+
+/// True when there are any: they are told of all our auras.
+bool Protocol::meet_the_introduced(Step now) {
+  return std::erase_if(related_, [&](const Related& related) {
+           if (related.begin > now) return false;
+           vicinity_.listen_to(related.region);
+           return true;
+         }) > 0;
+}
+
+void Protocol::check(const Snapshot& snapshot) {
+  if (!aura_->rules().redo) return;
+  check_.take_own(snapshot, matching_);
+  check_.look(snapshot.step, intake_.neighbours());
+  for (const Alarm& alarm : check_.found()) alarms_.raise(alarm.step, alarm.a, alarm.b);
+}
+
+void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies) {
+  if (!aura_->rules().redo) return;
+  for (const BodyRecord& record : bodies) {
+    const BodyState body = state_of(record);
+    check_.take_made_up(body, step, nth);
+    AuraRecord aura;
+    aura.id = body.id;
+    aura.epoch = body.epoch;
+    aura.host = vicinity_.self;
+    aura.prototype = body.prototype;
+    aura.flags = body.awake ? 0 : kAuraAsleep;
+    aura.stamp = step;
+    aura.birth = body.birth;
+    aura.pose = body.pose;
+    aura.v_WB = body.v_WB;
+    aura.w_WB = body.w_WB;
+    past_.push_back(aura);
+  }
+}
+
+/// An alarm is raised when its state is checked, goes to the node that gives orders, and what that orders goes round.
+/// After a redo, alarms that still stand go round anew.
+Step Protocol::confirmed_but_for_alarms() const {
+  const Step now = outbox_.aura.stamp;
+  const Step round = 2 * hops_across_ * aura_->rules().lookahead + 2;
+  const Step confirmed = now - horizon::check(aura_->rules().lookahead) - round;
+  const bool is_first_round = settings_.redo > 0 && now < settings_.start + round;
+  return is_first_round ? std::min(confirmed, settings_.start - round) : confirmed;
+}
+
+Step Protocol::confirmed() const {
+  Step confirmed = confirmed_but_for_alarms();
+  for (const Alarm& alarm : alarms_.standing()) confirmed = std::min(confirmed, alarm.step - 1);
+  return confirmed;
+}
+
+Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + hops_across_ * aura_->rules().lookahead; }
 
 /// Only where nodes do not wait for each other can an order come after its time.
 void Protocol::apply_late(Order& order, Step n) {

@@ -15,11 +15,14 @@
 #include "core/handoff.h"
 #include "core/intake.h"
 #include "core/interest_matching.h"
+#include "core/introductions.h"
 #include "core/messages.h"
 #include "core/order_log.h"
 #include "core/projection.h"
 #include "core/ranks.h"
+#include "core/redo.h"
 #include "core/region_map.h"
+#include "core/state_check.h"
 #include "core/vicinity.h"
 #include "core/violation.h"
 
@@ -28,13 +31,16 @@ namespace aurasim::core {
 struct ProtocolSettings {
   RegionId self{};
   Generation generation = 0;
+  std::uint32_t redo = 0;  ///< how often this generation has been put back
   SyncMode sync = SyncMode::kBounded;
   AuraRules aura;
-  double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other
-  Step start = 0;                   ///< the first state that it looks at
-  std::uint64_t last_order = 0;     ///< orders up to this one have been received
-  Step resend_after_steps = 120;    ///< an unacknowledged hand-off is sent again every so often
-  Step shuffle_ranks_steps = 0;     ///< tests only: another rank every so many steps
+  double neighbour_distance_m = 0;     ///< regions at most this far apart listen to each other
+  Step start = 0;                      ///< the first state that it looks at
+  std::uint64_t last_order = 0;        ///< orders up to this one have been received
+  Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
+  Step shuffle_ranks_steps = 0;        ///< tests only: another rank every so many steps
+  std::vector<TogetherPair> together;  ///< a < b, ascending
+  std::vector<RegionId> related;       ///< besides those near us, those that listen from the start
 };
 
 struct Changes {
@@ -57,15 +63,32 @@ struct ProtocolCounters {
   std::uint64_t stale_arrivals = 0;  ///< refused: here already, with the same or a higher epoch
 };
 
+/// What a protocol hands on to the one that takes over after a redo.
+struct Continuation {
+  OrderLog orders;
+  AlarmLog alarms;
+  RankClaimer claimer;  ///< of the cut
+  ViolationLog violations;
+  ProtocolCounters counters;
+  std::vector<RegionId> dead;
+  std::vector<RegionId> related;
+};
+
 class Protocol {
  public:
   /// `map` and `clearance` outlive the protocol.
   Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance);
+  /// After a redo, in the state of the cut.
+  Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
+           Continuation continuation);
   Protocol(const Protocol&) = delete;
   Protocol& operator=(const Protocol&) = delete;
 
   const Vicinity& vicinity() const { return vicinity_; }
   const Aura& aura() const { return *aura_; }
+
+  /// Before the first state: these regions listen to us, too, and we to them.
+  void listen_to(const std::vector<RegionId>& regions);
 
   /// Takes in what arrived, at any time; messages of a later generation stay in `inbox`.
   void accept(Inbox& inbox) { intake_.accept(inbox); }
@@ -89,6 +112,23 @@ class Protocol {
   /// The earliest state in which an order announced now can take effect: all nodes know of it, and of the body
   /// that it brings or the kick that it gives, before.
   Step earliest_effect() const;
+  /// Likewise for what is no body's business: all nodes know of it.
+  Step earliest_agreement() const;
+
+  /// A state that bodies which have joined have made up; `nth` of the adoptions of this step.
+  void note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
+  /// The newest state that no alarm can come to question any more; with AuraRules::redo only.
+  Step confirmed() const;
+  /// Likewise, as if no alarm stood.
+  Step confirmed_but_for_alarms() const;
+  const AlarmLog& alarms() const { return alarms_; }
+  /// A node has died: what it hosted cannot be computed again. Alarms are no longer waited for, but a redo that has
+  /// been ordered is executed by all.
+  void give_up_alarms() { alarms_given_up_ = true; }
+  bool alarms_given_up() const { return alarms_given_up_; }
+  const RankClaimer& claimer() const { return claimer_; }
+  const ProtocolSettings& settings() const { return settings_; }
+  Continuation continuation(Step put_back_to, const RankClaimer& claimer) const;
 
   /// The physics of a departure; once for each, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
@@ -129,6 +169,9 @@ class Protocol {
   void rank(Step now);
   void fill_header();
   void receive_violations();
+  void check(const Snapshot& snapshot);
+  void receive_introductions();
+  bool meet_the_introduced(Step now);
 
   ProtocolSettings settings_;
   Vicinity vicinity_;
@@ -142,6 +185,19 @@ class Protocol {
   RankClaimer claimer_;
   Ranks ranks_;
   int hops_across_;
+  /// Another region that is to listen to us, and we to it.
+  struct Related {
+    RegionId region{};
+    Step introduced = 0;
+    Step begin = 0;  ///< the first state that we publish to each other
+  };
+  std::vector<Related> related_;
+  Introducer introducer_;
+  bool alarms_given_up_ = false;
+  bool full_ = false;  ///< somebody listens to us for the first time
+  AlarmLog alarms_;
+  StateCheck check_;
+  std::vector<AuraRecord> past_;  ///< to publish with the next batch
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;

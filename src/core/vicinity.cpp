@@ -8,17 +8,17 @@ Vicinity::Vicinity(const RegionMap& region_map, RegionId region, double distance
     : map(region_map),
       self(region),
       neighbour_distance_m(distance_m),
-      neighbours(region_map.neighbours(region, distance_m)) {
-  if (neighbours.size() > 64) {
-    throw BadRegionMap("region " + std::to_string(value_of(region)) + " has " + std::to_string(neighbours.size()) +
-                       " neighbours; at most 64 are allowed");
-  }
+      neighbours(region_map.neighbours(region, distance_m)) {}
+
+void Vicinity::listen_to(RegionId id) {
+  const auto place = std::lower_bound(neighbours.begin(), neighbours.end(), id);
+  if (place == neighbours.end() || *place != id) neighbours.insert(place, id);
 }
 
 std::uint64_t Vicinity::within(const Vec3& p, double distance_m) const {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    if (map.distance(neighbours[i], p) <= distance_m) bits |= std::uint64_t{1} << i;
+    if (map.distance(neighbours[i], p) <= distance_m) bits |= std::uint64_t{1} << (i % 64);
   }
   return bits;
 }
@@ -31,13 +31,13 @@ bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
 
 bool Vicinity::is_neighbour(RegionId id) const { return std::binary_search(neighbours.begin(), neighbours.end(), id); }
 
-bool Vicinity::are_neighbours(RegionId a, RegionId b) const {
+bool Vicinity::are_near(RegionId a, RegionId b) const {
   return map.region(a).distance(map.region(b)) <= neighbour_distance_m;
 }
 
 std::uint64_t Vicinity::bit_of(RegionId id) const {
   const auto found = std::lower_bound(neighbours.begin(), neighbours.end(), id);
-  return found != neighbours.end() && *found == id ? std::uint64_t{1} << (found - neighbours.begin()) : 0;
+  return found != neighbours.end() && *found == id ? std::uint64_t{1} << ((found - neighbours.begin()) % 64) : 0;
 }
 
 }  // namespace aurasim::core

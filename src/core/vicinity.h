@@ -1,4 +1,5 @@
-// A region and those that listen to it.
+// A region and those that listen to it: always those that are near, and others as bodies ask for it
+// (core/introductions.h).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,6 @@
 namespace aurasim::core {
 
 struct Vicinity {
-  /// Throws BadRegionMap when a region has more neighbours than bits in a set of them (64).
   Vicinity(const RegionMap& map, RegionId self, double neighbour_distance_m);
 
   const RegionMap& map;
@@ -17,14 +17,17 @@ struct Vicinity {
   double neighbour_distance_m;
   std::vector<RegionId> neighbours;  ///< ascending
 
+  /// From now on this one, too.
+  void listen_to(RegionId id);
+
   const Rectangle& home() const { return map.region(self); }
-  /// Bits of the neighbours whose territory is at most `distance_m` from `p`.
+  /// Bits of the neighbours whose territory is at most `distance_m` from `p`. With more than 64 some share one.
   std::uint64_t within(const Vec3& p, double distance_m) const;
   /// No other region's territory is within `distance_m` of `p`.
   bool deep_inside(const Vec3& p, double distance_m) const;
   bool is_neighbour(RegionId id) const;
-  /// Do two other regions listen to each other?
-  bool are_neighbours(RegionId a, RegionId b) const;
+  /// Are two regions so near to each other that they always listen?
+  bool are_near(RegionId a, RegionId b) const;
   /// The bit of one neighbour; 0 for ourselves and for regions that do not listen.
   std::uint64_t bit_of(RegionId id) const;
 };

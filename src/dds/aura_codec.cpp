@@ -2,6 +2,7 @@
 
 #include "aurasim.h"
 #include "dds/aura_columns.h"
+#include "dds/check_columns.h"
 #include "dds/codec.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
@@ -53,6 +54,9 @@ MaybeError check(const wire::AuraBatch& in, const Expected& expected) {
   if (const auto error = check_values(in, expected)) {
     return error;
   }
+  if (const auto error = check_checks(in, expected)) {
+    return error;
+  }
   return check_auras(in, expected);
 }
 
@@ -62,6 +66,7 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   out.source(value_of(batch.source));
   out.version(kProtocolVersion);
   out.generation(batch.generation);
+  out.redo(batch.redo);
   out.stamp(batch.stamp);
   out.map_version(batch.map_version);
   out.full(batch.full);
@@ -80,6 +85,7 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   fill(out.claim_id(), batch.claims, [](const core::BodyEpoch& claim) { return value_of(claim.id); });
   fill(out.claim_epoch(), batch.claims, [](const core::BodyEpoch& claim) { return claim.epoch; });
   encode_orders(batch.orders, out);
+  encode_checks(batch, out);
 }
 
 Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
@@ -92,8 +98,10 @@ Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   }
   AuraBatch batch;
   batch.orders = std::move(*orders);
+  decode_checks(in, batch);
   batch.source = static_cast<RegionId>(in.source());
   batch.generation = in.generation();
+  batch.redo = in.redo();
   batch.stamp = in.stamp();
   batch.map_version = in.map_version();
   batch.full = in.full();

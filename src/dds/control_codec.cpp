@@ -72,6 +72,7 @@ void encode_counts(const Status& status, wire::NodeStatus& out) {
   out.violations_span(status.violations.span);
   out.late_collisions(status.late_collisions);
   out.missed_collisions(status.missed_collisions);
+  out.redos(status.redos);
   out.largest_cluster(status.largest_cluster);
 }
 
@@ -85,6 +86,7 @@ void decode_counts(const wire::NodeStatus& in, Status& status) {
                        in.violations_span()};
   status.late_collisions = in.late_collisions();
   status.missed_collisions = in.missed_collisions();
+  status.redos = in.redos();
   status.largest_cluster = in.largest_cluster();
 }
 

@@ -49,6 +49,7 @@ struct Status {
   Violations violations;
   std::uint64_t late_collisions = 0;    ///< since the start, as the node itself can see them (node/collision_watch.h)
   std::uint64_t missed_collisions = 0;  ///< likewise
+  std::uint32_t redos = 0;              ///< how often this generation has been put back and computed again
   Durations frame;
   Durations physics;
   Durations protocol;

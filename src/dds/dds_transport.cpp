@@ -19,6 +19,8 @@ using core::value_of;
 
 namespace {
 
+constexpr auto kPatienceWithListeners = std::chrono::seconds(10);
+
 /// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
 struct Link {
   Link(Domain& domain, RegionId self, RegionId neighbour, Wakeup& wakeup)
@@ -38,6 +40,7 @@ struct Link {
 
   std::uint64_t match = 0;  ///< RemoteWriter::order of the neighbour's aura writer that we know; 0: none yet
   bool lost = false;
+  bool met = false;           ///< has been matched once
   std::uint64_t refused = 0;  ///< samples of its
 };
 
@@ -90,7 +93,8 @@ void drain(Reader& reader, WireMessage& sample, const Expected& expected, std::v
       ++refused;
       const auto kind = kind_of(sample);
       if (!kind || !is_our_own(*error)) continue;
-      refusals.push_back({*expected.source, sample.generation(), sample.stamp(), *kind, name_of(*error)});
+      refusals.push_back(
+          {*expected.source, sample.generation(), sample.stamp(), *kind, name_of(*error), sample.redo()});
     } else {
       inbox.push_back(std::move(std::get<Message>(decoded)));
     }
@@ -128,6 +132,8 @@ struct DdsTransport::Impl {
   Impl(Participant& participant, const TransportSettings& settings);
 
   Link* find(RegionId region);
+  Link& link_to(RegionId region);
+  void wait_for(const std::vector<RegionId>& listeners);
   /// Which of the link's endpoints have no counterpart yet.
   std::vector<std::string> unmatched(const Link& link) const;
   std::vector<std::string> missing_neighbours(std::vector<RegionId>& regions) const;
@@ -141,7 +147,7 @@ struct DdsTransport::Impl {
   Participant& participant;
   Wakeup wakeup;
   Writer aura_writer;
-  std::vector<std::unique_ptr<Link>> links;  ///< in the order of settings.neighbours
+  std::vector<std::unique_ptr<Link>> links;  ///< to settings.neighbours, then to others as they were asked for
   wire::AuraBatch aura;                      // reused for every sample
   wire::Migration migration;
   wire::MigrationAck ack;
@@ -161,6 +167,28 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
 Link* DdsTransport::Impl::find(RegionId region) {
   const auto found = std::ranges::find_if(links, [&](const auto& link) { return link->region == region; });
   return found == links.end() ? nullptr : found->get();
+}
+
+/// Bodies may ask for regions that were no neighbours at first.
+Link& DdsTransport::Impl::link_to(RegionId region) {
+  if (Link* link = find(region)) return *link;
+  links.push_back(std::make_unique<Link>(participant.domain(), settings.region, region, wakeup));
+  return *links.back();
+}
+
+/// What is sent before a listener is matched would be lost to it. They have been expected for half a second, so there
+/// is mostly nothing to wait for.
+void DdsTransport::Impl::wait_for(const std::vector<RegionId>& listeners) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatienceWithListeners;
+  for (const RegionId region : listeners) {
+    Link& link = link_to(region);
+    while (!link.met && !link.lost && std::chrono::steady_clock::now() < deadline) {
+      link.met = unmatched(link).empty();
+      if (link.met) break;
+      participant.progress();
+      wakeup.wait(std::chrono::milliseconds(1));
+    }
+  }
 }
 
 std::vector<std::string> DdsTransport::Impl::unmatched(const Link& link) const {
@@ -284,6 +312,8 @@ void DdsTransport::take(core::Inbox& inbox) {
 
 void DdsTransport::send(const core::Outbox& outbox) {
   impl_->participant.progress();
+  for (const RegionId region : outbox.expected) impl_->link_to(region);
+  impl_->wait_for(outbox.listeners);
   for (const auto& hand_off : outbox.hand_offs) {
     impl_->send_hand_off(hand_off);
   }

@@ -200,6 +200,7 @@ void encode(const HandOff& hand_off, wire::Migration& out) {
   out.destination(value_of(hand_off.destination));
   out.version(kProtocolVersion);
   out.generation(hand_off.generation);
+  out.redo(hand_off.redo);
   out.stamp(hand_off.stamp);
   out.map_version(hand_off.map_version);
   out.sequence_number(hand_off.sequence);
@@ -215,6 +216,7 @@ Decoded<HandOff> decode(const wire::Migration& in, const Expected& expected) {
   return HandOff{.source = static_cast<RegionId>(in.source()),
                  .destination = static_cast<RegionId>(in.destination()),
                  .generation = in.generation(),
+                 .redo = in.redo(),
                  .stamp = in.stamp(),
                  .map_version = in.map_version(),
                  .sequence = in.sequence_number(),
@@ -227,6 +229,7 @@ void encode(const HandOffAck& ack, std::uint64_t map_version, wire::MigrationAck
   out.destination(value_of(ack.destination));
   out.version(kProtocolVersion);
   out.generation(ack.generation);
+  out.redo(ack.redo);
   out.stamp(ack.stamp);
   out.map_version(map_version);
   out.sequence_number(ack.sequence);
@@ -249,7 +252,8 @@ Decoded<HandOffAck> decode(const wire::MigrationAck& in, const Expected& expecte
                     .destination = static_cast<RegionId>(in.destination()),
                     .generation = in.generation(),
                     .stamp = in.stamp(),
-                    .sequence = in.sequence_number()};
+                    .sequence = in.sequence_number(),
+                    .redo = in.redo()};
 }
 
 }  // namespace aurasim::dds

@@ -1,5 +1,6 @@
 #include "dds/order_columns.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -90,6 +91,14 @@ struct ToRow {
     for (const core::Rectangle& r : a.boxes) row.numbers.insert(row.numbers.end(), {r.x0, r.y0, r.x1, r.y1});
   }
   void operator()(const core::ChangeScene& a) const { row.text = a.name; }
+  void operator()(const core::Redo& a) const {
+    row.numbers.push_back(static_cast<double>(a.cut));
+    for (const core::TogetherPair& pair : a.pairs) {
+      const std::array<double, 3> numbers = {static_cast<double>(value_of(pair.a)),
+                                             static_cast<double>(value_of(pair.b)), static_cast<double>(pair.until)};
+      row.numbers.insert(row.numbers.end(), numbers.begin(), numbers.end());
+    }
+  }
 };
 
 struct Numbers {
@@ -135,6 +144,21 @@ Maybe regions_of(const Numbers& n) {
   return action;
 }
 
+/// Steps and body ids are whole, and exact as doubles.
+Maybe redo_of(const Numbers& n) {
+  constexpr double kMostExact = 9007199254740992.0;  // 2^53
+  const auto whole = [](double x) { return x >= 0 && x < kMostExact && std::floor(x) == x; };
+  if (n.all.size() % 3 != 1 || !std::all_of(n.all.begin(), n.all.end(), whole)) return {};
+  core::Redo action;
+  action.cut = static_cast<core::Step>(n.all[0]);
+  for (std::size_t i = 1; i < n.all.size(); i += 3) {
+    action.pairs.push_back({BodyId{static_cast<std::uint64_t>(n.all[i])},
+                            BodyId{static_cast<std::uint64_t>(n.all[i + 1])}, static_cast<core::Step>(n.all[i + 2])});
+    if (!(action.pairs.back().a < action.pairs.back().b)) return {};
+  }
+  return action;
+}
+
 std::optional<Vec3> second_vector(const Numbers& n) {
   return n.all.size() == 6 ? std::optional(n.vector(3)) : std::nullopt;
 }
@@ -169,6 +193,8 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
                                       : Maybe();
     case 9:
       return count == 0 && !row.text.empty() ? Maybe(core::ChangeScene{row.text}) : Maybe();
+    case 10:
+      return redo_of(n);
     default:
       return {};
   }

@@ -10,6 +10,7 @@
 //    7 set velocity      body; -; v and, if it changes, w
 //    8 repartition       -; -; x0 y0 x1 y1 of each region
 //    9 change scene      -; -; - ; text: its name
+//   10 redo              -; -; cut, and a, b, until of each pair
 #pragma once
 
 #include <optional>

@@ -101,6 +101,12 @@ void VirtualCluster::compute(Member& member, double at_s) {
   member.free_s = at_s + frame_s;
 }
 
+core::Step VirtualCluster::confirmed() const {
+  core::Step confirmed = std::numeric_limits<core::Step>::max();
+  for (const Member& member : members_) confirmed = std::min(confirmed, member.node->confirmed_step());
+  return confirmed;
+}
+
 core::Step VirtualCluster::slowest() const {
   core::Step slowest = std::numeric_limits<core::Step>::max();
   for (const Member& member : members_) slowest = std::min(slowest, member.node->current_step());

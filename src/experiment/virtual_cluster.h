@@ -60,6 +60,8 @@ class VirtualCluster {
   std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
   /// Only where messages are coded.
   const WirePost& post() const { return *post_; }
+  /// The newest state that every node takes for confirmed (node/node.h).
+  core::Step confirmed() const;
   /// The lowest state that a node is in.
   core::Step slowest() const;
   /// Broken promises, all nodes together.

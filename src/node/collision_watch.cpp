@@ -72,10 +72,18 @@ void CollisionWatch::judge(std::span<const physics::Collision> first_contacts, c
 
 void CollisionWatch::report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out) {
   seen.flagged = flagged(seen.collision.step, last_violation);
-  late_ += seen.late;
-  missed_ += seen.missed;
-  unflagged_ += (seen.late || seen.missed) && !seen.flagged;
+  counts_.late += seen.late;
+  counts_.missed += seen.missed;
+  counts_.unflagged += (seen.late || seen.missed) && !seen.flagged;
   out.push_back(seen);
+}
+
+void CollisionWatch::put_back(const CollisionCounts& counts) {
+  counts_ = counts;
+  states_.clear();
+  overlapping_.clear();
+  joined_.clear();
+  untouching_.clear();
 }
 
 void CollisionWatch::join(const core::Adoption& adoption) {

@@ -27,6 +27,12 @@ struct SeenCollision {
   bool flagged = false;  ///< a violation before it may explain it
 };
 
+struct CollisionCounts {
+  std::uint64_t late = 0;
+  std::uint64_t missed = 0;
+  std::uint64_t unflagged = 0;  ///< of both, those that no violation explains
+};
+
 class CollisionWatch {
  public:
   CollisionWatch(double step_s, double gravity_m_s2, int lookahead, const core::ClearanceQuery& clearance)
@@ -51,9 +57,12 @@ class CollisionWatch {
   void compare(const core::Snapshot& snapshot, const core::InterestMatching& matching, core::Step last_violation,
                std::vector<SeenCollision>& out);
 
-  std::uint64_t late() const { return late_; }
-  std::uint64_t missed() const { return missed_; }
-  std::uint64_t unflagged() const { return unflagged_; }
+  std::uint64_t late() const { return counts_.late; }
+  std::uint64_t missed() const { return counts_.missed; }
+  std::uint64_t unflagged() const { return counts_.unflagged; }
+  const CollisionCounts& counts() const { return counts_; }
+  /// The run goes back to where so many had been counted.
+  void put_back(const CollisionCounts& counts);
 
  private:
   using Pair = std::pair<core::BodyId, core::BodyId>;  ///< ascending
@@ -96,9 +105,7 @@ class CollisionWatch {
   std::map<Pair, core::Step> overlapping_;  ///< counted as missed, and the newest state in which they overlapped
   std::vector<Joined> joined_;              ///< ascending id
   std::set<Pair> untouching_;               ///< overlap without a contact: judged before it comes
-  std::uint64_t late_ = 0;
-  std::uint64_t missed_ = 0;
-  std::uint64_t unflagged_ = 0;
+  CollisionCounts counts_;
 };
 
 }  // namespace aurasim::node

@@ -1,36 +1,16 @@
 #include "node/node.h"
 
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 #include "core/horizon.h"
 #include "node/scene_additions.h"
+#include "node/timed.h"
 #include "physics/clearance.h"
 #include "physics/state_hash.h"
 
 namespace aurasim::node {
 namespace {
-
-double now_s(PhaseClock clock) {
-  timespec t{};
-  clock_gettime(clock == PhaseClock::kWall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Adds the time between its construction and its end to a duration.
-class Timed {
- public:
-  Timed(double& seconds, PhaseClock clock) : seconds_(seconds), clock_(clock), begin_s_(now_s(clock)) {}
-  ~Timed() { seconds_ += now_s(clock_) - begin_s_; }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
- private:
-  double& seconds_;
-  PhaseClock clock_;
-  double begin_s_;
-};
 
 std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
   std::uint64_t sum = 0;
@@ -54,13 +34,31 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
 
 const StepReport& Node::start() {
   report_ = {};
+  confirmed_.clear();
   host_initial_bodies();
   finish_state();
+  take_cut();
+  hold(report_);
   return report_;
 }
 
 /// Bodies of state 0, and those born so soon after it that nobody could know of them in time.
 void Node::host_initial_bodies() {
+  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
+  for (const core::Injector& injector : scene_.injectors) {
+    next_injection_.push_back(core::injected_count(injector, notice, setup_.physics.step_s));
+  }
+  const std::vector<core::BodyRecord> ours = initial_bodies();
+  protocol_->listen_to(setup_.protocol.related);
+  for (const core::BodyRecord& record : ours) {
+    report_.births.push_back({record.id, record.birth});
+    if (record.birth > 0) watch_.newborn(record.id, record.birth);
+  }
+  world_.add(ours);
+}
+
+/// Those of them that this node hosts; pairs that a redo brings together come to one host at once.
+std::vector<core::BodyRecord> Node::initial_bodies() {
   std::vector<core::BodyRecord> records;
   for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
   const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
@@ -69,21 +67,28 @@ void Node::host_initial_bodies() {
     for (std::uint64_t i = 0; i < count; ++i) {
       if (auto record = core::injected_body(injector, i, setup_.physics.step_s)) records.push_back(*record);
     }
-    next_injection_.push_back(count);
   }
   std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   core::Snapshot all;
   for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
   all.joints = core::joint_pairs(scene_, all.bodies);
+  for (const core::TogetherPair& pair : setup_.protocol.together) {
+    const auto a = std::ranges::lower_bound(records, pair.a, {}, &core::BodyRecord::id);
+    const auto b = std::ranges::lower_bound(records, pair.b, {}, &core::BodyRecord::id);
+    if (b == records.end() || a->id != pair.a || b->id != pair.b) continue;
+    all.joints.push_back(
+        {static_cast<std::uint32_t>(a - records.begin()), static_cast<std::uint32_t>(b - records.begin())});
+  }
   const std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
+  setup_.protocol.related =
+      core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts);
   std::vector<core::BodyRecord> ours;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (hosts[i] != region()) continue;
     ours.push_back(records[i]);
-    report_.births.push_back({records[i].id, records[i].birth});
-    if (records[i].birth > 0) watch_.newborn(records[i].id, records[i].birth);
+    ours.back().epoch = first_epoch_;
   }
-  world_.add(ours);
+  return ours;
 }
 
 /// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
@@ -94,8 +99,9 @@ void Node::announce_births(core::Step state) {
     const core::Injector& injector = scene_.injectors[k];
     const std::uint64_t count = core::injected_count(injector, birth, setup_.physics.step_s);
     for (; next_injection_[k] < count; ++next_injection_[k]) {
-      const auto record = core::injected_body(injector, next_injection_[k], setup_.physics.step_s);
+      auto record = core::injected_body(injector, next_injection_[k], setup_.physics.step_s);
       if (!record || map_->owner(record->p_WB) != region()) continue;
+      record->epoch = first_epoch_;
       world_.add({&*record, 1});
       watch_.newborn(record->id, record->birth);
       report_.births.push_back({record->id, record->birth});
@@ -115,8 +121,12 @@ const core::Order& Node::order(const core::Action& action, std::uint64_t request
 void Node::heed(const core::Order& order) {
   report_.orders.push_back(order);
   extend(scene_, order.action, meshes_);
-  if (std::holds_alternative<core::Spawn>(order.action)) {
+  if (std::holds_alternative<core::Redo>(order.action)) {
+    redo_ = order;
+  } else if (std::holds_alternative<core::Spawn>(order.action)) {
     to_spawn_.push_back(order);
+    for (Cut& cut : cuts_) cut.to_spawn.push_back(order);
+    if (last_cut_) last_cut_->to_spawn.push_back(order);
   } else {
     world_.schedule(order);
   }
@@ -129,7 +139,8 @@ void Node::announce_spawns(core::Step birth) {
     const auto& spawn = std::get<core::Spawn>(order.action);
     if (map_->owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
     const core::InitialBody body{spawn.id, spawn.prototype, spawn.pose, spawn.v_WB, spawn.w_WB};
-    const core::BodyRecord record = core::initial_record(body, order.at_step);
+    core::BodyRecord record = core::initial_record(body, order.at_step);
+    record.epoch = first_epoch_;
     world_.schedule(order);  // its shape may be new
     world_.add({&record, 1});
     watch_.newborn(record.id, record.birth);
@@ -153,7 +164,7 @@ void Node::take_mail() {
 
 bool Node::ready() {
   take_mail();
-  return protocol_->ready(current_step() + 1);
+  return redo_is_due() || protocol_->ready(current_step() + 1);
 }
 
 bool Node::ready_to_settle() {
@@ -164,9 +175,12 @@ bool Node::ready_to_settle() {
 const StepReport& Node::take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
                                  transport::Transport& transport) {
   clear_report();
+  confirmed_.clear();
   setup_.protocol = settings;
+  settled_ = false;
   setup_.protocol.start = current_step();
   setup_.protocol.last_order = protocol_->last_order();
+  confirm_all();
   map_ = &map;
   transport_ = &transport;
   inbox_.clear();
@@ -174,6 +188,8 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
   finish_state();
   setup_.hash_states = hashes;
+  take_cut();
+  hold(report_);
   return report_;
 }
 
@@ -184,6 +200,8 @@ const StepReport& Node::settle() {
 }
 
 void Node::clear_report() {
+  report_.put_back_from.reset();
+  report_.put_back_for.clear();
   report_.durations = {};
   report_.departures.clear();
   report_.departed.clear();
@@ -199,6 +217,24 @@ void Node::clear_report() {
 }
 
 const StepReport& Node::step() {
+  confirmed_.clear();
+  if (redo_is_due()) {
+    put_back();
+    hold(report_);
+    return report_;
+  }
+  compute_step();
+  if (setup_.protocol.aura.redo) {
+    if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
+    if (current_step() == last_) last_cut_ = cut();
+    forget_cuts();
+    order_redo();
+  }
+  hold(report_);
+  return report_;
+}
+
+void Node::compute_step() {
   const core::Step n = current_step() + 1;
   clear_report();
   report_.durations.transport_s = std::exchange(mail_s_, 0);
@@ -216,22 +252,28 @@ const StepReport& Node::step() {
     note_removals();
   }
   finish_state();
-  return report_;
 }
 
 void Node::apply(const core::Changes& changes) {
   if (!changes.let_go.empty()) world_.release(changes.let_go);
   report_.let_go.insert(report_.let_go.end(), changes.let_go.begin(), changes.let_go.end());
+  std::uint32_t nth = 0;
   for (const core::Adoption& adoption : changes.adoptions) {
-    physics::CatchUpListener add_hash;
-    if (setup_.hash_states) {
-      add_hash = [this](core::Step step, std::span<const core::BodyRecord> bodies) {
-        report_.hash.push_back({step, hash_sum(bodies)});
-      };
+    for (Cut& cut : cuts_) {
+      if (adoption.stamp <= cut.step) cut.joining.push_back(adoption);
     }
-    world_.adopt(adoption.cluster, adoption.stamp, add_hash);
-    note_arrivals(adoption);
+    if (last_cut_ && adoption.stamp <= last_cut_->step) last_cut_->joining.push_back(adoption);
+    adopt(adoption, nth++);
   }
+}
+
+/// `nth` of those that join for the next state.
+void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
+  world_.adopt(adoption.cluster, adoption.stamp, [&](core::Step step, std::span<const core::BodyRecord> bodies) {
+    if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
+    protocol_->note_made_up(step, nth, bodies);
+  });
+  note_arrivals(adoption);
 }
 
 void Node::note_arrivals(const core::Adoption& adoption) {
@@ -265,17 +307,29 @@ void Node::finish_state() {
   }
   {
     const Timed timed(report_.durations.watch_s, setup_.clock);
-    watch_.judge(world_.collisions(), protocol_->last_violation_step(), report_.collisions);
-    watch_.judge_arrivals(*snapshot, protocol_->matching(), protocol_->last_violation_step(), report_.collisions);
-    watch_.compare(*snapshot, protocol_->matching(), protocol_->last_violation_step(), report_.collisions);
+    watch_collisions(*snapshot);
     note_contacts(*snapshot);
   }
   report_.foreign_auras = protocol_->matching().foreign_auras();
   report_.projecting = protocol_->projection().projecting();
   report_.largest_cluster = protocol_->largest_cluster();
   release(*departures);
+  report_.violations.assign(protocol_->violations().recent().begin(), protocol_->violations().recent().end());
+  report_.violations_total = protocol_->violations().total();
   const Timed timed(report_.durations.transport_s, setup_.clock);
   transport_->send(protocol_->outbox());
+}
+
+/// Where every state is checked, and computed again if need be, nothing is late or missed.
+void Node::watch_collisions(const core::Snapshot& snapshot) {
+  if (setup_.protocol.aura.redo && !protocol_->alarms_given_up()) {
+    for (const physics::Collision& collision : world_.collisions()) report_.collisions.push_back({collision});
+    return;
+  }
+  const core::Step last_violation = protocol_->last_violation_step();
+  watch_.judge(world_.collisions(), last_violation, report_.collisions);
+  watch_.judge_arrivals(snapshot, protocol_->matching(), last_violation, report_.collisions);
+  watch_.compare(snapshot, protocol_->matching(), last_violation, report_.collisions);
 }
 
 /// Bodies of both lists are in ascending order, and most are in both.

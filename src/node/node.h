@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,15 +17,21 @@
 #include "core/region_map.h"
 #include "core/scene.h"
 #include "node/collision_watch.h"
+#include "node/phase_clock.h"
 #include "physics/region_world.h"
 #include "transport/transport.h"
 
 namespace aurasim::node {
 
-/// What the durations of a step count.
-enum class PhaseClock : std::uint8_t {
-  kWall,       ///< what a frame takes
-  kThreadCpu,  ///< what the node's thread does, however busy the machine is
+/// What a node needs to go back to a state: a part of a consistent cut through the run (docs/design.md, "The cut").
+struct Cut {
+  core::Step step = 0;
+  core::ClusterState bodies;            ///< hosted here, after those that left in this state
+  std::vector<core::Adoption> joining;  ///< sent here in this state or before, and not here yet
+  std::vector<core::Order> to_spawn;    ///< received so far, also after the cut
+  std::vector<std::uint64_t> next_injection;
+  core::RankClaimer claimer;
+  CollisionCounts collisions;
 };
 
 struct NodeSetup {
@@ -73,6 +80,7 @@ struct Durations {
   double protocol_s = 0;   ///< receive, observe
   double transport_s = 0;  ///< take, decode, encode, send
   double watch_s = 0;      ///< late and missed collisions, counts: for the report alone
+  double cut_s = 0;        ///< keeping the state, to be able to come back to it
 };
 
 /// The mesh of this content, for this use, if the process has it.
@@ -98,6 +106,10 @@ struct StepReport {
   std::vector<HandOffRow> arrivals;
   std::vector<SeenCollision> collisions;
   std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
+  std::vector<core::Violation> violations;
+  std::uint64_t violations_total = 0;            ///< since the start
+  std::optional<core::Step> put_back_from;       ///< the run has gone back to `step`
+  std::vector<core::TogetherPair> put_back_for;  ///< the pairs that come to one host in time now
 };
 
 class Node {
@@ -111,8 +123,24 @@ class Node {
   /// Takes in the mail. True when the next state may be computed.
   bool ready();
 
-  /// Computes the next state. Only when ready().
+  /// Computes the next state, or goes back to an earlier one where the run is to be computed again. Only when ready().
   const StepReport& step();
+  /// The reports that can be relied on since the last step, in order: with AuraRules::redo those of states that nothing
+  /// can come to question any more, otherwise the last one. Valid until the next step.
+  std::span<const StepReport> confirmed() const { return confirmed_; }
+  /// The run may end after state `last`, or change: finish() will need it.
+  void keep(core::Step last);
+  /// No alarm can come to question this state any more. Reports follow later.
+  core::Step confirmed_step() const;
+  /// Once state `last` is confirmed, and the run is over: the reports up to it that have not been given out. The world
+  /// is that of state `last`, with all that was under way, if keep() named it.
+  std::span<const StepReport> finish(core::Step last);
+  /// finish() has taken in what was under way.
+  bool settled() const { return settled_; }
+  /// Somewhere a node has died: nothing can be computed again any more, and collisions are judged as without a redo.
+  void give_up_redo() { protocol_->give_up_alarms(); }
+  /// How often the run has gone back.
+  std::uint32_t redos() const { return setup_.protocol.redo; }
 
   /// Orders the world to do something, as soon as all nodes can have received it, or in state `at_step` if that is
   /// later. Only on the one node that takes orders.
@@ -149,17 +177,32 @@ class Node {
   void note_removals();
   void clear_report();
   void host_initial_bodies();
+  std::vector<core::BodyRecord> initial_bodies();
   void announce_births(core::Step state);
   void heed(const core::Order& order);
   void announce_spawns(core::Step birth);
   void apply(const core::Changes& changes);
   void finish_state();
+  void watch_collisions(const core::Snapshot& snapshot);
   void note_contacts(const core::Snapshot& snapshot);
   void note_arrivals(const core::Adoption& adoption);
   void release(std::span<const core::Departure> departures);
   void hand_over(const core::Departure& departure, core::ClusterState cluster);
   bool take_touched(core::BodyId id);
   void count(const core::Snapshot& snapshot);
+  void compute_step();
+  void adopt(const core::Adoption& adoption, std::uint32_t nth);
+  bool redo_is_due() const { return redo_ && redo_->at_step <= current_step(); }
+  void put_back();
+  void take_cut();
+  Cut cut() const;
+  void go_back_to(const Cut& cut);
+  void forget_cuts();
+  void order_redo();
+  const Cut& cut_before(core::Step touch, std::size_t farther) const;
+  void hold(const StepReport& report);
+  void release_reports(core::Step until);
+  void confirm_all();
 
   NodeSetup setup_;
   core::Scene scene_;
@@ -178,7 +221,17 @@ class Node {
     bool touched = false;  ///< had a contact since it came here
   };
   std::vector<Touch> touched_, touched_before_;  ///< ascending id: of the last state, and of the one before it
-  double mail_s_ = 0;                            ///< time spent with the mail since the last step
+  std::deque<Cut> cuts_;                         ///< ascending
+  std::optional<core::Step> last_;               ///< named by keep()
+  std::optional<Cut> last_cut_;                  ///< of that state
+  bool settled_ = false;
+  std::optional<core::Order> redo_;  ///< not yet due
+  bool redo_is_ordered_ = false;     ///< by us
+  core::Epoch first_epoch_ = 0;      ///< of bodies that are new
+  std::size_t stubborn_ = 0;         ///< redos in a row that have not brought a pair together
+  std::deque<StepReport> held_;      ///< not confirmed yet
+  std::vector<StepReport> confirmed_;
+  double mail_s_ = 0;  ///< time spent with the mail since the last step
   StepReport report_;
 };
 

@@ -46,15 +46,16 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region)
       removals_(folder_ / "removals.csv", "region,body,removed_step\n"),
       hashes_(folder_ / "state_hash.csv", "step,hash\n") {}
 
-void Recorder::write(const StepReport& r, const FrameTimes& times, const Node& node) {
+void Recorder::write(const StepReport& r, const FrameTimes& times) {
+  if (r.put_back_from) return note_redo(r);
   if (end_) return;
   steps_.add("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", core::value_of(region_), r.step,
              times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s, 1e3 * r.durations.protocol_s,
              1e3 * r.durations.transport_s, r.bodies, r.awake, r.foreign_auras, r.projecting, r.largest_cluster,
-             r.departures.size(), r.arrivals.size(), node.protocol().violations().total());
+             r.departures.size(), r.arrivals.size(), r.violations_total);
   write_settling(r);
   write_collisions(r);
-  write_violations(node);
+  write_violations(r);
   for (const Birth& birth : r.births) {
     births_.add("{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
   }
@@ -94,8 +95,14 @@ void Recorder::write_collisions(const StepReport& report) {
   }
 }
 
-void Recorder::write_violations(const Node& node) {
-  for (const core::Violation& v : node.protocol().violations().recent()) {
+/// The state has been recorded; what had joined later has joined anew.
+void Recorder::note_redo(const StepReport& report) {
+  redos_.push_back({*report.put_back_from, report.step, report.put_back_for});
+  write_settling(report);
+}
+
+void Recorder::write_violations(const StepReport& report) {
+  for (const core::Violation& v : report.violations) {
     violations_.add("{},{},{},{},{},{:.6g},{:.6g}\n", core::value_of(region_), v.step,
                     kKindNames[static_cast<std::size_t>(v.kind)], core::value_of(v.region), core::value_of(v.body),
                     v.value, v.allowed);
@@ -136,8 +143,10 @@ void Recorder::write_bodies(Node& node) {
   const auto under_way = [&](const core::HandOff& h) {
     for (const core::BodyRecord& body : h.cluster.bodies) row(core::state_of(body), "under_way");
   };
-  for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
-  for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);
+  if (!node.settled()) {
+    for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
+    for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);
+  }
   if (!bodies.flush()) end_records(bodies);
 }
 
@@ -168,6 +177,15 @@ void Recorder::write_summary(Node& node, const Ending& ending) const {
       {"stale_arrivals", p.counters().stale_arrivals},
       {"dead_regions", dead},
   };
+  constexpr std::size_t kMostPairs = 16;
+  summary["redos"] = nlohmann::json::array();
+  for (const Redo& redo : redos_) {
+    nlohmann::json pairs = nlohmann::json::array();
+    for (const core::TogetherPair& pair : redo.pairs) {
+      if (pairs.size() < kMostPairs) pairs.push_back({core::value_of(pair.a), core::value_of(pair.b)});
+    }
+    summary["redos"].push_back({{"from_step", redo.from}, {"to_step", redo.to}, {"pairs", pairs}});
+  }
   if (end_) summary["records_end"] = {{"after_step", end_->after}, {"why", end_->why}};
   overwrite(folder_ / "node.json", summary.dump(2) + '\n');
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "node/node.h"
 #include "node/row_file.h"
@@ -37,7 +38,7 @@ class Recorder {
   /// Creates `folder`/region_<r>; throws std::runtime_error when that fails.
   Recorder(const std::filesystem::path& folder, core::RegionId region);
 
-  void write(const StepReport& report, const FrameTimes& times, const Node& node);
+  void write(const StepReport& report, const FrameTimes& times);
 
   /// What came in after the last step.
   void write_settling(const StepReport& report);
@@ -53,7 +54,8 @@ class Recorder {
  private:
   void write_hand_offs(const StepReport& report);
   void write_collisions(const StepReport& report);
-  void write_violations(const Node& node);
+  void write_violations(const StepReport& report);
+  void note_redo(const StepReport& report);
   void write_bodies(Node& node);
   void write_summary(Node& node, const Ending& ending) const;
   void flush(core::Step step);
@@ -62,6 +64,12 @@ class Recorder {
   core::RegionId region_;
   std::filesystem::path folder_;
   RowFile steps_, collisions_, migrations_, violations_, births_, removals_, hashes_;
+  struct Redo {
+    core::Step from = 0;
+    core::Step to = 0;
+    std::vector<core::TogetherPair> pairs;  ///< that it was for, and those of earlier ones that still hold
+  };
+  std::vector<Redo> redos_;
   core::Step flushed_ = 0;
   std::optional<RecordsEnd> end_;
 };

@@ -278,6 +278,7 @@ class Merge {
         {"missed_collisions", sum_over_nodes("missed_collisions")},
         {"late_without_violation", sum_over_nodes("late_without_violation")},
         {"severed_contacts", sum_over_nodes("severed_contacts")},
+        {"redos", redos()},
         {"violations", violations},
         {"violations_by_kind", by_kind},
         {"regions", frame_times()},
@@ -287,6 +288,15 @@ class Merge {
       throw std::runtime_error(fmt::format("cannot write {}; what the nodes have written is in region_*",
                                            (folder_ / "summary.json").string()));
     }
+  }
+
+  /// All nodes go back alike: one of them that has come to the end tells of all.
+  Json redos() const {
+    Json most = Json::array();
+    for (const Json& node : nodes_) {
+      if (node.contains("redos") && node["redos"].size() > most.size()) most = node["redos"];
+    }
+    return most;
   }
 
   Json incomplete_json() const {

@@ -49,6 +49,7 @@ Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
             {"span", s.violations.span}}},
           {"late", s.late_collisions},
           {"missed", s.missed_collisions},
+          {"redos", s.redos},
           {"frame_ms", durations_json(s.frame)},
           {"physics_ms", durations_json(s.physics)},
           {"protocol_ms", durations_json(s.protocol)},
@@ -148,6 +149,8 @@ std::string node_metrics(const RunStatus& status) {
       [](const Seen& s) { return s.status.late_collisions; });
   add("missed_collisions_total", "counter", "Overlaps of bodies of two nodes.",
       [](const Seen& s) { return s.status.missed_collisions; });
+  add("redos_total", "counter", "How often the run has been put back and computed again.",
+      [](const Seen& s) { return s.status.redos; });
   add("frame_p50_ms", "gauge", "Median frame time of the last second.",
       [](const Seen& s) { return s.status.frame.p50_ms; });
   add("frame_p99_ms", "gauge", "99th percentile of the frame time.",

@@ -66,6 +66,19 @@ core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const
   return impl_->simulation.peek(bodies);
 }
 
+core::ClusterState RegionWorld::peek_all() const { return impl_->simulation.peek(impl_->simulation.body_ids()); }
+
+void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
+  impl_->simulation.release(impl_->simulation.body_ids());
+  impl_->simulation.start_at(step);
+  impl_->simulation.join(bodies);
+  impl_->made_up.clear();
+  impl_->collisions.clear();
+  take_removed();
+  take_applied();
+  take_declined();
+}
+
 void RegionWorld::schedule(const core::Order& order) {
   impl_->shapes->extend(impl_->scene);
   impl_->timeline.add(order);

@@ -52,6 +52,11 @@ class RegionWorld {
   /// The same record of bodies that stay (tests, key frames, state hash).
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
 
+  /// All bodies, those that wait for their birth included, as release() would give them.
+  core::ClusterState peek_all() const;
+  /// Goes back to an earlier state: `bodies` are all that are here then. Orders are applied again when they are due.
+  void put_back(core::Step step, const core::ClusterState& bodies);
+
   /// An order to apply in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
   /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
   void schedule(const core::Order& order);

@@ -67,7 +67,9 @@ void MemoryNetwork::post(core::RegionId from, core::RegionId to, const Message& 
 }
 
 void MemoryNetwork::send(core::RegionId from, const core::Outbox& outbox) {
-  for (const core::RegionId to : listeners_.at(core::value_of(from))) post(from, to, outbox.aura);
+  std::vector<core::RegionId>& listeners = listeners_.at(core::value_of(from));
+  if (!outbox.listeners.empty()) listeners = outbox.listeners;
+  for (const core::RegionId to : listeners) post(from, to, outbox.aura);
   for (const core::HandOff& hand_off : outbox.hand_offs) post(from, hand_off.destination, hand_off);
   for (const core::HandOffAck& ack : outbox.acks) post(from, ack.destination, ack);
 }

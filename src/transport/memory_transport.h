@@ -15,7 +15,8 @@ namespace aurasim::transport {
 
 class MemoryNetwork {
  public:
-  /// `listeners[r]`: the regions that hear region r's aura batches. Delays are in seconds of virtual time.
+  /// `listeners[r]`: the regions that hear region r's aura batches, until it names others (Outbox::listeners). Delays
+  /// are in seconds of virtual time.
   MemoryNetwork(std::vector<std::vector<core::RegionId>> listeners, const Faults& faults, std::uint64_t seed);
   ~MemoryNetwork();
 

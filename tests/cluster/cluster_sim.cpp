@@ -63,13 +63,14 @@ Outcome ClusterSim::run(Step steps) {
   std::uint64_t request = 0;
   for (const auto& [step, action] : options_.orders) members_[0].node->order(action, ++request, step);
   for (Member& member : members_) {
-    take_report(member, member.node->start());
+    member.node->start();
+    take_reports(member);
     if (on_state) on_state(*member.node, member.node->report(), 0);
   }
   const double slice = options_.aura.step_s / 8;
   const auto behind = [&] {
     return std::any_of(members_.begin(), members_.end(),
-                       [&](const Member& m) { return m.alive && m.node->current_step() < steps; });
+                       [&](const Member& m) { return m.alive && !has_done(*m.node, steps); });
   };
   for (double t = 0; behind(); t += slice) {
     if (t > 60 * static_cast<double>(steps) * options_.aura.step_s + 60)
@@ -78,13 +79,24 @@ Outcome ClusterSim::run(Step steps) {
     for (Member& member : members_) step_if_due(member, steps);
   }
   settle();
+  for (Member& member : members_) {
+    for (const node::StepReport& report : member.node->finish(steps)) take_report(member, report);
+  }
   account(outcome_);
   return outcome_;
 }
 
+bool ClusterSim::has_done(const node::Node& node, Step steps) const {
+  return node.current_step() >= steps && (!options_.aura.redo || node.confirmed_step() >= steps);
+}
+
+void ClusterSim::take_reports(Member& member) {
+  for (const node::StepReport& report : member.node->confirmed()) take_report(member, report);
+}
+
 void ClusterSim::step_if_due(Member& member, Step last) {
   const double now = network_->now_s();
-  if (!member.alive || now < member.busy_until_s || member.node->current_step() >= last) return;
+  if (!member.alive || now < member.busy_until_s || has_done(*member.node, last)) return;
   const Step next = member.node->current_step() + 1;
   if (member.node->protocol().fenced()) {
     member.alive = false;
@@ -96,10 +108,15 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   const double frame = options_.frame_s + options_.frame_jitter_s * chance();
   network_->set_send_delay(frame);
   member.busy_until_s = now + frame;
-  take_report(member, member.node->step());
+  const node::StepReport& report = member.node->step();
+  if (report.put_back_from && member.node->region() == RegionId{0}) {
+    ++outcome_.redos;
+    outcome_.again += static_cast<std::uint64_t>(*report.put_back_from - report.step);
+  }
+  take_reports(member);
   if (on_state) on_state(*member.node, member.node->report(), now);
   member.node->protocol().report_frame(next, frame);
-  check_single_host();
+  if (!options_.aura.redo) check_single_host();  // else some may have gone back already
   maybe_crash(member);
 }
 
@@ -154,6 +171,7 @@ void ClusterSim::maybe_crash(Member& member) {
 /// Every message that is under way arrives; nothing new is published.
 void ClusterSim::settle() {
   outcome_.slowest_s = network_->now_s();
+  if (options_.aura.redo) return;
   network_->advance_to(network_->now_s() + 1e6);
   for (Member& member : members_) {
     if (!member.alive) continue;

@@ -66,6 +66,8 @@ struct Outcome {
   std::vector<core::RegionId> fenced;    ///< nodes that the others hold for dead
   std::uint64_t applied = 0;             ///< orders, by bodies
   std::uint64_t severed = 0;             ///< contacts cut by a hand-off
+  std::uint64_t redos = 0;               ///< how often the run was put back
+  std::uint64_t again = 0;               ///< states computed once more because of that
   std::uint64_t bad_phases = 0;
   std::size_t largest_cluster = 0;
   double slowest_s = 0;                                               ///< virtual time at the end
@@ -97,6 +99,8 @@ class ClusterSim {
 
   void cut_off(const LinkCut& cut);
   void step_if_due(Member& member, core::Step last);
+  bool has_done(const node::Node& node, core::Step steps) const;
+  void take_reports(Member& member);
   void take_report(Member& member, const node::StepReport& report);
   void check_single_host();
   void maybe_crash(Member& member);

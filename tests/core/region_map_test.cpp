@@ -275,9 +275,14 @@ TEST(Vicinity, ListensOnlyToRegionsWithinTheNeighbourDistance) {
   EXPECT_EQ(vicinity.bit_of(r(2)), 0u);
 }
 
-TEST(Vicinity, RefusesMoreNeighboursThanASetOfThemCanHold) {
-  EXPECT_NO_THROW(Vicinity(RegionMap::columns(65, 1), r(0), 1e9));
-  EXPECT_THROW(Vicinity(RegionMap::columns(66, 1), r(0), 1e9), BadRegionMap);
+TEST(Vicinity, GrowsByRegionsThatAreFarAway) {
+  const RegionMap map = RegionMap::columns(100, 1);
+  Vicinity vicinity(map, r(50), 0);
+  vicinity.listen_to(r(3));
+  vicinity.listen_to(r(3));
+  EXPECT_THAT(vicinity.neighbours, ElementsAre(r(3), r(49), r(51)));
+  EXPECT_TRUE(vicinity.is_neighbour(r(3)));
+  EXPECT_FALSE(vicinity.are_near(r(50), r(3)));
 }
 
 }  // namespace

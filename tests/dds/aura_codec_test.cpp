@@ -76,6 +76,50 @@ TEST(AuraCodec, OrdersOfEveryKindComeBack) {
   EXPECT_EQ(encoded(got), sent) << "every number of every order";
 }
 
+/// With a body that has joined late, and has made up an earlier state.
+core::AuraBatch batch_with_past() {
+  core::AuraBatch batch = batch_of(1);
+  batch.past = {testing::aura_of(8)};
+  batch.past[0].flags = core::kAuraAsleep;
+  batch.past[0].stamp = batch.stamp - 2;
+  return batch;
+}
+
+TEST(AuraCodec, WhatTheCheckNeedsComesBackToTheBit) {
+  const core::AuraBatch batch = batch_with_past();
+  const auto decoded = decode(encoded(batch), expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  const core::AuraBatch& got = std::get<core::AuraBatch>(decoded);
+  EXPECT_EQ(got.redo, 3u);
+  ASSERT_EQ(got.alarms.size(), 1u);
+  EXPECT_EQ(got.alarms[0].redo, 2u);
+  EXPECT_EQ(got.alarms[0].step, 400);
+  EXPECT_EQ(got.alarms[0].a, core::BodyId{5});
+  EXPECT_EQ(got.alarms[0].b, core::BodyId{1'000'000'001});
+  EXPECT_EQ(got.introductions, batch.introductions);
+  ASSERT_EQ(got.past.size(), 1u);
+  EXPECT_EQ(got.past[0].stamp, batch.past[0].stamp);
+  EXPECT_EQ(got.past[0].flags, core::kAuraAsleep);
+  EXPECT_EQ(got.past[0].pose.p_WB, batch.past[0].pose.p_WB) << "places are not rounded";
+}
+
+TEST(AuraCodec, ChecksThatMakeNoSenseAreRefused) {
+  const auto refused = [](auto&& spoil) {
+    wire::AuraBatch wrong = encoded(batch_with_past());
+    spoil(wrong);
+    const auto decoded = decode(wrong, expected());
+    return std::holds_alternative<WireError>(decoded) ? std::optional(std::get<WireError>(decoded)) : std::nullopt;
+  };
+  EXPECT_EQ(refused([](auto& w) { w.alarm_a()[0] = w.alarm_b()[0]; }), WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.alarm_step().push_back(1); }), WireError::kLength);
+  EXPECT_EQ(refused([](auto& w) { w.introduction_b()[0] = 1000; }), WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.introduction_a()[0] = w.introduction_b()[0]; }), WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.past_stamp()[0] = w.stamp(); }), WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.past_motion()[0] = NAN; }), WireError::kNotFinite);
+  EXPECT_EQ(refused([](auto& w) { w.past_motion()[3] = 2; }), WireError::kRotation);
+  EXPECT_EQ(refused([](auto& w) { w.past_motion().pop_back(); }), WireError::kLength);
+}
+
 /// Whoever is further out than grains reach takes doubles for its whole batch, and loses nothing.
 TEST(AuraCodec, PlacesFarOutAreKeptToTheBit) {
   core::AuraBatch batch = batch_of(3);

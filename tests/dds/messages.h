@@ -56,7 +56,8 @@ inline std::vector<core::Order> one_order_of_each_kind() {
       core::SetVelocity{core::BodyId{8}, v, {}},
       core::SetVelocity{core::BodyId{8}, v, -v},
       core::Repartition{{{-1, -2, 0, 3}, {0, -2, 4, 3}}},
-      core::ChangeScene{"tower"}};
+      core::ChangeScene{"tower"},
+      core::Redo{30, {{core::BodyId{3}, core::BodyId{1'000'000'007}, 47}}}};
   std::vector<core::Order> orders;
   for (const core::Action& action : actions) {
     orders.push_back({orders.size() + 1, 0xabcd'0000'0000'0000U + orders.size(), 1000, action});
@@ -83,6 +84,9 @@ inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core:
   batch.dead = {core::RegionId{3}};
   batch.claims = {{core::BodyId{44}, 8}};
   batch.orders = one_order_of_each_kind();
+  batch.redo = 3;
+  batch.alarms = {{2, 400, core::BodyId{5}, core::BodyId{1'000'000'001}}};
+  batch.introductions = {{core::RegionId{0}, core::RegionId{3}}};
   return batch;
 }
 

@@ -55,7 +55,7 @@ class Records : public ::testing::Test {
       StepReport report;
       report.step = step;
       report.hash = {{step, static_cast<std::uint64_t>(step)}};
-      recorder.write(report, {}, node_);
+      recorder.write(report, {});
     }
   }
   void finish(Recorder& recorder) { recorder.finish(node_, {1, "finished", {}}); }

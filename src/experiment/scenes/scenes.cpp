@@ -29,6 +29,7 @@ struct SeedRow {
   std::optional<core::Step> first_difference;
   std::uint64_t late = 0, missed = 0, unflagged = 0, unflagged_on_one = 0;
   std::uint64_t violations = 0, speed = 0, latency = 0, promise = 0, span = 0;
+  std::uint64_t redos = 0, computed_again = 0;
   std::uint64_t hand_offs = 0, broken = 0;
   std::uint64_t regions = 0, bodies = 0, largest_cluster = 0;
   double regions_s = 0, one_s = 0;
@@ -50,6 +51,8 @@ struct SeedRow {
                       Column{"latency", &SeedRow::latency},
                       Column{"promise", &SeedRow::promise},
                       Column{"span", &SeedRow::span},
+                      Column{"redos", &SeedRow::redos},
+                      Column{"computed_again", &SeedRow::computed_again},
                       Column{"hand_offs", &SeedRow::hand_offs},
                       Column{"broken", &SeedRow::broken},
                       Column{"regions", &SeedRow::regions},
@@ -68,6 +71,7 @@ SeedRow row_of(std::uint64_t seed, const WorldOutcome& o) {
   row.first_difference = o.first_difference;
   row.late = o.late, row.missed = o.missed, row.unflagged = o.unflagged, row.unflagged_on_one = o.unflagged_on_one;
   row.violations = o.violations, row.speed = o.speed, row.latency = o.latency, row.promise = o.promise;
+  row.redos = o.redos, row.computed_again = o.computed_again;
   row.span = o.span, row.hand_offs = o.hand_offs, row.broken = o.broken;
   row.regions = o.regions, row.bodies = o.bodies, row.largest_cluster = o.largest_cluster;
   row.regions_s = o.regions_s, row.one_s = o.one_s;
@@ -217,6 +221,7 @@ nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::p
   nlohmann::json sums = nlohmann::json::parse(shown_rules(plan));
   nlohmann::json failed = nlohmann::json::array();
   std::uint64_t seeds = 0, differ = 0, differ_unflagged = 0, late = 0, missed = 0, unflagged = 0, hand_offs = 0;
+  std::uint64_t redos = 0, seeds_with_redos = 0, computed_again = 0;
   std::uint64_t with_violations = 0, errors = 0;
   double regions_s = 0, one_s = 0;
   for (const auto& [seed, row] : read_rows(directory / "seeds.csv")) {
@@ -225,6 +230,7 @@ nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::p
     differ += !row.equal;
     differ_unflagged += !row.equal && (row.unflagged > row.unflagged_on_one || row.violations == 0);
     late += row.late, missed += row.missed, unflagged += row.unflagged, hand_offs += row.hand_offs;
+    redos += row.redos, seeds_with_redos += row.redos > 0, computed_again += row.computed_again;
     with_violations += row.violations > 0;
     errors += !row.error.empty();
     regions_s += row.regions_s, one_s += row.one_s;
@@ -238,6 +244,9 @@ nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::p
                {"missed", missed},
                {"unflagged", unflagged},
                {"seeds_with_violations", with_violations},
+               {"redos", redos},
+               {"seeds_with_redos", seeds_with_redos},
+               {"states_computed_again", computed_again},
                {"hand_offs", hand_offs},
                {"cpu_s_on_regions", regions_s},
                {"cpu_s_on_one_node", one_s},

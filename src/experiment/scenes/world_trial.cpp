@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -46,6 +47,8 @@ struct Played {
   std::size_t largest_cluster = 0;
   std::size_t bodies = 0;
   double cpu_s = 0;
+  std::uint64_t redos = 0;
+  std::uint64_t again = 0;  ///< states computed once more
 };
 
 void note_report(const node::StepReport& report, Played& played) {
@@ -71,13 +74,21 @@ std::optional<Played> play(VirtualCluster& cluster, std::vector<Request>& reques
   Played played;
   played.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
   const double begin_s = thread_time_s();
-  for (std::size_t r = 0; r < cluster.size(); ++r) note_report(cluster.node(r).report(), played);
+  const auto note_reports = [&](std::span<const node::StepReport> reports) {
+    for (const node::StepReport& report : reports) note_report(report, played);
+  };
+  for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).confirmed());
   ImpatientClient client(requests);
-  while (cluster.slowest() < steps + more) {
+  while (cluster.slowest() < steps + more || cluster.confirmed() < steps) {
     if (stop) return std::nullopt;
     client.speak(cluster.node(0));
-    note_report(*cluster.next().report, played);
+    const VirtualCluster::Event event = cluster.next();
+    note_reports(cluster.node(core::value_of(event.region)).confirmed());
+    if (!event.report->put_back_from || event.region != core::RegionId{0}) continue;
+    ++played.redos;
+    played.again += static_cast<std::uint64_t>(*event.report->put_back_from - event.report->step);
   }
+  for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).finish(steps + more));
   for (std::size_t r = 0; r < cluster.size(); ++r) played.bodies += cluster.node(r).report().bodies;
   played.cpu_s = thread_time_s() - begin_s;
   return played;
@@ -111,6 +122,9 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   outcome.hand_offs = many->hand_offs;
   outcome.largest_cluster = many->largest_cluster;
   outcome.regions_s = many->cpu_s;
+  outcome.redos = many->redos;
+  outcome.computed_again = many->again;
+  cluster_rules.aura.redo = false;
   VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), cluster_rules);
   const auto one = play(single, interference.requests, rules.steps, launch.lookahead(), stop);
   if (!one) return false;

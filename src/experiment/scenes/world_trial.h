@@ -30,6 +30,7 @@ struct WorldOutcome {
   std::uint64_t unflagged_on_one = 0;  ///< what one node takes for late is no fault of the regions
   std::uint64_t violations = 0;        ///< all kinds
   std::uint64_t speed = 0, latency = 0, promise = 0, span = 0;  ///< violations of these kinds
+  std::uint64_t redos = 0, computed_again = 0;                  ///< how often the run was put back; states
   std::uint64_t hand_offs = 0;
   std::uint64_t broken = 0;  ///< bodies that physics broke, on one node
   std::string first_fault;   ///< of the first of them

@@ -1,0 +1,79 @@
+// The check (docs/design.md, "Checked, and computed again"): has every pair of bodies that touched while a state was
+// computed been in one world? A node looks at its own bodies and at all that it has been told of those of others, in
+// the states that they were in, K states late. Errs to one side: a pair too many is named, none too few.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "core/aura.h"
+#include "core/near_index.h"
+#include "core/neighbour.h"
+#include "core/redo.h"
+#include "core/vicinity.h"
+
+namespace aurasim::core {
+
+class InterestMatching;
+
+class StateCheck {
+ public:
+  /// States from `start` on. Keeps references.
+  StateCheck(const Aura& aura, const Vicinity& vicinity, Step start);
+
+  /// What a neighbour has published of the state applied(), and of earlier ones.
+  void take(const Neighbour& neighbour);
+  /// Our bodies in a state, those that others have to know of.
+  void take_own(const Snapshot& snapshot, const InterestMatching& matching);
+  /// A state that one of ours has made up alone, as the `nth` cluster that has joined: it was in no world with others.
+  void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
+
+  /// Looks at all states that everything is known of, when state `now` is complete.
+  void look(Step now, std::span<const Neighbour> neighbours);
+  /// Pairs found by the last look(), a < b, with the state in whose computation they may have touched.
+  std::span<const Alarm> found() const { return found_; }
+  /// The last state that has been looked at.
+  Step checked() const { return checked_; }
+
+ private:
+  /// A body in a state, and the world in which that state was computed.
+  struct Sighting {
+    BodyId id{};
+    std::uint32_t world = 0;
+    Path path;
+  };
+  struct State {
+    Step step = 0;
+    std::vector<Sighting> bodies;
+  };
+  /// A body on its way through one step.
+  struct Motion {
+    BodyId id{};
+    std::uint32_t world = 0;
+    Path at_start, at_end;
+    double stray_m = 0;  ///< its surface may be this far off the straight way in between
+  };
+
+  State& state(Step step);
+  void add(const AuraRecord& aura, Step step, std::uint32_t world);
+  void check(Step step);
+  void gather_motions(State& before, State& after);
+  Motion motion(const Sighting& now, const Sighting* before) const;
+  bool touch(const Motion& a, const Motion& b) const;
+  bool sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const;
+  Pose pose(const Motion& motion, double share) const;
+
+  const Aura& aura_;
+  const Vicinity& vicinity_;
+  Step start_;
+  Step checked_;
+  std::deque<State> states_;
+  std::vector<Motion> motions_;
+  std::vector<Path> middles_;  ///< of motions_, for finding who is near
+  NearIndex near_;
+  std::vector<Alarm> found_;
+};
+
+}  // namespace aurasim::core

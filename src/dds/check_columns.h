@@ -1,0 +1,20 @@
+// What the check of states needs (core/state_check.h), as the alarm_* and past_* columns of an AuraBatch.
+#pragma once
+
+#include <optional>
+
+#include "core/messages.h"
+#include "dds/wire_error.h"
+
+namespace aurasim::wire {
+class AuraBatch;
+}
+
+namespace aurasim::dds {
+
+void encode_checks(const core::AuraBatch& batch, wire::AuraBatch& out);
+std::optional<WireError> check_checks(const wire::AuraBatch& in, const Expected& expected);
+/// Of columns that have been checked.
+void decode_checks(const wire::AuraBatch& in, core::AuraBatch& batch);
+
+}  // namespace aurasim::dds

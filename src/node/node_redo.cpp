@@ -1,0 +1,195 @@
+// How a node goes back to a cut and computes again (docs/design.md, "Checked, and computed again").
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/horizon.h"
+#include "node/node.h"
+#include "node/timed.h"
+
+namespace aurasim::node {
+namespace {
+
+using core::horizon::kBetweenCuts;
+
+/// Cuts that are kept besides those that a redo needs at first: for pairs that one redo does not bring together.
+constexpr std::size_t kOlderCuts = 4;
+
+constexpr std::size_t kMostCuts = 40;
+
+bool same_pair(const core::TogetherPair& pair, const core::Alarm& alarm) {
+  return pair.a == alarm.a && pair.b == alarm.b;
+}
+
+}  // namespace
+
+core::Step Node::confirmed_step() const {
+  if (!setup_.protocol.aura.redo) return current_step();
+  return protocol_->alarms_given_up() ? protocol_->confirmed_but_for_alarms() : protocol_->confirmed();
+}
+
+void Node::take_cut() {
+  if (!setup_.protocol.aura.redo) return;
+  const Timed timed(report_.durations.cut_s, setup_.clock);
+  cuts_.push_back(cut());
+}
+
+Cut Node::cut() const {
+  return {current_step(), world_.peek_all(), {}, to_spawn_, next_injection_, protocol_->claimer(), watch_.counts()};
+}
+
+void Node::keep(core::Step last) {
+  if (setup_.protocol.aura.redo && (!last_ || *last_ > last)) last_ = last;
+}
+
+/// What is older than anything that a redo can still go back to. All nodes go back to the same state, so none may let
+/// go of it, or of the reports since, before all have.
+void Node::forget_cuts() {
+  const core::Step oldest = cut_before(protocol_->confirmed() + 1, kOlderCuts).step;
+  while (cuts_.front().step < oldest) cuts_.pop_front();
+  if (protocol_->alarms_given_up() && cuts_.size() > kMostCuts) cuts_.pop_front();  // an alarm may stand for ever
+}
+
+/// The newest that leaves time enough to bring a pair together, or `farther` cuts before it.
+const Cut& Node::cut_before(core::Step touch, std::size_t farther) const {
+  const core::Step wanted = touch - core::horizon::before_touch(setup_.protocol.aura.lookahead);
+  std::size_t newest = 0;
+  while (newest + 1 < cuts_.size() && cuts_[newest + 1].step <= wanted) ++newest;
+  return cuts_[newest - std::min(newest, farther)];
+}
+
+/// On the one node that gives orders.
+void Node::order_redo() {
+  const std::span<const core::Alarm> alarms = protocol_->alarms().standing();
+  if (!protocol_->intake().dead_regions().empty()) give_up_redo();
+  if (region() != core::RegionId{0} || redo_is_ordered_ || alarms.empty() || protocol_->alarms_given_up()) return;
+  const core::Step first = std::ranges::min(alarms, {}, &core::Alarm::step).step;
+  std::size_t farther = 0;
+  std::vector<core::TogetherPair> pairs = setup_.protocol.together;
+  for (const core::Alarm& alarm : alarms) {
+    const core::Step until = alarm.step + core::horizon::together_after_touch(setup_.protocol.aura.lookahead);
+    const auto known = std::ranges::find_if(pairs, [&](const auto& pair) { return same_pair(pair, alarm); });
+    if (known == pairs.end()) {
+      pairs.push_back({alarm.a, alarm.b, until});
+    } else {
+      if (alarm.step == first && known->until >= alarm.step) farther = stubborn_ + 1;
+      known->until = std::max(known->until, until);
+    }
+  }
+  stubborn_ = std::min(farther, kOlderCuts);
+  const Cut& cut = cut_before(first, stubborn_);
+  std::erase_if(pairs, [&](const core::TogetherPair& pair) { return pair.until < cut.step; });
+  std::ranges::sort(pairs, {}, [](const core::TogetherPair& pair) { return std::pair(pair.a, pair.b); });
+  core::Order order;
+  order.at_step = protocol_->earliest_agreement();
+  order.action = core::Redo{cut.step, std::move(pairs)};
+  protocol_->announce(std::move(order));
+  redo_is_ordered_ = true;
+}
+
+/// All nodes do so after the same state. What is under way is of the old redo, and dropped by whoever receives it.
+void Node::put_back() {
+  const core::Step from = current_step();
+  const auto redo = std::get<core::Redo>(redo_->action);
+  redo_.reset();
+  redo_is_ordered_ = false;
+  clear_report();
+  while (!cuts_.empty() && cuts_.back().step > redo.cut) cuts_.pop_back();
+  if (cuts_.empty() || cuts_.back().step != redo.cut) {
+    throw std::logic_error("there is no cut of state " + std::to_string(redo.cut));
+  }
+  Cut& cut = cuts_.back();
+  setup_.protocol.together = redo.pairs;
+  // Epochs only ever grow, also for those who look on: more than anybody can have changed host since.
+  const auto more = static_cast<core::Epoch>(from - cut.step + 1);
+  first_epoch_ += more;
+  const auto raise = [&](core::ClusterState& cluster) {
+    for (core::BodyRecord& body : cluster.bodies) body.epoch += more;
+  };
+  if (cut.step == 0) {
+    cut.bodies.bodies = initial_bodies();  // there is no time to bring a pair together later
+  } else {
+    raise(cut.bodies);
+  }
+  for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
+
+  core::Continuation next = protocol_->continuation(cut.step, cut.claimer);
+  setup_.protocol.redo = next.alarms.redo();
+  setup_.protocol.start = cut.step;
+  std::vector<core::RegionId>& related = setup_.protocol.related;
+  related.insert(related.end(), next.related.begin(), next.related.end());
+  protocol_.emplace(setup_.protocol, *map_, *clearance_, std::move(next));
+  report_.put_back_from = from;
+  report_.put_back_for = redo.pairs;
+  last_cut_.reset();
+  go_back_to(cut);
+  const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
+  finish_state();
+  setup_.hash_states = hashes;
+}
+
+void Node::go_back_to(const Cut& cut) {
+  world_.put_back(cut.step, cut.bodies);
+  watch_.put_back(cut.collisions);
+  to_spawn_ = cut.to_spawn;
+  next_injection_ = cut.next_injection;
+  std::uint32_t nth = 0;
+  for (const core::Adoption& adoption : cut.joining) adopt(adoption, nth++);
+}
+
+/// Keeps a report until its state is confirmed.
+void Node::hold(const StepReport& report) {
+  if (!setup_.protocol.aura.redo) {
+    confirmed_.push_back(report);
+    return;
+  }
+  held_.push_back(report);
+  if (report.put_back_from) {
+    const auto discarded = std::ranges::find_if(held_, [&](const StepReport& held) {
+      return held.step > report.step || (held.step == report.step && held.put_back_from);
+    });
+    held_.erase(discarded, held_.end() - 1);
+  }
+  release_reports(cuts_.front().step);
+}
+
+/// Not what a redo has come back to, as long as another one may come back there, too.
+void Node::release_reports(core::Step until) {
+  while (!held_.empty() && held_.front().step + (held_.front().put_back_from ? 1 : 0) <= until) {
+    confirmed_.push_back(std::move(held_.front()));
+    held_.pop_front();
+  }
+}
+
+std::span<const StepReport> Node::finish(core::Step last) {
+  confirmed_.clear();
+  settled_ = last_cut_ && last_cut_->step == last;
+  if (settled_) go_back_to(*last_cut_);
+  last_.reset();
+  last_cut_.reset();
+  release_reports(last);
+  // Who joined later has made up its part of the last states.
+  for (StepReport& later : held_) {
+    StepReport& rest = confirmed_.emplace_back();
+    rest.step = later.step;
+    rest.hash = std::move(later.hash);
+    std::erase_if(rest.hash, [last](const HashPart& part) { return part.step > last; });
+    rest.arrivals = std::move(later.arrivals);
+    std::erase_if(rest.arrivals, [last](const HandOffRow& row) { return row.stamp > last; });
+  }
+  held_.clear();
+  return confirmed_;
+}
+
+/// There is no way back to before another map.
+void Node::confirm_all() {
+  confirmed_.insert(confirmed_.end(), std::make_move_iterator(held_.begin()), std::make_move_iterator(held_.end()));
+  held_.clear();
+  cuts_.clear();
+  redo_.reset();
+  redo_is_ordered_ = false;
+}
+
+}  // namespace aurasim::node

@@ -1,0 +1,87 @@
+// What is computed with two bodies apart that touch is found, and computed again: the world is that of one node,
+// whatever the auras have missed.
+#include <gtest/gtest.h>
+
+#include "cluster/cluster_sim.h"
+#include "cluster/scenes.h"
+
+namespace aurasim::test {
+namespace {
+
+using core::AuraKind;
+using core::SyncMode;
+
+constexpr double kCell = 9;
+constexpr core::Step kSteps = 150;
+
+ClusterOptions options_for(int seed) {
+  ClusterOptions options;
+  options.sync = SyncMode::kDeterministic;
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.map = seed % 2 == 0 ? core::RegionMap::columns(2, kCell) : core::RegionMap::grid(2, 2, kCell, kCell);
+  options.aura.lookahead = 1 + seed % 3;
+  options.aura.substeps = 1 << (seed % 3);
+  options.aura.top_speed_m_s = 40;
+  options.aura.redo = true;
+  options.faults.latency_s = 0.004 * (seed % 7);
+  options.faults.jitter_s = 0.006 * (seed % 4);
+  options.faults.keep_order = seed % 2 == 0;
+  return options;
+}
+
+core::Scene scene_for(int seed) {
+  return thrown_bodies(40, 2 * kCell, 2 * kCell, 12, static_cast<std::uint64_t>(seed));
+}
+
+std::size_t first_difference(const Outcome& a, const Outcome& b) {
+  for (std::size_t step = 0; step < a.hash.size(); ++step) {
+    if (a.hash[step] != b.hash[step]) return step;
+  }
+  return a.hash.size();
+}
+
+class Redo : public testing::TestWithParam<int> {};
+
+TEST_P(Redo, AloneGivesTheBitsOfOneWorld) {
+  const core::Scene scene = scene_for(GetParam());
+  ClusterOptions options = options_for(GetParam());
+  options.aura.kind = AuraKind::kNone;
+  const Outcome apart = ClusterSim(scene, options).run(kSteps);
+  const Outcome central = run_central(scene, options, kSteps);
+  EXPECT_EQ(first_difference(apart, central), central.hash.size()) << apart.redos << " redos";
+  EXPECT_EQ(apart.lost, 0u);
+}
+
+TEST_P(Redo, IsNotNeededWhereAurasTell) {
+  const core::Scene scene = scene_for(GetParam());
+  const ClusterOptions options = options_for(GetParam());
+  const Outcome apart = ClusterSim(scene, options).run(kSteps);
+  const Outcome central = run_central(scene, options, kSteps);
+  EXPECT_EQ(first_difference(apart, central), central.hash.size());
+  EXPECT_EQ(apart.redos, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Redo, testing::Range(1, 1 + seeds_or(6)));
+
+TEST(Check, FindsWhatAurasWouldHaveTold) {
+  ClusterOptions options = options_for(1);
+  options.aura.kind = AuraKind::kNone;
+  const core::Scene scene = scene_for(1);
+  EXPECT_GT(ClusterSim(scene, options).run(kSteps).redos, 0u);
+}
+
+TEST(Check, WithoutItsMarginMissesATouch) {
+  std::size_t differ = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    ClusterOptions options = options_for(seed);
+    options.aura.kind = AuraKind::kNone;
+    options.aura.check_scale = -5;
+    const core::Scene scene = scene_for(seed);
+    const Outcome apart = ClusterSim(scene, options).run(kSteps);
+    differ += first_difference(apart, run_central(scene, options, kSteps)) < apart.hash.size();
+  }
+  EXPECT_GT(differ, 0u);
+}
+
+}  // namespace
+}  // namespace aurasim::test

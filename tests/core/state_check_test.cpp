@@ -1,0 +1,128 @@
+// A touch of two bodies that were in two worlds is found, whoever hosts them; whatever was in one world is no news.
+#include "core/state_check.h"
+
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/interest_matching.h"
+#include "core/letters.h"
+#include "core/make_aura.h"
+#include "core/ranks.h"
+#include "core/round_shapes.h"
+
+namespace aurasim::core::testing {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+AuraRules rules_of_check() {
+  AuraRules rules;
+  rules.redo = true;
+  rules.substeps = 4;
+  rules.gravity = Vec3::Zero();
+  return rules;
+}
+
+/// We are the left of two columns; body 1 is ours and stands at the border, the others are of region 1.
+class TheCheck : public ::testing::Test {
+ protected:
+  void publish(Step stamp, std::vector<AuraRecord> updates) {
+    AuraBatch sent = batch(1, stamp);
+    sent.full = stamp == 0;
+    sent.updates = std::move(updates);
+    neighbours_[0].accept(std::move(sent));
+    neighbours_[0].apply_until(stamp, [this](const Neighbour& now) { check_.take(now); });
+  }
+  AuraRecord body(std::uint64_t id, Step stamp, const Vec3& p, const Vec3& v = Vec3::Zero()) const {
+    AuraRecord record;
+    record.id = BodyId{id};
+    record.host = RegionId{1};
+    record.prototype = ball_;
+    record.stamp = stamp;
+    record.pose.p_WB = p;
+    record.v_WB = v;
+    return record;
+  }
+  std::span<const Alarm> look(Step step) {
+    Snapshot own;
+    own.step = step;
+    BodyState& ours = own.bodies.emplace_back();
+    ours.id = BodyId{1};
+    ours.prototype = ball_;
+    ours.pose.p_WB = {-0.2, 0, 0};
+    Ranks ranks(1);
+    ranks.begin(step, RegionId{0}, {});
+    matching_.look(own, {}, {}, ranks);
+    check_.take_own(own, matching_);
+    check_.look(step, neighbours_);
+    return check_.found();
+  }
+
+  RoundShapes shapes_;
+  PrototypeId ball_ = shapes_.sphere(0.5);
+  RegionMap map_ = RegionMap::columns(2, 10);
+  Vicinity vicinity_{map_, RegionId{0}, 0};
+  std::unique_ptr<const Aura> aura_ = make_aura(rules_of_check(), shapes_);
+  InterestMatching matching_{*aura_, vicinity_};
+  StateCheck check_{*aura_, vicinity_, 0};
+  std::vector<Neighbour> neighbours_ = {Neighbour(region(1), region(0))};
+};
+
+TEST_F(TheCheck, FindsNothingBetweenBodiesThatAreApart) {
+  for (Step step = 0; step < 4; ++step) {
+    publish(step, {body(2, step, {1.2, 0, 0})});
+    EXPECT_THAT(look(step + 1), IsEmpty());
+  }
+  EXPECT_EQ(check_.checked(), 3) << "a state later, for K = 1";
+}
+
+TEST_F(TheCheck, FindsATouchInTheStateAfterTheOneInWhichTheyAreThatNear) {
+  publish(0, {body(2, 0, {0.81, 0, 0})});
+  look(0);
+  look(1);
+  publish(1, {body(2, 1, {0.81, 0, 0})});
+  const auto found = look(2);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].a, BodyId{1});
+  EXPECT_EQ(found[0].b, BodyId{2});
+  EXPECT_EQ(found[0].step, 1);
+}
+
+TEST_F(TheCheck, LooksAtTheSubstepsInBetween) {
+  look(0);
+  publish(0, {body(2, 0, {-1.8, 1.4, 0}, {192, 0, 0})});
+  look(1);
+  publish(1, {body(2, 1, {1.4, 1.4, 0}, {192, 0, 0})});
+  EXPECT_THAT(look(2), IsEmpty()) << "past it";
+  publish(2, {body(2, 2, {1.4, 0, 0}, {-192, 0, 0})});
+  look(3);
+  publish(3, {body(2, 3, {-1.8, 0, 0}, {-192, 0, 0})});
+  EXPECT_THAT(look(4), SizeIs(1)) << "through the place of ours, near it at neither end";
+}
+
+TEST_F(TheCheck, SaysNothingOfTwoThatOneNeighbourHosts) {
+  for (Step step = 0; step < 3; ++step) {
+    publish(step, {body(2, step, {1.2, 0, 0}), body(3, step, {1.3, 0, 0})});
+    EXPECT_THAT(look(step + 1), IsEmpty());
+  }
+}
+
+TEST_F(TheCheck, TakesABodyThatMadeUpAStateAloneForOneInAnotherWorld) {
+  BodyState late;
+  late.id = BodyId{4};
+  late.prototype = ball_;
+  late.pose.p_WB = {0.7, 0, 0};
+  look(0);
+  publish(0, {});
+  look(1);
+  check_.take_made_up(late, 0, 0);
+  check_.take_made_up(late, 1, 0);
+  publish(1, {});
+  EXPECT_THAT(look(2), SizeIs(1));
+}
+
+}  // namespace
+}  // namespace aurasim::core::testing
