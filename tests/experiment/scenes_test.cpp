@@ -156,7 +156,7 @@ TEST_F(Scenes, AWorldThatSaysAnotherPrecisionIsRefused) {
 /// A check that can fail: with no auras bodies meet on two nodes.
 TEST_F(Scenes, WithoutAurasAWorldDiffersAndShrinksToOneThatStillDoes) {
   TrialRules blind = rules(100);
-  blind.overrides = {"aura.radius=none"};
+  blind.overrides = {"aura.radius=none", "time.redo=off"};
   World world = random_world(1);
   world.scene.erase("injectors");  // not every world has all lists
   const WorldOutcome failure = outcome_of(world, blind);
@@ -193,7 +193,7 @@ TEST_F(Scenes, AFailingSeedStaysWithItsShrunkWorld) {
   ScenesPlan plan;
   plan.first = plan.last = 1;
   plan.rules = rules(100);
-  plan.rules.overrides = {"aura.radius=none"};
+  plan.rules.overrides = {"aura.radius=none", "time.redo=off"};
   plan.shrink_s = 1;
   EXPECT_TRUE(run_scenes(
       plan, folder_, 1, [](const Progress&) {}, kGoOn));
