@@ -22,6 +22,17 @@ void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Ta
   messages.erase(kept, messages.end());
 }
 
+/// What each neighbour gives out, one after the other.
+template <class Row>
+std::vector<Row> take_from(std::vector<Neighbour>& neighbours, std::vector<Row> (Neighbour::*take)()) {
+  std::vector<Row> all;
+  for (Neighbour& neighbour : neighbours) {
+    const std::vector<Row> rows = (neighbour.*take)();
+    all.insert(all.end(), rows.begin(), rows.end());
+  }
+  return all;
+}
+
 }  // namespace
 
 Intake::Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures)
@@ -262,31 +273,12 @@ std::vector<RegionId> Intake::dead_regions() const {
   return dead;
 }
 
-std::vector<Order> Intake::take_orders() {
-  std::vector<Order> orders;
-  for (Neighbour& neighbour : neighbours_) {
-    const std::vector<Order> received = neighbour.take_orders();
-    orders.insert(orders.end(), received.begin(), received.end());
-  }
-  return orders;
-}
+std::vector<Order> Intake::take_orders() { return take_from(neighbours_, &Neighbour::take_orders); }
+
+std::vector<Alarm> Intake::take_alarms() { return take_from(neighbours_, &Neighbour::take_alarms); }
 
 std::vector<Neighbour::Introduced> Intake::take_introductions() {
-  std::vector<Neighbour::Introduced> introductions;
-  for (Neighbour& neighbour : neighbours_) {
-    const std::vector<Neighbour::Introduced> received = neighbour.take_introductions();
-    introductions.insert(introductions.end(), received.begin(), received.end());
-  }
-  return introductions;
-}
-
-std::vector<Alarm> Intake::take_alarms() {
-  std::vector<Alarm> alarms;
-  for (Neighbour& neighbour : neighbours_) {
-    const std::vector<Alarm> received = neighbour.take_alarms();
-    alarms.insert(alarms.end(), received.begin(), received.end());
-  }
-  return alarms;
+  return take_from(neighbours_, &Neighbour::take_introductions);
 }
 
 void Intake::fill(Outbox& outbox, Step stamp) {

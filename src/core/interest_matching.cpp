@@ -17,6 +17,12 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
   return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
+/// Does `host`, if it is one of the `live`, get a cluster of ours that so far would go to `other`?
+bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live, const Ranks& ranks) {
+  return host != other && std::binary_search(live.begin(), live.end(), host) && ranks.pulls(host) &&
+         ranks.outranks(host, other);
+}
+
 }  // namespace
 
 InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together)
@@ -313,9 +319,7 @@ void InterestMatching::judge_touched(const Pair& pair, const Ranks& ranks) {
   const RegionId host = foreign_[pair.foreign].host;
   const std::uint32_t cluster = clusters_.of(pair.own);
   touched_[cluster] = 1;
-  const bool pulls = host != pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), host) &&
-                     ranks.pulls(host) && ranks.outranks(host, pulled_to_[cluster]);
-  if (pulls) pulled_to_[cluster] = host;
+  if (pulls_from(host, pulled_to_[cluster], live_, ranks)) pulled_to_[cluster] = host;
 }
 
 bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {
@@ -328,8 +332,7 @@ void InterestMatching::judge(const Pair& pair, const Ranks& ranks) {
   const Path& own = paths_[pair.own];
   const std::uint32_t cluster = clusters_.of(pair.own);
   const int hops = clusters_.hops(pair.own);
-  const bool pulls = f.host != pulled_to_[cluster] && std::binary_search(live_.begin(), live_.end(), f.host) &&
-                     ranks.pulls(f.host) && ranks.outranks(f.host, pulled_to_[cluster]);
+  const bool pulls = pulls_from(f.host, pulled_to_[cluster], live_, ranks);
   if ((!touched_[cluster] || pulls) && meets(f, own, hops, fewer_steps_)) {
     touched_[cluster] = 1;
     if (pulls) pulled_to_[cluster] = f.host;

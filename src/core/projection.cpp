@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/aura_record.h"
 #include "core/horizon.h"
 #include "core/prefetch.h"
 
@@ -77,18 +78,9 @@ void Projection::move(Track& track, PhaseEvent event) {
 }
 
 AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const {
-  AuraRecord aura;
-  aura.id = body.id;
-  aura.epoch = body.epoch;
-  aura.host = vicinity_.self;
-  aura.prototype = body.prototype;
-  aura.flags = body.awake ? 0 : kAuraAsleep;
-  aura.stamp = stamp;
-  aura.birth = body.birth;
-  aura.pose = body.pose;
-  if (aura_.predicts() || aura_.rules().redo) {  // otherwise the others ask for places and sizes only
-    aura.v_WB = body.v_WB;
-    aura.w_WB = body.w_WB;
+  AuraRecord aura = aura_record(body, vicinity_.self, stamp);
+  if (!aura_.predicts() && !aura_.rules().redo) {  // the others ask for places and sizes only
+    aura.v_WB = aura.w_WB = Vec3::Zero();
   }
   aura.speed_m_s = clusters.speed(i);
   if (const std::optional<Push> pushed = clusters.pushed(i)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/aura_record.h"
 #include "core/horizon.h"
 #include "core/make_aura.h"
 
@@ -343,18 +344,7 @@ void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRe
   for (const BodyRecord& record : bodies) {
     const BodyState body = state_of(record);
     check_.take_made_up(body, step, nth);
-    AuraRecord aura;
-    aura.id = body.id;
-    aura.epoch = body.epoch;
-    aura.host = vicinity_.self;
-    aura.prototype = body.prototype;
-    aura.flags = body.awake ? 0 : kAuraAsleep;
-    aura.stamp = step;
-    aura.birth = body.birth;
-    aura.pose = body.pose;
-    aura.v_WB = body.v_WB;
-    aura.w_WB = body.w_WB;
-    past_.push_back(aura);
+    past_.push_back(aura_record(body, vicinity_.self, step));
   }
 }
 

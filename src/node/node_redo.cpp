@@ -12,8 +12,6 @@
 namespace aurasim::node {
 namespace {
 
-using core::horizon::kBetweenCuts;
-
 /// Cuts that are kept besides those that a redo needs at first: for pairs that one redo does not bring together.
 constexpr std::size_t kOlderCuts = 4;
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/body_state.h"
+#include "core/messages.h"
+
+namespace aurasim::core {
+
+/// What an aura says of a body's state as such; how fast it may become is for the caller to say.
+inline AuraRecord aura_record(const BodyState& body, RegionId host, Step stamp) {
+  AuraRecord aura;
+  aura.id = body.id;
+  aura.epoch = body.epoch;
+  aura.host = host;
+  aura.prototype = body.prototype;
+  aura.flags = body.awake ? 0 : kAuraAsleep;
+  aura.stamp = stamp;
+  aura.birth = body.birth;
+  aura.pose = body.pose;
+  aura.v_WB = body.v_WB;
+  aura.w_WB = body.w_WB;
+  return aura;
+}
+
+}  // namespace aurasim::core
