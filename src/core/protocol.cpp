@@ -340,7 +340,7 @@ void Protocol::check(const Snapshot& snapshot) {
 }
 
 void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies) {
-  if (!aura_->rules().redo) return;
+  if (!aura_->rules().redo || step <= settings_.start) return;
   for (const BodyRecord& record : bodies) {
     const BodyState body = state_of(record);
     check_.take_made_up(body, step, nth);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/aura_precision.h"
 #include "core/horizon.h"
@@ -13,6 +14,19 @@ namespace {
 /// Worlds of clusters that make up states alone: no region has such a number.
 constexpr std::uint32_t kFirstLonely = 1U << 31U;
 
+/// The way of the others' bodies through a step, as the speed at which it is covered: the near index takes apart what
+/// is slower and faster than NearIndex::kSlow, here 0.1 m.
+constexpr double kWays_per_s = 30;
+
+/// Most of them are.
+template <class Bodies>
+void sort_by_id(Bodies& bodies) {
+  using Body = typename Bodies::value_type;
+  const auto tail = std::ranges::is_sorted_until(bodies, {}, &Body::id);
+  std::ranges::stable_sort(tail, bodies.end(), {}, &Body::id);
+  std::ranges::inplace_merge(bodies, tail, {}, &Body::id);
+}
+
 /// How far a way of at most `longest` between two points `apart` from each other can leave the straight line.
 double bulge(double longest, double apart) {
   return longest > apart ? 0.5 * std::sqrt(longest * longest - apart * apart) : 0;
@@ -21,17 +35,17 @@ double bulge(double longest, double apart) {
 }  // namespace
 
 StateCheck::StateCheck(const Aura& aura, const Vicinity& vicinity, Step start)
-    : aura_(aura), vicinity_(vicinity), start_(start), checked_(start) {}
+    : aura_(aura), vicinity_(vicinity), checked_(start) {}
 
 StateCheck::State& StateCheck::state(Step step) {
   auto place = std::find_if(states_.begin(), states_.end(), [&](const State& s) { return s.step >= step; });
-  if (place == states_.end() || place->step != step) place = states_.insert(place, State{step, {}});
+  if (place == states_.end() || place->step != step) place = states_.insert(place, State{step, {}, {}});
   return *place;
 }
 
 void StateCheck::add(const AuraRecord& aura, Step step, std::uint32_t world) {
   if (aura.birth > step || step < checked_) return;
-  Sighting& seen = state(step).bodies.emplace_back();
+  Sighting& seen = state(step).others.emplace_back();
   seen.id = aura.id;
   seen.world = world;
   seen.path.prototype = aura.prototype;
@@ -58,13 +72,13 @@ void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matc
     const BodyState& body = snapshot.bodies[i];
     if (body.birth > snapshot.step) continue;
     if (!matching.outside(i) && !matching.must_be_announced(i)) continue;
-    now.bodies.push_back({body.id, value_of(vicinity_.self), path_of(body, snapshot.step, aura_.clearance())});
+    now.own.push_back({body.id, value_of(vicinity_.self), path_of(body, snapshot.step, aura_.clearance())});
   }
 }
 
 void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nth) {
   if (step < checked_) return;
-  state(step).bodies.push_back({body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance())});
+  state(step).others.push_back({body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance())});
 }
 
 void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
@@ -83,7 +97,7 @@ void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
 /// less.
 StateCheck::Motion StateCheck::motion(const Sighting& now, const Sighting* before) const {
   const double step_s = aura_.rules().step_s;
-  Motion motion{now.id, now.world, now.path, now.path, 0};
+  Motion motion{now.path, now.path, 0};
   const double fall_m_s = aura_.rules().gravity.norm() * step_s;
   if (before) {
     motion.at_start = before->path;
@@ -113,19 +127,53 @@ Pose StateCheck::pose(const Motion& motion, double share) const {
   return pose;
 }
 
-void StateCheck::gather_motions(State& before, State& after) {
-  for (State* state : {&before, &after}) std::ranges::stable_sort(state->bodies, {}, &Sighting::id);
-  motions_.clear();
+/// As motion(), but for what takes time to work out.
+StateCheck::Way StateCheck::way(const Sighting& now, const Sighting* before) const {
+  const double step_s = aura_.rules().step_s;
+  const Path& end = now.path;
+  Way way{&now, before, end.pose.p_WB, end.radius_m};
+  if (!end.moves && (!before || !before->path.moves)) {
+    if (before) way.reach_m += (before->path.pose.p_WB - end.pose.p_WB).norm();
+    return way;
+  }
+  const Path& start = before ? before->path : end;
+  const double fall_m_s = aura_.rules().gravity.norm() * step_s;
+  const double fastest = std::max(start.v_WB.norm(), end.v_WB.norm()) + fall_m_s;
+  const Vec3 begin = before ? start.pose.p_WB : end.pose.p_WB - step_s * end.v_WB;
+  const double apart = (end.pose.p_WB - begin).norm();
+  const double cosine = std::min(1.0, std::abs(start.pose.q_WB.dot(end.pose.q_WB)));
+  const double turned = std::numbers::pi * std::sqrt(1 - cosine * cosine) + step_s * start.w_WB.norm();
+  const double off = std::max(turned, step_s * (end.w_WB - start.w_WB).norm());
+  way.middle = 0.5 * (begin + end.pose.p_WB);
+  way.reach_m += 0.5 * apart + bulge(step_s * fastest, apart) + std::min(2.0, off) * end.radius_m;
+  if (!before) way.reach_m += step_s * fastest;
+  if (aura_.rules().sweeps) way.reach_m += apart;
+  return way;
+}
+
+void StateCheck::gather_ways(const State& before, const State& after) {
+  const auto gather = [&](const std::vector<Sighting>& bodies, const std::vector<Sighting>& same,
+                          const std::vector<Sighting>& other, std::vector<Way>& ways) {
+    ways.clear();
+    auto old = same.begin();
+    for (const Sighting& now : bodies) {
+      while (old != same.end() && old->id < now.id) ++old;
+      const Sighting* known = old != same.end() && old->id == now.id ? &*old : nullptr;
+      if (!known) {  // it may have changed hosts
+        const auto found = std::ranges::lower_bound(other, now.id, {}, &Sighting::id);
+        if (found != other.end() && found->id == now.id) known = &*found;
+      }
+      ways.push_back(way(now, known));
+    }
+  };
+  gather(after.own, before.own, before.others, own_);
+  gather(after.others, before.others, before.own, others_);
   middles_.clear();
-  auto old = before.bodies.begin();
-  for (const Sighting& now : after.bodies) {
-    while (old != before.bodies.end() && old->id < now.id) ++old;
-    const bool known = old != before.bodies.end() && old->id == now.id;
-    const Motion& motion = motions_.emplace_back(this->motion(now, known ? &*old : nullptr));
-    Path& middle = middles_.emplace_back(now.path);
-    middle.pose = pose(motion, 0.5);
-    // Half of the way, as the speed at which it would be covered in one second.
-    middle.speed_m_s = 0.5 * (now.path.pose.p_WB - motion.at_start.pose.p_WB).norm() + motion.stray_m;
+  for (const Way& way : others_) {
+    Path& middle = middles_.emplace_back();
+    middle.pose.p_WB = way.middle;
+    middle.radius_m = way.now->path.radius_m;
+    middle.speed_m_s = kWays_per_s * (way.reach_m - middle.radius_m);
   }
   near_.build(middles_);
 }
@@ -161,26 +209,46 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
   return false;
 }
 
-void StateCheck::check(Step step) {
-  gather_motions(state(step - 1), state(step));
-  const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius()) +
-                        (aura_.rules().sweeps ? 2 * near_.top_speed() : 0);
+/// With those of the others from `from` on.
+void StateCheck::compare_with_others(const Way& one, std::uint32_t from) {
+  const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
+  const double range = margin + one.reach_m;
   const double fastest = near_.top_speed();
-  for (std::uint32_t i = 0; i < motions_.size(); ++i) {
-    const Motion& one = motions_[i];
-    if (one.world == value_of(vicinity_.self)) continue;
-    const double range = margin + middles_[i].speed_m_s;
-    const Vec3& p = middles_[i].pose.p_WB;
-    near_.for_each_near(p, middles_[i].radius_m, range + std::min(fastest, NearIndex::kSlow), range + fastest,
-                        [&](std::uint32_t j) {
-                          const Motion& other = motions_[j];
-                          if (other.world == one.world || other.id == one.id) return;
-                          if (other.world != value_of(vicinity_.self) && j < i) return;  // seen the other way round
-                          if (!touch(one, other)) return;
-                          const auto [a, b] = std::minmax(one.id, other.id);
-                          found_.push_back({0, step, a, b});
-                        });
+  near_.for_each_near(one.middle, 0, range + std::min(fastest, NearIndex::kSlow) / kWays_per_s,
+                      range + fastest / kWays_per_s, [&](std::uint32_t i) {
+                        const Way& other = others_[i];
+                        if (i < from || other.now->world == one.now->world || other.now->id == one.now->id) return;
+                        const double apart = range + other.reach_m;
+                        if ((one.middle - other.middle).squaredNorm() > apart * apart) return;
+                        if (!touch(motion(*one.now, one.before), motion(*other.now, other.before))) return;
+                        const auto [a, b] = std::minmax(one.now->id, other.now->id);
+                        found_.push_back({0, step_, a, b});
+                      });
+}
+
+void StateCheck::check(Step step) {
+  State& after = state(step);
+  State& before = state(step - 1);
+  for (State* each : {&before, &after}) sort_by_id(each->others);
+  if (after.others.empty()) return;
+  step_ = step;
+  gather_ways(before, after);
+  Vec3 lo = others_.front().middle, hi = lo;
+  const std::uint32_t world = others_.front().now->world;
+  bool several = false;
+  for (const Way& way : others_) {
+    lo = lo.cwiseMin(way.middle - Vec3::Constant(way.reach_m));
+    hi = hi.cwiseMax(way.middle + Vec3::Constant(way.reach_m));
+    several = several || way.now->world != world;
   }
+  const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
+  for (const Way& way : own_) {
+    const Vec3 reach = Vec3::Constant(way.reach_m + margin);
+    const bool apart =
+        ((way.middle + reach).array() < lo.array()).any() || ((way.middle - reach).array() > hi.array()).any();
+    if (!apart) compare_with_others(way, 0);
+  }
+  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1);
 }
 
 }  // namespace aurasim::core

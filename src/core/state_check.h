@@ -46,12 +46,19 @@ class StateCheck {
   };
   struct State {
     Step step = 0;
-    std::vector<Sighting> bodies;
+    std::vector<Sighting> own;
+    std::vector<Sighting> others;  ///< of other worlds
+  };
+  /// Where a body has been during a step: within `reach_m` of `middle`, with all that belongs to it. Cheaper than a
+  /// Motion, and larger.
+  struct Way {
+    const Sighting* now = nullptr;
+    const Sighting* before = nullptr;  ///< a state ago; none: it has only just begun to be announced
+    Vec3 middle = Vec3::Zero();
+    double reach_m = 0;
   };
   /// A body on its way through one step.
   struct Motion {
-    BodyId id{};
-    std::uint32_t world = 0;
     Path at_start, at_end;
     double stray_m = 0;  ///< its surface may be this far off the straight way in between
   };
@@ -59,7 +66,9 @@ class StateCheck {
   State& state(Step step);
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
-  void gather_motions(State& before, State& after);
+  void gather_ways(const State& before, const State& after);
+  Way way(const Sighting& now, const Sighting* before) const;
+  void compare_with_others(const Way& one, std::uint32_t from);
   Motion motion(const Sighting& now, const Sighting* before) const;
   bool touch(const Motion& a, const Motion& b) const;
   bool sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const;
@@ -67,12 +76,12 @@ class StateCheck {
 
   const Aura& aura_;
   const Vicinity& vicinity_;
-  Step start_;
   Step checked_;
   std::deque<State> states_;
-  std::vector<Motion> motions_;
-  std::vector<Path> middles_;  ///< of motions_, for finding who is near
+  std::vector<Way> own_, others_;  ///< in the step that is looked at
+  std::vector<Path> middles_;      ///< of others_, for finding who is near
   NearIndex near_;
+  Step step_ = 0;  ///< that is looked at
   std::vector<Alarm> found_;
 };
 

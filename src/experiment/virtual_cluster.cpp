@@ -38,11 +38,10 @@ node::NodeSetup node_setup(const ClusterRules& rules) {
 VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
     : rules_(rules),
       map_(map),
-      listeners_(listeners(map, rules.neighbour_distance_m)),
-      network_(listeners_, rules.network, rules.seed),
+      network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
   [[maybe_unused]] static const bool kept = keep_freed_memory();
-  if (rules.bandwidth_B_s) post_.emplace(network_, listeners_, *rules.bandwidth_B_s);
+  if (rules.bandwidth_B_s) post_.emplace(network_, map_.size(), *rules.bandwidth_B_s);
   node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};

@@ -85,7 +85,6 @@ class VirtualCluster {
 
   ClusterRules rules_;
   core::RegionMap map_;
-  std::vector<std::vector<core::RegionId>> listeners_;
   transport::MemoryNetwork network_;
   std::optional<WirePost> post_;
   std::vector<Member> members_;

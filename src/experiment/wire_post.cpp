@@ -11,7 +11,13 @@ namespace aurasim::experiment {
 namespace {
 
 /// No node is further than this behind the others: they wait for each other.
-constexpr std::size_t kBatchesKept = 64;
+constexpr core::Step kStatesKept = 200;
+
+template <class Map>
+void forget_before(Map& kept, std::uint32_t redo, core::Step step) {
+  std::erase_if(
+      kept, [&](const auto& entry) { return std::get<0>(entry.first) + 1 < redo || std::get<1>(entry.first) < step; });
+}
 
 template <class Message>
 Message required(dds::Decoded<Message> decoded) {
@@ -34,14 +40,14 @@ class WirePost::Endpoint : public transport::Transport {
     network_.take(inbox);
     for (std::size_t i = auras; i < inbox.auras.size(); ++i) {
       const core::AuraBatch& envelope = inbox.auras[i];
-      inbox.auras[i] =
-          required(coder_.aura(post_.auras_.at(core::value_of(envelope.source)).at(envelope.stamp), expected_));
+      const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
+      inbox.auras[i] = required(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp}), expected_));
     }
     for (std::size_t i = hand_offs; i < inbox.hand_offs.size(); ++i) {
       const core::HandOff& envelope = inbox.hand_offs[i];
-      const auto found = post_.hand_offs_.find({envelope.source, envelope.destination, envelope.sequence});
-      inbox.hand_offs[i] = required(coder_.hand_off(found->second, expected_));
-      post_.hand_offs_.erase(found);
+      const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
+      const Bytes& bytes = kept.hand_offs.at({envelope.redo, envelope.stamp, envelope.destination, envelope.sequence});
+      inbox.hand_offs[i] = required(coder_.hand_off(bytes, expected_));
     }
   }
 
@@ -49,11 +55,14 @@ class WirePost::Endpoint : public transport::Transport {
   /// link has sent the last of them.
   void send(const core::Outbox& outbox) override {
     core::Outbox envelopes;
+    envelopes.listeners = outbox.listeners;
+    envelopes.expected = outbox.expected;
     envelopes.acks = outbox.acks;
+    forget_old(outbox.aura);
     std::size_t bytes = 0;
     for (const core::HandOffAck& ack : outbox.acks) bytes += count(coder_.of(ack, outbox.aura.map_version).size(), 1);
     for (const core::HandOff& hand_off : outbox.hand_offs) bytes += put_away(hand_off, envelopes);
-    bytes += put_away(outbox.aura, envelopes);
+    bytes += put_away(outbox.aura, outbox.listeners.size(), envelopes);
     transport::MemoryNetwork& network = post_.network_;
     const double usual_delay_s = network.send_delay_s();
     const double begin_s = std::max(free_s_, network.now_s() + usual_delay_s);
@@ -76,23 +85,32 @@ class WirePost::Endpoint : public transport::Transport {
     return copies * bytes;
   }
 
-  std::size_t put_away(const core::AuraBatch& batch, core::Outbox& envelopes) {
+  Kept& kept() { return post_.kept_.at(core::value_of(region_)); }
+
+  void forget_old(const core::AuraBatch& now) {
+    forget_before(kept().auras, now.redo, now.stamp - kStatesKept);
+    forget_before(kept().hand_offs, now.redo, now.stamp - kStatesKept);
+  }
+
+  std::size_t put_away(const core::AuraBatch& batch, std::size_t copies, core::Outbox& envelopes) {
     envelopes.aura.source = batch.source;
+    envelopes.aura.redo = batch.redo;
     envelopes.aura.stamp = batch.stamp;
-    auto& kept = post_.auras_.at(core::value_of(region_));
-    Bytes& bytes = kept[batch.stamp] = coder_.of(batch);
-    if (kept.size() > kBatchesKept) kept.erase(kept.begin());
+    const Bytes& bytes = kept().auras[{batch.redo, batch.stamp}] = coder_.of(batch);
     traffic_.aura_bytes += bytes.size();
     traffic_.aura_updates += batch.updates.size();
-    return count(bytes.size(), post_.listeners_.at(core::value_of(region_)).size());
+    return count(bytes.size(), copies);
   }
 
   std::size_t put_away(const core::HandOff& hand_off, core::Outbox& envelopes) {
     core::HandOff& envelope = envelopes.hand_offs.emplace_back();
     envelope.source = hand_off.source;
     envelope.destination = hand_off.destination;
+    envelope.redo = hand_off.redo;
+    envelope.stamp = hand_off.stamp;
     envelope.sequence = hand_off.sequence;
-    Bytes& bytes = post_.hand_offs_[{hand_off.source, hand_off.destination, hand_off.sequence}] = coder_.of(hand_off);
+    const HandOffKey key{hand_off.redo, hand_off.stamp, hand_off.destination, hand_off.sequence};
+    const Bytes& bytes = kept().hand_offs[key] = coder_.of(hand_off);
     ++traffic_.hand_offs;
     traffic_.handed_over += hand_off.cluster.bodies.size();
     traffic_.hand_off_bytes += bytes.size();
@@ -108,10 +126,9 @@ class WirePost::Endpoint : public transport::Transport {
   double free_s_ = 0;  ///< when the link has sent what it was given
 };
 
-WirePost::WirePost(transport::MemoryNetwork& network, std::vector<std::vector<core::RegionId>> listeners,
-                   double bandwidth_B_s)
-    : network_(network), listeners_(std::move(listeners)), bandwidth_B_s_(bandwidth_B_s), auras_(listeners_.size()) {
-  for (std::uint32_t r = 0; r < listeners_.size(); ++r) {
+WirePost::WirePost(transport::MemoryNetwork& network, std::size_t regions, double bandwidth_B_s)
+    : network_(network), bandwidth_B_s_(bandwidth_B_s), kept_(regions) {
+  for (std::uint32_t r = 0; r < regions; ++r) {
     endpoints_.push_back(std::make_unique<Endpoint>(*this, core::RegionId{r}));
   }
 }

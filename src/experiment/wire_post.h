@@ -31,8 +31,8 @@ class WirePost {
   /// What RTPS over UDP sends in one piece between hosts (qos/hosts.xml: 1400, less its headers).
   static constexpr std::uint64_t kDatagramBytes = 1300;
 
-  /// `listeners` as in MemoryNetwork, which outlives this. `bandwidth_B_s`: of each node's link.
-  WirePost(transport::MemoryNetwork& network, std::vector<std::vector<core::RegionId>> listeners,
+  /// `network`, of so many regions, outlives this. `bandwidth_B_s`: of each node's link.
+  WirePost(transport::MemoryNetwork& network, std::size_t regions,
            double bandwidth_B_s = std::numeric_limits<double>::infinity());
   ~WirePost();
 
@@ -44,14 +44,19 @@ class WirePost {
  private:
   class Endpoint;
   using Bytes = std::vector<std::uint8_t>;
-  using HandOffKey = std::tuple<core::RegionId, core::RegionId, std::uint64_t>;
+  /// Redo, state, and of hand-offs destination and number.
+  using AuraKey = std::tuple<std::uint32_t, core::Step>;
+  using HandOffKey = std::tuple<std::uint32_t, core::Step, core::RegionId, std::uint64_t>;
+  /// Of one source; the last ones, since networks lose, repeat and delay envelopes.
+  struct Kept {
+    std::map<AuraKey, Bytes> auras;
+    std::map<HandOffKey, Bytes> hand_offs;
+  };
 
   transport::MemoryNetwork& network_;
-  std::vector<std::vector<core::RegionId>> listeners_;
   double bandwidth_B_s_;
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
-  std::vector<std::map<core::Step, Bytes>> auras_;  ///< by source; the last few
-  std::map<HandOffKey, Bytes> hand_offs_;           ///< until they are taken
+  std::vector<Kept> kept_;  ///< by source
 };
 
 }  // namespace aurasim::experiment

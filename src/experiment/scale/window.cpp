@@ -92,6 +92,10 @@ void describe_frames(std::vector<double> frames, Window& window) {
 
 void WindowSums::add(std::size_t region, core::Step step, const StepLoad& load) {
   auto& loads = loads_.at(region);
+  if (step <= static_cast<core::Step>(loads.size())) {
+    if (step > 0) add_counts(loads[static_cast<std::size_t>(step) - 1], load);
+    return;
+  }
   if (step != static_cast<core::Step>(loads.size()) + 1) throw std::logic_error("a step is missing");
   loads.push_back(load);
 }

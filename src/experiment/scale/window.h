@@ -51,6 +51,7 @@ class WindowSums {
   WindowSums(std::size_t regions, core::Step steps_per_window, double step_s)
       : regions_(regions), steps_per_window_(steps_per_window), step_s_(step_s), loads_(regions) {}
 
+  /// Of a step that is computed again, times are those of the first time; what it sends is added.
   void add(std::size_t region, core::Step step, const StepLoad& load);
   /// Of the windows that every node has completed; region -1 after those of the nodes.
   std::vector<Window> windows() const;

@@ -1,6 +1,7 @@
 #include "experiment/scenes/world_trial.h"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 #include <span>
 #include <stdexcept>
@@ -113,6 +114,7 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
                   const std::atomic<bool>& stop, WorldOutcome& outcome) {
   ClusterRules cluster_rules = launch_rules(launch, rules.setup_of);
   cluster_rules.hash_states = true;
+  cluster_rules.bandwidth_B_s = std::numeric_limits<double>::infinity();  // coded as for DDS, but not held up
   cluster_rules.shuffle_ranks_steps = interference.shuffle_ranks_steps;
   set_network(cluster_rules, rules.bad_network, seed);
   VirtualCluster regions(launch.scene, launch.regions, cluster_rules);
@@ -125,6 +127,7 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   outcome.redos = many->redos;
   outcome.computed_again = many->again;
   cluster_rules.aura.redo = false;
+  cluster_rules.bandwidth_B_s.reset();
   VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), cluster_rules);
   const auto one = play(single, interference.requests, rules.steps, launch.lookahead(), stop);
   if (!one) return false;
