@@ -84,11 +84,6 @@ class Aura {
   /// Do two bodies have to share a host? A foreign body and one of ours, seen now, looking h K - `fewer_steps` ahead.
   /// `hops` is the number of regions through which a pull can chain (1 away from corners).
   virtual bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const = 0;
-  /// In how many steps the paths of two bodies may meet first (where they are predicted); nothing if they do not within
-  /// h K - `fewer_steps`.
-  virtual std::optional<double> first_meeting(const Path&, const Path&, int /*hops*/, int /*fewer_steps*/ = 0) const {
-    return std::nullopt;
-  }
   /// Do two bodies of one host have to move together?
   virtual bool linked(const Path& a, const Path& b, int hops) const = 0;
   /// A body sent away a moment ago and one of ours.

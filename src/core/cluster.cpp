@@ -75,13 +75,10 @@ double Clusters::pushed_speed(std::uint32_t i) const {
 /// Those of the members of body i's cluster, as far as they have not been.
 void Clusters::start_pushes(std::uint32_t i) {
   if (started_[i]) return;
-  starting_.clear();
   for_each_member(i, [this](std::uint32_t j) {
-    if (!started_[j]) starting_.push_back(j);
+    if (!started_[j]) pushes_.start(j);
     started_[j] = 1;
   });
-  pushes_.form_moving_groups(starting_);
-  for (const std::uint32_t j : starting_) pushes_.start(j);
 }
 
 /// Whoever has become faster looks further.
@@ -152,13 +149,6 @@ void Clusters::complete(std::uint32_t i) {
   start_pushes(i);
   take_raised();
   ask_members(i);
-  look_on();
-}
-
-void Clusters::hit(std::uint32_t i, const Impact& foreign) {
-  if (!pushes_.hit(i, foreign)) return;
-  raised_.push_back(i);
-  take_raised();
   look_on();
 }
 

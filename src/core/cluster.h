@@ -30,17 +30,10 @@ class Clusters {
   /// Completes the cluster of body `i`: no body outside it is linked to one inside.
   void complete(std::uint32_t i);
 
-  /// Would a foreign body's impact make body i faster than it is known to become?
-  bool feels(const Impact& foreign, std::uint32_t i) const { return pushes_.feels(foreign, i); }
-  /// It may hit body i. What that makes faster looks around again.
-  void hit(std::uint32_t i, const Impact& foreign);
-
   /// The cluster of a body, as the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
   /// How fast it may leave its path, at most, while a message about it is under way, m/s.
   double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
-  /// What others push it with, if that takes it further off its path, or makes its impact harder, than it can alone.
-  std::optional<Push> pushed(std::uint32_t i) const { return pushes_.pushed(i); }
   /// Number of other regions through which a pull on this cluster can chain (docs/design.md, "Who leaves"): those
   /// in reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
@@ -93,7 +86,6 @@ class Clusters {
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
-  std::vector<std::uint32_t> starting_;
   std::vector<std::uint8_t> started_;  ///< by body: its push is passed on
   std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around

@@ -19,14 +19,6 @@ std::uint64_t square_along(double x, double side_m) {
   return static_cast<std::uint64_t>(square > -kHalf ? std::min(square, kHalf - 1) + kHalf : 0);
 }
 
-Impact impact_of(const AuraRecord& aura, const Aura& rules) {
-  const BodyTraits traits = rules.clearance().traits(aura.prototype);
-  const double alone_m_s = std::max(0.0, aura.speed_m_s - rules.calm_speed(true));
-  const Push own = aura.pushed_m_s > 0 ? Push::of(aura.v_WB.norm(), traits, rules.rules().uncertainty)
-                                       : Push{alone_m_s, traits.mass_kg * alone_m_s};
-  return {own, {aura.pushed_m_s, aura.pushed_kg_m_s}};
-}
-
 }  // namespace
 
 void ForeignBodies::clear() {
@@ -54,7 +46,6 @@ void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
   f.path.blur_m = rounded_within_m(f.path.radius_m);
-  f.impact = impact_of(aura, rules);
   oldest_steps_ = std::max(oldest_steps_, f.path.age_steps);
   most_blur_m_ = std::max(most_blur_m_, f.path.blur_m);
 }

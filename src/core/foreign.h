@@ -10,7 +10,6 @@
 #include "core/aura.h"
 #include "core/messages.h"
 #include "core/near_index.h"
-#include "core/pushes.h"
 
 namespace aurasim::core {
 
@@ -20,7 +19,6 @@ struct Foreign {
   RegionId host{};
   bool ghost = false;
   bool born = true;  ///< in the state that its aura describes
-  Impact impact;     ///< what it may do to whom it hits
 };
 
 /// Some bodies of one host, near each other, all of them slow or all of them fast. They are asked about together: what

@@ -30,9 +30,6 @@ constexpr int meeting(int lookahead, int hops) { return hops * lookahead; }
 constexpr int linking(int lookahead, int hops) { return (hops + 1) * lookahead - 1; }
 /// Others act upon our auras when these are K states old, and look as far ahead as a meeting.
 constexpr int announcing(int lookahead, int hops) { return meeting(lookahead, hops) + lookahead; }
-/// An impact so far ahead makes nobody faster yet: whoever could be hit in turn still learns of it from our auras. With
-/// the hops of the meeting that it is.
-constexpr int impact(int lookahead, int hops) { return announcing(lookahead, hops + kHomewardHops); }
 /// The lookahead with which hosts are assigned in state 0: for the first 2K steps nobody has received anything, and
 /// what is decided then takes effect 2K later.
 constexpr int lookahead_at_start(int lookahead) { return 4 * lookahead; }

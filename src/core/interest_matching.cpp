@@ -141,26 +141,18 @@ void InterestMatching::bring_together(const Snapshot& snapshot) {
   }
 }
 
-/// Foreign auras and our bodies near them. A cluster that is completed here, or hit, may turn out faster, and then
-/// reach further: whatever has grown is looked at again, until nothing does.
+/// Foreign auras and our bodies near them. A cluster that is completed here may turn out faster, and then reach
+/// further: whatever has grown is looked at again, until nothing does.
 void InterestMatching::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
   for (const std::uint32_t i : expecting_) noticed_[i] = 1;
   clusters_.take_grown(grown_);  // seen below as they are now
-  changed_.clear();
   for (const ForeignBlock& block : foreign_.blocks()) notice(block);
   take_news();
   notice_grown();
-  find_pairs();
-  for (std::size_t looked = 0; looked < pairs_.size();) {
-    looked = take_hits(looked);
-    changed_.clear();
-    notice_grown();
-    std::sort(changed_.begin(), changed_.end());
-    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-    for (const std::uint32_t own : changed_) pair_again(own);
-  }
+  pairs_.clear();
+  for (const ForeignBlock& block : foreign_.blocks()) find_pairs(block);
 }
 
 void InterestMatching::take_news() {
@@ -173,26 +165,9 @@ void InterestMatching::take_news() {
 
 void InterestMatching::notice_grown() {
   for (clusters_.take_grown(grown_); !grown_.empty(); clusters_.take_grown(grown_)) {
-    changed_.insert(changed_.end(), grown_.begin(), grown_.end());
     for (const std::uint32_t own : grown_) notice_again(own);
     take_news();
   }
-}
-
-/// Of the pairs from the `first` on; returns how many pairs there are. What is hit has to be known as that fast before
-/// it is, or whoever stands behind it learns of it too late: others act upon our auras when they are K states old, and
-/// look that much further ahead.
-std::size_t InterestMatching::take_hits(std::size_t first) {
-  if (!aura_.predicts()) return pairs_.size();
-  for (; first < pairs_.size(); ++first) {
-    const Pair& pair = pairs_[first];
-    const Foreign& f = foreign_[pair.foreign];
-    if (!clusters_.feels(f.impact, pair.own)) continue;
-    const int hops = clusters_.hops(pair.own) + kHomewardHops;
-    const std::optional<double> when = aura_.first_meeting(f.path, paths_[pair.own], hops, fewer_steps_);
-    if (when) clusters_.hit(pair.own, f.impact.times(1 - *when / horizon::impact(aura_.rules().lookahead, hops)));
-  }
-  return first;
 }
 
 /// Fills ranges_ with range_of(body, hops) of all bodies of the block, and says how far own bodies of at most so many
@@ -275,11 +250,6 @@ void InterestMatching::notice_again(std::uint32_t own) {
 }
 
 /// Who may meet whom. Whoever does has been noticed: meeting looks less far.
-void InterestMatching::find_pairs() {
-  pairs_.clear();
-  for (const ForeignBlock& block : foreign_.blocks()) find_pairs(block);
-}
-
 void InterestMatching::find_pairs(const ForeignBlock& block) {
   const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
   const Reach reach = take_ranges(block, drift * NearIndex::kSlow, drift * top_speed(),
@@ -293,17 +263,6 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
       if (is_in_range(block, k, c)) pairs_.push_back({block.bodies[k], c.own});
     }
   }
-}
-
-/// One of ours has grown since: its pairs, those that were found before as well.
-void InterestMatching::pair_again(std::uint32_t own) {
-  const Path& path = paths_[own];
-  const int hops = clusters_.hops(own) + kHomewardHops;
-  for_each_foreign_near(own, [&](std::uint32_t f) {
-    const Path& theirs = foreign_[f].path;
-    const double range = aura_.meet_range(theirs, hops).at(aura_.drift_m_s(path));
-    if (is_within(theirs, path.pose.p_WB, path.radius_m, range)) pairs_.push_back({f, own});
-  });
 }
 
 void InterestMatching::judge(const Ranks& ranks) {

@@ -86,16 +86,13 @@ class InterestMatching {
   void notice_again(std::uint32_t own);
   void note(std::uint32_t own, std::uint64_t region);
   void take_news();
-  void find_pairs();
   void find_pairs(const ForeignBlock& block);
   bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
   Candidate candidate(std::uint32_t own, double speed_m_s) const;
   template <class RangeOf>
   Reach take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s, RangeOf&& range_of);
-  void pair_again(std::uint32_t own);
   template <class Visit>
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
-  std::size_t take_hits(std::size_t first);
   void judge(const Ranks& ranks);
   void judge(const Pair& pair, const Ranks& ranks);
   void judge_touched(const Pair& pair, const Ranks& ranks);
@@ -125,9 +122,8 @@ class InterestMatching {
     std::uint32_t own;
     std::uint64_t region;
   };
-  std::vector<News> news_;              ///< our bodies that have been noticed by a region, and did not know
-  std::vector<std::uint32_t> grown_;    ///< of our bodies, whose range has grown
-  std::vector<std::uint32_t> changed_;  ///< likewise, since the pairs were found
+  std::vector<News> news_;            ///< our bodies that have been noticed by a region, and did not know
+  std::vector<std::uint32_t> grown_;  ///< of our bodies, whose range has grown
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
   std::vector<std::uint64_t> noticed_by_;  ///< bits of regions

@@ -35,9 +35,6 @@ struct AuraRecord {
   Vec3 v_WB = Vec3::Zero();  ///< these two for AuraKind::kSwept only
   Vec3 w_WB = Vec3::Zero();
   double speed_m_s = 0;  ///< top speed that it may come to have (core/aura.h)
-  /// What others may push it with, where that counts besides its own motion (core/pushes.h, Push).
-  double pushed_m_s = 0;
-  double pushed_kg_m_s = 0;
 };
 
 /// Sequence number of the last hand-off sent to `destination` up to a batch's stamp.

@@ -14,7 +14,6 @@ namespace {
 bool has_news(const AuraRecord& published, const AuraRecord& now) {
   const bool asleep = (now.flags & kAuraAsleep) != 0;
   return !asleep || published.flags != now.flags || published.speed_m_s != now.speed_m_s ||
-         published.pushed_m_s != now.pushed_m_s || published.pushed_kg_m_s != now.pushed_kg_m_s ||
          published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB;
 }
 
@@ -83,10 +82,6 @@ AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Cl
     aura.v_WB = aura.w_WB = Vec3::Zero();
   }
   aura.speed_m_s = clusters.speed(i);
-  if (const std::optional<Push> pushed = clusters.pushed(i)) {
-    aura.pushed_m_s = pushed->speed_m_s;
-    aura.pushed_kg_m_s = pushed->momentum_kg_m_s;
-  }
   return aura;
 }
 

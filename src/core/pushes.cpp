@@ -34,8 +34,6 @@ void Pushes::begin(std::span<const double> own_m_s, std::span<const BodyTraits> 
   }
   first_link_.assign(n, kNone);
   links_.clear();
-  group_.assign(n, kNone);
-  groups_.resize(n);
 }
 
 void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
@@ -45,45 +43,6 @@ void Pushes::add(std::uint32_t a, std::uint32_t b, bool rigid) {
   }
 }
 
-std::uint32_t Pushes::group_of(std::uint32_t i) {
-  while (group_[i] != i) i = group_[i] = group_[group_[i]];
-  return i;
-}
-
-/// Whoever touches body i, itself or through others, and is at least half as fast pushes on when i hits something.
-void Pushes::form_moving_groups(std::span<std::uint32_t> members) {
-  std::sort(members.begin(), members.end(), [&](auto a, auto b) { return own_m_s_[a] > own_m_s_[b]; });
-  const auto unfelt =
-      std::find_if(members.begin(), members.end(), [&](auto i) { return own_m_s_[i] <= Push::kUnfelt_m_s; });
-  auto next = members.begin();
-  for (const std::uint32_t i : std::span(members.begin(), unfelt)) {
-    if (first_link_[i] == kNone) continue;
-    for (; next != unfelt && own_m_s_[*next] >= 0.5 * own_m_s_[i]; ++next) {
-      group_[*next] = *next;
-      const double kg = traits_[*next].mass_kg;
-      groups_[*next] = {kg, kg * own_m_s_[*next]};
-      for (std::uint32_t at = first_link_[*next]; at != kNone; at = links_[at].next) {
-        if (group_[links_[at].to] == kNone) continue;
-        const std::uint32_t a = group_of(*next), b = group_of(links_[at].to);
-        if (a == b) continue;
-        group_[b] = a;
-        groups_[a].kg += groups_[b].kg;
-        groups_[a].kg_m_s += groups_[b].kg_m_s;
-      }
-    }
-    const double share = own_[i].speed_m_s / own_m_s_[i];
-    const MovingGroup& group = groups_[group_of(i)];
-    own_[i] = {share * std::max(own_m_s_[i], group.kg_m_s / group.kg), share * group.kg_m_s};
-  }
-}
-
-std::optional<Push> Pushes::pushed(std::uint32_t i) const {
-  const Push by_itself = alone(i);
-  const Push all = by_itself.covers(own_[i]) ? received_[i] : received_[i].joined_with(own_[i]);
-  if (all.speed_m_s <= by_itself.speed_m_s && by_itself.covers(all)) return std::nullopt;
-  return all;
-}
-
 void Pushes::start(std::uint32_t i) {
   if (speed(i) <= Push::kUnfelt_m_s) return;
   for (std::uint32_t at = first_link_[i]; at != kNone; at = links_[at].next) {
@@ -91,13 +50,6 @@ void Pushes::start(std::uint32_t i) {
     to_do_.emplace(speed(i), i);
     return;
   }
-}
-
-bool Pushes::hit(std::uint32_t i, const Impact& impact) {
-  if (!feels(impact, i)) return false;
-  received_[i] = received_[i].joined_with(impact.on(traits_[i]));
-  start(i);
-  return true;
 }
 
 void Pushes::spread(std::vector<std::uint32_t>& raised) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <queue>
 #include <span>
 #include <utility>
@@ -30,8 +29,6 @@ struct Push {
   }
   /// What is left of it for a body that is pushed by the one it is of.
   Push through(double more_kg) const { return {speed_with(more_kg), momentum_kg_m_s}; }
-  /// One that comes later, and so moves what it hits by this share of the way.
-  Push times(double share) const { return {share * speed_m_s, share * momentum_kg_m_s}; }
   /// Is nothing that `other` can do, beyond kUnfelt_m_s, more than this can do?
   bool covers(const Push& other) const;
   /// A push that covers both.
@@ -53,9 +50,6 @@ struct Impact {
   Push on(const BodyTraits& other) const {
     return own.through(other.mass_kg).joined_with(received.through((1 - other.restitution) * other.mass_kg));
   }
-  /// Nothing gets faster by it, however light.
-  double most_m_s() const { return std::max(own.speed_m_s, received.speed_m_s); }
-  Impact times(double share) const { return {own.times(share), received.times(share)}; }
 };
 
 /// Pushes of all bodies of a node along contacts, joints, and pairs that may touch.
@@ -66,18 +60,8 @@ class Pushes {
 
   /// Two bodies touch, may touch, or are jointed (`rigid`): what pushes one pushes the other.
   void add(std::uint32_t a, std::uint32_t b, bool rigid);
-  /// Of `members`, those that move as one hit as one. Once all that touch one of them are members, and before
-  /// anybody who may touch one is added. Sorts them.
-  void form_moving_groups(std::span<std::uint32_t> members);
   /// What pushes body `i` is to be passed on by the next spread().
   void start(std::uint32_t i);
-  /// Would such an impact make body `i` faster than it is known to become?
-  bool feels(const Impact& impact, std::uint32_t i) const {
-    if (impact.most_m_s() <= speed(i) + Push::kUnfelt_m_s) return false;
-    return impact.on(traits_[i]).speed_m_s > speed(i) + Push::kUnfelt_m_s;
-  }
-  /// Something else may hit body `i`. True if it feels that.
-  bool hit(std::uint32_t i, const Impact& impact);
   /// Passes on what pushes the bodies that have been started, and whoever is pushed by them. Whoever gets faster is
   /// appended to `raised`, some more than once.
   void spread(std::vector<std::uint32_t>& raised);
@@ -87,8 +71,6 @@ class Pushes {
   /// How fast it may leave its path, m/s: pushed by others, or because it hits something itself, be it the ground. That
   /// changes its own speed by as much as it gives to the lightest of bodies.
   double off_path_m_s(std::uint32_t i) const { return std::max(alone(i).speed_m_s, received_[i].speed_m_s); }
-  /// What others push it with, if that takes it further off its path, or makes its impact harder, than it can alone.
-  std::optional<Push> pushed(std::uint32_t i) const;
   /// What it may do to whom it hits.
   Impact impact(std::uint32_t i) const { return {own_[i], received_[i]}; }
   /// Would a contact make body `to` much faster than it is known to become? What pushes one reaches the other through
@@ -107,10 +89,6 @@ class Pushes {
     std::uint32_t next;  ///< of the same body
     bool rigid;
   };
-  struct MovingGroup {
-    double kg;
-    double kg_m_s;
-  };
   static constexpr std::uint32_t kNone = ~0u;
   static constexpr double kMuch = 1.5;
 
@@ -121,15 +99,12 @@ class Pushes {
   }
 
   Push alone(std::uint32_t i) const { return Push::of(own_m_s_[i], traits_[i], uncertainty_); }
-  std::uint32_t group_of(std::uint32_t i);
 
   double uncertainty_ = 1;
   std::vector<double> own_m_s_;
   std::vector<Push> own_, received_;
   std::span<const BodyTraits> traits_;
-  BodyTraits lightest_;               ///< nothing takes less of a push
-  std::vector<std::uint32_t> group_;  ///< towards a member that stands for all, kNone: not in any
-  std::vector<MovingGroup> groups_;   ///< by that member
+  BodyTraits lightest_;  ///< nothing takes less of a push
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
   std::priority_queue<std::pair<double, std::uint32_t>> to_do_;  ///< fastest first, so that most are done once

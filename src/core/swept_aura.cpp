@@ -23,15 +23,11 @@ double SweptAura::own_speed_of(const BodyState& body) const {
 }
 
 bool SweptAura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const {
-  return first_meeting(foreign, own, hops, fewer_steps).has_value();
-}
-
-std::optional<double> SweptAura::first_meeting(const Path& a, const Path& b, int hops, int fewer_steps) const {
-  return paths_meet(a, b, horizon::meeting(rules().lookahead, hops) - fewer_steps);
+  return paths_meet(foreign, own, horizon::meeting(rules().lookahead, hops) - fewer_steps);
 }
 
 bool SweptAura::linked(const Path& a, const Path& b, int hops) const {
-  return paths_meet(a, b, horizon::linking(rules().lookahead, hops)).has_value();
+  return paths_meet(a, b, horizon::linking(rules().lookahead, hops));
 }
 
 bool SweptAura::meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const {
@@ -67,7 +63,7 @@ double SweptAura::last_instant(int horizon_steps) const {
   return std::max(0.0, horizon_steps - 1.0 / rules().substeps);
 }
 
-std::optional<double> SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
+bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
   const int substeps = rules().substeps;
   const double spread = rules().uncertainty * rules().step_s;
   const double last = horizon_steps;
@@ -94,12 +90,12 @@ std::optional<double> SweptAura::paths_meet(const Path& a, const Path& b, int ho
     if (gap <= allowed) {
       const double limit = allowed + closing * (last - k);
       gap = clearance().clearance(a.prototype, at, b.prototype, bt, limit);
-      if (gap <= allowed) return k;
+      if (gap <= allowed) return true;
     }
     const double free_steps = closing > 0 ? (gap - allowed) / closing : last;
     i += std::max(1, static_cast<int>(std::min(free_steps, last) * substeps));
   }
-  return std::nullopt;
+  return false;
 }
 
 }  // namespace aurasim::core

@@ -14,7 +14,6 @@ class SweptAura final : public Aura {
   double calm_speed(bool awake) const override;
   double own_speed_of(const BodyState& body) const override;
   bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
-  std::optional<double> first_meeting(const Path& a, const Path& b, int hops, int fewer_steps) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
   bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;
 
@@ -22,7 +21,7 @@ class SweptAura final : public Aura {
   Steps steps(Question question, int hops) const override;
   Range span(double steps) const override;
   double unfallen_m(double steps) const override { return drop_m(steps); }
-  std::optional<double> paths_meet(const Path& a, const Path& b, int horizon_steps) const;
+  bool paths_meet(const Path& a, const Path& b, int horizon_steps) const;
   double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
   double last_instant(int horizon_steps) const;  ///< at which paths_meet() looks, in steps from now
 };

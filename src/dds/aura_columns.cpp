@@ -73,9 +73,6 @@ void encode_exceptions(const AuraBatch& batch, wire::AuraBatch& out) {
   out.elsewhere_row().clear();
   out.elsewhere_host().clear();
   out.elsewhere_stamp().clear();
-  out.pushed_row().clear();
-  out.pushed_kg_m_s().clear();
-  out.pushed_m_s().clear();
   out.unborn_row().clear();
   out.unborn_birth().clear();
   for (std::uint32_t i = 0; i < batch.updates.size(); ++i) {
@@ -84,11 +81,6 @@ void encode_exceptions(const AuraBatch& batch, wire::AuraBatch& out) {
       out.elsewhere_row().push_back(i);
       out.elsewhere_host().push_back(value_of(a.host));
       out.elsewhere_stamp().push_back(a.stamp);
-    }
-    if (a.pushed_m_s > 0) {
-      out.pushed_row().push_back(i);
-      out.pushed_kg_m_s().push_back(rounded_up(a.pushed_kg_m_s));
-      out.pushed_m_s().push_back(rounded_up(a.pushed_m_s));
     }
     if (a.birth > a.stamp) {
       out.unborn_row().push_back(i);
@@ -101,7 +93,7 @@ bool is_empty_or(std::size_t size, std::size_t rows) { return size == 0 || size 
 
 MaybeError check_column_shapes(const wire::AuraBatch& in) {
   const std::size_t rows = in.id().size();
-  if (std::max({rows, in.elsewhere_row().size(), in.pushed_row().size(), in.unborn_row().size()}) > kMaxRows) {
+  if (std::max({rows, in.elsewhere_row().size(), in.unborn_row().size()}) > kMaxRows) {
     return WireError::kTooLarge;
   }
   const bool fits =
@@ -113,14 +105,12 @@ MaybeError check_column_shapes(const wire::AuraBatch& in) {
       is_empty_or(in.p_WB().size(), 3 * rows) && is_empty_or(in.v_WB().size(), 3 * rows) &&
       in.w_WB().size() == in.v_WB().size() && is_empty_or(in.speed_m_s().size(), rows) &&
       same_rows(in.elsewhere_row().size(), {{in.elsewhere_host().size()}, {in.elsewhere_stamp().size()}}) &&
-      same_rows(in.pushed_row().size(), {{in.pushed_kg_m_s().size()}, {in.pushed_m_s().size()}}) &&
       in.unborn_row().size() == in.unborn_birth().size();
   return fits ? MaybeError{} : WireError::kLength;
 }
 
 MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expected) {
-  if (!all_finite(in.p_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB()) || !all_finite(in.speed_m_s()) ||
-      !all_finite(in.pushed_kg_m_s()) || !all_finite(in.pushed_m_s())) {
+  if (!all_finite(in.p_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB()) || !all_finite(in.speed_m_s())) {
     return WireError::kNotFinite;
   }
   if (std::ranges::any_of(in.flags(), [](std::uint8_t flags) { return (flags & ~core::kAuraAll) != 0; })) {
@@ -130,11 +120,10 @@ MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expect
     return WireError::kRotation;
   }
   const auto rows = static_cast<std::uint32_t>(in.id().size());
-  const bool in_range =
-      none_negative(in.speed_m_s()) && all_body_ids(in.id()) && all_below(in.prototype(), expected.prototype_count) &&
-      all_below(in.elsewhere_row(), rows) && all_below(in.elsewhere_host(), expected.region_count) &&
-      none_negative(in.elsewhere_stamp()) && all_below(in.pushed_row(), rows) && none_negative(in.pushed_kg_m_s()) &&
-      none_negative(in.pushed_m_s()) && all_below(in.unborn_row(), rows) && none_negative(in.unborn_birth());
+  const bool in_range = none_negative(in.speed_m_s()) && all_body_ids(in.id()) &&
+                        all_below(in.prototype(), expected.prototype_count) && all_below(in.elsewhere_row(), rows) &&
+                        all_below(in.elsewhere_host(), expected.region_count) && none_negative(in.elsewhere_stamp()) &&
+                        all_below(in.unborn_row(), rows) && none_negative(in.unborn_birth());
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -185,11 +174,6 @@ std::vector<AuraRecord> decode_auras(const wire::AuraBatch& in) {
     AuraRecord& aura = updates[in.elsewhere_row()[k]];
     aura.host = static_cast<core::RegionId>(in.elsewhere_host()[k]);
     aura.stamp = in.elsewhere_stamp()[k];
-  }
-  for (std::size_t k = 0; k < in.pushed_row().size(); ++k) {
-    AuraRecord& aura = updates[in.pushed_row()[k]];
-    aura.pushed_kg_m_s = in.pushed_kg_m_s()[k];
-    aura.pushed_m_s = in.pushed_m_s()[k];
   }
   for (std::size_t k = 0; k < in.unborn_row().size(); ++k) updates[in.unborn_row()[k]].birth = in.unborn_birth()[k];
   return updates;

@@ -1,5 +1,5 @@
-// A body that is hit hits the next: whoever is faster than it seemed a moment ago, because of what a body of
-// another node has done to it, has the bits of one world all the same.
+// A body that is hit hits the next: who is faster than it seemed a moment ago, because of what a body of another node
+// has done to it, was promised to be slower. What comes of that is computed again, and has the bits of one world.
 #include <cstdint>
 #include <numbers>
 #include <random>
@@ -92,32 +92,23 @@ class Impacts : public testing::Test {
     options.aura.lookahead = static_cast<int>(1 + seed % 3);
     options.aura.substeps = 4;
     options.aura.top_speed_m_s = 60;
+    options.aura.redo = true;
     options.aura.gravity = scene.gravity;
     const Outcome o = ClusterSim(scene, options).run(steps);
-    EXPECT_EQ(o.unflagged, 0u) << "seed " << seed;
     EXPECT_EQ(o.lost + o.doubled, 0u) << "seed " << seed;
-    const bool differs = o.hash != run_central(scene, options, steps).hash;
-    EXPECT_TRUE(!differs || o.violations > 0) << "seed " << seed << " differs, and no broken promise was counted";
-    differ_ += differs;
+    EXPECT_EQ(o.hash, run_central(scene, options, steps).hash) << "seed " << seed;
     hand_offs_ += o.hand_offs;
   }
 
-  int differ_ = 0;  ///< runs that do not have the bits of one world
   std::uint64_t hand_offs_ = 0;
 };
 
-/// A known fault, not a tolerance: of 200 runs 3 do not have the bits of one world (without what foreign bodies hit, 2
-/// of 5). In them a whole row that flies with gaps in it, or that overlaps so far that being pushed apart counts, is
-/// faster than any push of one body makes it. Such a broken promise is counted, and nothing is late without it. More
-/// than one run in kOneIn is news.
-TEST_F(Impacts, GoThroughARowAcrossTheBorderButForAKnownFewRuns) {
-  constexpr int kOneIn = 40;
+TEST_F(Impacts, GoThroughARowAcrossTheBorder) {
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
     ImpactScene scene(static_cast<std::uint64_t>(seed));
     for (int row = 0; row < 12; ++row) add_row(scene, 4.0 * row - 24);
     run(scene, static_cast<std::uint64_t>(seed), 300);
   }
-  EXPECT_LE(differ_, seeds_or(6) / kOneIn);
   EXPECT_GT(hand_offs_, 0u);
 }
 
@@ -127,7 +118,6 @@ TEST_F(Impacts, MayComeFromABodyThatOnlyTurns) {
     for (int i = 0; i < 12; ++i) add_spinner(scene, 7.0 * i - 42);
     run(scene, static_cast<std::uint64_t>(seed), 240);
   }
-  EXPECT_EQ(differ_, 0);
   EXPECT_GT(hand_offs_, 0u);
 }
 

@@ -21,6 +21,7 @@ ClusterOptions options_for(int seed) {
   options.aura.substeps = 2;
   options.aura.top_speed_m_s = 40;
   options.aura.redo = true;
+  options.over_the_wire = true;
   options.faults.latency_s = 0.004 * (seed % 7);
   options.faults.jitter_s = 0.006 * (seed % 4);
   options.faults.keep_order = seed % 2 == 0;

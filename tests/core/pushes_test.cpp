@@ -1,8 +1,6 @@
 // A push along contacts against momentum: what a chain of bodies that do not bounce can come to have.
 #include "core/pushes.h"
 
-#include <numeric>
-
 #include <gtest/gtest.h>
 
 #include "core/random.h"
@@ -20,9 +18,6 @@ class PushesTest : public ::testing::Test {
     kinds_ = kinds;
     pushes.begin(own_m_s, kinds_, kUncertainty);
     for (std::uint32_t i = 0; i + 1 < own_m_s.size(); ++i) pushes.add(i, i + 1, rigid);
-    std::vector<std::uint32_t> all(own_m_s.size());
-    std::iota(all.begin(), all.end(), 0U);
-    pushes.form_moving_groups(all);
     for (std::uint32_t i = 0; i < own_m_s.size(); ++i) pushes.start(i);
     pushes.spread(raised);
   }
@@ -39,7 +34,6 @@ TEST_F(PushesTest, ABodyByItselfMayLoseOrTurnItsOwnSpeed) {
   chain({20}, {kPlastic});
   EXPECT_EQ(kUncertainty * pushes.off_path_m_s(0), 20);
   EXPECT_EQ(pushes.speed(0), 20) << "others it pushes no harder";
-  EXPECT_FALSE(pushes.pushed(0)) << "others know that from its speed";
   chain({20}, {kElastic});
   EXPECT_EQ(kUncertainty * pushes.off_path_m_s(0), 40);
 }
@@ -67,35 +61,6 @@ TEST_F(PushesTest, OneImpactIsWhatMechanicsSays) {
     chain({10, 0}, {BodyTraits{m, e}, BodyTraits{other, e}});
     EXPECT_NEAR(kUncertainty * pushes.speed(1), (1 + e) * m / (m + other) * 10, 1e-9);
   }
-}
-
-/// Bodies that fly as one: the last of them hits with the momentum of all.
-TEST_F(PushesTest, AMovingGroupHitsAsOne) {
-  chain({10, 10, 9, 8, 0}, std::vector(5, kPlastic));
-  EXPECT_GE(kUncertainty * pushes.speed(4), (10 + 10 + 9 + 8) / 5.0 - 1e-9);
-  const double alone = (chain({0, 0, 0, 8, 0}, std::vector(5, kPlastic)), pushes.speed(4));
-  EXPECT_LT(kUncertainty * alone, 5);
-  chain({0.5, 0.5, 0.5, 8, 0}, std::vector(5, kPlastic));
-  EXPECT_NEAR(pushes.speed(4), alone, 1e-9) << "who is slow does not push on";
-}
-
-TEST_F(PushesTest, AForeignImpactIsFeltAndPassedOn) {
-  chain({0, 0, 0}, std::vector(3, kPlastic));
-  const Impact impact{Push::of(20, kPlastic, kUncertainty), {}};
-  EXPECT_TRUE(pushes.feels(impact, 0));
-  EXPECT_TRUE(pushes.hit(0, impact));
-  pushes.spread(raised);
-  EXPECT_NEAR(pushes.speed(0), 20, 1e-9);
-  EXPECT_NEAR(pushes.speed(2), 10, 1e-9);
-  EXPECT_FALSE(pushes.hit(0, impact.times(0.5))) << "known already";
-}
-
-TEST_F(PushesTest, WhoIsNotPushedSaysNothing) {
-  chain({20, 0, 0}, std::vector(3, kPlastic));
-  EXPECT_FALSE(pushes.pushed(0));
-  ASSERT_TRUE(pushes.pushed(2));
-  EXPECT_EQ(pushes.pushed(2)->speed_m_s, pushes.speed(2));
-  EXPECT_NEAR(pushes.pushed(2)->momentum_kg_m_s, 40, 1e-9);
 }
 
 TEST_F(PushesTest, JointedBodiesPassOnEverything) {

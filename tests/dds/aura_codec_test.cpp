@@ -133,22 +133,18 @@ TEST(AuraCodec, PlacesFarOutAreKeptToTheBit) {
   }
 }
 
-/// A receiver may think a body faster than it is, or pushed harder, never less.
-TEST(AuraCodec, SpeedsAndPushesAreRoundedUp) {
+/// A receiver may think a body faster than it is, never slower.
+TEST(AuraCodec, SpeedsAreRoundedUp) {
   core::AuraBatch batch = batch_of(1000);
   const auto decoded = decode(encoded(batch), expected());
   ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
   for (std::size_t i = 0; i < batch.updates.size(); ++i) {
     const core::AuraRecord& got = std::get<core::AuraBatch>(decoded).updates[i];
     EXPECT_GE(got.speed_m_s, batch.updates[i].speed_m_s);
-    EXPECT_GE(got.pushed_kg_m_s, batch.updates[i].pushed_kg_m_s);
-    EXPECT_GE(got.pushed_m_s, batch.updates[i].pushed_m_s);
-    EXPECT_NEAR(got.pushed_kg_m_s, batch.updates[i].pushed_kg_m_s, 1e-3);
-    EXPECT_NEAR(got.pushed_m_s, batch.updates[i].pushed_m_s, 1e-3);
   }
 }
 
-std::size_t bytes_per_update(bool moving, bool one_speed, bool pushed = false) {
+std::size_t bytes_per_update(bool moving, bool one_speed) {
   const auto size = [&](std::size_t updates) {
     core::AuraBatch batch;
     batch.top_speed_m_s = 32;
@@ -159,7 +155,6 @@ std::size_t bytes_per_update(bool moving, bool one_speed, bool pushed = false) {
       aura.birth = 0;
       if (!moving) aura.v_WB = aura.w_WB = core::Vec3::Zero();
       if (one_speed) aura.speed_m_s = 32;
-      aura.pushed_m_s = pushed ? 1 : 0;
     }
     return WireBytes().of(batch).size();
   };
@@ -170,7 +165,6 @@ std::size_t bytes_per_update(bool moving, bool one_speed, bool pushed = false) {
 TEST(AuraCodec, AnUpdateTakesFewBytes) {
   EXPECT_EQ(bytes_per_update(false, true), 37U) << "as with tight and thesis auras; 40 are allowed";
   EXPECT_EQ(bytes_per_update(true, false), 65U) << "as with swept auras; 80 are allowed";
-  EXPECT_EQ(bytes_per_update(true, false, true), 77U) << "if others push every body";
 }
 
 /// The first messages of a process, made on several threads at once.
@@ -280,8 +274,6 @@ const Spoilt kSpoilt[] = {
     {"VelocityWithoutSpin", [](Wire& w) { w.w_WB().clear(); }, WireError::kLength},
     {"SpinLong", [](Wire& w) { w.w_WB().push_back(0); }, WireError::kLength},
     {"SpeedShort", [](Wire& w) { w.speed_m_s().pop_back(); }, WireError::kLength},
-    {"PushShort", [](Wire& w) { w.pushed_kg_m_s().pop_back(); }, WireError::kLength},
-    {"PushSpeedLong", [](Wire& w) { w.pushed_m_s().push_back(1); }, WireError::kLength},
     {"MarksDiffer", [](Wire& w) { w.hand_off_last().pop_back(); }, WireError::kLength},
     {"ClaimsDiffer", [](Wire& w) { w.claim_epoch().push_back(1); }, WireError::kLength},
     {"PositionNan",
@@ -294,9 +286,6 @@ const Spoilt kSpoilt[] = {
     {"VelocityInfinite", [](Wire& w) { w.v_WB()[5] = -std::numeric_limits<float>::infinity(); }, WireError::kNotFinite},
     {"SpinInfinite", [](Wire& w) { w.w_WB()[5] = std::numeric_limits<float>::infinity(); }, WireError::kNotFinite},
     {"SpeedNan", [](Wire& w) { w.speed_m_s()[1] = std::numeric_limits<float>::quiet_NaN(); }, WireError::kNotFinite},
-    {"PushNan", [](Wire& w) { w.pushed_kg_m_s()[0] = std::numeric_limits<float>::quiet_NaN(); }, WireError::kNotFinite},
-    {"PushSpeedInfinite", [](Wire& w) { w.pushed_m_s()[0] = std::numeric_limits<float>::infinity(); },
-     WireError::kNotFinite},
     {"TopSpeedInfinite", [](Wire& w) { w.top_speed_m_s(kInfinity); }, WireError::kNotFinite},
     {"TopRadiusNan", [](Wire& w) { w.top_radius_m(kNan); }, WireError::kNotFinite},
     {"UnknownFlag", [](Wire& w) { w.flags()[3] = 4; }, WireError::kEnum},
@@ -314,9 +303,6 @@ const Spoilt kSpoilt[] = {
     {"NegativeBirth", [](Wire& w) { w.unborn_birth()[0] = -5; }, WireError::kRange},
     {"ElsewhereOfNoRow", [](Wire& w) { w.elsewhere_row()[0] = 8; }, WireError::kRange},
     {"UnbornOfNoRow", [](Wire& w) { w.unborn_row()[0] = 8; }, WireError::kRange},
-    {"PushOfNoRow", [](Wire& w) { w.pushed_row()[0] = 8; }, WireError::kRange},
-    {"NegativePush", [](Wire& w) { w.pushed_kg_m_s()[0] = -1; }, WireError::kRange},
-    {"NegativePushSpeed", [](Wire& w) { w.pushed_m_s()[0] = -1; }, WireError::kRange},
     {"NegativeSpeed", [](Wire& w) { w.speed_m_s()[0] = -1; }, WireError::kRange},
     {"NegativeTopSpeed", [](Wire& w) { w.top_speed_m_s(-1); }, WireError::kRange},
     {"NegativeTopRadius", [](Wire& w) { w.top_radius_m(-1); }, WireError::kRange},

@@ -29,10 +29,6 @@ inline core::AuraRecord aura_of(std::uint64_t id) {
   aura.v_WB = core::Vec3(1 / 3.0, -0.0, x);
   aura.w_WB = core::Vec3(-x, 5e-324, 2.5);
   aura.speed_m_s = 0.1 + x;
-  if (id % 3 == 1) {
-    aura.pushed_kg_m_s = 0.7 * x;
-    aura.pushed_m_s = 0.3 * x;
-  }
   return aura;
 }
 
