@@ -52,9 +52,9 @@ cut() {
   fi
   case $nodes in
     1) printf 'regions={layout: columns, count: 1, width: %s}\n' "$side" ;;
-    2) printf 'regions={layout: columns, count: 2, width: %s, neighbour_distance: 1000}\n' "$side" ;;
-    4) printf 'regions={layout: grid, rows: 2, columns: 2, cell: [%s, %s], neighbour_distance: 1000}\n' "$side" "$side" ;;
-    9) printf 'regions={layout: grid, rows: 3, columns: 3, cell: [%s, %s], neighbour_distance: 1000}\n' "$side" "$side" ;;
+    2) printf 'regions={layout: columns, count: 2, width: %s}\n' "$side" ;;
+    4) printf 'regions={layout: grid, rows: 2, columns: 2, cell: [%s, %s]}\n' "$side" "$side" ;;
+    9) printf 'regions={layout: grid, rows: 3, columns: 3, cell: [%s, %s]}\n' "$side" "$side" ;;
   esac
 }
 
@@ -66,7 +66,10 @@ run() {
     >"$report.log" 2>&1
 }
 
-field() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.argv[2]])' "$1" "$2"; }
+# A number, or how many there are.
+field() {
+  python3 -c 'import json, sys; f = json.load(open(sys.argv[1]))[sys.argv[2]]; print(len(f) if isinstance(f, list) else f)' "$1" "$2"
+}
 
 bad=(--set dds.impair.delay=0.016 --set dds.impair.jitter=0.005 --set dds.impair.loss=0.1)
 failures=0
@@ -81,7 +84,8 @@ row() {
   elif verdict=$("$aurasim" compare "$reports/central" "$report"); then
     verdict="equal, $(field "$report/summary.json" steps) steps"
   fi
-  cells+=" $(field "$report/summary.json" migrations 2>/dev/null || echo -) | $verdict |"
+  cells+=" $(field "$report/summary.json" migrations 2>/dev/null || echo -) |"
+  cells+=" $(field "$report/summary.json" redos 2>/dev/null || echo -) | $verdict |"
   [[ $verdict == equal* ]] || failures=$((failures + 1))
   echo "$cells" | tee -a "$out/$on-$steps.md"
 }
@@ -101,7 +105,7 @@ missing_rows() {
 
 scenes=("$@")
 [[ ${#scenes[@]} -gt 0 ]] || mapfile -t scenes < <(printf '%s\n' "${!cell[@]}" | sort)
-printf '| scene | nodes | network | repetition | hand-offs | against one node |\n|---|---|---|---|---|---|\n'
+printf '| scene | nodes | network | repetition | hand-offs | redos | against one node |\n|---|---|---|---|---|---|---|\n'
 for scene in "${scenes[@]}"; do
   mapfile -t rows < <(missing_rows "$scene")
   [[ ${#rows[@]} -gt 0 ]] || continue

@@ -55,8 +55,10 @@ def network_part(directory, page, network, steps):
         return f"## {heading}\n\n" + part_of(page, heading)
     rows = rows_of(file)
     equal = sum(1 for r in rows if r[-1].startswith("equal"))
-    return (f"## {heading}\n\n{measured_line(directory)}\n\n{text}{equal} of {len(rows)} equal.\n\n"
-            + table(["scene", "nodes", "network", "repetition", "hand-offs", "against one node"], rows))
+    redos = sum(int(r[-2]) for r in rows if r[-2].isdigit())
+    return (f"## {heading}\n\n{measured_line(directory)}\n\n{text}{equal} of {len(rows)} equal; "
+            f"{redos} redos in {steps * len(rows):,} steps.\n\n"
+            + table(["scene", "nodes", "network", "repetition", "hand-offs", "redos", "against one node"], rows))
 
 
 def cost_part(directory):
