@@ -28,7 +28,8 @@ struct Sums {
 std::vector<Column> empty_columns() {
   return {{"region", 6, 0, {}},   {"state", 8, 0, {}},  {"step", 8, 1, {}},   {"bodies", 7, 0, {}},
           {"awake", 7, 6, {}},    {"auras", 7, 5, {}},  {"sent", 7, 2, {}},   {"received", 8, 2, {}},
-          {"frame ms", 8, 3, {}}, {"p99 ms", 8, 7, {}}, {"broken", 6, 1, {}}, {"rtf", 5, 0, {}}};
+          {"frame ms", 8, 3, {}}, {"p99 ms", 8, 7, {}}, {"broken", 6, 1, {}}, {"rtf", 5, 0, {}},
+          {"listens", 7, 8, {}}};
 }
 
 void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells) {
@@ -44,10 +45,10 @@ void add_region(std::vector<Column>& columns, const dds::SeenStatus& seen) {
   const dds::Status& s = seen.status;
   const auto text = [](const auto& value) { return fmt::to_string(value); };
   const auto decimals = [](double value) { return fmt::format("{:.2f}", value); };
-  add_row(columns,
-          {text(core::value_of(s.region)), seen.lost ? "lost" : dds::name_of(s.state), text(s.step), text(s.bodies),
-           text(s.awake), text(s.foreign_auras), text(s.hand_offs_out), text(s.hand_offs_in), decimals(s.frame.p50_ms),
-           decimals(s.frame.p99_ms), text(broken_promises(s.violations)), decimals(s.real_time_factor)});
+  add_row(columns, {text(core::value_of(s.region)), seen.lost ? "lost" : dds::name_of(s.state), text(s.step),
+                    text(s.bodies), text(s.awake), text(s.foreign_auras), text(s.hand_offs_out), text(s.hand_offs_in),
+                    decimals(s.frame.p50_ms), decimals(s.frame.p99_ms), text(broken_promises(s.violations)),
+                    decimals(s.real_time_factor), text(s.listens_to.size())});
 }
 
 std::size_t width_of(const std::vector<Column>& columns) {
@@ -70,14 +71,19 @@ std::string line(const std::vector<Column>& columns, std::size_t row) {
   return text.substr(1) + "\n";
 }
 
+std::string folded(const std::string& note, std::size_t terminal) {
+  const std::size_t width = std::max<std::size_t>(terminal, 20) - 1;
+  std::string lines;
+  for (std::size_t begin = 0; begin < note.size(); begin += width) lines += note.substr(begin, width) + "\n";
+  return lines;
+}
+
 /// What is wrong, in the nodes' own words.
 std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal) {
-  const std::size_t width = std::max<std::size_t>(terminal, 20) - 1;
   std::string lines;
   for (const auto& [region, seen] : statuses) {
     if (seen.status.text.empty()) continue;
-    const std::string note = fmt::format("region {}: {}", core::value_of(region), seen.status.text);
-    for (std::size_t begin = 0; begin < note.size(); begin += width) lines += note.substr(begin, width) + "\n";
+    lines += folded(fmt::format("region {}: {}", core::value_of(region), seen.status.text), terminal);
   }
   return lines;
 }
@@ -100,12 +106,27 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
   }
   const auto text = [](std::uint64_t value) { return fmt::to_string(value); };
   add_row(columns, {"all", "", "", text(sums.bodies), "", "", text(sums.sent), text(sums.received), "", "",
-                    text(sums.broken), ""});
+                    text(sums.broken), "", ""});
   leave_out_what_does_not_fit(columns, size.columns);
   std::string table;
   for (std::size_t i = 0; i <= shown; ++i) table += line(columns, i);
   if (shown < statuses.size()) table += fmt::format("{:>6} {} more\n", "...", statuses.size() - shown);
   return table + line(columns, shown + 1) + notes(statuses, size.columns);
+}
+
+std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {
+  std::string lines;
+  for (const auto& [region, seen] : statuses) {
+    std::string who;
+    for (const core::Listened& other : seen.status.listens_to) {
+      who += fmt::format("{} {}", who.empty() ? "" : ",", core::value_of(other.region));
+      if (other.introduced_by) {
+        who += fmt::format(" (since state {}, by {})", other.since, core::value_of(*other.introduced_by));
+      }
+    }
+    if (!who.empty()) lines += folded(fmt::format("region {} listens to{}", core::value_of(region), who), size.columns);
+  }
+  return lines;
 }
 
 TerminalView::TerminalView() : is_terminal_(::isatty(STDOUT_FILENO) != 0) {}

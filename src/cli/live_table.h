@@ -19,6 +19,10 @@ struct TerminalSize {
 /// When there are more regions than rows, the last line but one says how many are not shown.
 std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
 
+/// Who listens to whom, a line for each region: since when and by whose introduction, where they are not near each
+/// other.
+std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
+
 /// Prints `text` over what was printed last (if standard output is a terminal; otherwise below it).
 class TerminalView {
  public:

@@ -49,6 +49,8 @@ void NodeProcess::publish_running() {
   status_.transport = summary_of(window_.transport);
   status_.real_time_factor = real_time_factor();
   status_.dead = node_->protocol().intake().dead_regions();
+  const std::span<const core::Listened> listens_to = node_->protocol().listens_to();
+  status_.listens_to.assign(listens_to.begin(), listens_to.end());
   watch_the_clock();
   watch_the_records();
   publish(!waiting_.empty() ? waiting_ : !fault_.empty() ? fault_ : notice_);

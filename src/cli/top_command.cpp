@@ -26,7 +26,8 @@ int watch(const FileArguments& files, double seconds) {
   while (!stop_requested() && (seconds <= 0 || Clock::now() < end)) {
     const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
     while (!stop_requested() && Clock::now() < next) control.wait(50ms);
-    if (!view.show(live_table(control.statuses(), view.size()))) break;
+    const TerminalSize size = view.size();
+    if (!view.show(live_table(control.statuses(), size) + listening_lines(control.statuses(), size))) break;
     if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
   }
   if (nobody()) fail_for_want_of_a_run(files, launch);

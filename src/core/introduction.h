@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 
 #include "core/ids.h"
 
@@ -12,6 +13,15 @@ struct Introduction {
   RegionId b{};
 
   auto operator<=>(const Introduction&) const = default;
+};
+
+/// A region that another one listens to, and that listens to it.
+struct Listened {
+  RegionId region{};
+  Step since = 0;
+  std::optional<RegionId> introduced_by;  ///< none: it is near, or had bodies near ours at the start
+
+  bool operator==(const Listened&) const = default;
 };
 
 }  // namespace aurasim::core

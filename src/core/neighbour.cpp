@@ -45,7 +45,7 @@ void Neighbour::apply(AuraBatch& batch) {
   if (batch.full) auras_.clear();
   orders_.insert(orders_.end(), batch.orders.begin(), batch.orders.end());
   alarms_.insert(alarms_.end(), batch.alarms.begin(), batch.alarms.end());
-  for (const Introduction& pair : batch.introductions) introductions_.push_back({batch.stamp, pair});
+  for (const Introduction& pair : batch.introductions) introductions_.push_back({batch.stamp, pair, batch.source});
   past_ = std::move(batch.past);
   merge(batch);
 }

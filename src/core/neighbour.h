@@ -65,6 +65,7 @@ class Neighbour {
   struct Introduced {
     Step stamp = 0;
     Introduction pair;
+    RegionId by{};
   };
   std::vector<Introduced> take_introductions();
 

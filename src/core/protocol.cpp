@@ -12,7 +12,7 @@ namespace {
 
 Vicinity vicinity_of(const ProtocolSettings& settings, const RegionMap& map) {
   Vicinity vicinity(map, settings.self, settings.neighbour_distance_m);
-  for (const RegionId related : settings.related) vicinity.listen_to(related);
+  for (const Listened& related : settings.related) vicinity.listen_to(related.region);
   return vicinity;
 }
 
@@ -32,6 +32,7 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
       ranks_(settings.aura.lookahead),
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
+      listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
       check_(*aura_, vicinity_, settings.start) {}
 
@@ -51,21 +52,10 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
 
 Continuation Protocol::continuation(Step put_back_to, const RankClaimer& claimer) const {
   const Step now = outbox_.aura.stamp;
-  Continuation next{orders_, alarms_, claimer, violations_, counters_, intake_.dead_regions(), vicinity_.neighbours};
-  for (const Related& related : related_) {
-    // Where nodes receive messages as they come, the other one may not have received a later introduction.
-    if (related.introduced <= now - aura_->rules().lookahead) next.related.push_back(related.region);
-  }
+  Continuation next{orders_, alarms_, claimer, violations_, counters_, intake_.dead_regions(), listening_.agreed(now)};
   next.orders.put_back(now);
   next.alarms.put_back(put_back_to);
   return next;
-}
-
-void Protocol::listen_to(const std::vector<RegionId>& regions) {
-  for (const RegionId region : regions) {
-    vicinity_.listen_to(region);
-    intake_.listen_to(region, settings_.start);
-  }
 }
 
 const Changes& Protocol::receive(Step n) {
@@ -81,7 +71,7 @@ const Changes& Protocol::receive(Step n) {
   receive_violations();
   orders_.receive(intake_.take_orders());
   alarms_.receive(intake_.take_alarms());
-  receive_introductions();
+  if (settings_.sync != SyncMode::kFreeRunning) listening_.receive();  // no state is agreed there
   changes_.orders = orders_.take_news();
   for (Order& order : changes_.orders) apply_late(order, n);
   return changes_;
@@ -156,7 +146,7 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   departing_.clear();
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
-  full_ = meet_the_introduced(snapshot.step) || snapshot.step == settings_.start;
+  full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start;
   rank(snapshot.step);
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
   check(snapshot);
@@ -302,34 +292,7 @@ void Protocol::fill_header() {
   batch.past = std::exchange(past_, {});
   batch.introductions = introducer_.look(matching_.all_foreign(), matching_.others_top_speed());
   outbox_.listeners = vicinity_.neighbours;
-  outbox_.expected.clear();
-  for (const Related& related : related_) outbox_.expected.push_back(related.region);
-}
-
-/// Both receive an introduction by the same state, since both hear who has made it.
-void Protocol::receive_introductions() {
-  const std::vector<Neighbour::Introduced> introductions = intake_.take_introductions();
-  if (settings_.sync == SyncMode::kFreeRunning) return;  // no state is agreed there
-  for (const auto& [stamp, pair] : introductions) {
-    if (pair.a != vicinity_.self && pair.b != vicinity_.self) continue;
-    const RegionId other = pair.a == vicinity_.self ? pair.b : pair.a;
-    const bool known =
-        vicinity_.is_neighbour(other) ||
-        std::any_of(related_.begin(), related_.end(), [&](const Related& r) { return r.region == other; });
-    if (known) continue;
-    const Step begin = stamp + horizon::introduction(aura_->rules().lookahead);
-    related_.push_back({other, stamp, begin});
-    intake_.listen_to(other, begin);
-  }
-}
-
-/// True when there are any: they are told of all our auras.
-bool Protocol::meet_the_introduced(Step now) {
-  return std::erase_if(related_, [&](const Related& related) {
-           if (related.begin > now) return false;
-           vicinity_.listen_to(related.region);
-           return true;
-         }) > 0;
+  outbox_.expected = listening_.expected();
 }
 
 void Protocol::check(const Snapshot& snapshot) {

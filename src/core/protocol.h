@@ -16,6 +16,7 @@
 #include "core/intake.h"
 #include "core/interest_matching.h"
 #include "core/introductions.h"
+#include "core/listening.h"
 #include "core/messages.h"
 #include "core/order_log.h"
 #include "core/projection.h"
@@ -40,7 +41,7 @@ struct ProtocolSettings {
   Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
   Step shuffle_ranks_steps = 0;        ///< tests only: another rank every so many steps
   std::vector<TogetherPair> together;  ///< a < b, ascending
-  std::vector<RegionId> related;       ///< besides those near us, those that listen from the start
+  std::vector<Listened> related;       ///< besides those near us, those that listen from the start
 };
 
 struct Changes {
@@ -71,7 +72,7 @@ struct Continuation {
   ViolationLog violations;
   ProtocolCounters counters;
   std::vector<RegionId> dead;
-  std::vector<RegionId> related;
+  std::vector<Listened> related;
 };
 
 class Protocol {
@@ -88,7 +89,8 @@ class Protocol {
   const Aura& aura() const { return *aura_; }
 
   /// Before the first state: these regions listen to us, too, and we to them.
-  void listen_to(const std::vector<RegionId>& regions);
+  void listen_to(std::span<const Listened> regions) { listening_.add(regions); }
+  std::span<const Listened> listens_to() const { return listening_.all(); }
 
   /// Takes in what arrived, at any time; messages of a later generation stay in `inbox`.
   void accept(Inbox& inbox) { intake_.accept(inbox); }
@@ -127,7 +129,6 @@ class Protocol {
   void give_up_alarms() { alarms_given_up_ = true; }
   bool alarms_given_up() const { return alarms_given_up_; }
   const RankClaimer& claimer() const { return claimer_; }
-  const ProtocolSettings& settings() const { return settings_; }
   Continuation continuation(Step put_back_to, const RankClaimer& claimer) const;
 
   /// The physics of a departure; once for each, in order.
@@ -170,8 +171,6 @@ class Protocol {
   void fill_header();
   void receive_violations();
   void check(const Snapshot& snapshot);
-  void receive_introductions();
-  bool meet_the_introduced(Step now);
 
   ProtocolSettings settings_;
   Vicinity vicinity_;
@@ -185,13 +184,7 @@ class Protocol {
   RankClaimer claimer_;
   Ranks ranks_;
   int hops_across_;
-  /// Another region that is to listen to us, and we to it.
-  struct Related {
-    RegionId region{};
-    Step introduced = 0;
-    Step begin = 0;  ///< the first state that we publish to each other
-  };
-  std::vector<Related> related_;
+  Listening listening_;
   Introducer introducer_;
   bool alarms_given_up_ = false;
   bool full_ = false;  ///< somebody listens to us for the first time

@@ -73,6 +73,10 @@ void encode_counts(const Status& status, wire::NodeStatus& out) {
   out.late_collisions(status.late_collisions);
   out.missed_collisions(status.missed_collisions);
   out.redos(status.redos);
+  fill(out.listens_to(), status.listens_to, [](const core::Listened& who) { return value_of(who.region); });
+  fill(out.listens_since(), status.listens_to, [](const core::Listened& who) { return who.since; });
+  fill(out.listens_by(), status.listens_to,
+       [&](const core::Listened& who) { return value_of(who.introduced_by.value_or(status.region)); });
   out.largest_cluster(status.largest_cluster);
 }
 
@@ -87,6 +91,12 @@ void decode_counts(const wire::NodeStatus& in, Status& status) {
   status.late_collisions = in.late_collisions();
   status.missed_collisions = in.missed_collisions();
   status.redos = in.redos();
+  for (std::size_t i = 0; i < in.listens_to().size(); ++i) {
+    core::Listened& who = status.listens_to.emplace_back();
+    who.region = core::RegionId{in.listens_to()[i]};
+    who.since = in.listens_since()[i];
+    if (in.listens_by()[i] != in.source()) who.introduced_by = core::RegionId{in.listens_by()[i]};
+  }
   status.largest_cluster = in.largest_cluster();
 }
 
@@ -103,7 +113,9 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   }
   const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
                         in.lookahead() >= 0 && all_below(in.dead(), expected.region_count) &&
-                        all_below(in.refused_source(), expected.region_count);
+                        all_below(in.refused_source(), expected.region_count) &&
+                        all_below(in.listens_to(), expected.region_count) && none_negative(in.listens_since()) &&
+                        all_below(in.listens_by(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -114,10 +126,12 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
   if (const auto error = check_source(in, expected)) {
     return error;
   }
-  if (std::max(in.dead().size(), in.refused_source().size()) > kMaxRows) {
+  const std::size_t listens = in.listens_to().size();
+  if (std::max({in.dead().size(), in.refused_source().size(), listens}) > kMaxRows) {
     return WireError::kTooLarge;
   }
-  if (in.refused_source().size() != in.refused_count().size()) {
+  if (in.refused_source().size() != in.refused_count().size() || in.listens_since().size() != listens ||
+      in.listens_by().size() != listens) {
     return WireError::kLength;
   }
   return check_values(in, expected);

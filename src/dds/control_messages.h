@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/introduction.h"
 #include "core/region_map.h"
 
 namespace aurasim::dds {
@@ -50,6 +51,7 @@ struct Status {
   std::uint64_t late_collisions = 0;    ///< since the start, as the node itself can see them (node/collision_watch.h)
   std::uint64_t missed_collisions = 0;  ///< likewise
   std::uint32_t redos = 0;              ///< how often this generation has been put back and computed again
+  std::vector<core::Listened> listens_to;  ///< and they to it, by region
   Durations frame;
   Durations physics;
   Durations protocol;

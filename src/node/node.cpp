@@ -80,8 +80,11 @@ std::vector<core::BodyRecord> Node::initial_bodies() {
         {static_cast<std::uint32_t>(a - records.begin()), static_cast<std::uint32_t>(b - records.begin())});
   }
   const std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
-  setup_.protocol.related =
-      core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts);
+  setup_.protocol.related.clear();
+  for (const core::RegionId related :
+       core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts)) {
+    setup_.protocol.related.push_back({related, setup_.protocol.start, {}});
+  }
   std::vector<core::BodyRecord> ours;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (hosts[i] != region()) continue;

@@ -116,8 +116,9 @@ void Node::put_back() {
   core::Continuation next = protocol_->continuation(cut.step, cut.claimer);
   setup_.protocol.redo = next.alarms.redo();
   setup_.protocol.start = cut.step;
-  std::vector<core::RegionId>& related = setup_.protocol.related;
-  related.insert(related.end(), next.related.begin(), next.related.end());
+  std::vector<core::Listened> related = next.related;
+  if (cut.step == 0) related.insert(related.end(), setup_.protocol.related.begin(), setup_.protocol.related.end());
+  setup_.protocol.related = std::move(related);
   protocol_.emplace(setup_.protocol, *map_, *clearance_, std::move(next));
   report_.put_back_from = from;
   report_.put_back_for = redo.pairs;

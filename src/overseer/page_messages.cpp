@@ -30,6 +30,16 @@ Json side(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json durations_json(const dds::Durations& d) { return {{"p50", d.p50_ms}, {"p99", d.p99_ms}, {"max", d.max_ms}}; }
 
+Json listens_json(const dds::Status& status) {
+  Json listens = Json::array();
+  for (const core::Listened& who : status.listens_to) {
+    Json one = {{"region", value_of(who.region)}, {"since", who.since}};
+    if (who.introduced_by) one["introduced_by"] = value_of(*who.introduced_by);
+    listens.push_back(std::move(one));
+  }
+  return listens;
+}
+
 Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
   const dds::Status& s = seen.status;
   return {{"region", value_of(s.region)},
@@ -50,6 +60,7 @@ Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
           {"late", s.late_collisions},
           {"missed", s.missed_collisions},
           {"redos", s.redos},
+          {"listens_to", listens_json(s)},
           {"frame_ms", durations_json(s.frame)},
           {"physics_ms", durations_json(s.physics)},
           {"protocol_ms", durations_json(s.protocol)},

@@ -49,6 +49,14 @@ TEST_F(LiveTable, NoLineIsAsWideAsTheTerminal) {
   }
 }
 
+TEST_F(LiveTable, NamesWhoListensToWhomSinceWhenAndWhy) {
+  have_regions(2);
+  EXPECT_EQ(listening_lines(statuses_), "");
+  statuses_[core::RegionId{1}].status.listens_to = {{core::RegionId{0}, 0, {}},
+                                                    {core::RegionId{7}, 120, core::RegionId{3}}};
+  EXPECT_EQ(listening_lines(statuses_), "region 1 listens to 0, 7 (since state 120, by 3)\n");
+}
+
 TEST_F(LiveTable, EightyColumnsKeepWhatMattersMost) {
   have_regions(9);
   const std::string head = lines({80, 24}).front();

@@ -1,5 +1,7 @@
 // Listening follows bodies: where they come to regions that did not listen to their host, the owner of the place has
 // introduced the two in time.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "cluster/cluster_sim.h"
@@ -38,6 +40,30 @@ TEST_P(Listening, FollowsBodiesSoThatNothingIsMissed) {
   EXPECT_EQ(outcome.hash, central.hash) << outcome.redos << " redos";
   EXPECT_EQ(outcome.lost, 0u);
   EXPECT_LE(outcome.redos, 2u);
+}
+
+/// Both sides say the same of it.
+TEST_P(Listening, IsMutualFromTheSameStateOn) {
+  const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
+  const ClusterOptions options = options_for(GetParam());
+  ClusterSim apart(scene, options);
+  apart.run(kSteps);
+  const auto listened = [&](core::RegionId region) {
+    return apart.node(core::value_of(region)).protocol().listens_to();
+  };
+  std::size_t introduced = 0;
+  for (std::uint32_t r = 0; r < options.map.size(); ++r) {
+    for (const core::Listened& other : listened(core::RegionId{r})) {
+      if (other.since > kSteps) continue;  // nodes end a few states apart
+      introduced += other.introduced_by.has_value();
+      const auto same = std::ranges::find(listened(other.region), core::RegionId{r}, &core::Listened::region);
+      ASSERT_NE(same, listened(other.region).end()) << r << " listens to " << core::value_of(other.region);
+      EXPECT_EQ(same->since, other.since);
+      EXPECT_EQ(same->introduced_by.has_value(), other.introduced_by.has_value());
+    }
+  }
+  const bool narrow_columns = GetParam() % 2 == 0;  // all have been near each other from the start
+  EXPECT_TRUE(narrow_columns || introduced > 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Listening, testing::Range(1, 1 + seeds_or(6)));

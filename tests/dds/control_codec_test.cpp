@@ -41,6 +41,7 @@ TEST(StatusCodec, RoundTripKeepsEverything) {
   EXPECT_EQ(std::get<Status>(decoded).late_collisions, 6U);
   EXPECT_EQ(std::get<Status>(decoded).missed_collisions, 7U);
   EXPECT_EQ(std::get<Status>(decoded).transport.max_ms, 0.9);
+  EXPECT_EQ(std::get<Status>(decoded).listens_to, status_of(1).listens_to);
 }
 
 TEST(StatusCodec, LongTextsAreCutBetweenCharacters) {
@@ -71,6 +72,11 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(21); }), "range");
   EXPECT_EQ(after([](auto& w) { w.lookahead(-1); }), "range");
   EXPECT_EQ(after([](auto& w) { w.dead({4}); }), "range");
+  EXPECT_EQ(after([](auto& w) { w.listens_to()[0] = 4; }), "range");
+  EXPECT_EQ(after([](auto& w) { w.listens_by()[0] = 4; }), "range");
+  EXPECT_EQ(after([](auto& w) { w.listens_since()[0] = -1; }), "range");
+  EXPECT_EQ(after([](auto& w) { w.listens_since().pop_back(); }), "length");
+  EXPECT_EQ(after([](auto& w) { w.listens_by().pop_back(); }), "length");
 }
 
 TEST(MapCodec, RoundTripKeepsEverything) {

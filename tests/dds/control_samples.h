@@ -23,6 +23,7 @@ inline Status status_of(std::uint32_t region) {
   status.violations = {1, 2, 3, 4, 5};
   status.late_collisions = 6;
   status.missed_collisions = 7;
+  status.listens_to = {{core::RegionId{0}, 0, {}}, {core::RegionId{3}, 120, core::RegionId{2}}};
   status.frame = {1.5, 2.5, 3.5};
   status.physics = {0.1, 0.2, 0.3};
   status.protocol = {0.4, 0.5, 0.6};

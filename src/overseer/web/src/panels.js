@@ -43,6 +43,9 @@ export class TopBar {
   }
 }
 
+const ABOUT_LISTENING = "Regions whose nodes and this one hear each other. Those that are not near each other on the map " +
+  "were introduced by a third, because bodies came near.";
+
 /** One node's card. */
 class NodeCard {
   constructor(region) {
@@ -55,6 +58,7 @@ class NodeCard {
     this.brief = h("span.brief");
     this.p50 = h("b.big");
     this.text = h("p.node-text", { hidden: true });
+    this.listens = h("p.node-listens", { hidden: true, title: ABOUT_LISTENING });
     this.element = h("article.node", { style: `--host: ${colour}`, "data-region": region, "aria-label": `Region ${region}` },
       h("header", { tabindex: 0, onclick: () => this.#flip(), onkeydown: (event) => event.key === "Enter" && this.#flip() },
         h("i.swatch"), h("h3", {}, `Region ${region}`), this.brief, this.state),
@@ -63,7 +67,7 @@ class NodeCard {
         cell("p99", "p99 ms", "99th percentile of the frame time"), cell("max", "max ms", "Longest frame"),
         cell("rtf", "real time", "Simulated seconds per second"), cell("bodies", "bodies", "Bodies hosted here"),
         cell("awake", "awake", "Bodies that move"), cell("handOffs", "hand-offs/s", "Bodies handed over per second")),
-      this.warnings, this.text);
+      this.listens, this.warnings, this.text);
   }
 
   #flip() {
@@ -85,9 +89,18 @@ class NodeCard {
     set("rtf", `${fixed(node.real_time_factor, 2)}×`);
     this.brief.textContent = `${grouped(node.bodies)} bodies`;
     this.#showWarnings(node);
+    this.#showListening(node.listens_to ?? []);
     this.text.hidden = !node.text;
     this.text.textContent = node.text ?? "";
     this.spark.push(frame.p99, step_s * 1000);
+  }
+
+  /** Regions near each other always listen; of the others it matters since when. */
+  #showListening(regions) {
+    this.listens.hidden = regions.length === 0;
+    const name = ({ region, since, introduced_by: by }) =>
+      by === undefined ? `${region}` : `${region} (since state ${grouped(since)}, by ${by})`;
+    this.listens.textContent = `listens to ${regions.map(name).join(", ")}`;
   }
 
   #showWarnings(node) {
