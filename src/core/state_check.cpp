@@ -44,10 +44,11 @@ StateCheck::State& StateCheck::state(Step step) {
 }
 
 void StateCheck::add(const AuraRecord& aura, Step step, std::uint32_t world) {
-  if (aura.birth > step || step < checked_) return;
+  if (step < checked_) return;
   Sighting& seen = state(step).others.emplace_back();
   seen.id = aura.id;
   seen.world = world;
+  seen.born = aura.birth <= step;
   seen.path.prototype = aura.prototype;
   seen.path.radius_m = aura_.clearance().bounding_radius(aura.prototype);
   seen.path.pose = aura.pose;
@@ -70,15 +71,16 @@ void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matc
   State& now = state(snapshot.step);
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     const BodyState& body = snapshot.bodies[i];
-    if (body.birth > snapshot.step) continue;
     if (!matching.outside(i) && !matching.must_be_announced(i)) continue;
-    now.own.push_back({body.id, value_of(vicinity_.self), path_of(body, snapshot.step, aura_.clearance())});
+    now.own.push_back({body.id, value_of(vicinity_.self), path_of(body, snapshot.step, aura_.clearance()),
+                       body.birth <= snapshot.step});
   }
 }
 
 void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nth) {
   if (step < checked_) return;
-  state(step).others.push_back({body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance())});
+  state(step).others.push_back(
+      {body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance()), body.birth <= step});
 }
 
 void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
@@ -163,7 +165,8 @@ void StateCheck::gather_ways(const State& before, const State& after) {
         const auto found = std::ranges::lower_bound(other, now.id, {}, &Sighting::id);
         if (found != other.end() && found->id == now.id) known = &*found;
       }
-      ways.push_back(way(now, known));
+      // A body that appears in this state was not there while it was computed.
+      if (now.born && (!known || known->born)) ways.push_back(way(now, known));
     }
   };
   gather(after.own, before.own, before.others, own_);
@@ -233,6 +236,7 @@ void StateCheck::check(Step step) {
   if (after.others.empty()) return;
   step_ = step;
   gather_ways(before, after);
+  if (others_.empty()) return;
   Vec3 lo = others_.front().middle, hi = lo;
   const std::uint32_t world = others_.front().now->world;
   bool several = false;

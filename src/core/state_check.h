@@ -43,6 +43,7 @@ class StateCheck {
     BodyId id{};
     std::uint32_t world = 0;
     Path path;
+    bool born = true;  ///< false: it is only announced, and nothing can touch it yet
   };
   struct State {
     Step step = 0;

@@ -110,6 +110,17 @@ TEST_F(TheCheck, SaysNothingOfTwoThatOneNeighbourHosts) {
   }
 }
 
+TEST_F(TheCheck, KnowsThatABodyTouchesNothingBeforeTheStateAfterItsBirth) {
+  constexpr Step kBirth = 2;
+  look(0);
+  for (Step step = 0; step < 4; ++step) {
+    AuraRecord newborn = body(2, step, {0.7, 0, 0});
+    newborn.birth = step < kBirth ? kBirth : 0;  // as after the wire
+    publish(step, {newborn});
+    EXPECT_THAT(look(step + 1), SizeIs(step <= kBirth ? 0 : 1)) << "state " << step;
+  }
+}
+
 TEST_F(TheCheck, TakesABodyThatMadeUpAStateAloneForOneInAnotherWorld) {
   BodyState late;
   late.id = BodyId{4};
