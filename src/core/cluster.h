@@ -44,6 +44,10 @@ class Clusters {
     grown.clear();
     std::swap(grown, grown_);
   }
+  /// Bodies of other clusters of ours that those of body i's may touch within `more_hops` more than clusters look
+  /// ahead, until `visit(index)` is true; whether it was.
+  template <class Visit>
+  bool any_near(std::uint32_t i, int more_hops, Visit&& visit) const;
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
   /// The pairs by which clusters came to be one: a tree of each cluster.
@@ -96,5 +100,21 @@ class Clusters {
   std::vector<BodyTraits> traits_;     ///< of the bodies
   std::vector<BodyTraits> kinds_;      ///< by prototype, as far as asked for
 };
+
+template <class Visit>
+bool Clusters::any_near(std::uint32_t i, int more_hops, Visit&& visit) const {
+  const int hops_ahead = hops(i) + more_hops;
+  const Range range = aura_.link_range(hops_ahead);
+  bool found = false;
+  for_each_member(i, [&](std::uint32_t member) {
+    const Path& path = paths_[member];
+    near_.for_each_near(path.pose.p_WB, path.radius_m, range.at(path.speed_m_s + NearIndex::kSlow),
+                        range.at(path.speed_m_s + near_.top_speed()), [&](std::uint32_t other) {
+                          if (found || of(other) == of(i)) return;
+                          found = aura_.linked(path, paths_[other], hops_ahead) && visit(other);
+                        });
+  });
+  return found;
+}
 
 }  // namespace aurasim::core

@@ -169,6 +169,8 @@ void Protocol::rank(Step now) {
 
 void Protocol::decide(const Snapshot& snapshot) {
   decided_.assign(snapshot.bodies.size(), 0);
+  goes_home_.assign(snapshot.bodies.size(), 0);
+  homing_.clear();
   largest_cluster_ = largest_guest_ = 0;
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (!aura_->warns()) {
@@ -183,6 +185,7 @@ void Protocol::decide(const Snapshot& snapshot) {
     if (size >= RankClaimer::kLeastBodies && size > largest_guest_ && is_abroad(i)) largest_guest_ = size;
     decide_for_cluster(i, snapshot);
   }
+  send_home(snapshot);
 }
 
 /// Two thirds of body i's cluster, or more, are outside our region.
@@ -198,10 +201,25 @@ void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
   if (pulled_to != vicinity_.self) {
     depart(i, pulled_to, HandOffReason::kAuraCollision, snapshot);
   } else if (settles_elsewhere(i, snapshot.step)) {
+    homing_.push_back(i);
+    goes_home_[matching_.clusters().of(i)] = 1;
+  }
+}
+
+/// Who would be met by a body that stays here would be pulled back at once.
+void Protocol::send_home(const Snapshot& snapshot) {
+  const Clusters& clusters = matching_.clusters();
+  const auto stays = [&](std::uint32_t other) { return !goes_home_[clusters.of(other)]; };
+  const auto leaves_somebody = [&](std::uint32_t i) {
+    if (!clusters.any_near(i, horizon::kHomewardHops, stays)) return false;
+    goes_home_[clusters.of(i)] = 0;
+    return true;
+  };
+  while (std::erase_if(homing_, leaves_somebody) > 0) continue;
+  const std::vector<RegionId> dead = intake_.dead_regions();
+  for (const std::uint32_t i : homing_) {
     const RegionId home = lowest_owner(i);
-    const bool listens = vicinity_.is_neighbour(home);
-    const std::vector<RegionId> dead = intake_.dead_regions();
-    if (listens && std::find(dead.begin(), dead.end(), home) == dead.end()) {
+    if (vicinity_.is_neighbour(home) && std::ranges::find(dead, home) == dead.end()) {
       depart(i, home, HandOffReason::kBoundaryTraversal, snapshot);
     }
   }

@@ -162,6 +162,7 @@ class Protocol {
   void decide(const Snapshot& snapshot);
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   bool is_abroad(std::uint32_t i) const;
+  void send_home(const Snapshot& snapshot);
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
   void note_who_waits(const Snapshot& snapshot);
   bool settles_elsewhere(std::uint32_t i, Step now);
@@ -194,6 +195,8 @@ class Protocol {
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;
+  std::vector<std::uint32_t> homing_;    ///< a body of each cluster that is to go home
+  std::vector<std::uint8_t> goes_home_;  ///< by cluster
   /// Came here by a pull, and has touched nothing since.
   struct Pulled {
     BodyId id{};
