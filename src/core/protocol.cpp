@@ -208,6 +208,7 @@ void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
 
 /// Who would be met by a body that stays here would be pulled back at once.
 void Protocol::send_home(const Snapshot& snapshot) {
+  if (homing_.empty()) return;
   const Clusters& clusters = matching_.clusters();
   const auto stays = [&](std::uint32_t other) { return !goes_home_[clusters.of(other)]; };
   const auto leaves_somebody = [&](std::uint32_t i) {

@@ -213,9 +213,8 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
 }
 
 /// With those of the others from `from` on.
-void StateCheck::compare_with_others(const Way& one, std::uint32_t from) {
-  const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
-  const double range = margin + one.reach_m;
+void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double margin_m) {
+  const double range = margin_m + one.reach_m;
   const double fastest = near_.top_speed();
   near_.for_each_near(one.middle, 0, range + std::min(fastest, NearIndex::kSlow) / kWays_per_s,
                       range + fastest / kWays_per_s, [&](std::uint32_t i) {
@@ -230,8 +229,9 @@ void StateCheck::compare_with_others(const Way& one, std::uint32_t from) {
 }
 
 void StateCheck::check(Step step) {
-  State& after = state(step);
+  state(step);  // so that neither of the two below is inserted, which would move the other
   State& before = state(step - 1);
+  State& after = state(step);
   for (State* each : {&before, &after}) sort_by_id(each->others);
   if (after.others.empty()) return;
   step_ = step;
@@ -250,9 +250,9 @@ void StateCheck::check(Step step) {
     const Vec3 reach = Vec3::Constant(way.reach_m + margin);
     const bool apart =
         ((way.middle + reach).array() < lo.array()).any() || ((way.middle - reach).array() > hi.array()).any();
-    if (!apart) compare_with_others(way, 0);
+    if (!apart) compare_with_others(way, 0, margin);
   }
-  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1);
+  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1, margin);
 }
 
 }  // namespace aurasim::core

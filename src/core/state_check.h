@@ -69,7 +69,7 @@ class StateCheck {
   void check(Step step);
   void gather_ways(const State& before, const State& after);
   Way way(const Sighting& now, const Sighting* before) const;
-  void compare_with_others(const Way& one, std::uint32_t from);
+  void compare_with_others(const Way& one, std::uint32_t from, double margin_m);
   Motion motion(const Sighting& now, const Sighting* before) const;
   bool touch(const Motion& a, const Motion& b) const;
   bool sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const;
