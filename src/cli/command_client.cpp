@@ -15,6 +15,8 @@ constexpr auto kPatienceForAnswers = 6s;
 constexpr auto kPatienceForMeshes = 20s;  ///< the lead waits for 15 s until all nodes have one, and says who has not
 constexpr auto kPatienceAfterIt = 2s;     ///< once all nodes have computed its state: a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
+constexpr auto kAgain = 500ms;
+constexpr std::uint64_t kAnyMap = 0;   ///< there is one run in a domain, and its map may be changing just now
 constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
 
 bool needs_a_mesh(const core::Ask& ask) {
@@ -62,8 +64,10 @@ std::uint64_t CommandClient::send(core::Command command) {
                                    : needs_a_mesh(command.ask) ? Clock::duration(kPatienceForMeshes)
                                                                : Clock::duration(kPatienceForAnswers);
   under_way.deadline = Clock::now() + patience;
-  // Any map: there is one run in a domain, and its map may be changing just now.
-  const std::uint64_t request = endpoint_.send(std::move(command), 0);
+  const std::uint64_t request = endpoint_.send(command, kAnyMap);
+  under_way.command = std::move(command);
+  under_way.command.request = request;
+  under_way.again = Clock::now() + kAgain;
   under_way.delivery.request = request;
   under_way_.emplace(request, std::move(under_way));
   return request;
@@ -73,6 +77,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   switch (reply.outcome) {
     case core::Outcome::kAccepted:
+      if (under_way.accepted) return;  // told again
       under_way.accepted = true;
       under_way.deadline = Clock::now() + (under_way.changes_the_run ? kPatienceForChanges : kPatienceAfterIt);
       delivery.at_step = reply.at_step;
@@ -161,11 +166,16 @@ std::vector<Delivery> CommandClient::take() {
   }
   std::vector<Delivery> ended;
   for (auto entry = under_way_.begin(); entry != under_way_.end();) {
-    if (!has_ended(entry->second)) {
+    UnderWay& under_way = entry->second;
+    if (!has_ended(under_way)) {
+      if (Clock::now() >= under_way.again) {
+        endpoint_.send(under_way.command, kAnyMap);
+        under_way.again = Clock::now() + kAgain;
+      }
       ++entry;
       continue;
     }
-    ended.push_back(std::move(entry->second.delivery));
+    ended.push_back(std::move(under_way.delivery));
     entry = under_way_.erase(entry);
   }
   return ended;

@@ -36,7 +36,8 @@ class CommandClient {
 
   /// All nodes that are alive hear us, and we them.
   bool all_listen();
-  /// Returns the request's id.
+  /// Returns the request's id. Asks again until it has come to an end: a reply is lost if its writer had not yet found
+  /// us. Nodes obey each request once.
   std::uint64_t send(core::Command command);
   /// Gives a mesh to the nodes, unless all have it.
   void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
@@ -54,6 +55,8 @@ class CommandClient {
     std::optional<core::BodyId> subject;
     std::vector<core::RegionId> asked;  ///< by a ray; none: all
     std::vector<core::RegionId> answered;
+    core::Command command;
+    Clock::time_point again;  ///< when it is sent next
     Clock::time_point deadline;
   };
 

@@ -1,13 +1,48 @@
 #include "dds/command_bus.h"
 
 #include <algorithm>
-#include <set>
+#include <deque>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "dds/random_id.h"
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
+namespace {
+
+/// Of requests that a node remembers: more than all clients together have under way.
+constexpr std::size_t kRemembered = 1U << 16U;
+
+/// The requests that came, and what was said of each.
+class Requests {
+ public:
+  /// False if it is known.
+  bool add(std::uint64_t request) {
+    if (!last_reply_.try_emplace(request).second) return false;
+    order_.push_back(request);
+    if (order_.size() > kRemembered) {
+      last_reply_.erase(order_.front());
+      order_.pop_front();
+    }
+    return true;
+  }
+
+  void note(const core::CommandReply& reply) {
+    const auto known = last_reply_.find(reply.request);
+    if (known != last_reply_.end()) known->second = reply;
+  }
+
+  std::optional<core::CommandReply> last_reply(std::uint64_t request) const { return last_reply_.at(request); }
+
+ private:
+  std::map<std::uint64_t, std::optional<core::CommandReply>> last_reply_;
+  std::deque<std::uint64_t> order_;
+};
+
+}  // namespace
+
 struct CommandServerEndpoint::Impl {
   Impl(Participant& participant_in, core::RegionId region_in, std::uint64_t map_version_in)
       : participant(participant_in),
@@ -22,7 +57,7 @@ struct CommandServerEndpoint::Impl {
   Wakeup wakeup;
   TypedReader<wire::Command> commands;
   TypedWriter<wire::CommandReply> replies;
-  std::set<std::uint64_t> requests;
+  Requests requests;
 };
 
 CommandServerEndpoint::CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version)
@@ -37,7 +72,11 @@ std::vector<core::Command> CommandServerEndpoint::take() {
   Expected expected;
   expected.map_version = impl_->map_version;
   const auto take_new = [&](core::Command&& command) {
-    if (impl_->requests.insert(command.request).second) commands.push_back(std::move(command));
+    if (impl_->requests.add(command.request)) {
+      commands.push_back(std::move(command));
+    } else if (const auto known = impl_->requests.last_reply(command.request)) {
+      reply(*known);
+    }
   };
   const auto refuse = [&](const wire::Command& malformed, WireError error) {
     if (error == WireError::kMapVersion || malformed.request() == 0) return;  // not for us
@@ -53,6 +92,7 @@ std::vector<core::Command> CommandServerEndpoint::take() {
 
 void CommandServerEndpoint::reply(core::CommandReply reply) {
   reply.source = impl_->region;
+  impl_->requests.note(reply);
   impl_->replies.send(reply, impl_->map_version);
 }
 

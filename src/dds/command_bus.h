@@ -21,7 +21,8 @@ class CommandServerEndpoint {
   ~CommandServerEndpoint();
 
   void use_map(std::uint64_t map_version);
-  /// New ones, in order of arrival; each request once.
+  /// New ones, in order of arrival; each request once. Who asks again is told again what it was told last: its reader
+  /// may have been unknown here when the reply was sent.
   std::vector<core::Command> take();
   void reply(core::CommandReply reply);
 

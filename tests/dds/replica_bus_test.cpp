@@ -10,6 +10,7 @@ namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
+using testing::holds_in_time;
 using testing::replica_of;
 using testing::settings_for;
 
@@ -31,15 +32,6 @@ struct Observer {
   ReplicaReader reader;
   std::vector<core::Replica> replicas;
 };
-
-template <class Condition>
-bool holds_in_time(Condition condition) {
-  const auto deadline = std::chrono::steady_clock::now() + testing::kDeadline;
-  while (!condition() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return condition();
-}
 
 TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
   Participant participant(settings_for(own_domain()));

@@ -28,6 +28,15 @@ using namespace std::chrono_literals;
 inline constexpr std::uint64_t kMapVersion = 0xfedc'ba98'7654'3210U;  // as in messages.h
 inline constexpr std::chrono::seconds kDeadline = 60s;                // for a busy machine; nothing takes that long
 
+template <class Condition>
+bool holds_in_time(Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kDeadline;
+  while (!condition() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return condition();
+}
+
 inline Settings settings_for(std::uint32_t domain, const std::string& profiles = "aurasim.xml") {
   Settings settings;
   settings.domain = domain;
