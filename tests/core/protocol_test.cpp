@@ -8,100 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "core/horizon.h"
-#include "core/letters.h"
-#include "core/round_shapes.h"
+#include "core/protocol_fixture.h"
 
 namespace aurasim::core::testing {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-class ProtocolTest : public ::testing::Test {
- protected:
-  ProtocolTest() {
-    settings.aura.gravity = Vec3::Zero();
-    settings.aura.contact_margin_m = 0;
-    settings.neighbour_distance_m = 1e9;
-    settings.generation = 3;
-  }
-
-  /// Starts as `self`, in state 0.
-  void start(std::uint32_t self, RegionMap layout = RegionMap::columns(2, 100)) {
-    map.emplace(std::move(layout));
-    settings.self = region(self);
-    protocol.emplace(settings, *map, shapes);
-    observe();
-  }
-  BodyState& host(std::uint64_t id, const Vec3& p, const Vec3& v = Vec3::Zero()) {
-    BodyState state;
-    state.id = body(id);
-    state.prototype = ball;
-    state.pose.p_WB = p;
-    state.v_WB = v;
-    snapshot.bodies.push_back(state);
-    return snapshot.bodies.back();
-  }
-  const std::vector<Departure>& observe() {
-    snapshot.step = now;
-    const std::vector<Departure>& departures = protocol->observe(snapshot);
-    for (const Departure& d : departures) {
-      ClusterState cluster;
-      for (const BodyId id : d.bodies) {
-        const auto found = std::find_if(snapshot.bodies.begin(), snapshot.bodies.end(),
-                                        [&](const BodyState& b) { return b.id == id; });
-        cluster.bodies.push_back(record_of(value_of(id), found->epoch));
-        snapshot.bodies.erase(found);
-      }
-      protocol->hand_over(d, std::move(cluster));
-    }
-    return departures;
-  }
-  void receive(AuraBatch b) {
-    b.generation = settings.generation;
-    b.map_version = map->version();
-    inbox.auras.push_back(std::move(b));
-    protocol->accept(inbox);
-  }
-  void receive(HandOff h, std::uint64_t sequence) {
-    h.generation = settings.generation;
-    h.map_version = map->version();
-    h.sequence = sequence;
-    inbox.hand_offs.push_back(std::move(h));
-    protocol->accept(inbox);
-  }
-  AuraRecord foreign(std::uint64_t id, const Vec3& p, Epoch epoch = 0, std::uint32_t at = 1) {
-    AuraRecord a = aura(id, epoch);
-    a.host = region(at);
-    a.prototype = ball;
-    a.pose.p_WB = p;
-    return a;
-  }
-  /// Region 1 publishes its next batch, with these auras.
-  void receive_batch_of_1(std::vector<AuraRecord> auras = {}) {
-    AuraBatch b = batch(1, protocol->intake().neighbours()[0].received() + 1);
-    for (AuraRecord& a : auras) a.stamp = b.stamp;
-    b.updates = std::move(auras);
-    receive(std::move(b));
-  }
-  const Changes& receive_next() { return protocol->receive(++now); }
-  /// One state in which nothing is received but region 1's steps.
-  void pass_step() {
-    receive_batch_of_1();
-    receive_next();
-    observe();
-  }
-
-  ProtocolSettings settings;
-  RoundShapes shapes;
-  PrototypeId ball = shapes.sphere(0.5);
-  PrototypeId large = shapes.sphere(4);
-  std::optional<RegionMap> map;
-  std::optional<Protocol> protocol;
-  Snapshot snapshot;
-  Inbox inbox;
-  Step now = 0;
-};
 
 TEST_F(ProtocolTest, ABatchIsPublishedForEveryStateEvenAnEmptyOne) {
   start(0);
@@ -217,51 +130,6 @@ TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
   EXPECT_EQ(departures[0].reason, HandOffReason::kAuraCollision);
 }
 
-/// Region 0 gets a ball of region 1, over whose ground it is.
-class Arrival : public ProtocolTest {
- protected:
-  void arrive(HandOffReason reason) {
-    start(0);
-    receive_batch_of_1();
-    HandOff h = hand_off(1, 0, 0, {record_of(7, 1)});
-    h.reason = reason;
-    receive(std::move(h), 1);
-    host(7, Vec3(20, 0, 0)).epoch = 1;
-  }
-  void pass_steps_until(Step last) {
-    while (now < last && !snapshot.bodies.empty()) pass_step();
-  }
-  bool is_here() const { return !snapshot.bodies.empty(); }
-
-  const Step island = 2 * settings.aura.lookahead + 2;
-};
-
-TEST_F(Arrival, OfWhomNobodyPulledGoesHomeAsSoonAsItIsAnIsland) {
-  arrive(HandOffReason::kBoundaryTraversal);
-  pass_steps_until(island);
-  EXPECT_FALSE(is_here());
-}
-
-TEST_F(Arrival, ByAPullStaysUntilItHasTouchedSomething) {
-  arrive(HandOffReason::kAuraCollision);
-  pass_steps_until(3 * island);
-  ASSERT_TRUE(is_here());
-  host(8, Vec3(20, 1, 0));
-  snapshot.contacts.push_back({0, 1});
-  pass_step();
-  snapshot.contacts.clear();
-  pass_steps_until(now + island);
-  EXPECT_FALSE(is_here());
-}
-
-TEST_F(Arrival, ByAPullThatCameToNothingGoesHomeInTheEnd) {
-  arrive(HandOffReason::kAuraCollision);
-  pass_steps_until(horizon::pull(settings.aura.lookahead) - 1);
-  EXPECT_TRUE(is_here());
-  pass_steps_until(now + island + 1);
-  EXPECT_FALSE(is_here());
-}
-
 TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
   host(1, Vec3(10, 0, 0));
   start(2, RegionMap::columns(3, 10));
@@ -351,46 +219,6 @@ TEST_F(ProtocolTest, ANeighboursViolationIsReceived) {
   receive(b);
   receive_next();
   EXPECT_EQ(protocol->last_violation_step(), 5);
-}
-
-/// Region 0 hosts a large cluster of region 1, beside which a ball of region 1 lies.
-class Guests : public ProtocolTest {
- protected:
-  /// Starts with a square of `side` balls in each row.
-  void start_with_large_cluster(std::uint32_t side) {
-    for (std::uint32_t i = 0; i < side * side; ++i) {
-      host(i, Vec3(20 + 0.9 * (i % side), 0.9 * (i / side), 0));
-      if (i > 0) snapshot.contacts.push_back({i - 1, i});
-    }
-    start(0);
-  }
-  /// The step in which all of them go, -1 if they do not within `steps`.
-  Step goes_within(Step steps) {
-    const std::size_t all = snapshot.bodies.size();
-    while (now < steps) {
-      receive_batch_of_1({foreign(10'000, Vec3(20, -0.95, 0))});
-      receive_next();
-      const std::vector<Departure>& departures = observe();
-      if (departures.empty()) continue;
-      EXPECT_EQ(departures.front().bodies.size(), all);
-      EXPECT_EQ(departures.front().destination, region(1));
-      return now;
-    }
-    return -1;
-  }
-};
-
-TEST_F(Guests, GoHomeInALargeClusterAlthoughItIsTouchedAllTheTime) {
-  start_with_large_cluster(17);
-  const Step gone = goes_within(100);
-  EXPECT_GE(gone, 10 + horizon::rank_notice(settings.aura.lookahead)) << "not before everybody knows";
-  EXPECT_LE(gone, 12 + horizon::rank_notice(settings.aura.lookahead));
-}
-
-TEST_F(Guests, StayWhileTheyAreFewAndTouched) {
-  start_with_large_cluster(15);
-  EXPECT_EQ(goes_within(100), -1);
-  EXPECT_EQ(protocol->outbox().aura.ranks.next.weight, RankClaim::kNothing);
 }
 
 class AssignHosts : public ProtocolTest {

@@ -1,0 +1,130 @@
+// When bodies of other regions go home.
+#include <memory>
+#include <vector>
+
+#include "core/cluster.h"
+#include "core/horizon.h"
+#include "core/make_aura.h"
+#include "core/protocol_fixture.h"
+
+namespace aurasim::core::testing {
+namespace {
+
+/// Region 0 gets a ball of region 1, over whose ground it is.
+class Arrival : public ProtocolTest {
+ protected:
+  void arrive(HandOffReason reason) {
+    start(0);
+    receive_batch_of_1();
+    HandOff h = hand_off(1, 0, 0, {record_of(7, 1)});
+    h.reason = reason;
+    receive(std::move(h), 1);
+    host(7, Vec3(20, 0, 0)).epoch = 1;
+  }
+  void pass_steps_until(Step last) {
+    while (now < last && !snapshot.bodies.empty()) pass_step();
+  }
+  bool is_here() const { return !snapshot.bodies.empty(); }
+
+  const Step island = 2 * settings.aura.lookahead + 2;
+};
+
+TEST_F(Arrival, OfWhomNobodyPulledGoesHomeAsSoonAsItIsAnIsland) {
+  arrive(HandOffReason::kBoundaryTraversal);
+  pass_steps_until(island);
+  EXPECT_FALSE(is_here());
+}
+
+TEST_F(Arrival, ByAPullStaysUntilItHasTouchedSomething) {
+  arrive(HandOffReason::kAuraCollision);
+  pass_steps_until(3 * island);
+  ASSERT_TRUE(is_here());
+  host(8, Vec3(20, 1, 0));
+  snapshot.contacts.push_back({0, 1});
+  pass_step();
+  snapshot.contacts.clear();
+  pass_steps_until(now + island);
+  EXPECT_FALSE(is_here());
+}
+
+TEST_F(Arrival, ByAPullThatCameToNothingGoesHomeInTheEnd) {
+  arrive(HandOffReason::kAuraCollision);
+  pass_steps_until(horizon::pull(settings.aura.lookahead) - 1);
+  EXPECT_TRUE(is_here());
+  pass_steps_until(now + island + 1);
+  EXPECT_FALSE(is_here());
+}
+
+/// A ball comes up from behind that waits for whoever it was pulled to. The way home looks a hop further than clusters.
+TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
+  const std::unique_ptr<const Aura> aura = make_aura(settings.aura, shapes);
+  int in_between = 0;
+  for (double gap_m = 0.1; gap_m < 6; gap_m += 0.1) {
+    SCOPED_TRACE(gap_m);
+    snapshot = {};
+    now = 0;
+    arrive(HandOffReason::kBoundaryTraversal);
+    HandOff h = hand_off(1, 0, 0, {record_of(8, 1)});
+    h.reason = HandOffReason::kAuraCollision;
+    receive(std::move(h), 2);
+    host(8, Vec3(19 - gap_m, 0, 0), Vec3(6, 0, 0)).epoch = 1;
+    std::vector<Path> paths;
+    std::vector<double> speeds_m_s;
+    for (const BodyState& each : snapshot.bodies) {
+      paths.push_back(path_of(each, 0, shapes));
+      speeds_m_s.push_back(aura->own_speed_of(each));
+    }
+    Clusters clusters(*aura);
+    clusters.begin(paths, speeds_m_s, std::vector<std::uint64_t>(2), {}, {});
+    clusters.complete(0);
+    const bool one_cluster = clusters.of(0) == clusters.of(1);
+    const bool meets_soon = clusters.any_near(0, horizon::kHomewardHops, [](std::uint32_t) { return true; });
+    in_between += meets_soon ? 1 : 0;
+    pass_steps_until(3 * island);
+    EXPECT_EQ(snapshot.bodies.size() == 2, one_cluster || meets_soon);
+  }
+  EXPECT_GT(in_between, 0);
+}
+
+/// Region 0 hosts a large cluster of region 1, beside which a ball of region 1 lies.
+class Guests : public ProtocolTest {
+ protected:
+  /// Starts with a square of `side` balls in each row.
+  void start_with_large_cluster(std::uint32_t side) {
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      host(i, Vec3(20 + 0.9 * (i % side), 0.9 * (i / side), 0));
+      if (i > 0) snapshot.contacts.push_back({i - 1, i});
+    }
+    start(0);
+  }
+  /// The step in which all of them go, -1 if they do not within `steps`.
+  Step goes_within(Step steps) {
+    const std::size_t all = snapshot.bodies.size();
+    while (now < steps) {
+      receive_batch_of_1({foreign(10'000, Vec3(20, -0.95, 0))});
+      receive_next();
+      const std::vector<Departure>& departures = observe();
+      if (departures.empty()) continue;
+      EXPECT_EQ(departures.front().bodies.size(), all);
+      EXPECT_EQ(departures.front().destination, region(1));
+      return now;
+    }
+    return -1;
+  }
+};
+
+TEST_F(Guests, GoHomeInALargeClusterAlthoughItIsTouchedAllTheTime) {
+  start_with_large_cluster(17);
+  const Step gone = goes_within(100);
+  EXPECT_GE(gone, 10 + horizon::rank_notice(settings.aura.lookahead)) << "not before everybody knows";
+  EXPECT_LE(gone, 12 + horizon::rank_notice(settings.aura.lookahead));
+}
+
+TEST_F(Guests, StayWhileTheyAreFewAndTouched) {
+  start_with_large_cluster(15);
+  EXPECT_EQ(goes_within(100), -1);
+  EXPECT_EQ(protocol->outbox().aura.ranks.next.weight, RankClaim::kNothing);
+}
+
+}  // namespace
+}  // namespace aurasim::core::testing
