@@ -271,6 +271,7 @@ void NodeProcess::compute_step() {
   record(node_->confirmed());
   wait_ms_ = 0;
   computed_at_ = Clock::now();
+  waiting_since_.reset();
   waiting_.clear();
   note(report, frame_ms);
   publish_running();

@@ -133,6 +133,7 @@ class NodeProcess {
   std::uint64_t broken_bodies_ = 0;  ///< taken out here since the start
   std::string fault_;                ///< the last one, for people
   std::string waiting_;              ///< whom for, if it takes long
+  std::optional<std::chrono::steady_clock::time_point> waiting_since_;
   std::chrono::steady_clock::time_point computed_at_;  ///< the last state
   std::chrono::steady_clock::time_point began_;
   std::chrono::steady_clock::duration paused_{};

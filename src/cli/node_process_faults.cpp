@@ -31,7 +31,8 @@ void NodeProcess::note_refusals() {
 }
 
 void NodeProcess::note_waiting() {
-  const auto waited = Clock::now() - computed_at_;
+  if (!waiting_since_) waiting_since_ = Clock::now();
+  const auto waited = Clock::now() - *waiting_since_;
   const core::Step next = node_->current_step() + 1;
   const std::vector<core::RegionId> missing = node_->protocol().missing(next);
   if (waited < kLongWait || missing.empty()) return;

@@ -66,6 +66,7 @@ int run_case(const experiment::ScenesPlan& plan, const ScenesArguments& argument
              o.unflagged_on_one);
   fmt::print("{} violations: {} speed, {} latency, {} promise, {} span; {} bodies broken\n", o.violations, o.speed,
              o.latency, o.promise, o.span, o.broken);
+  fmt::print("{} redos, {} states computed again\n", o.redos, o.computed_again);
   if (!o.first_fault.empty()) fmt::print("{}\n", o.first_fault);
   fmt::print("{:.2f} s of CPU on regions, {:.2f} s on one node\n", o.regions_s, o.one_s);
   return static_cast<int>(o.has_failed() ? ExitCode::kFailed : ExitCode::kOk);
