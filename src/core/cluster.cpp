@@ -91,7 +91,7 @@ void Clusters::take_raised() {
     near_.raise(i, path.pose.p_WB, path.speed_m_s, speed);
     path.speed_m_s = speed;
     grown_.push_back(i);
-    to_ask_.push_back(i);
+    to_ask_.emplace(speed, i);
   }
   raised_.clear();
 }
@@ -139,7 +139,7 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
 }
 
 void Clusters::ask_members(std::uint32_t i) {
-  for_each_member(i, [this](std::uint32_t j) { to_ask_.push_back(j); });
+  for_each_member(i, [this](std::uint32_t j) { to_ask_.emplace(speed(j), j); });
 }
 
 void Clusters::complete(std::uint32_t i) {
@@ -154,8 +154,8 @@ void Clusters::complete(std::uint32_t i) {
 
 void Clusters::look_on() {
   while (!to_ask_.empty()) {
-    const std::uint32_t j = to_ask_.back();
-    to_ask_.pop_back();
+    const std::uint32_t j = to_ask_.top().second;
+    to_ask_.pop();
     if (asked_speed_[j] >= speed(j) && asked_hops_[j] >= hops(j)) continue;
     asked_speed_[j] = speed(j);
     asked_hops_[j] = hops(j);
@@ -178,8 +178,8 @@ void Clusters::look_around(std::uint32_t i) {
     if ((path.pose.p_WB - paths_[j].pose.p_WB).squaredNorm() > range * range) return;
     if (aura_.linked(path, paths_[j], hops_both)) linked_.push_back(j);
   };
-  near_.for_each_near(path.pose.p_WB, path.radius_m, widest.at(speed_here + NearIndex::kSlow),
-                      widest.at(speed_here + near_.top_speed()), ask);
+  const auto range_at = [&](double speed_m_s) { return widest.at(speed_here + speed_m_s); };
+  near_.for_each_near(path.pose.p_WB, path.radius_m, range_at, ask);
   for (const std::uint32_t j : linked_) link(i, j);
 }
 

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <queue>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/aura.h"
@@ -94,7 +96,7 @@ class Clusters {
   std::vector<Contact> links_;
   std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around
   std::vector<int> asked_hops_;
-  std::vector<std::uint32_t> to_ask_;
+  std::priority_queue<std::pair<double, std::uint32_t>> to_ask_;  ///< fastest first: who is slower is pushed by them
   std::vector<std::uint32_t> linked_;
   std::vector<std::uint32_t> raised_;  ///< whoever may have become faster
   std::vector<BodyTraits> traits_;     ///< of the bodies
@@ -108,11 +110,11 @@ bool Clusters::any_near(std::uint32_t i, int more_hops, Visit&& visit) const {
   bool found = false;
   for_each_member(i, [&](std::uint32_t member) {
     const Path& path = paths_[member];
-    near_.for_each_near(path.pose.p_WB, path.radius_m, range.at(path.speed_m_s + NearIndex::kSlow),
-                        range.at(path.speed_m_s + near_.top_speed()), [&](std::uint32_t other) {
-                          if (found || of(other) == of(i)) return;
-                          found = aura_.linked(path, paths_[other], hops_ahead) && visit(other);
-                        });
+    const auto range_at = [&](double speed_m_s) { return range.at(path.speed_m_s + speed_m_s); };
+    near_.for_each_near(path.pose.p_WB, path.radius_m, range_at, [&](std::uint32_t other) {
+      if (found || of(other) == of(i)) return;
+      found = aura_.linked(path, paths_[other], hops_ahead) && visit(other);
+    });
   });
   return found;
 }

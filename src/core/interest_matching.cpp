@@ -170,21 +170,24 @@ void InterestMatching::notice_grown() {
   }
 }
 
-/// Fills ranges_ with range_of(body, hops) of all bodies of the block, and says how far own bodies of at most so many
-/// m/s have to be looked for.
+/// Fills ranges_ with range_of(body, hops) of all bodies of the block.
 template <class RangeOf>
-InterestMatching::Reach InterestMatching::take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s,
-                                                      RangeOf&& range_of) {
+void InterestMatching::take_ranges(const ForeignBlock& block, RangeOf&& range_of) {
   const int most_hops = clusters_.most_hops() + kHomewardHops;
-  Reach reach;
   ranges_.clear();
   ranges_each_ = static_cast<std::size_t>(most_hops) + 1;
   for (const std::uint32_t f : block.bodies) {
     for (int hops = 0; hops <= most_hops; ++hops) ranges_.push_back(range_of(foreign_[f].path, hops));
-    reach.slow_m = std::max(reach.slow_m, ranges_.back().at(slow_m_s));
-    reach.fast_m = std::max(reach.fast_m, ranges_.back().at(fast_m_s));
   }
-  return reach;
+}
+
+/// How far own bodies of at most so many m/s have to be looked for, after take_ranges().
+double InterestMatching::widest_range(double speed_m_s) const {
+  double widest_m = 0;
+  for (std::size_t most = ranges_each_ - 1; most < ranges_.size(); most += ranges_each_) {
+    widest_m = std::max(widest_m, ranges_[most].at(speed_m_s));
+  }
+  return widest_m;
 }
 
 /// Of the k-th body of the block, after take_ranges().
@@ -197,11 +200,10 @@ bool InterestMatching::is_in_range(const ForeignBlock& block, std::size_t k, con
 void InterestMatching::notice(const ForeignBlock& block) {
   const std::uint64_t region = vicinity_.bit_of(block.host);
   const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
-  const Reach reach = take_ranges(block, NearIndex::kSlow, top_speed(), [&](const Path& path, int hops) {
-    return aura_.notice(path.speed_m_s, path.age_steps, hops);
-  });
+  take_ranges(block, [&](const Path& path, int hops) { return aura_.notice(path.speed_m_s, path.age_steps, hops); });
   candidates_.clear();
-  clusters_.near().for_each_near(block.lo, block.hi, reach.slow_m, reach.fast_m, [&](std::uint32_t i) {
+  const auto range_at = [this](double speed_m_s) { return widest_range(speed_m_s); };
+  clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
     if (!knows(i)) candidates_.push_back(candidate(i, paths_[i].speed_m_s));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
@@ -232,8 +234,7 @@ void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) c
   const auto range = [&](double speed_m_s) {
     return aura_.notice(speed_m_s, foreign_.oldest_steps(), hops).at(path.speed_m_s) + foreign_.most_blur_m();
   };
-  const NearIndex& near = foreign_.near();
-  near.for_each_near(path.pose.p_WB, path.radius_m, range(NearIndex::kSlow), range(near.top_speed()), visit);
+  foreign_.near().for_each_near(path.pose.p_WB, path.radius_m, range, visit);
 }
 
 /// One of ours is faster, or has more hops, than when the foreign bodies noticed it.
@@ -252,10 +253,10 @@ void InterestMatching::notice_again(std::uint32_t own) {
 /// Who may meet whom. Whoever does has been noticed: meeting looks less far.
 void InterestMatching::find_pairs(const ForeignBlock& block) {
   const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
-  const Reach reach = take_ranges(block, drift * NearIndex::kSlow, drift * top_speed(),
-                                  [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
+  take_ranges(block, [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
   candidates_.clear();
-  clusters_.near().for_each_near(block.lo, block.hi, reach.slow_m, reach.fast_m, [&](std::uint32_t i) {
+  const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
+  clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
     candidates_.push_back(candidate(i, aura_.drift_m_s(paths_[i])));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {

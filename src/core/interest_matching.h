@@ -69,11 +69,6 @@ class InterestMatching {
     std::size_t hops;  ///< likewise
     std::uint32_t own;
   };
-  /// How far slow and fast bodies have to be looked for.
-  struct Reach {
-    double slow_m = 0;
-    double fast_m = 0;
-  };
 
   void measure(const Snapshot& snapshot);
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
@@ -90,7 +85,8 @@ class InterestMatching {
   bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
   Candidate candidate(std::uint32_t own, double speed_m_s) const;
   template <class RangeOf>
-  Reach take_ranges(const ForeignBlock& block, double slow_m_s, double fast_m_s, RangeOf&& range_of);
+  void take_ranges(const ForeignBlock& block, RangeOf&& range_of);
+  double widest_range(double speed_m_s) const;
   template <class Visit>
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
   void judge(const Ranks& ranks);

@@ -9,8 +9,10 @@ void NearIndex::build(std::span<const Path> paths) {
   const double mean = paths.empty() ? 1 : sum / static_cast<double>(paths.size());
   const double large = 4 * mean;
   const double cell = std::max(2 * mean, 1e-3);
-  slow_.clear(cell);
-  fast_.clear(2 * cell);
+  for (Gear& gear : gears_) {
+    gear.grid.clear(&gear == &gears_.front() ? cell : 2 * cell);
+    gear.top_m_s = 0;
+  }
   always_.clear();
   for (std::uint32_t i = 0; i < paths.size(); ++i) {
     top_speed_ = std::max(top_speed_, paths[i].speed_m_s);
@@ -20,10 +22,11 @@ void NearIndex::build(std::span<const Path> paths) {
       continue;
     }
     small_radius_ = std::max(small_radius_, paths[i].radius_m);
-    (paths[i].speed_m_s <= kSlow ? slow_ : fast_).add(i, paths[i].pose.p_WB);
+    Gear& gear = gears_[gear_of(paths[i].speed_m_s)];
+    gear.top_m_s = std::max(gear.top_m_s, paths[i].speed_m_s);
+    gear.grid.add(i, paths[i].pose.p_WB);
   }
-  slow_.build();
-  fast_.build();
+  for (Gear& gear : gears_) gear.grid.build(paths.size());
 }
 
 }  // namespace aurasim::core

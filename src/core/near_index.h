@@ -1,9 +1,12 @@
-// Which of a node's own bodies are near a place? Slow bodies, fast bodies and very large ones are kept apart, so that
+// Which of a node's own bodies are near a place? Slow bodies, faster ones and very large ones are kept apart, so that
 // one fast or one large body does not widen every query.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,33 +26,48 @@ class NearIndex {
   /// Body `i` at `p` turned out to be faster.
   void raise(std::uint32_t i, const Vec3& p, double before_m_s, double now_m_s) {
     top_speed_ = std::max(top_speed_, now_m_s);
-    if (before_m_s <= kSlow && now_m_s > kSlow) fast_.insert(i, p);
+    const std::size_t gear = gear_of(now_m_s);
+    gears_[gear].top_m_s = std::max(gears_[gear].top_m_s, now_m_s);
+    if (gear > gear_of(before_m_s)) gears_[gear].grid.insert(i, p);
   }
 
   double top_speed() const { return top_speed_; }
   double top_radius() const { return top_radius_; }
 
-  /// Calls `visit(index)` for at least every body whose bounding sphere comes within `slow_range_m` (slow bodies) or
-  /// `fast_range_m` (fast ones) of the box [lo, hi]. Some are visited twice.
-  template <class Visit>
-  void for_each_near(const Vec3& lo, const Vec3& hi, double slow_range_m, double fast_range_m, Visit&& visit) const {
-    const Vec3 slow = Vec3::Constant(slow_range_m + small_radius_);
-    slow_.for_each_in(lo - slow, hi + slow, visit);
-    const Vec3 fast = Vec3::Constant(fast_range_m + small_radius_);
-    fast_.for_each_in(lo - fast, hi + fast, visit);
+  /// Calls `visit(index)` for at least every body whose bounding sphere comes within `range_at(its speed)` of the box
+  /// [lo, hi]. `range_at`: m, by m/s, never less for more. Some are visited twice.
+  template <class RangeAt, class Visit>
+  void for_each_near(const Vec3& lo, const Vec3& hi, RangeAt&& range_at, Visit&& visit) const {
+    for (const Gear& gear : gears_) {
+      if (gear.grid.empty()) continue;
+      const Vec3 range = Vec3::Constant(range_at(gear.top_m_s) + small_radius_);
+      gear.grid.for_each_in(lo - range, hi + range, visit);
+    }
     for (const std::uint32_t i : always_) visit(i);
   }
 
   /// The same for the sphere of `radius_m` around `p`.
-  template <class Visit>
-  void for_each_near(const Vec3& p, double radius_m, double slow_range_m, double fast_range_m, Visit&& visit) const {
+  template <class RangeAt, class Visit>
+  void for_each_near(const Vec3& p, double radius_m, RangeAt&& range_at, Visit&& visit) const {
     const Vec3 half = Vec3::Constant(radius_m);
-    for_each_near(p - half, p + half, slow_range_m, fast_range_m, visit);
+    for_each_near(p - half, p + half, range_at, visit);
   }
 
  private:
-  SpatialGrid slow_;
-  SpatialGrid fast_;
+  /// Bodies that can become about as fast as each other.
+  struct Gear {
+    SpatialGrid grid;
+    double top_m_s = 0;  ///< the fastest of them
+  };
+  static constexpr std::array kFastestOfGear = {kSlow, 2 * kSlow, 4 * kSlow, std::numeric_limits<double>::infinity()};
+
+  static std::size_t gear_of(double speed_m_s) {
+    std::size_t gear = 0;
+    while (speed_m_s > kFastestOfGear[gear]) ++gear;
+    return gear;
+  }
+
+  std::array<Gear, kFastestOfGear.size()> gears_;
   std::vector<std::uint32_t> always_;  ///< large
   double small_radius_ = 0;            ///< largest radius of the bodies in the grids
   double top_speed_ = 0;

@@ -14,8 +14,9 @@ void SpatialGrid::add(std::uint32_t index, const Vec3& p) {
   points_.push_back({p.x(), p.y(), p.z(), static_cast<std::int32_t>(along(p.x())), index});
 }
 
-void SpatialGrid::build() {
-  const auto buckets = std::bit_ceil(std::max<std::uint32_t>(16, 2 * static_cast<std::uint32_t>(points_.size())));
+void SpatialGrid::build(std::size_t most) {
+  const auto points = static_cast<std::uint32_t>(std::max(most, points_.size()));
+  const auto buckets = std::bit_ceil(std::max<std::uint32_t>(16, 2 * points));
   mask_ = buckets - 1;
   starts_.assign(buckets + 1, 0);
   buckets_.clear();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,8 +20,8 @@ class SpatialGrid {
 
   void add(std::uint32_t index, const Vec3& p);
 
-  /// Sorts what was added into columns. Call once before any query.
-  void build();
+  /// Sorts what was added into columns, of which there are enough for `most` points. Call once before any query.
+  void build(std::size_t most = 0);
 
   /// Adds a point after build().
   void insert(std::uint32_t index, const Vec3& p);

@@ -215,17 +215,16 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
 /// With those of the others from `from` on.
 void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double margin_m) {
   const double range = margin_m + one.reach_m;
-  const double fastest = near_.top_speed();
-  near_.for_each_near(one.middle, 0, range + std::min(fastest, NearIndex::kSlow) / kWays_per_s,
-                      range + fastest / kWays_per_s, [&](std::uint32_t i) {
-                        const Way& other = others_[i];
-                        if (i < from || other.now->world == one.now->world || other.now->id == one.now->id) return;
-                        const double apart = range + other.reach_m;
-                        if ((one.middle - other.middle).squaredNorm() > apart * apart) return;
-                        if (!touch(motion(*one.now, one.before), motion(*other.now, other.before))) return;
-                        const auto [a, b] = std::minmax(one.now->id, other.now->id);
-                        found_.push_back({0, step_, a, b});
-                      });
+  const auto range_at = [&](double speed_m_s) { return range + speed_m_s / kWays_per_s; };
+  near_.for_each_near(one.middle, 0, range_at, [&](std::uint32_t i) {
+    const Way& other = others_[i];
+    if (i < from || other.now->world == one.now->world || other.now->id == one.now->id) return;
+    const double apart = range + other.reach_m;
+    if ((one.middle - other.middle).squaredNorm() > apart * apart) return;
+    if (!touch(motion(*one.now, one.before), motion(*other.now, other.before))) return;
+    const auto [a, b] = std::minmax(one.now->id, other.now->id);
+    found_.push_back({0, step_, a, b});
+  });
 }
 
 void StateCheck::check(Step step) {

@@ -137,12 +137,14 @@ void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::
     const std::optional<std::uint32_t> here = index_of(snapshot, arrival.id);
     if (!here) continue;
     const core::Path& path = matching.path(*here);
-    matching.clusters().near().for_each_near(path.pose.p_WB, path.radius_m, 0, 0, [&](std::uint32_t other) {
-      if (other == *here) return;
-      std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, matching);
-      if (!seen || !untouching_.insert({seen->collision.a, seen->collision.b}).second) return;
-      if (!came_together({seen->collision.a, seen->collision.b})) report(*seen, last_violation, out);
-    });
+    matching.clusters().near().for_each_near(
+        path.pose.p_WB, path.radius_m, [](double) { return 0.0; },
+        [&](std::uint32_t other) {
+          if (other == *here) return;
+          std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, matching);
+          if (!seen || !untouching_.insert({seen->collision.a, seen->collision.b}).second) return;
+          if (!came_together({seen->collision.a, seen->collision.b})) report(*seen, last_violation, out);
+        });
   }
   joined_.clear();
 }
