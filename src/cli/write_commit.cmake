@@ -1,5 +1,6 @@
 # Writes the commit of the sources into a header, and leaves that alone when it has not changed.
 #   cmake -D SOURCE=FOLDER -D HEADER=FILE -P write_commit.cmake
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=10 --exclude=*
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 # Without git, in a plain clone: what HEAD names.
