@@ -131,6 +131,7 @@ void add_scenes(CLI::App& experiment, Action& action) {
   command->add_option("--threads", a->threads, "worlds at the same time")->check(CLI::Range(1, 64));
   command->add_option("--shrink-seconds", a->plan.shrink_s, "so long each failing world is made smaller")
       ->check(CLI::Range(0.0, 86400.0));
+  command->add_flag("--keep", a->plan.keep, "the files of all worlds stay, to be run by other means");
   command->add_flag("--no-shrink", a->no_shrink, "failing worlds stay as they are");
   command->footer("Example:\n  aurasim experiment scenes --seeds 1-200 --out out");
   command->callback([a, out, one, &action] {

@@ -170,7 +170,8 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   ::kill(node, SIGKILL);
   EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, kGenerous));
   EXPECT_GT(page.world.bodies.size(), 20U);
-  EXPECT_EQ(page.latest["status"].at("nodes")[2].at("lost"), true);
+  const auto is_lost = [&] { return page.latest["status"].at("nodes")[2].at("lost") == true; };
+  EXPECT_TRUE(page.wait_until(is_lost, kGenerous));  // the status comes by itself
   EXPECT_EQ(page.latest["status"].at("state"), "running");
   end_run(1);
 }

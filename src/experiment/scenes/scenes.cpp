@@ -190,7 +190,7 @@ std::optional<SeedRow> run_seed(const ScenesPlan& plan, std::uint64_t seed, cons
   const std::filesystem::path folder = directory / fmt::format("seed_{}", seed);
   write_world(world, folder);
   const std::optional<WorldOutcome> outcome = outcome_in(folder, plan.rules, seed, stop);
-  if (!outcome || !outcome->has_failed()) std::filesystem::remove_all(folder);
+  if (!outcome || (!outcome->has_failed() && !plan.keep)) std::filesystem::remove_all(folder);
   if (!outcome) return std::nullopt;
   if (outcome->has_failed() && plan.shrink_s > 0) {
     const std::filesystem::path small = folder / "shrunk";

@@ -18,10 +18,11 @@ struct ScenesPlan {
   std::uint64_t first = 1, last = 200;  ///< seeds
   TrialRules rules;
   double shrink_s = 60;  ///< for each failing seed; 0: they stay as they are
+  bool keep = false;     ///< the files of those that do not fail, too
 };
 
 /// Runs the seeds that DIR/seeds.csv lacks, on `threads` threads, and appends a row as each ends. The worlds of those
-/// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk. Throws std::runtime_error when DIR holds seeds that were
+/// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk; all do with `keep`. Throws std::runtime_error when DIR holds seeds that were
 /// run by other rules. Returns false when `stop` became true before the end.
 bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
                 const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
