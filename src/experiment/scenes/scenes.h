@@ -22,8 +22,8 @@ struct ScenesPlan {
 };
 
 /// Runs the seeds that DIR/seeds.csv lacks, on `threads` threads, and appends a row as each ends. The worlds of those
-/// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk; all do with `keep`. Throws std::runtime_error when DIR holds seeds that were
-/// run by other rules. Returns false when `stop` became true before the end.
+/// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk; all do with `keep`. Throws std::runtime_error when DIR
+/// holds seeds that were run by other rules. Returns false when `stop` became true before the end.
 bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
                 const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
 
