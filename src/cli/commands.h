@@ -33,6 +33,8 @@ void add_pareto(CLI::App& experiment, Action& action);
 void add_scalability(CLI::App& experiment, Action& action);
 void add_bandwidth(CLI::App& experiment, Action& action);
 void add_scenes(CLI::App& experiment, Action& action);
+void add_speed(CLI::App& experiment, Action& action);
+void add_speed_errors(CLI::App& experiment, Action& action);
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {
