@@ -15,6 +15,9 @@ declare -A measures=(
   [docs/same_bits.md]="$simulation src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh"
   [docs/scalability.md]="$simulation src/dds idl src/experiment/scale src/experiment/measured_run.* src/experiment/wire_post.*
     launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
+  [docs/speed.md]="CMakeLists.txt src/core src/physics src/experiment/speed src/config/presets.h tests/bench/peers
+    launch_configs/scenes/columns_rain.yaml launch_configs/scenes/ragdoll_stairs.yaml src/experiment/stability/piles.cpp
+    scripts/peers.sh"
   # Packages, megabytes and minutes of a fresh Debian 12.
   [docs/installing.md]="CMakeLists.txt CMakePresets.json scripts/setup.sh scripts/demo.sh scripts/build.sh scripts/build_web.sh
     scripts/fetch_npm.cmake"

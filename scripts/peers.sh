@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# The speed of our step beside that of other engines, on the same bodies in one run, and docs/speed.md.
+#   scripts/peers.sh --engines FOLDER [--out DIR] [--repeats N] [--cases A,B] [--settings A,B] [--once S] [--quick]
+# FOLDER/jolt and FOLDER/box3d: sources of github.com/jrouwe/JoltPhysics and github.com/erincatto/box3d. What is not
+# there is left out, and so is Bullet without Debian's libbullet-dev.
+#   --out       results (build/speed); an interrupted run goes on where it stopped
+#   --repeats   runs of each, by turns, of which the page has the medians (5)
+#   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
+#   --settings  of our step, as `aurasim experiment speed` has them (default,one_substep,fast,balanced); exact is slow
+#   --quick     small scenes, one run of each; the page goes to DIR instead of docs
+# Nothing else should run meanwhile. Hours on 2 cores; minutes with --quick, most of them for building the engines.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+engines="" out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas once=120
+settings=default,one_substep,fast,balanced page=docs quick=()
+usage() { sed -n '2,/^set -/{/^#/s/^# \{0,1\}//p}' "scripts/peers.sh" >&2; exit 2; }
+while (($#)); do
+  case $1 in
+    --quick) quick=(--quick) ;;
+    --engines | --out | --repeats | --cases | --settings | --once)
+      (($# > 1)) || usage
+      declare "${1#--}=$2"
+      shift
+      ;;
+    *) usage ;;
+  esac
+  shift
+done
+[[ -n $engines ]] || usage
+if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 page=$out; fi
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/speed.md "$out" "double and single"
+
+avx2=OFF
+! grep -qw avx2 /proc/cpuinfo || avx2=ON
+cmake -S tests/bench/peers -B build/peers -G Ninja -DPEERS_ENGINES="$(realpath -m "$engines")" -DPEERS_AVX2=$avx2 >/dev/null
+cmake --build build/peers >/dev/null
+
+# ENGINE: its commit, from a checkout, or from FOLDER/ENGINE.commit where there is no git.
+commit_of() {
+  if [[ -s $engines/$1.commit ]]; then
+    cat "$engines/$1.commit"
+  elif [[ -e $engines/$1/.git ]]; then
+    git -C "$engines/$1" rev-parse --short=12 HEAD
+  else
+    echo unknown
+  fi
+}
+built() { # PROGRAM: is it there, and not from an earlier FOLDER?
+  [[ -x build/peers/bin/$1 && ($1 == bullet_* || -d $engines/$1) ]]
+}
+# Which engines there are, and with what they were built: the page says it.
+{
+  echo "avx2 $avx2"
+  [[ ${#quick[@]} == 0 ]] || echo "small scenes"
+  for engine in jolt box3d; do
+    if built $engine; then
+      echo "$engine commit $(commit_of $engine)"
+    else
+      echo "$engine left-out"
+    fi
+  done
+  if built bullet_double; then
+    echo "bullet version $(pkg-config --modversion bullet 2>/dev/null || echo unknown)"
+  else
+    echo "bullet left-out"
+  fi
+} >"$out/engines.txt"
+sed -n 's/^\(.*\) left-out$/peers.sh: \1 is not there, and left out/p' "$out/engines.txt" >&2
+
+build/release/aurasim experiment speed --out "$out" --cases "$cases" --repeats 0 "${quick[@]}"
+
+# SCENE ENGINE PRECISION THREADS: is one more run of it wanted in this turn?
+wanted() {
+  [[ -s $out/runs.csv ]] || return 0
+  awk -F, -v of="$1,$2,$3,$4" -v turn="$turn" -v once="$once" '
+    $1 "," $2 "," $3 "," $4 == of { ++runs; if ($7 > 1000 * once) turn = 1 }
+    END { exit !(runs < turn) }' "$out/runs.csv"
+}
+ours() { # SCENE PROGRAM PRECISION
+  local name
+  for name in ${settings//,/ }; do
+    wanted "$1" "aurasim-$name" "$3" 1 || continue
+    "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" "${quick[@]}" >/dev/null 2>&1
+  done
+}
+peer() { # SCENE PROGRAM ENGINE PRECISION THREADS
+  built "$2" || return 0
+  wanted "$1" "$3" "$4" "$5" || return 0
+  "build/peers/bin/$2" "$out/scenes/$1.txt" "$out" "$5" || echo "peers.sh: $3 has failed on $1" >&2
+}
+for ((turn = 1; turn <= repeats; ++turn)); do
+  for scene in ${cases//,/ }; do
+    echo "turn $turn of $repeats: $scene"
+    ours "$scene" aurasim double
+    ours "$scene" aurasim-single single
+    for precision in double single; do peer "$scene" "bullet_$precision" bullet "$precision" 1; done
+    for threads in 1 2; do
+      for engine in jolt box3d; do peer "$scene" "$engine" "$engine" single "$threads"; done
+    done
+  done
+done
+
+build/release/aurasim experiment speed-errors --out "$out"
+/usr/bin/python3 scripts/write_speed.py "$out" --out "$page"
+echo "written: $page/speed.md"
