@@ -8,7 +8,7 @@
 #   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
 #   --settings  of our step, as `aurasim experiment speed` has them (default,one_substep,fast,balanced); exact is slow
 #   --quick     small scenes, one run of each; the page goes to DIR instead of docs
-# Nothing else should run meanwhile. Hours on 2 cores; minutes with --quick, most of them for building the engines.
+# Nothing else should run meanwhile. About four hours on 2 cores; minutes with --quick, most for building the engines.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -31,12 +31,15 @@ done
 if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 page=$out; fi
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
+read -r load _ </proc/loadavg
+[[ ${#quick[@]} -gt 0 || ${load%.*} -eq 0 ]] || echo "peers.sh: something else runs here (load $load)" >&2
 begin_measuring docs/speed.md "$out" "double and single"
 
 avx2=OFF
 ! grep -qw avx2 /proc/cpuinfo || avx2=ON
-cmake -S tests/bench/peers -B build/peers -G Ninja -DPEERS_ENGINES="$(realpath -m "$engines")" -DPEERS_AVX2=$avx2 >/dev/null
-cmake --build build/peers >/dev/null
+cmake -S tests/bench/peers -B build/peers -G Ninja -DPEERS_ENGINES="$(realpath -m "$engines")" -DPEERS_AVX2=$avx2 >/dev/null 2>&1
+cmake --build build/peers -- -k 0 >"$out/peers_build.log" 2>&1 ||
+  echo "peers.sh: not every engine could be built, see $out/peers_build.log" >&2
 
 # ENGINE: its commit, from a checkout, or from FOLDER/ENGINE.commit where there is no git.
 commit_of() {

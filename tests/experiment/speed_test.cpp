@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bench/peers/scene.h"
 #include "experiment/speed/overlap.h"
 #include "experiment/speed/scene_text.h"
 
@@ -75,6 +76,43 @@ TEST_F(SpeedTest, TheTextOfEveryKindOfSceneIsReadBackAsItWas) {
       EXPECT_EQ(back.births[i], scene.births[i]);
     }
     EXPECT_EQ(back.scene.joints.size(), scene.scene.joints.size());
+  }
+}
+
+bool same(const peers::Vec3& a, const Vec3& b) { return a.x == b.x() && a.y == b.y() && a.z == b.z(); }
+bool same(const peers::Quat& a, const core::Quat& b) {
+  return a.w == b.w() && a.x == b.x() && a.y == b.y() && a.z == b.z();
+}
+
+TEST_F(SpeedTest, DriversOfOtherEnginesReadWhatWeWrite) {
+  for (const std::string& name : speed_scene_names()) {
+    const SpeedScene ours = speed_scene(name, SceneSize::kQuick);
+    const peers::Scene theirs = peers::read_scene(file(scene_text(ours)).string());
+    EXPECT_EQ(theirs.name, name);
+    EXPECT_EQ(theirs.steps, ours.steps);
+    EXPECT_EQ(theirs.step_s, 1.0 / ours.step_hz);
+    EXPECT_TRUE(same(theirs.gravity, ours.scene.gravity));
+    EXPECT_EQ(theirs.sleeping, ours.scene.prototypes.front().can_sleep);
+    EXPECT_EQ(theirs.shapes.size(), ours.scene.shapes.size());
+    EXPECT_EQ(theirs.materials.size(), ours.scene.materials.size());
+    EXPECT_EQ(theirs.statics.size(), ours.scene.statics.size());
+    ASSERT_EQ(theirs.kinds.size(), ours.scene.prototypes.size());
+    ASSERT_EQ(theirs.bodies.size(), ours.scene.bodies.size());
+    for (std::size_t i = 0; i < theirs.bodies.size(); ++i) {
+      const peers::Body& body = theirs.bodies[i];
+      const core::InitialBody& first = ours.scene.bodies[i];
+      EXPECT_TRUE(same(body.p, first.pose.p_WB) && same(body.q, first.pose.q_WB));
+      EXPECT_TRUE(same(body.v, first.v_WB) && same(body.w, first.w_WB));
+      EXPECT_EQ(body.birth, ours.births[i]);
+      EXPECT_EQ(theirs.kinds[body.kind].mass, ours.scene.prototypes[core::value_of(first.prototype)].mass_kg);
+    }
+    ASSERT_EQ(theirs.joints.size(), ours.scene.joints.size());
+    for (std::size_t i = 0; i < theirs.joints.size(); ++i) {
+      const auto* hinge = std::get_if<core::HingeJoint>(&ours.scene.joints[i].kind);
+      EXPECT_TRUE(same(theirs.joints[i].p, ours.scene.joints[i].X_WJ.p_WB));
+      ASSERT_EQ(theirs.joints[i].is_hinge, hinge != nullptr);
+      EXPECT_EQ(theirs.joints[i].high, hinge ? hinge->limits->high : 0);
+    }
   }
 }
 
