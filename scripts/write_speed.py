@@ -71,7 +71,8 @@ Every engine has its own defaults, which are what its authors recommend, but whe
 - Bodies sleep by each engine's own rules in the rain, and nowhere else.
 - Hulls are symmetric, so that centre of mass and principal axes are the same however an engine finds them. The hips of
   the ragdolls are balls, where the shipped scene has springs. Joined bodies do not collide.
-- All are built with `-O3` (`Release`) by the same compiler; Jolt with link-time optimisation, as its own build is.
+- Ours, Jolt and box3d are built here, by one compiler with `-O3` (`Release`), Jolt with link-time optimisation as its own
+  build is. Bullet, also what we use of it, is Debian's build.
 
 Bodies are put in before the clock is started, and states written after it is stopped.
 
