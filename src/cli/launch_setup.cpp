@@ -29,6 +29,7 @@ core::AuraRules aura_rules(const config::Launch& launch) {
   rules.kind = launch.aura.radius;
   rules.step_s = launch.step_s();
   rules.substeps = launch.time.substeps;
+  rules.looks_once = physics::solver_named(launch.physics.solver) == physics::Solver::kSoftStep;
   rules.lookahead = launch.lookahead();
   rules.top_speed_m_s = launch.tolerances.speed_m_s;
   rules.frame_s = launch.tolerances.frame_s;

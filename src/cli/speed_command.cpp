@@ -53,7 +53,7 @@ void add_speed(CLI::App& experiments, Action& action) {
       ->check(CLI::IsMember(experiment::speed_scene_names()));
   command->add_option("--settings", plan->settings, "of the step")->delimiter(',')->check(CLI::IsMember(settings));
   command->add_option("--solver", plan->solver, "instead of that of the settings")
-      ->check(CLI::IsMember({"sequential_impulse", "nncg", "dantzig"}));
+      ->check(CLI::IsMember({"sequential_impulse", "nncg", "dantzig", "soft_step"}));
   command->add_option("--repeats", plan->repeats, "runs of each, by turns; 0 writes the scenes only")
       ->check(CLI::Range(0, 1000));
   command->add_flag("--quick", *quick, "small scenes");

@@ -22,6 +22,7 @@ struct AuraRules {
   AuraKind kind = AuraKind::kSwept;
   double step_s = 1.0 / 60;        ///< T_P
   int substeps = 4;                ///< S
+  bool looks_once = false;         ///< what touches is found once a step, and who touches nothing falls on a parabola
   int lookahead = 1;               ///< K
   double top_speed_m_s = 32;       ///< V; promised by the user, used by kThesis and kTight
   double frame_s = 0.015;          ///< T_F
@@ -33,6 +34,9 @@ struct AuraRules {
   bool sweeps = false;             ///< physics stops fast bodies at what is in their way, without a contact
   bool redo = false;               ///< what was computed with two bodies apart that touched is computed again
   Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
+
+  /// How often in a step it is found what touches.
+  int looks() const { return looks_once ? 1 : substeps; }
 };
 
 /// One body's predicted motion from the state in which it was last known.

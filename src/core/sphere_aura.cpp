@@ -43,7 +43,7 @@ Range SphereAura::span(double steps) const {
 /// Contacts are sought at every substep, so the last (S-1)/S of a step counts, for both bodies; so does every further
 /// hop that a pull can chain through.
 Aura::Steps TightAura::chained(double own, double other, int hops) const {
-  const double more = 1.0 * (rules().substeps - 1) / rules().substeps + 1.0 * (hops - 1) * rules().lookahead;
+  const double more = 1.0 * (rules().looks() - 1) / rules().looks() + 1.0 * (hops - 1) * rules().lookahead;
   return {own + more, other + more};
 }
 

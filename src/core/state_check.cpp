@@ -185,7 +185,7 @@ void StateCheck::gather_ways(const State& before, const State& after) {
 /// substep.
 bool StateCheck::sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const {
   if (!moving.at_end.moves && !moving.at_start.moves) return false;
-  const double half = 0.5 / aura_.rules().substeps;
+  const double half = 0.5 / aura_.rules().looks();
   const double way = (moving.at_end.pose.p_WB - moving.at_start.pose.p_WB).norm() * half +
                      (other.at_end.pose.p_WB - other.at_start.pose.p_WB).norm() * 2 * half;
   const Pose middle = pose(moving, share + half);
@@ -197,7 +197,7 @@ bool StateCheck::sweeps_into(const Motion& moving, const Motion& other, double s
 
 /// Contacts are looked for at the start of each substep.
 bool StateCheck::touch(const Motion& a, const Motion& b) const {
-  const int substeps = aura_.rules().substeps;
+  const int substeps = aura_.rules().looks();
   const double margin = aura_.rules().contact_margin_m * aura_.rules().check_scale;
   for (int i = 0; i < substeps; ++i) {
     const double share = static_cast<double>(i) / substeps;

@@ -59,12 +59,10 @@ double SweptAura::drop_m(double steps) const {
   return 0.5 * gravity_m_s2() * t * (t + rules().step_s);
 }
 
-double SweptAura::last_instant(int horizon_steps) const {
-  return std::max(0.0, horizon_steps - 1.0 / rules().substeps);
-}
+double SweptAura::last_instant(int horizon_steps) const { return std::max(0.0, horizon_steps - 1.0 / rules().looks()); }
 
 bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
-  const int substeps = rules().substeps;
+  const int substeps = rules().looks();
   const double spread = rules().uncertainty * rules().step_s;
   const double last = horizon_steps;
   // The clearance shrinks at most this fast, in metres per step.

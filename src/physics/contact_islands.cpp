@@ -11,6 +11,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include "physics/prefetch.h"
+#include "physics/soft_step.h"
 
 namespace aurasim::physics {
 namespace {
@@ -108,8 +109,9 @@ int ContactIslands::end_of_island(int first) {
   return last;
 }
 
-void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints,
-                           btConstraintSolver& solver, const btContactSolverInfo& info) {
+template <class Visit>
+void ContactIslands::for_each_awake(btCollisionWorld& world, std::span<btTypedConstraint* const> joints,
+                                    Visit&& visit) {
   getUnionFind().sortIslands();
   const int elements = getUnionFind().getNumElements();
   for (int first = 0, last = 0; first < elements; first = last) {
@@ -119,14 +121,6 @@ void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint*
   collect_awake_manifolds(*world.getDispatcher());
   collect_awake_joints(joints);
 
-  const auto solve_group = [&](std::vector<btCollisionObject*>& bodies, std::span<btPersistentManifold*> manifolds,
-                               std::span<btTypedConstraint*> constraints) {
-    if (bodies.empty()) return;
-    solver.solveGroup(bodies.data(), static_cast<int>(bodies.size()), manifolds.data(),
-                      static_cast<int>(manifolds.size()), constraints.data(), static_cast<int>(constraints.size()),
-                      info, nullptr, world.getDispatcher());
-  };
-  lonely_.clear();
   std::size_t manifold = 0;
   std::size_t joint = 0;
   for (int first = 0, last = 0; first < elements; first = last) {
@@ -143,14 +137,35 @@ void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint*
       awake = awake || island_.back()->isActive();
     }
     if (!awake) continue;
-    if (manifold == first_manifold && joint == first_joint) {
-      lonely_.insert(lonely_.end(), island_.begin(), island_.end());
-    } else {
-      solve_group(island_, std::span(manifolds_).subspan(first_manifold, manifold - first_manifold),
-                  std::span(joints_).subspan(first_joint, joint - first_joint));
-    }
+    visit(std::span(island_), std::span(manifolds_).subspan(first_manifold, manifold - first_manifold),
+          std::span(joints_).subspan(first_joint, joint - first_joint));
   }
+}
+
+void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints,
+                           btConstraintSolver& solver, const btContactSolverInfo& info) {
+  const auto solve_group = [&](std::span<btCollisionObject*> bodies, std::span<btPersistentManifold*> manifolds,
+                               std::span<btTypedConstraint*> constraints) {
+    if (bodies.empty()) return;
+    solver.solveGroup(bodies.data(), static_cast<int>(bodies.size()), manifolds.data(),
+                      static_cast<int>(manifolds.size()), constraints.data(), static_cast<int>(constraints.size()),
+                      info, nullptr, world.getDispatcher());
+  };
+  lonely_.clear();
+  for_each_awake(world, joints, [&](auto bodies, auto manifolds, auto constraints) {
+    if (manifolds.empty() && constraints.empty()) {
+      lonely_.insert(lonely_.end(), bodies.begin(), bodies.end());
+    } else {
+      solve_group(bodies, manifolds, constraints);
+    }
+  });
   solve_group(lonely_, {}, {});
+}
+
+void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints, SoftStep& step) {
+  for_each_awake(world, joints,
+                 [&](auto bodies, auto manifolds, auto constraints) { step.add(bodies, manifolds, constraints); });
+  step.solve();
 }
 
 }  // namespace aurasim::physics

@@ -17,6 +17,7 @@
 #include "physics/dispatcher.h"
 #include "physics/free_rotation.h"
 #include "physics/prefetch.h"
+#include "physics/soft_step.h"
 #include "physics/solvers.h"
 
 namespace aurasim::physics {
@@ -36,10 +37,14 @@ class Stepper final : public btDiscreteDynamicsWorld {
 
   void solveConstraints(btContactSolverInfo& info) override {
     first_contacts_.look(*getDispatcher(), *getPairCache());
+    const auto joints = std::span(m_constraints.size() > 0 ? &m_constraints[0] : nullptr,
+                                  static_cast<std::size_t>(m_constraints.size()));
+    if (soft_step_) {
+      islands_->solve(*this, joints, *soft_step_);
+      return;
+    }
     m_constraintSolver->prepareSolve(getNumCollisionObjects(), getDispatcher()->getNumManifolds());
-    const auto joints = static_cast<std::size_t>(m_constraints.size());
-    islands_->solve(*this, joints > 0 ? std::span(&m_constraints[0], joints) : std::span<btTypedConstraint*>(),
-                    *m_constraintSolver, info);
+    islands_->solve(*this, joints, *m_constraintSolver, info);
     m_constraintSolver->allSolved(info, nullptr);
   }
 
@@ -49,6 +54,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
 
   /// Bullet moves all bodies; those that do not turn evenly are then turned as they should.
   void integrateTransforms(btScalar dt) override {
+    if (soft_step_) return;  // has moved them
     if (sweeps_) sort_by_rank();
     tumbling_.clear();
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
@@ -70,6 +76,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
 
   FirstContacts& first_contacts() { return first_contacts_; }
   void stop_fast_bodies() { sweeps_ = true; }
+  void use_soft_step(double step_s, int substeps) { soft_step_ = std::make_unique<SoftStep>(step_s, substeps); }
 
  private:
   /// A fast body stops at others where they are at that moment: some have been moved already. Which, may not depend on
@@ -87,6 +94,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
   };
 
   bool sweeps_ = false;
+  std::unique_ptr<SoftStep> soft_step_;
   ContactIslands* islands_ = nullptr;
   FirstContacts first_contacts_;
   std::vector<Tumbling> tumbling_;
@@ -145,6 +153,7 @@ DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings
   if (settings.friction_directions > 1) {
     bullet_->world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   }
+  if (settings.solver == Solver::kSoftStep) bullet_->world.use_soft_step(settings.step_s, settings.substeps);
   if (settings.continuous) bullet_->world.stop_fast_bodies();
   bullet_->world.getSolverInfo().m_erp2 = static_cast<btScalar>(settings.contact_erp);
 }

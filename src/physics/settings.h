@@ -10,11 +10,14 @@ enum class Solver {
   kSequentialImpulse,  ///< projected Gauss-Seidel
   kNncg,               ///< nonsmooth nonlinear conjugate gradient
   kDantzig,            ///< direct; its time grows with the cube of a pile's contacts, it knows no rolling friction
+  kSoftStep,           ///< what touches is found once a step; soft contacts in substeps (soft_step.h)
 };
 
 struct Settings {
   double step_s = 1.0 / 60;
   int substeps = 4;
+  /// How often in a step it is looked for what touches.
+  int looks() const { return solver == Solver::kSoftStep ? 1 : substeps; }
   Solver solver = Solver::kSequentialImpulse;
   int solver_iterations = 10;
   /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).

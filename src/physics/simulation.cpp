@@ -232,8 +232,8 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 void Simulation::step() {
   world_.first_contacts().clear();
   apply_orders(step_ + 1);
-  for (int i = 0; i < settings_.substeps; ++i) {
-    world_.step(settings_.step_s / settings_.substeps);
+  for (int i = 0; i < settings_.looks(); ++i) {
+    world_.step(settings_.step_s / settings_.looks());
     joints_.remove_broken(world_);
   }
   ++step_;

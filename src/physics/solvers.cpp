@@ -105,6 +105,7 @@ std::unique_ptr<btConstraintSolver> make_solver(Solver kind) {
       return std::make_unique<Refined<btNNCGConstraintSolver>>();
     case Solver::kDantzig:
       return std::make_unique<DantzigSolver>();
+    case Solver::kSoftStep:  // needs none
     case Solver::kSequentialImpulse:
       break;
   }

@@ -26,6 +26,7 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.protocol.self = RegionId{r};
     setup.protocol.sync = options_.sync;
     setup.protocol.aura = options_.aura;
+    setup.protocol.aura.looks_once = options_.solver == physics::Solver::kSoftStep;
     setup.protocol.neighbour_distance_m = options_.neighbour_distance_m;
     setup.protocol.shuffle_ranks_steps = options_.shuffle_ranks_steps;
     setup.physics.step_s = options_.aura.step_s;

@@ -36,7 +36,7 @@ TEST_P(SolverBits, AreThoseOfTheCentralRun) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, SolverBits,
                          testing::Values(physics::Solver::kSequentialImpulse, physics::Solver::kNncg,
-                                         physics::Solver::kDantzig),
+                                         physics::Solver::kDantzig, physics::Solver::kSoftStep),
                          [](const auto& param) { return std::string(physics::name_of(param.param)); });
 
 }  // namespace

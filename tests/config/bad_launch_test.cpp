@@ -135,7 +135,7 @@ const std::vector<BadCase> kBadLaunches = {
       "launch.yaml:3:40: physics.iterations: found \"0\", allowed: an integer from 1 to 1000"}},
     {"UnknownSolverAndPreset",
      kTwo + "physics: {solver: magic, preset: best}\n",
-     {"launch.yaml:3:19: physics.solver: found \"magic\", allowed: sequential_impulse, nncg, dantzig",
+     {"launch.yaml:3:19: physics.solver: found \"magic\", allowed: sequential_impulse, nncg, dantzig, soft_step",
       "launch.yaml:3:34: physics.preset: found \"best\", allowed: fast, balanced, exact"}},
     {"DomainOutOfRange",
      kTwo + "dds: {domain: 233}\n",

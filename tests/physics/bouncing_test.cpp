@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/scenes.h"
+#include "physics/solver_names.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -56,11 +57,7 @@ TEST_P(Bouncing, ABallWithRestitutionOneKeepsItsEnergyFor20Seconds) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Bouncing,
                          ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig),
-                         [](const auto& param) {
-                           return param.param == Solver::kNncg      ? "Nncg"
-                                  : param.param == Solver::kDantzig ? "Dantzig"
-                                                                    : "SequentialImpulse";
-                         });
+                         [](const auto& param) { return std::string(name_of(param.param)); });
 
 TEST(BouncingBodies, EachBounceReachesTheSquareOfItsRestitution) {
   const core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 0.5);

@@ -1,0 +1,117 @@
+#include "physics/soft_joints.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+namespace aurasim::physics {
+namespace {
+
+using soft::Mover;
+using soft::Real;
+
+/// Share of a joint's error that is undone in a substep, as in Bullet's solvers.
+constexpr Real kErrorReduction = Real(0.2);
+constexpr int kMostRows = 24;  ///< of one joint: six axes with two limits, a motor and a spring each
+
+std::uint32_t mover_of(const btRigidBody& body) {
+  return body.isStaticObject() ? 0U : static_cast<std::uint32_t>(body.getCompanionId());
+}
+
+/// A row as a joint fills it in.
+struct Line {
+  btVector3 linear_a{0, 0, 0}, angular_a{0, 0, 0}, linear_b{0, 0, 0}, angular_b{0, 0, 0};
+  btScalar error = 0, mixing = 0, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+};
+
+btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+void push(Real (&to)[3], const btVector3& v) {
+  for (int i = 0; i < 3; ++i) to[i] += v[i];
+}
+
+}  // namespace
+
+void SoftJoints::add(std::span<btTypedConstraint* const> joints) {
+  if (joints_.empty()) bodies_.clear();
+  for (btTypedConstraint* joint : joints) {
+    joints_.push_back({joint, mover_of(joint->getRigidBodyA()), mover_of(joint->getRigidBodyB()), 0, 0});
+    for (btRigidBody* body : {&joint->getRigidBodyA(), &joint->getRigidBodyB()}) {
+      if (!body->isStaticObject()) bodies_.push_back(body);
+    }
+  }
+}
+
+void SoftJoints::begin(Real h_s) {
+  rows_.clear();
+  for (Joint& joint : joints_) make_rows(joint, h_s);
+}
+
+void SoftJoints::make_rows(Joint& joint, Real h_s) {
+  joint.first_row = static_cast<std::uint32_t>(rows_.size());
+  joint.rows = 0;
+  if (!joint.joint->isEnabled()) return;
+  joint.joint->buildJacobian();
+  btTypedConstraint::btConstraintInfo1 count{};
+  joint.joint->getInfo1(&count);
+  joint.rows = static_cast<std::uint32_t>(count.m_numConstraintRows);
+  if (joint.rows == 0) return;
+  std::array<Line, kMostRows> lines;
+  btTypedConstraint::btConstraintInfo2 info{};
+  info.fps = 1 / h_s;
+  info.erp = kErrorReduction;
+  info.m_J1linearAxis = lines[0].linear_a, info.m_J1angularAxis = lines[0].angular_a;
+  info.m_J2linearAxis = lines[0].linear_b, info.m_J2angularAxis = lines[0].angular_b;
+  info.rowskip = sizeof(Line) / sizeof(btScalar);
+  info.m_constraintError = &lines[0].error, info.cfm = &lines[0].mixing;
+  info.m_lowerLimit = &lines[0].low, info.m_upperLimit = &lines[0].high;
+  info.m_numIterations = 1, info.m_damping = 1;
+  joint.joint->getInfo2(&info);
+  const btRigidBody& a = joint.joint->getRigidBodyA();
+  const btRigidBody& b = joint.joint->getRigidBodyB();
+  const Real most = joint.joint->getBreakingImpulseThreshold();
+  for (std::uint32_t i = 0; i < joint.rows; ++i) {
+    const Line& line = lines[i];
+    Row row{line.linear_a, line.angular_a, line.linear_b, line.angular_b, {}, {}, {}, {}, 0, 0, 0, 0, 0, 0};
+    row.v_a = line.linear_a * a.getInvMass(), row.w_a = a.getInvInertiaTensorWorld() * line.angular_a;
+    row.v_b = line.linear_b * b.getInvMass(), row.w_b = b.getInvInertiaTensorWorld() * line.angular_b;
+    const Real response =
+        row.linear_a.dot(row.v_a) + row.angular_a.dot(row.w_a) + row.linear_b.dot(row.v_b) + row.angular_b.dot(row.w_b);
+    row.mass = response > SIMD_EPSILON ? 1 / response : 0;
+    row.error = line.error, row.mixing = line.mixing;
+    row.low = std::max<Real>(line.low, -most), row.high = std::min<Real>(line.high, most);
+    rows_.push_back(row);
+  }
+}
+
+void SoftJoints::solve(Mover* movers) {
+  for (const Joint& joint : joints_) {
+    Mover& a = movers[joint.a];
+    Mover& b = movers[joint.b];
+    for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
+      Row& row = rows_[i];
+      const Real v = row.linear_a.dot(vector(a.v)) + row.angular_a.dot(vector(a.w)) + row.linear_b.dot(vector(b.v)) +
+                     row.angular_b.dot(vector(b.w));
+      const Real wanted = row.impulse + (row.error - v) * row.mass - row.impulse * row.mixing;
+      const Real total = std::clamp(wanted, row.low, row.high);
+      const Real more = total - row.impulse;
+      row.impulse = total;
+      if (joint.a != 0) push(a.v, row.v_a * more), push(a.w, row.w_a * more);
+      if (joint.b != 0) push(b.v, row.v_b * more), push(b.w, row.w_b * more);
+    }
+  }
+}
+
+void SoftJoints::finish() {
+  for (const Joint& joint : joints_) {
+    for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
+      joint.joint->internalSetAppliedImpulse(rows_[i].impulse);
+      if (std::abs(rows_[i].impulse) >= joint.joint->getBreakingImpulseThreshold()) joint.joint->setEnabled(false);
+    }
+  }
+}
+
+}  // namespace aurasim::physics

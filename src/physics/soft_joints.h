@@ -1,0 +1,53 @@
+// Joints in the soft step: rows as Bullet's joints state them, made anew in each substep from where their bodies are.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <LinearMath/btVector3.h>
+
+#include "physics/soft_lanes.h"
+
+class btRigidBody;
+class btTypedConstraint;
+
+namespace aurasim::physics {
+
+class SoftJoints {
+ public:
+  void clear() { joints_.clear(); }
+  /// Of an island, in an order that follows from the island alone.
+  void add(std::span<btTypedConstraint* const> joints);
+  bool empty() const { return joints_.empty(); }
+  /// The bodies of all joints that move, some more than once.
+  const std::vector<btRigidBody*>& bodies() const { return bodies_; }
+
+  /// From the present poses and velocities of the bodies. What the rows have pushed so far is forgotten.
+  void begin(soft::Real h_s);
+  /// Each row once.
+  void solve(soft::Mover* movers);
+  /// Breaks the joints that took more than they bear in this substep.
+  void finish();
+
+ private:
+  /// J v = error, in m/s or rad/s.
+  struct Row {
+    btVector3 linear_a, angular_a, linear_b, angular_b;  ///< J
+    btVector3 v_a, w_a, v_b, w_b;                        ///< what a unit impulse changes
+    soft::Real mass, error, mixing, low, high, impulse;
+  };
+  struct Joint {
+    btTypedConstraint* joint;
+    std::uint32_t a, b;  ///< movers
+    std::uint32_t first_row, rows;
+  };
+
+  void make_rows(Joint& joint, soft::Real h_s);
+
+  std::vector<Joint> joints_;
+  std::vector<Row> rows_;
+  std::vector<btRigidBody*> bodies_;
+};
+
+}  // namespace aurasim::physics

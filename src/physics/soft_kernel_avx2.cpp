@@ -1,0 +1,7 @@
+#include "physics/soft_kernel.h"
+
+namespace aurasim::physics::soft {
+
+Kernel kernel_avx2() { return kThis; }
+
+}  // namespace aurasim::physics::soft

@@ -1,0 +1,75 @@
+// The data of the soft step (soft_step.h), laid out for so many contact patches at a time, and its arithmetic, which is
+// compiled once for each set of instructions. No lane ever sees another, and nothing is contracted or reordered, so
+// neither their number nor the set changes a bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace aurasim::physics::soft {
+
+// Nothing else may be included here or in soft_kernel.h: what is inline elsewhere would exist once for all sets.
+#ifdef BT_USE_DOUBLE_PRECISION
+using Real = double;
+#else
+using Real = float;
+#endif
+inline constexpr int kLanes = 32 / sizeof(Real);
+using Lanes __attribute__((vector_size(32))) = Real;
+
+inline constexpr int kMostPoints = 4;
+
+/// A body, as the substeps see it.
+struct alignas(64) Mover {
+  Real v[3] = {}, w[3] = {};  ///< m/s, rad/s
+  Real dp[3] = {};            ///< how far it has come since the start of the step, m
+  Real dq[4] = {0, 0, 0, 1};  ///< x, y, z, w: and how it has turned
+};
+
+struct Substep {
+  Real per_s = 0;         ///< one over its length
+  Real top_push_m_s = 0;  ///< overlaps are undone no faster
+  bool pushes = false;    ///< apart what overlaps, by springs; else contacts are rigid, and rub
+};
+
+/// Contact points of two bodies with one normal, for kLanes pairs of bodies. None shares a body that moves with
+/// another.
+struct alignas(64) Block {
+  struct Point {
+    Lanes r_a[3], r_b[3];         ///< from the centres of mass, at the start of the step, m
+    Lanes gap;                    ///< at the start of the step, m; negative: overlap
+    Lanes mass;                   ///< along the normal, kg
+    Lanes impulse, most_impulse;  ///< N s; the largest of any substep
+    Lanes approach;               ///< along the normal at the start of the step, m/s; negative: they come closer
+  };
+
+  std::uint32_t a[kLanes], b[kLanes];        ///< movers; 0 never moves
+  Lanes inv_mass_a, inv_mass_b;              ///< 1/kg
+  Lanes inv_inertia_a[6], inv_inertia_b[6];  ///< xx, xy, xz, yy, yz, zz, world frame
+  Lanes normal[3], first[3], second[3];      ///< from a to b; directions of friction
+  Lanes rate_per_s;                          ///< of the overlap that springs undo
+  Lanes soft_mass, soft_impulse;             ///< share of a rigid contact's impulse; of the impulse that is given back
+  Lanes friction, restitution;
+  Lanes spinning_m, rolling_m;  ///< friction against turning
+  Point points[kMostPoints];
+  Lanes centre_a[3], centre_b[3];   ///< of the points: where friction acts, m
+  Lanes lever_m;                    ///< mean distance of the points from there
+  Lanes mass_11, mass_12, mass_22;  ///< of friction, kg
+  Lanes mass_twist, mass_roll[6];   ///< kg m^2
+  Lanes rub_1, rub_2;               ///< impulses of friction, N s
+  Lanes twist, roll[3];             ///< N m s
+};
+
+/// The substeps of `count` blocks of `points` points each.
+struct Kernel {
+  void (*warm_start)(const Block* blocks, std::size_t count, int points, Mover* movers);
+  void (*solve)(Block* blocks, std::size_t count, int points, Mover* movers, const Substep& substep);
+  /// Restitution, for what came closer than `threshold_m_s` (below 0).
+  void (*bounce)(Block* blocks, std::size_t count, int points, Mover* movers, Real threshold_m_s);
+};
+
+Kernel kernel_sse2();
+Kernel kernel_avx2();
+Kernel kernel_avx512();
+
+}  // namespace aurasim::physics::soft
