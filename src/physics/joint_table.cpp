@@ -96,6 +96,10 @@ void JointTable::remove_broken(DynamicsWorld& world) {
   });
 }
 
+void JointTable::forget_broken() {
+  for (Entry& entry : entries_) entry.broken = false;
+}
+
 std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
   std::vector<core::JointId> joints;
   for (const core::BodyRecord& body : cluster.bodies) {

@@ -32,6 +32,8 @@ class JointTable {
   void disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world);
   /// After each substep: joints that broke in it are gone for good.
   void remove_broken(DynamicsWorld& world);
+  /// While there are no bodies: those that come say which are broken.
+  void forget_broken();
 
   /// Adds the joints of the cluster's bodies to it, in order of id. Returns how many of them, being whole, also hold a
   /// body that is here and not in the cluster.

@@ -103,6 +103,7 @@ int Simulation::rank_of(core::BodyId id) const {
 void Simulation::start_at(core::Step step) {
   assert(table_.size() == 0);
   step_ = step;
+  joints_.forget_broken();
   if (timeline_.statics_change()) show_statics(step);
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -188,6 +190,22 @@ TEST_F(Joints, AJointThatTakesTooMuchBreaksForGood) {
   EXPECT_EQ(values[2], 0);
   run_steps(59);
   EXPECT_LT(body(0).p_WB.z(), 16);
+}
+
+/// Whose halves have left since, at once and as two clusters.
+TEST_F(Joints, OneThatBrokeIsWholeAgainWhenTheWorldGoesBack) {
+  place(kBox, {0, 0, 20});
+  place(kBox, {0, 0, 18});
+  join(core::BallJoint{}, 0, {}, {0, 0, 20});
+  join(core::BallJoint{}, 0, 1, {0, 0, 19}).break_impulse = 9.81 / 240 * 0.9;
+  run_steps(0);
+  const core::ClusterState start = world->peek_all();
+  run_steps(1);
+  EXPECT_EQ(world->peek_all().joint_values[2], 1);
+  const std::vector upper{BodyId{0}}, lower{BodyId{1}};
+  world->release(std::vector<std::span<const BodyId>>{upper, lower});
+  world->put_back(0, start);
+  EXPECT_EQ(world->peek_all().joint_values[2], 0);
 }
 
 TEST_F(Joints, JointedBodiesFallAsleepTogetherAndWakeTogether) {
