@@ -11,6 +11,7 @@
 #include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
 #include "experiment/speed/speed.h"
+#include "physics/solver_names.h"
 
 namespace aurasim::cli {
 namespace {
@@ -52,8 +53,9 @@ void add_speed(CLI::App& experiments, Action& action) {
       ->delimiter(',')
       ->check(CLI::IsMember(experiment::speed_scene_names()));
   command->add_option("--settings", plan->settings, "of the step")->delimiter(',')->check(CLI::IsMember(settings));
-  command->add_option("--solver", plan->solver, "instead of that of the settings")
-      ->check(CLI::IsMember({"sequential_impulse", "nncg", "dantzig", "soft_step"}));
+  std::vector<std::string> solvers;
+  for (const auto& [solver, name] : physics::kSolverNames) solvers.emplace_back(name);
+  command->add_option("--solver", plan->solver, "instead of that of the settings")->check(CLI::IsMember(solvers));
   command->add_option("--repeats", plan->repeats, "runs of each, by turns; 0 writes the scenes only")
       ->check(CLI::Range(0, 1000));
   command->add_flag("--quick", *quick, "small scenes");

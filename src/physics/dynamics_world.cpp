@@ -1,6 +1,7 @@
 #include "physics/dynamics_world.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
@@ -59,13 +60,11 @@ class Stepper final : public btDiscreteDynamicsWorld {
     tumbling_.clear();
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       btRigidBody& body = *m_nonStaticRigidBodies[i];
-      if (!body.isActive() || body.getAngularVelocity().length2() < btScalar(kSlowSpin * kSlowSpin)) continue;
-      const btVector3& inverse_inertia = body.getInvInertiaDiagLocal();
-      if (inverse_inertia[inverse_inertia.minAxis()] <= 0) continue;
-      const core::Vec3 inertia = from_bullet(inverse_inertia).cwiseInverse();
-      if (turns_evenly(inertia)) continue;
+      if (!body.isActive()) continue;
+      const std::optional<core::Vec3> inertia = tumbling_inertia(body);
+      if (!inertia) continue;
       const Rotation now{from_bullet(body.getWorldTransform().getBasis()), from_bullet(body.getAngularVelocity())};
-      tumbling_.push_back({&body, rotate_freely(now, inertia, static_cast<double>(dt))});
+      tumbling_.push_back({&body, rotate_freely(now, *inertia, static_cast<double>(dt))});
     }
     btDiscreteDynamicsWorld::integrateTransforms(dt);
     for (const Tumbling& t : tumbling_) {
@@ -153,7 +152,7 @@ DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings
   if (settings.friction_directions > 1) {
     bullet_->world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   }
-  if (settings.solver == Solver::kSoftStep) bullet_->world.use_soft_step(settings.step_s, settings.substeps);
+  if (settings.looks_once()) bullet_->world.use_soft_step(settings.step_s, settings.substeps);
   if (settings.continuous) bullet_->world.stop_fast_bodies();
   bullet_->world.getSolverInfo().m_erp2 = static_cast<btScalar>(settings.contact_erp);
 }

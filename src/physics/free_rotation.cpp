@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "physics/bullet_convert.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -57,6 +61,15 @@ Rotation rotate_freely(const Rotation& start, const core::Vec3& inertia, double 
 bool turns_evenly(const core::Vec3& inertia) {
   constexpr double kSame = 1e-6;  // share; inertia has been through single precision
   return inertia.maxCoeff() - inertia.minCoeff() <= kSame * inertia.maxCoeff();
+}
+
+std::optional<core::Vec3> tumbling_inertia(const btRigidBody& body) {
+  if (body.getAngularVelocity().length2() < btScalar(kSlowSpin * kSlowSpin)) return std::nullopt;
+  const btVector3& inverse_inertia = body.getInvInertiaDiagLocal();
+  if (inverse_inertia[inverse_inertia.minAxis()] <= 0) return std::nullopt;
+  const core::Vec3 inertia = from_bullet(inverse_inertia).cwiseInverse();
+  if (turns_evenly(inertia)) return std::nullopt;
+  return inertia;
 }
 
 }  // namespace aurasim::physics

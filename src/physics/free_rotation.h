@@ -3,7 +3,11 @@
 // the energy error stays bounded.
 #pragma once
 
+#include <optional>
+
 #include "core/body_state.h"
+
+class btRigidBody;
 
 namespace aurasim::physics {
 
@@ -23,5 +27,8 @@ inline constexpr double kSlowSpin = 0.001;
 
 /// A sphere's or a cube's spin does not change.
 bool turns_evenly(const core::Vec3& inertia);
+
+/// Of a body whose spin changes while nothing acts on it, kg m^2; of others none.
+std::optional<core::Vec3> tumbling_inertia(const btRigidBody& body);
 
 }  // namespace aurasim::physics

@@ -16,8 +16,9 @@ enum class Solver {
 struct Settings {
   double step_s = 1.0 / 60;
   int substeps = 4;
-  /// How often in a step it is looked for what touches.
-  int looks() const { return solver == Solver::kSoftStep ? 1 : substeps; }
+  /// For what touches, in a step.
+  bool looks_once() const { return solver == Solver::kSoftStep; }
+  int looks() const { return looks_once() ? 1 : substeps; }
   Solver solver = Solver::kSequentialImpulse;
   int solver_iterations = 10;
   /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).

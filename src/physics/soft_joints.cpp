@@ -7,6 +7,8 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/soft_mover.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -16,10 +18,6 @@ using soft::Real;
 /// Share of a joint's error that is undone in a substep, as in Bullet's solvers.
 constexpr Real kErrorReduction = Real(0.2);
 constexpr int kMostRows = 24;  ///< of one joint: six axes with two limits, a motor and a spring each
-
-std::uint32_t mover_of(const btRigidBody& body) {
-  return body.isStaticObject() ? 0U : static_cast<std::uint32_t>(body.getCompanionId());
-}
 
 /// A row as a joint fills it in.
 struct Line {

@@ -8,6 +8,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/prefetch.h"
+#include "physics/soft_mover.h"
 
 namespace aurasim::physics {
 namespace {
@@ -29,10 +30,6 @@ constexpr Real kDamping = 1;  ///< critical: piles sway with more, too
 /// What comes closer at less than this does not bounce.
 constexpr Real kRestSpeed_m_s = Real(0.5);
 constexpr int kBounceSweeps = 8;  ///< the points of a face share a bounce
-
-std::uint32_t mover_of(const btCollisionObject& object) {
-  return object.isStaticObject() ? 0U : static_cast<std::uint32_t>(object.getCompanionId());
-}
 
 btManifoldPoint& point_of(btPersistentManifold& manifold, int i) { return manifold.getContactPoint(i); }
 

@@ -1,6 +1,7 @@
 #include "physics/soft_step.h"
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -8,6 +9,7 @@
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
 #include "physics/soft_joints.h"
+#include "physics/soft_mover.h"
 #include "physics/soft_patches.h"
 
 namespace aurasim::physics {
@@ -20,8 +22,6 @@ using soft::Real;
 constexpr Real kTopPush_m_s = 3;
 /// So often joints are solved before contacts in each substep: they start from nothing.
 constexpr int kJointSweeps = 4;
-/// Slower spins turn evenly enough.
-constexpr Real kSlowSpin_rad_s = Real(1e-3);
 
 btQuaternion turned(const Mover& m) { return {m.dq[0], m.dq[1], m.dq[2], m.dq[3]}; }
 
@@ -48,11 +48,10 @@ struct SoftStep::Impl {
 
   /// What a body is besides a mover.
   struct Body {
-    btRigidBody* rigid = nullptr;
     btTransform start = btTransform::getIdentity();
     btVector3 acceleration{0, 0, 0};  ///< m/s^2
     bool alone = false;               ///< touches nothing, no joint holds it
-    bool tumbles = false;
+    std::optional<core::Vec3> tumbling_inertia;
   };
 
   void forget();
@@ -63,9 +62,9 @@ struct SoftStep::Impl {
 
   Real step_s, h_s;
   int substeps;
-  std::vector<Mover> movers;  ///< the first never moves
-  std::vector<Body> bodies;   ///< as movers
-  std::vector<btRigidBody*> rigid;
+  std::vector<Mover> movers;        ///< the first never moves
+  std::vector<Body> bodies;         ///< as movers
+  std::vector<btRigidBody*> rigid;  ///< as movers
   SoftPatches patches;
   SoftJoints joints;
 };
@@ -90,14 +89,10 @@ void SoftStep::add(std::span<btCollisionObject* const> bodies, std::span<btPersi
 }
 
 void SoftStep::Impl::add(btRigidBody& body, bool alone) {
-  body.setCompanionId(static_cast<int>(movers.size()));
+  set_mover(body, movers.size());
   Mover& mover = movers.emplace_back();
   for (int i = 0; i < 3; ++i) mover.v[i] = body.getLinearVelocity()[i], mover.w[i] = body.getAngularVelocity()[i];
-  const btVector3& inverse_inertia = body.getInvInertiaDiagLocal();
-  const bool turns = inverse_inertia[inverse_inertia.minAxis()] > 0;
-  const bool tumbles = turns && body.getAngularVelocity().length2() > kSlowSpin_rad_s * kSlowSpin_rad_s &&
-                       !turns_evenly(from_bullet(inverse_inertia).cwiseInverse());
-  bodies.push_back({&body, body.getWorldTransform(), body.getTotalForce() * body.getInvMass(), alone, tumbles});
+  bodies.push_back({body.getWorldTransform(), body.getTotalForce() * body.getInvMass(), alone, tumbling_inertia(body)});
   rigid.push_back(&body);
 }
 
@@ -109,15 +104,14 @@ void SoftStep::Impl::move(std::uint32_t i, Real h, bool exact) {
     m.dp[k] += h * m.v[k];
     if (exact) m.dp[k] -= h * h / 2 * body.acceleration[k];
   }
-  if (!body.tumbles) {
+  if (!body.tumbling_inertia) {
     turn(m, h);
     return;
   }
   const btMatrix3x3& start = body.start.getBasis();
   const btMatrix3x3 now = btMatrix3x3(turned(m)) * start;
-  const core::Vec3 inertia = from_bullet(body.rigid->getInvInertiaDiagLocal()).cwiseInverse();
-  const Rotation after = rotate_freely({from_bullet(now), from_bullet(btVector3(m.w[0], m.w[1], m.w[2]))}, inertia,
-                                       static_cast<double>(h));
+  const Rotation after = rotate_freely({from_bullet(now), from_bullet(btVector3(m.w[0], m.w[1], m.w[2]))},
+                                       *body.tumbling_inertia, static_cast<double>(h));
   btQuaternion q;
   (to_bullet(after.R_WB) * start.transpose()).getRotation(q);
   set_turned(m, q.normalized());
@@ -138,7 +132,7 @@ void SoftStep::Impl::run() {
     }
     patches.warm_start(movers.data());
     if (!joints.empty()) {
-      for (const btRigidBody* body : joints.bodies()) show(static_cast<std::size_t>(body->getCompanionId()));
+      for (const btRigidBody* body : joints.bodies()) show(mover_of(*body));
       joints.begin(h_s);
       for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data());
     }
@@ -158,7 +152,7 @@ void SoftStep::Impl::run() {
 /// Gives a body where it is now, and how fast.
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
-  btRigidBody& body = *bodies[i].rigid;
+  btRigidBody& body = *rigid[i];
   body.setLinearVelocity({m.v[0], m.v[1], m.v[2]});
   body.setAngularVelocity({m.w[0], m.w[1], m.w[2]});
   const btTransform& start = bodies[i].start;
