@@ -11,7 +11,6 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include "physics/prefetch.h"
-#include "physics/soft_step.h"
 
 namespace aurasim::physics {
 namespace {
@@ -160,12 +159,6 @@ void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint*
     }
   });
   solve_group(lonely_, {}, {});
-}
-
-void ContactIslands::solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints, SoftStep& step) {
-  for_each_awake(world, joints,
-                 [&](auto bodies, auto manifolds, auto constraints) { step.add(bodies, manifolds, constraints); });
-  step.solve();
 }
 
 }  // namespace aurasim::physics

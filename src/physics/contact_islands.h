@@ -17,8 +17,6 @@ struct btContactSolverInfo;
 
 namespace aurasim::physics {
 
-class SoftStep;
-
 /// Differs from Bullet's in four ways. Islands are joined by contacts, not by overlapping bounds, which remember the
 /// past. The manifolds of an island are in the order of the bodies' user indices, then of their parts, its joints in
 /// that of their user ids. Islands are
@@ -34,8 +32,6 @@ class ContactIslands : public btSimulationIslandManager {
   /// Puts islands to sleep or wakes them, then solves those that are awake.
   void solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints, btConstraintSolver& solver,
              const btContactSolverInfo& info);
-  /// The same by the soft step, which also moves the bodies.
-  void solve(btCollisionWorld& world, std::span<btTypedConstraint* const> joints, SoftStep& step);
 
  private:
   /// Sorted before the solver sees it.

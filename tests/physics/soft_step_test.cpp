@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/joint_scenes.h"
-#include "physics/soft_lanes.h"
+#include "physics/soft/lanes.h"
 
 namespace aurasim::physics::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "physics/soft_kernel.h"
+#include "physics/soft/kernel.h"
 
 namespace aurasim::physics::soft {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/soft_lanes.h"
+#include "physics/soft/lanes.h"
 
 class btPersistentManifold;
 class btRigidBody;

@@ -1,15 +1,16 @@
 // The soft step: what touches is found once a step, and solved in substeps. In each, contacts push apart what overlaps
 // as springs do; then bodies move; then contacts are rigid and rub, so that nothing keeps the speed of a push, and what
 // is to bounce does so at the end (E. Catto, "Solver2D", 2024). Contacts are coloured and computed side by side
-// (soft_patches.h), joints one after the other (soft_joints.h). Bodies that touch nothing fly on their parabola.
+// (soft/patches.h), joints one after the other (soft/joints.h). Bodies that touch nothing fly on their parabola.
 #pragma once
 
 #include <memory>
 #include <span>
 
-class btCollisionObject;
 class btPersistentManifold;
+class btRigidBody;
 class btTypedConstraint;
+class btVector3;
 
 namespace aurasim::physics {
 
@@ -18,11 +19,10 @@ class SoftStep {
   SoftStep(double step_s, int substeps);
   ~SoftStep();
 
-  /// An island that is awake. Manifolds and joints in an order that follows from the island alone.
-  void add(std::span<btCollisionObject* const> bodies, std::span<btPersistentManifold* const> manifolds,
-           std::span<btTypedConstraint* const> joints);
-  /// Moves and turns all bodies that have been added, and forgets them.
-  void solve();
+  /// Moves and turns `bodies`: all that are awake. Each island's contacts and joints in an order that follows from the
+  /// island alone; gravity in m/s^2.
+  void solve(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+             std::span<btTypedConstraint* const> joints, const btVector3& gravity);
 
  private:
   struct Impl;

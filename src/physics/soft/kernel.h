@@ -1,5 +1,8 @@
-// The arithmetic that soft_lanes.h declares. For the files that compile it for one set of instructions, and no others.
-#include "physics/soft_lanes.h"
+// The arithmetic that soft/lanes.h declares. For the files that compile it for one set of instructions, and no others.
+#include "physics/soft/lanes.h"
+
+/// Else a call passes its vectors through memory.
+#define AURASIM_INLINE [[gnu::always_inline]] inline
 
 namespace aurasim::physics::soft {
 namespace {
@@ -12,33 +15,35 @@ struct Pair {
   Vec v_a, w_a, v_b, w_b;
 };
 
-Vec load(const Lanes (&v)[3]) { return {v[0], v[1], v[2]}; }
-Vec add(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec sub(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec mul(const Lanes& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-Lanes dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+AURASIM_INLINE Vec load(const Lanes (&v)[3]) { return {v[0], v[1], v[2]}; }
+AURASIM_INLINE Vec add(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+AURASIM_INLINE Vec sub(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+AURASIM_INLINE Vec mul(const Lanes& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+AURASIM_INLINE Lanes dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+AURASIM_INLINE Vec cross(const Vec& a, const Vec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 /// A symmetric matrix, as in Block.
-Vec mul(const Lanes (&m)[6], const Vec& a) {
+AURASIM_INLINE Vec mul(const Lanes (&m)[6], const Vec& a) {
   return {m[0] * a.x + m[1] * a.y + m[2] * a.z, m[1] * a.x + m[3] * a.y + m[4] * a.z,
           m[2] * a.x + m[4] * a.y + m[5] * a.z};
 }
-Lanes max(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
-Lanes min(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
-Lanes all(Real x) { return x - Lanes{}; }
+AURASIM_INLINE Lanes max(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+AURASIM_INLINE Lanes min(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+AURASIM_INLINE Lanes all(Real x) { return x - Lanes{}; }
 #ifdef BT_USE_DOUBLE_PRECISION
-Real root(Real a) { return __builtin_sqrt(a); }
+AURASIM_INLINE Real root(Real a) { return __builtin_sqrt(a); }
 #else
-Real root(Real a) { return __builtin_sqrtf(a); }
+AURASIM_INLINE Real root(Real a) { return __builtin_sqrtf(a); }
 #endif
-Lanes root(Lanes a) {
+AURASIM_INLINE Lanes root(Lanes a) {
   for (int i = 0; i < kLanes; ++i) a[i] = root(a[i]);
   return a;
 }
 /// What scales an impulse of such a length down to `most`.
-Lanes share(const Lanes& length, const Lanes& most) { return length > most ? most / length : all(1); }
+AURASIM_INLINE Lanes share(const Lanes& length, const Lanes& most) { return length > most ? most / length : all(1); }
 
-Pair velocities(const Block& block, const Mover* movers) {
+AURASIM_INLINE Pair velocities(const Block& block, const Mover* movers) {
   Pair p;
   for (int i = 0; i < kLanes; ++i) {
     const Mover& a = movers[block.a[i]];
@@ -50,7 +55,7 @@ Pair velocities(const Block& block, const Mover* movers) {
   }
   return p;
 }
-void store(const Pair& p, const Block& block, Mover* movers) {
+AURASIM_INLINE void store(const Pair& p, const Block& block, Mover* movers) {
   for (int i = 0; i < kLanes; ++i) {
     if (block.a[i] != 0) {
       Mover& a = movers[block.a[i]];
@@ -68,7 +73,7 @@ struct Turned {
   Vec dp, q;
   Lanes q_w;
 };
-Turned moved(const std::uint32_t (&who)[kLanes], const Mover* movers) {
+AURASIM_INLINE Turned moved(const std::uint32_t (&who)[kLanes], const Mover* movers) {
   Turned t;
   for (int i = 0; i < kLanes; ++i) {
     const Mover& m = movers[who[i]];
@@ -78,24 +83,24 @@ Turned moved(const std::uint32_t (&who)[kLanes], const Mover* movers) {
   return t;
 }
 /// How far a point at r from the centre has come since the start of the step.
-Vec way(const Turned& t, const Vec& r) {
+AURASIM_INLINE Vec way(const Turned& t, const Vec& r) {
   const Vec c = add(cross(t.q, r), mul(t.q_w, r));
   return add(t.dp, mul(all(2), cross(t.q, c)));
 }
-Vec speed(const Pair& p, const Vec& r_a, const Vec& r_b) {
+AURASIM_INLINE Vec speed(const Pair& p, const Vec& r_a, const Vec& r_b) {
   return sub(add(p.v_b, cross(p.w_b, r_b)), add(p.v_a, cross(p.w_a, r_a)));
 }
-void push(Pair& p, const Block& block, const Vec& impulse, const Vec& r_a, const Vec& r_b) {
+AURASIM_INLINE void push(Pair& p, const Block& block, const Vec& impulse, const Vec& r_a, const Vec& r_b) {
   p.v_a = sub(p.v_a, mul(block.inv_mass_a, impulse));
   p.w_a = sub(p.w_a, mul(block.inv_inertia_a, cross(r_a, impulse)));
   p.v_b = add(p.v_b, mul(block.inv_mass_b, impulse));
   p.w_b = add(p.w_b, mul(block.inv_inertia_b, cross(r_b, impulse)));
 }
-void turn(Pair& p, const Block& block, const Vec& impulse) {
+AURASIM_INLINE void turn(Pair& p, const Block& block, const Vec& impulse) {
   p.w_a = sub(p.w_a, mul(block.inv_inertia_a, impulse));
   p.w_b = add(p.w_b, mul(block.inv_inertia_b, impulse));
 }
-Vec friction(const Block& block, const Lanes& first, const Lanes& second) {
+AURASIM_INLINE Vec friction(const Block& block, const Lanes& first, const Lanes& second) {
   return add(mul(first, load(block.first)), mul(second, load(block.second)));
 }
 
@@ -115,7 +120,7 @@ void warm_start(const Block* blocks, std::size_t count, int points, Mover* mover
 }
 
 /// Friction about the normal.
-void rub_twist(Block& block, Pair& p, const Lanes& pressed) {
+AURASIM_INLINE void rub_twist(Block& block, Pair& p, const Lanes& pressed) {
   const Vec n = load(block.normal);
   const Lanes most = pressed * (block.friction * block.lever_m + block.spinning_m);
   const Lanes total = max(-most, min(most, block.twist - block.mass_twist * dot(sub(p.w_b, p.w_a), n)));
@@ -123,7 +128,7 @@ void rub_twist(Block& block, Pair& p, const Lanes& pressed) {
   block.twist = total;
 }
 
-void rub_roll(Block& block, Pair& p, const Lanes& pressed) {
+AURASIM_INLINE void rub_roll(Block& block, Pair& p, const Lanes& pressed) {
   const Vec before = load(block.roll);
   const Vec wanted = sub(before, mul(block.mass_roll, sub(p.w_b, p.w_a)));
   const Vec total = mul(share(root(dot(wanted, wanted)), pressed * block.rolling_m), wanted);
@@ -131,7 +136,7 @@ void rub_roll(Block& block, Pair& p, const Lanes& pressed) {
   block.roll[0] = total.x, block.roll[1] = total.y, block.roll[2] = total.z;
 }
 
-void rub(Block& block, Pair& p, const Lanes& pressed) {
+AURASIM_INLINE void rub(Block& block, Pair& p, const Lanes& pressed) {
   const Vec r_a = load(block.centre_a), r_b = load(block.centre_b);
   const Vec sliding = speed(p, r_a, r_b);
   const Lanes v_1 = dot(sliding, load(block.first)), v_2 = dot(sliding, load(block.second));
@@ -145,7 +150,7 @@ void rub(Block& block, Pair& p, const Lanes& pressed) {
 }
 
 /// Along the normal; returns the sum of the impulses.
-Lanes press(Block& block, Pair& p, int points, const Mover* movers, const Substep& substep) {
+AURASIM_INLINE Lanes press(Block& block, Pair& p, int points, const Mover* movers, const Substep& substep) {
   const Lanes zero{};
   const Vec n = load(block.normal);
   const Turned moved_a = moved(block.a, movers), moved_b = moved(block.b, movers);

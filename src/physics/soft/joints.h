@@ -7,7 +7,7 @@
 
 #include <LinearMath/btVector3.h>
 
-#include "physics/soft_lanes.h"
+#include "physics/soft/lanes.h"
 
 class btRigidBody;
 class btTypedConstraint;

@@ -1,4 +1,4 @@
-#include "physics/soft_patches.h"
+#include "physics/soft/patches.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/prefetch.h"
-#include "physics/soft_mover.h"
+#include "physics/soft/mover.h"
 
 namespace aurasim::physics {
 namespace {

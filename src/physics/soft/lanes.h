@@ -1,4 +1,4 @@
-// The data of the soft step (soft_step.h), laid out for so many contact patches at a time, and its arithmetic, which is
+// The data of the soft step (soft/step.h), laid out for so many contact patches at a time, and its arithmetic, which is
 // compiled once for each set of instructions. No lane ever sees another, and nothing is contracted or reordered, so
 // neither their number nor the set changes a bit.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace aurasim::physics::soft {
 
-// Nothing else may be included here or in soft_kernel.h: what is inline elsewhere would exist once for all sets.
+// Nothing else may be included here or in soft/kernel.h: what is inline elsewhere would exist once for all sets.
 #ifdef BT_USE_DOUBLE_PRECISION
 using Real = double;
 #else

@@ -10,7 +10,7 @@ namespace aurasim::physics {
 
 inline void set_mover(btCollisionObject& object, std::size_t mover) { object.setCompanionId(static_cast<int>(mover)); }
 
-/// 0, which never moves, for statics.
+/// 0, which never moves, for statics and whoever is not awake.
 inline std::uint32_t mover_of(const btCollisionObject& object) {
   return object.isStaticObject() ? 0U : static_cast<std::uint32_t>(object.getCompanionId());
 }

@@ -1,16 +1,18 @@
-#include "physics/soft_step.h"
+#include "physics/soft/step.h"
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
-#include "physics/soft_joints.h"
-#include "physics/soft_mover.h"
-#include "physics/soft_patches.h"
+#include "physics/soft/joints.h"
+#include "physics/soft/mover.h"
+#include "physics/soft/patches.h"
 
 namespace aurasim::physics {
 namespace {
@@ -49,19 +51,19 @@ struct SoftStep::Impl {
   /// What a body is besides a mover.
   struct Body {
     btTransform start = btTransform::getIdentity();
-    btVector3 acceleration{0, 0, 0};  ///< m/s^2
-    bool alone = false;               ///< touches nothing, no joint holds it
+    bool alone = true;  ///< touches nothing, no joint holds it
     std::optional<core::Vec3> tumbling_inertia;
   };
 
   void forget();
-  void add(btRigidBody& rigid, bool alone);
+  void add(btRigidBody& rigid);
   void move(std::uint32_t i, Real h, bool exact);
   void show(std::size_t i) const;
   void run();
 
   Real step_s, h_s;
   int substeps;
+  Real gravity[3] = {};
   std::vector<Mover> movers;        ///< the first never moves
   std::vector<Body> bodies;         ///< as movers
   std::vector<btRigidBody*> rigid;  ///< as movers
@@ -80,19 +82,11 @@ void SoftStep::Impl::forget() {
   joints.clear();
 }
 
-void SoftStep::add(std::span<btCollisionObject* const> bodies, std::span<btPersistentManifold* const> manifolds,
-                   std::span<btTypedConstraint* const> joints) {
-  const bool alone = manifolds.empty() && joints.empty();
-  for (btCollisionObject* body : bodies) impl_->add(*btRigidBody::upcast(body), alone);
-  impl_->patches.add(manifolds);
-  impl_->joints.add(joints);
-}
-
-void SoftStep::Impl::add(btRigidBody& body, bool alone) {
+void SoftStep::Impl::add(btRigidBody& body) {
   set_mover(body, movers.size());
   Mover& mover = movers.emplace_back();
   for (int i = 0; i < 3; ++i) mover.v[i] = body.getLinearVelocity()[i], mover.w[i] = body.getAngularVelocity()[i];
-  bodies.push_back({body.getWorldTransform(), body.getTotalForce() * body.getInvMass(), alone, tumbling_inertia(body)});
+  bodies.push_back({body.getWorldTransform(), true, tumbling_inertia(body)});
   rigid.push_back(&body);
 }
 
@@ -102,7 +96,7 @@ void SoftStep::Impl::move(std::uint32_t i, Real h, bool exact) {
   const Body& body = bodies[i];
   for (int k = 0; k < 3; ++k) {
     m.dp[k] += h * m.v[k];
-    if (exact) m.dp[k] -= h * h / 2 * body.acceleration[k];
+    if (exact) m.dp[k] -= h * h / 2 * gravity[k];
   }
   if (!body.tumbling_inertia) {
     turn(m, h);
@@ -122,13 +116,13 @@ void SoftStep::Impl::run() {
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
   for (std::uint32_t i = 1; i < movers.size(); ++i) {
     if (!bodies[i].alone) continue;
-    for (int k = 0; k < 3; ++k) movers[i].v[k] += step_s * bodies[i].acceleration[k];
+    for (int k = 0; k < 3; ++k) movers[i].v[k] += step_s * gravity[k];
     move(i, step_s, true);
   }
   for (int s = 0; s < substeps; ++s) {
     for (std::uint32_t i = 1; i < movers.size(); ++i) {
       if (bodies[i].alone) continue;
-      for (int k = 0; k < 3; ++k) movers[i].v[k] += h_s * bodies[i].acceleration[k];
+      for (int k = 0; k < 3; ++k) movers[i].v[k] += h_s * gravity[k];
     }
     patches.warm_start(movers.data());
     if (!joints.empty()) {
@@ -160,12 +154,21 @@ void SoftStep::Impl::show(std::size_t i) const {
   body.proceedToTransform(btTransform(q, start.getOrigin() + btVector3(m.dp[0], m.dp[1], m.dp[2])));
 }
 
-void SoftStep::solve() {
-  impl_->patches.build(impl_->rigid);
-  impl_->run();
-  impl_->patches.remember();
-  for (std::size_t i = 1; i < impl_->movers.size(); ++i) impl_->show(i);
-  impl_->forget();
+void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+                     std::span<btTypedConstraint* const> joints, const btVector3& gravity) {
+  Impl& impl = *impl_;
+  impl.forget();
+  for (int i = 0; i < 3; ++i) impl.gravity[i] = gravity[i];
+  for (btRigidBody* body : bodies) impl.add(*body);
+  const auto holds = [&](const btCollisionObject& body) { impl.bodies[mover_of(body)].alone = false; };
+  for (const btPersistentManifold* manifold : manifolds) holds(*manifold->getBody0()), holds(*manifold->getBody1());
+  for (const btTypedConstraint* joint : joints) holds(joint->getRigidBodyA()), holds(joint->getRigidBodyB());
+  impl.patches.add(manifolds);
+  impl.joints.add(joints);
+  impl.patches.build(impl.rigid);
+  impl.run();
+  impl.patches.remember();
+  for (std::size_t i = 1; i < impl.movers.size(); ++i) impl.show(i);
 }
 
 }  // namespace aurasim::physics

@@ -1,4 +1,4 @@
-#include "physics/soft_joints.h"
+#include "physics/soft/joints.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include "physics/soft_mover.h"
+#include "physics/soft/mover.h"
 
 namespace aurasim::physics {
 namespace {

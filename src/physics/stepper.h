@@ -1,0 +1,24 @@
+// Bullet's own step, with what we do otherwise: collision detection and solver in every substep.
+#pragma once
+
+#include <memory>
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+namespace aurasim::physics {
+
+class FirstContacts;
+struct Settings;
+
+/// What a world works with; all of it outlives the world.
+struct WorldParts {
+  btDispatcher& dispatcher;
+  btBroadphaseInterface& broadphase;
+  btConstraintSolver& solver;
+  btCollisionConfiguration& configuration;
+  FirstContacts& first_contacts;
+};
+
+std::unique_ptr<btDiscreteDynamicsWorld> make_stepper(const WorldParts& parts, const Settings& settings);
+
+}  // namespace aurasim::physics
