@@ -4,21 +4,13 @@
 #include <numeric>
 #include <tuple>
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
-
-#include "physics/prefetch.h"
-#include "physics/soft/mover.h"
 
 namespace aurasim::physics {
 namespace {
 
 bool is_asleep(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
-
-bool needs_response(const btCollisionObject& a, const btCollisionObject& b) {
-  return a.hasContactResponse() && b.hasContactResponse();
-}
 
 }  // namespace
 
@@ -33,21 +25,16 @@ void SoftIslands::unite(int a, int b) {
   parents_[std::max(one, other)] = std::min(one, other);
 }
 
-void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches,
                        std::span<btTypedConstraint* const> joints) {
   int last = -1;
   for (const btRigidBody* body : bodies) last = std::max(last, body->getUserIndex());
   parents_.resize(static_cast<std::size_t>(last + 1));
   std::iota(parents_.begin(), parents_.end(), 0U);
 
-  contacts_.clear();
-  for_each_touching(manifolds, [this](btPersistentManifold& manifold) {
-    const btCollisionObject& body0 = *manifold.getBody0();
-    const btCollisionObject& body1 = *manifold.getBody1();
-    const auto [first, last] = std::minmax({body0.getUserIndex(), body1.getUserIndex()});
-    if (first >= 0 && body0.mergesSimulationIslands() && body1.mergesSimulationIslands()) unite(first, last);
-    if (needs_response(body0, body1)) contacts_.push_back({static_cast<std::uint32_t>(last), first, &manifold});
-  });
+  for (const SoftTouch& touch : touches) {
+    if (touch.a >= 0 && touch.b >= 0) unite(touch.a, touch.b);
+  }
   for (const btTypedConstraint* joint : joints) {
     const btRigidBody& a = joint->getRigidBodyA();
     const btRigidBody& b = joint->getRigidBodyB();
@@ -55,7 +42,7 @@ void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<btPersist
   }
 
   settle(bodies);
-  sort();
+  sort(touches);
   joints_.clear();
   for (btTypedConstraint* joint : joints) {
     const bool moves = joint->getRigidBodyA().isActive() || joint->getRigidBodyB().isActive();
@@ -67,6 +54,7 @@ void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<btPersist
 /// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
 void SoftIslands::settle(std::span<btRigidBody* const> bodies) {
   states_.assign(parents_.size(), 0);
+  is_awake_.assign(parents_.size(), 0);
   const auto island = [this](const btRigidBody& body) {
     return island_of(static_cast<std::uint32_t>(body.getUserIndex()));
   };
@@ -82,40 +70,42 @@ void SoftIslands::settle(std::span<btRigidBody* const> bodies) {
       body->setActivationState(WANTS_DEACTIVATION);
       body->setDeactivationTime(0);
     }
-    if (body->isActive()) {
-      awake_.push_back(body);
-    } else {
-      set_mover(*body, 0);
-    }
+    if (!body->isActive()) continue;
+    awake_.push_back(body);
+    is_awake_[static_cast<std::size_t>(body->getUserIndex())] = 1;
   }
 }
 
 /// By counting: they come in no order, and there are several for each body. Parts matter for compounds only.
-void SoftIslands::sort() {
+void SoftIslands::sort(std::span<const SoftTouch> touches) {
+  const auto first_of = [](const SoftTouch& touch) { return std::min(touch.a, touch.b); };
+  const auto last_of = [](const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); };
+  const auto counts = [&](const SoftTouch& touch) {
+    const int first = first_of(touch);
+    const bool awake =
+        is_awake_[last_of(touch)] != 0 || (first >= 0 && is_awake_[static_cast<std::size_t>(first)] != 0);
+    return touch.acts && awake;
+  };
   ends_.assign(parents_.size() + 1, 0);
-  std::erase_if(contacts_, [](const Contact& contact) {
-    return is_asleep(*contact.manifold->getBody0()) && is_asleep(*contact.manifold->getBody1());
-  });
-  for (const Contact& contact : contacts_) ++ends_[contact.last + 1];
+  for (const SoftTouch& touch : touches) {
+    if (counts(touch)) ++ends_[last_of(touch) + 1];
+  }
   for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-  sorted_.resize(contacts_.size());
-  for (const Contact& contact : contacts_) sorted_[ends_[contact.last]++] = contact;
+  touches_.resize(ends_.back());
+  for (const SoftTouch& touch : touches) {
+    if (counts(touch)) touches_[ends_[last_of(touch)]++] = touch;
+  }
 
-  const auto before = [](const Contact& a, const Contact& b) {
-    if (a.first != b.first) return a.first < b.first;
-    const auto rest = [](const btPersistentManifold& manifold) {
-      return std::tuple(manifold.getBody0()->getUserIndex(), parts_of(manifold));
-    };
-    return rest(*a.manifold) < rest(*b.manifold);
+  const auto before = [first_of](const SoftTouch& x, const SoftTouch& y) {
+    if (first_of(x) != first_of(y)) return first_of(x) < first_of(y);
+    return std::tie(x.a, x.parts) < std::tie(y.a, y.parts);
   };
   std::size_t first = 0;
-  for (std::size_t body = 0; body + 1 < ends_.size(); ++body) {  // each has by now grown to the end of its contacts
-    std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(first),
-              sorted_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), before);
+  for (std::size_t body = 0; body + 1 < ends_.size(); ++body) {  // each has by now grown to the end of its touches
+    std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(first),
+              touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), before);
     first = ends_[body];
   }
-  manifolds_.clear();
-  for (const Contact& contact : sorted_) manifolds_.push_back(contact.manifold);
 }
 
 }  // namespace aurasim::physics

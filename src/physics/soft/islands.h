@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/contact_cache.h"
+#include "physics/soft/contacts.h"
 
-class btPersistentManifold;
 class btRigidBody;
 class btTypedConstraint;
 
@@ -18,34 +17,28 @@ namespace aurasim::physics {
 /// static's is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
-  /// Puts islands to sleep or wakes them. `joints` is ordered by their user ids, in any order before.
-  void find(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+  /// Puts islands to sleep or wakes them.
+  void find(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches,
             std::span<btTypedConstraint* const> joints);
 
   std::span<btRigidBody* const> awake() const { return awake_; }
-  /// Ordered by the bodies' user indices, then by their parts.
-  std::span<btPersistentManifold* const> manifolds() const { return manifolds_; }
+  /// Of bodies that are awake. Ordered by the bodies' user indices, then by their parts.
+  std::span<SoftTouch> touches() { return touches_; }
   /// Ordered by their user ids.
   std::span<btTypedConstraint* const> joints() const { return joints_; }
 
  private:
-  struct Contact {
-    std::uint32_t last;  ///< the larger user index
-    std::int32_t first;  ///< the smaller one
-    btPersistentManifold* manifold;
-  };
-
   std::uint32_t island_of(std::uint32_t body);
   void unite(int a, int b);
   void settle(std::span<btRigidBody* const> bodies);
-  void sort();
+  void sort(std::span<const SoftTouch> touches);
 
   std::vector<std::uint32_t> parents_;  ///< by user index
   std::vector<std::uint8_t> states_;    ///< by user index of an island's first body: who is awake in it
-  std::vector<Contact> contacts_, sorted_;
-  std::vector<std::uint32_t> ends_;  ///< of the contacts of a body, by user index
+  std::vector<std::uint8_t> is_awake_;  ///< by user index
+  std::vector<SoftTouch> touches_;
+  std::vector<std::uint32_t> ends_;  ///< of the touches of a body, by user index
   std::vector<btRigidBody*> awake_;
-  std::vector<btPersistentManifold*> manifolds_;
   std::vector<btTypedConstraint*> joints_;
 };
 

@@ -7,8 +7,6 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include "physics/soft/mover.h"
-
 namespace aurasim::physics {
 namespace {
 
@@ -16,7 +14,7 @@ using soft::Mover;
 using soft::Real;
 
 /// Share of a joint's error that is undone in a substep, as in Bullet's solvers.
-constexpr Real kErrorReduction = Real(0.2);
+constexpr btScalar kErrorReduction = btScalar(0.2);
 constexpr int kMostRows = 24;  ///< of one joint: six axes with two limits, a motor and a spring each
 
 /// A row as a joint fills it in.
@@ -28,18 +26,15 @@ struct Line {
 btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 void push(Real (&to)[3], const btVector3& v) {
-  for (int i = 0; i < 3; ++i) to[i] += v[i];
+  for (int i = 0; i < 3; ++i) to[i] += static_cast<Real>(v[i]);
 }
 
 }  // namespace
 
-void SoftJoints::add(std::span<btTypedConstraint* const> joints) {
-  if (joints_.empty()) bodies_.clear();
-  for (btTypedConstraint* joint : joints) {
-    joints_.push_back({joint, mover_of(joint->getRigidBodyA()), mover_of(joint->getRigidBodyB()), 0, 0});
-    for (btRigidBody* body : {&joint->getRigidBodyA(), &joint->getRigidBodyB()}) {
-      if (!body->isStaticObject()) bodies_.push_back(body);
-    }
+void SoftJoints::add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b) {
+  joints_.push_back({&joint, a, b, 0, 0});
+  for (const std::uint32_t mover : {a, b}) {
+    if (mover != 0) movers_.push_back(mover);
   }
 }
 
@@ -59,7 +54,7 @@ void SoftJoints::make_rows(Joint& joint, Real h_s) {
   if (joint.rows == 0) return;
   std::array<Line, kMostRows> lines;
   btTypedConstraint::btConstraintInfo2 info{};
-  info.fps = 1 / h_s;
+  info.fps = 1 / btScalar(h_s);
   info.erp = kErrorReduction;
   info.m_J1linearAxis = lines[0].linear_a, info.m_J1angularAxis = lines[0].angular_a;
   info.m_J2linearAxis = lines[0].linear_b, info.m_J2angularAxis = lines[0].angular_b;
@@ -70,17 +65,17 @@ void SoftJoints::make_rows(Joint& joint, Real h_s) {
   joint.joint->getInfo2(&info);
   const btRigidBody& a = joint.joint->getRigidBodyA();
   const btRigidBody& b = joint.joint->getRigidBodyB();
-  const Real most = joint.joint->getBreakingImpulseThreshold();
+  const btScalar most = joint.joint->getBreakingImpulseThreshold();
   for (std::uint32_t i = 0; i < joint.rows; ++i) {
     const Line& line = lines[i];
     Row row{line.linear_a, line.angular_a, line.linear_b, line.angular_b, {}, {}, {}, {}, 0, 0, 0, 0, 0, 0};
     row.v_a = line.linear_a * a.getInvMass(), row.w_a = a.getInvInertiaTensorWorld() * line.angular_a;
     row.v_b = line.linear_b * b.getInvMass(), row.w_b = b.getInvInertiaTensorWorld() * line.angular_b;
-    const Real response =
+    const btScalar response =
         row.linear_a.dot(row.v_a) + row.angular_a.dot(row.w_a) + row.linear_b.dot(row.v_b) + row.angular_b.dot(row.w_b);
     row.mass = response > SIMD_EPSILON ? 1 / response : 0;
     row.error = line.error, row.mixing = line.mixing;
-    row.low = std::max<Real>(line.low, -most), row.high = std::min<Real>(line.high, most);
+    row.low = std::max(line.low, -most), row.high = std::min(line.high, most);
     rows_.push_back(row);
   }
 }
@@ -91,11 +86,11 @@ void SoftJoints::solve(Mover* movers) {
     Mover& b = movers[joint.b];
     for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
       Row& row = rows_[i];
-      const Real v = row.linear_a.dot(vector(a.v)) + row.angular_a.dot(vector(a.w)) + row.linear_b.dot(vector(b.v)) +
-                     row.angular_b.dot(vector(b.w));
-      const Real wanted = row.impulse + (row.error - v) * row.mass - row.impulse * row.mixing;
-      const Real total = std::clamp(wanted, row.low, row.high);
-      const Real more = total - row.impulse;
+      const btScalar v = row.linear_a.dot(vector(a.v)) + row.angular_a.dot(vector(a.w)) +
+                         row.linear_b.dot(vector(b.v)) + row.angular_b.dot(vector(b.w));
+      const btScalar wanted = row.impulse + (row.error - v) * row.mass - row.impulse * row.mixing;
+      const btScalar total = std::clamp(wanted, row.low, row.high);
+      const btScalar more = total - row.impulse;
       row.impulse = total;
       if (joint.a != 0) push(a.v, row.v_a * more), push(a.w, row.w_a * more);
       if (joint.b != 0) push(b.v, row.v_b * more), push(b.w, row.w_b * more);

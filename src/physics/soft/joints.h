@@ -2,26 +2,24 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
 
 #include "physics/soft/lanes.h"
 
-class btRigidBody;
 class btTypedConstraint;
 
 namespace aurasim::physics {
 
 class SoftJoints {
  public:
-  void clear() { joints_.clear(); }
-  /// Of an island, in an order that follows from the island alone.
-  void add(std::span<btTypedConstraint* const> joints);
+  void clear() { joints_.clear(), movers_.clear(); }
+  /// Between the bodies of movers a and b. Those of an island in an order that follows from the island alone.
+  void add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b);
   bool empty() const { return joints_.empty(); }
-  /// The bodies of all joints that move, some more than once.
-  const std::vector<btRigidBody*>& bodies() const { return bodies_; }
+  /// Of all joints, some more than once.
+  const std::vector<std::uint32_t>& movers() const { return movers_; }
 
   /// From the present poses and velocities of the bodies. What the rows have pushed so far is forgotten.
   void begin(soft::Real h_s);
@@ -35,7 +33,7 @@ class SoftJoints {
   struct Row {
     btVector3 linear_a, angular_a, linear_b, angular_b;  ///< J
     btVector3 v_a, w_a, v_b, w_b;                        ///< what a unit impulse changes
-    soft::Real mass, error, mixing, low, high, impulse;
+    btScalar mass, error, mixing, low, high, impulse;
   };
   struct Joint {
     btTypedConstraint* joint;
@@ -47,7 +45,7 @@ class SoftJoints {
 
   std::vector<Joint> joints_;
   std::vector<Row> rows_;
-  std::vector<btRigidBody*> bodies_;
+  std::vector<std::uint32_t> movers_;
 };
 
 }  // namespace aurasim::physics

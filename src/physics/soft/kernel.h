@@ -31,11 +31,7 @@ AURASIM_INLINE Vec mul(const Lanes (&m)[6], const Vec& a) {
 AURASIM_INLINE Lanes max(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 AURASIM_INLINE Lanes min(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 AURASIM_INLINE Lanes all(Real x) { return x - Lanes{}; }
-#ifdef BT_USE_DOUBLE_PRECISION
-AURASIM_INLINE Real root(Real a) { return __builtin_sqrt(a); }
-#else
 AURASIM_INLINE Real root(Real a) { return __builtin_sqrtf(a); }
-#endif
 AURASIM_INLINE Lanes root(Lanes a) {
   for (int i = 0; i < kLanes; ++i) a[i] = root(a[i]);
   return a;

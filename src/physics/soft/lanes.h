@@ -9,11 +9,10 @@
 namespace aurasim::physics::soft {
 
 // Nothing else may be included here or in soft/kernel.h: what is inline elsewhere would exist once for all sets.
-#ifdef BT_USE_DOUBLE_PRECISION
-using Real = double;
-#else
+
+/// Also where bodies have doubles: speeds change by what is computed here, and bodies move by it, from where and as
+/// fast as they were at the start of the step.
 using Real = float;
-#endif
 inline constexpr int kLanes = 32 / sizeof(Real);
 using Lanes __attribute__((vector_size(32))) = Real;
 

@@ -1,24 +1,23 @@
 #include "physics/soft/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <numbers>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/prefetch.h"
-#include "physics/soft/mover.h"
 
 namespace aurasim::physics {
 namespace {
 
 using soft::kLanes;
 using soft::Lanes;
+using soft::Mover;
 using soft::Real;
 
-/// Cosine of the angle between normals that count as one.
-constexpr Real kSameNormal = Real(0.999);
 /// Statics have colours of their own, which come last: what cannot give way has the last word.
 constexpr int kColoursOfBodies = 40;
 constexpr int kColours = 64;
@@ -31,48 +30,66 @@ constexpr Real kDamping = 1;  ///< critical: piles sway with more, too
 constexpr Real kRestSpeed_m_s = Real(0.5);
 constexpr int kBounceSweeps = 8;  ///< the points of a face share a bounce
 
-btManifoldPoint& point_of(btPersistentManifold& manifold, int i) { return manifold.getContactPoint(i); }
+struct Vec {
+  Real x = 0, y = 0, z = 0;
+};
+Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec operator*(Real s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec vec(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
+/// Symmetric, as in SoftInertia.
+Vec mul(const Real (&m)[6], const Vec& a) {
+  return {m[0] * a.x + m[1] * a.y + m[2] * a.z, m[1] * a.x + m[3] * a.y + m[4] * a.z,
+          m[2] * a.x + m[4] * a.y + m[5] * a.z};
+}
+
+void set(Lanes (&to)[3], int lane, const Vec& v) { to[0][lane] = v.x, to[1][lane] = v.y, to[2][lane] = v.z; }
+void set(Lanes (&to)[6], int lane, const Real (&m)[6]) {
+  for (int i = 0; i < 6; ++i) to[i][lane] = m[i];
+}
+
+Real inverse(Real x) { return x > 0 ? 1 / x : 0; }
+
+/// A direction across a normal; the second is their cross product.
+Vec across(const Vec& n) {
+  const Vec t = std::abs(n.z) > Real(0.7) ? Vec{0, -n.z, n.y} : Vec{-n.y, n.x, 0};
+  return 1 / std::sqrt(dot(t, t)) * t;
+}
+
+/// One side of a patch.
+struct Side {
+  const Mover& mover;
+  const SoftInertia& inertia;
+
+  Vec velocity_at(const Vec& r) const { return vec(mover.v) + cross(vec(mover.w), r); }
+  /// How much an impulse along `u` at `r` changes the speed along `v` there, 1/kg.
+  Real response(const Vec& r, const Vec& u, const Vec& v) const {
+    return inertia.inv_mass * dot(u, v) + dot(cross(r, v), mul(inertia.inv_inertia, cross(r, u)));
+  }
+};
+
+/// How fast the two come closer when the gap has closed, m/s, negative; `gained` by the fall until then, J/kg.
+Real approach(Real opening_m_s, Real gained) {
+  if (opening_m_s >= 0) return opening_m_s;
+  return -std::sqrt(std::max(Real(0), opening_m_s * opening_m_s + 2 * gained));
+}
+
+/// Of a symmetric matrix; all 0 if there is none.
+void invert(const Real (&m)[6], Real (&to)[6]) {
+  const Real xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];
+  const Real per_det = inverse(m[0] * xx + m[1] * xy + m[2] * xz);
+  to[0] = xx * per_det, to[1] = xy * per_det, to[2] = xz * per_det;
+  to[3] = (m[0] * m[5] - m[2] * m[2]) * per_det, to[4] = (m[1] * m[2] - m[0] * m[4]) * per_det;
+  to[5] = (m[0] * m[3] - m[1] * m[1]) * per_det;
+}
 
 soft::Kernel fastest_kernel() {
   if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) return soft::kernel_avx512();
   if (__builtin_cpu_supports("avx2")) return soft::kernel_avx2();
   return soft::kernel_sse2();
 }
-
-Real quadratic(const btMatrix3x3& m, const btVector3& a, const btVector3& b) { return a.dot(m * b); }
-
-void set(Lanes (&to)[3], int lane, const btVector3& v) {
-  for (int i = 0; i < 3; ++i) to[i][lane] = v[i];
-}
-
-void set(Lanes (&to)[6], int lane, const btMatrix3x3& m) {
-  to[0][lane] = m[0][0], to[1][lane] = m[0][1], to[2][lane] = m[0][2];
-  to[3][lane] = m[1][1], to[4][lane] = m[1][2], to[5][lane] = m[2][2];
-}
-
-/// One side of a patch.
-struct Side {
-  explicit Side(const btRigidBody* body) : body(body) {
-    if (body == nullptr) return;
-    inv_mass = body->getInvMass();
-    inv_inertia = body->getInvInertiaTensorWorld();
-    centre = body->getCenterOfMassPosition();
-  }
-  btVector3 velocity_at(const btVector3& r) const {
-    return body != nullptr ? body->getVelocityInLocalPoint(r) : btVector3(0, 0, 0);
-  }
-  /// How much an impulse along `u` at `r` changes the speed along `v` there, 1/kg.
-  Real response(const btVector3& r, const btVector3& u, const btVector3& v) const {
-    return inv_mass * u.dot(v) + quadratic(inv_inertia, r.cross(u), r.cross(v));
-  }
-
-  const btRigidBody* body;
-  Real inv_mass = 0;
-  btMatrix3x3 inv_inertia{0, 0, 0, 0, 0, 0, 0, 0, 0};
-  btVector3 centre{0, 0, 0};
-};
-
-Real inverse(Real x) { return x > 0 ? 1 / x : 0; }
 
 }  // namespace
 
@@ -89,147 +106,119 @@ SoftPatches::Stiffness SoftPatches::stiffness(Real hertz, Real h_s) {
   return {omega / a, b / (1 + b), 1 / (1 + b)};
 }
 
-void SoftPatches::clear() {
-  unsorted_.clear();
-  used_.clear();
+void SoftPatches::clear(std::size_t movers) {
+  entries_.clear();
+  used_.assign(movers, 0);
 }
 
-void SoftPatches::add(std::span<btPersistentManifold* const> manifolds) {
-  for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (i + kPrefetchDistance < manifolds.size()) prefetch_head(*manifolds[i + kPrefetchDistance]);
-    if (i + kPrefetchDistance / 2 < manifolds.size()) prefetch_points(*manifolds[i + kPrefetchDistance / 2]);
-    const std::size_t first = unsorted_.size();
-    split(*manifolds[i]);
-    for (std::size_t k = first; k < unsorted_.size(); ++k) colour(unsorted_[k]);
-  }
-}
-
-void SoftPatches::split(btPersistentManifold& manifold) {
-  const std::size_t first = unsorted_.size();
-  for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    const btVector3& normal = point_of(manifold, i).m_normalWorldOnB;
-    std::size_t k = first;
-    while (k < unsorted_.size() &&
-           point_of(manifold, unsorted_[k].points[0]).m_normalWorldOnB.dot(normal) < kSameNormal) {
-      ++k;
-    }
-    if (k == unsorted_.size()) {
-      unsorted_.push_back({&manifold, mover_of(*manifold.getBody0()), mover_of(*manifold.getBody1()), {}, 0, 0});
-    }
-    Patch& patch = unsorted_[k];
-    patch.points[static_cast<std::size_t>(patch.count++)] = static_cast<std::int8_t>(i);
-  }
-}
-
-/// The first that is free. Without one it is solved by itself, after the others.
-void SoftPatches::colour(Patch& patch) {
-  const std::uint32_t last = std::max(patch.a, patch.b);
-  if (used_.size() <= last) used_.resize(last + 1, 0);
-  used_[0] = 0;
-  const bool of_bodies = patch.a != 0 && patch.b != 0;
-  const std::uint64_t free = ~(used_[patch.a] | used_[patch.b]) & (of_bodies ? kOfBodies : ~kOfBodies);
+/// The first colour that is free. Without one it is solved by itself, after the others.
+void SoftPatches::add(SoftPatch& patch, std::uint32_t a, std::uint32_t b) {
+  const std::uint64_t free = ~(used_[a] | used_[b]) & (a != 0 && b != 0 ? kOfBodies : ~kOfBodies);
   patch.colour = static_cast<std::int8_t>(std::countr_zero(free));
-  if (free == 0) return;
-  used_[patch.a] |= free & -free;
-  used_[patch.b] |= free & -free;
+  used_[a] |= free & -free;
+  used_[b] |= free & -free;
+  used_[0] = 0;
+  entries_.push_back({&patch, a, b, 0});
 }
 
-/// By colour, then by the number of points, else as they came.
-void SoftPatches::sort() {
-  constexpr std::size_t kKinds = (kColours + 1) * (soft::kMostPoints + 1);
-  std::array<std::uint32_t, kKinds + 1> first{};
-  const auto kind = [](const Patch& p) {
-    return static_cast<std::size_t>(p.colour) * (soft::kMostPoints + 1) + static_cast<std::size_t>(p.count);
+/// By colour, then by the number of points, else as they came. Returns the number of blocks.
+std::size_t SoftPatches::place() {
+  constexpr std::size_t kCounts = soft::kMostPoints + 1, kKinds = (kColours + 1) * kCounts;
+  std::array<std::uint32_t, kKinds> patches{}, next{};
+  const auto kind = [](const SoftPatch& patch) {
+    return static_cast<std::size_t>(patch.colour) * kCounts + static_cast<std::size_t>(patch.count);
   };
-  for (const Patch& p : unsorted_) ++first[kind(p) + 1];
-  for (std::size_t k = 0; k < kKinds; ++k) first[k + 1] += first[k];
-  patches_.resize(unsorted_.size());
-  for (const Patch& p : unsorted_) patches_[first[kind(p)]++] = p;
-}
-
-void SoftPatches::build(std::span<btRigidBody* const> bodies) {
-  sort();
+  for (const Entry& entry : entries_) ++patches[kind(*entry.patch)];
   runs_.clear();
-  place_.resize(patches_.size());
   std::size_t blocks = 0;
-  for (std::size_t i = 0; i < patches_.size();) {
-    const Patch& head = patches_[i];
-    const std::size_t abreast = head.colour == kColours ? 1 : kLanes;
-    const std::size_t first = i;
-    for (; i < patches_.size() && patches_[i].colour == head.colour && patches_[i].count == head.count; ++i) {
-      const std::size_t nth = i - first;
-      place_[i] = static_cast<std::uint32_t>((blocks + nth / abreast) * kLanes + nth % abreast);
-    }
-    const std::size_t count = (i - first + abreast - 1) / abreast;
-    runs_.push_back({blocks, count, head.count});
+  for (std::size_t k = 0; k < kKinds; ++k) {
+    if (patches[k] == 0) continue;
+    const bool alone = k / kCounts == kColours;
+    const std::size_t count = alone ? patches[k] : (patches[k] + kLanes - 1) / kLanes;
+    next[k] = static_cast<std::uint32_t>(blocks * kLanes);
+    runs_.push_back({blocks, count, static_cast<int>(k % kCounts)});
     blocks += count;
   }
-  blocks_.assign(blocks, soft::Block{});
+  for (Entry& entry : entries_) {
+    std::uint32_t& of_kind = next[kind(*entry.patch)];
+    entry.place = of_kind;
+    of_kind += entry.patch->colour == kColours ? kLanes : 1;
+  }
+  return blocks;
+}
+
+void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3]) {
+  blocks_.assign(place(), soft::Block{});
   bounces_ = false;
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    if (i + kPrefetchDistance < patches_.size()) prefetch_points(*patches_[i + kPrefetchDistance].manifold);
-    bounces_ = bounces_ || point_of(*patches_[i].manifold, patches_[i].points[0]).m_combinedRestitution > 0;
-    fill(blocks_[place_[i] / kLanes], static_cast<int>(place_[i] % kLanes), patches_[i], bodies);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i + kPrefetchDistance / 2 < entries_.size()) {
+      prefetch(entries_[i + kPrefetchDistance / 2].patch, sizeof(SoftPatch));
+    }
+    bounces_ = bounces_ || entries_[i].patch->restitution > 0;
+    fill(blocks_[entries_[i].place / kLanes], static_cast<int>(entries_[i].place % kLanes), entries_[i], movers,
+         inertias, gravity);
   }
 }
 
-void SoftPatches::fill(soft::Block& block, int lane, const Patch& patch, std::span<btRigidBody* const> bodies) const {
-  const Side a(bodies[patch.a]), b(bodies[patch.b]);
-  const btManifoldPoint& any = point_of(*patch.manifold, patch.points[0]);
-  const btVector3 n = -any.m_normalWorldOnB;
-  btVector3 t1, t2;
-  btPlaneSpace1(n, t1, t2);
-  block.a[lane] = patch.a, block.b[lane] = patch.b;
-  block.inv_mass_a[lane] = a.inv_mass, block.inv_mass_b[lane] = b.inv_mass;
-  set(block.inv_inertia_a, lane, a.inv_inertia);
-  set(block.inv_inertia_b, lane, b.inv_inertia);
+void SoftPatches::fill(soft::Block& block, int lane, const Entry& entry, const Mover* movers,
+                       const SoftInertia* inertias, const Real (&gravity)[3]) const {
+  const SoftPatch& patch = *entry.patch;
+  const Side a{movers[entry.a], inertias[entry.a]}, b{movers[entry.b], inertias[entry.b]};
+  const Vec n = vec(patch.normal), t1 = across(n), t2 = cross(n, t1);
+  block.a[lane] = entry.a, block.b[lane] = entry.b;
+  block.inv_mass_a[lane] = a.inertia.inv_mass, block.inv_mass_b[lane] = b.inertia.inv_mass;
+  set(block.inv_inertia_a, lane, a.inertia.inv_inertia);
+  set(block.inv_inertia_b, lane, b.inertia.inv_inertia);
   set(block.normal, lane, n), set(block.first, lane, t1), set(block.second, lane, t2);
-  const Stiffness& stiff = patch.a != 0 && patch.b != 0 ? of_bodies_ : of_statics_;
+  const Stiffness& stiff = entry.a != 0 && entry.b != 0 ? of_bodies_ : of_statics_;
   block.rate_per_s[lane] = stiff.rate_per_s, block.soft_mass[lane] = stiff.mass;
   block.soft_impulse[lane] = stiff.impulse;
-  block.friction[lane] = any.m_combinedFriction, block.restitution[lane] = any.m_combinedRestitution;
-  block.spinning_m[lane] = any.m_combinedSpinningFriction, block.rolling_m[lane] = any.m_combinedRollingFriction;
+  block.friction[lane] = patch.friction, block.restitution[lane] = patch.restitution;
+  block.spinning_m[lane] = patch.spinning_m, block.rolling_m[lane] = patch.rolling_m;
 
-  btVector3 centre_a(0, 0, 0), centre_b(0, 0, 0);
-  const btManifoldPoint* oldest = &any;
-  for (int i = 0; i < patch.count; ++i) {
-    const btManifoldPoint& point = point_of(*patch.manifold, patch.points[static_cast<std::size_t>(i)]);
-    if (point.m_lifeTime > oldest->m_lifeTime) oldest = &point;
-    const btVector3 r_a = point.getPositionWorldOnA() - a.centre, r_b = point.getPositionWorldOnB() - b.centre;
+  const Real fall_a = entry.a != 0 ? dot(vec(gravity), n) : 0, fall_b = entry.b != 0 ? dot(vec(gravity), n) : 0;
+  Vec centre_a, centre_b;
+  const auto count = static_cast<std::size_t>(patch.count);
+  const Real share = 1 / static_cast<Real>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const SoftPatch::Point& point = patch.points[i];
+    const Vec r_a = vec(point.r_a), r_b = vec(point.r_b);
     soft::Block::Point& to = block.points[i];
     set(to.r_a, lane, r_a), set(to.r_b, lane, r_b);
-    to.gap[lane] = point.getDistance();
+    to.gap[lane] = point.gap;
     to.mass[lane] = inverse(a.response(r_a, n, n) + b.response(r_b, n, n));
-    to.impulse[lane] = point.m_appliedImpulse;
-    to.approach[lane] = (b.velocity_at(r_b) - a.velocity_at(r_a)).dot(n);
-    centre_a += r_a / patch.count, centre_b += r_b / patch.count;
+    to.impulse[lane] = point.impulse;
+    to.approach[lane] = approach(dot(b.velocity_at(r_b) - a.velocity_at(r_a), n), (fall_a - fall_b) * point.gap);
+    centre_a = centre_a + share * r_a, centre_b = centre_b + share * r_b;
   }
-  for (int i = 0; i < patch.count; ++i) {
-    const auto& r = block.points[i].r_a;
-    block.lever_m[lane] += (btVector3(r[0][lane], r[1][lane], r[2][lane]) - centre_a).length() / patch.count;
+  Real lever_m = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec from = vec(patch.points[i].r_a) - centre_a;
+    lever_m += std::sqrt(dot(from, from)) * share;
   }
+  block.lever_m[lane] = lever_m;
   set(block.centre_a, lane, centre_a), set(block.centre_b, lane, centre_b);
   const Real k11 = a.response(centre_a, t1, t1) + b.response(centre_b, t1, t1);
   const Real k12 = a.response(centre_a, t1, t2) + b.response(centre_b, t1, t2);
   const Real k22 = a.response(centre_a, t2, t2) + b.response(centre_b, t2, t2);
   const Real per_det = inverse(k11 * k22 - k12 * k12);
   block.mass_11[lane] = k22 * per_det, block.mass_12[lane] = -k12 * per_det, block.mass_22[lane] = k11 * per_det;
-  const btMatrix3x3 both = a.inv_inertia + b.inv_inertia;
-  block.mass_twist[lane] = inverse(quadratic(both, n, n));
-  if (block.rolling_m[lane] > 0 && both.determinant() > 0) set(block.mass_roll, lane, both.inverse());
-  block.rub_1[lane] = oldest->m_appliedImpulseLateral1, block.rub_2[lane] = oldest->m_appliedImpulseLateral2;
-  block.twist[lane] = oldest->m_prevRHS;
+  Real both[6], rolls[6];
+  for (int i = 0; i < 6; ++i) both[i] = a.inertia.inv_inertia[i] + b.inertia.inv_inertia[i];
+  block.mass_twist[lane] = inverse(dot(n, mul(both, n)));
+  if (patch.rolling_m > 0) invert(both, rolls), set(block.mass_roll, lane, rolls);
+  block.rub_1[lane] = patch.rub_1, block.rub_2[lane] = patch.rub_2, block.twist[lane] = patch.twist;
 }
 
-void SoftPatches::warm_start(soft::Mover* movers) {
+void SoftPatches::warm_start(Mover* movers) {
   for (const Run& run : runs_) kernel_.warm_start(&blocks_[run.first], run.count, run.points, movers);
 }
 
-void SoftPatches::solve(soft::Mover* movers, const soft::Substep& substep) {
+void SoftPatches::solve(Mover* movers, const soft::Substep& substep) {
   for (const Run& run : runs_) kernel_.solve(&blocks_[run.first], run.count, run.points, movers, substep);
 }
 
-void SoftPatches::bounce(soft::Mover* movers) {
+void SoftPatches::bounce(Mover* movers) {
   for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
     for (const Run& run : runs_) {
       kernel_.bounce(&blocks_[run.first], run.count, run.points, movers, -kRestSpeed_m_s);
@@ -240,11 +229,17 @@ void SoftPatches::bounce(soft::Mover* movers) {
 /// The impulses of friction are the patch's. Each point has them, in the fields that Bullet keeps for a point that it
 /// finds again, so that they are still there when one of them is lost.
 void SoftPatches::remember() const {
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const soft::Block& block = blocks_[place_[i] / kLanes];
-    const auto lane = static_cast<int>(place_[i] % kLanes);
-    for (int k = 0; k < patches_[i].count; ++k) {
-      btManifoldPoint& point = point_of(*patches_[i].manifold, patches_[i].points[static_cast<std::size_t>(k)]);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i + kPrefetchDistance < entries_.size()) {
+      const SoftPatch& soon = *entries_[i + kPrefetchDistance].patch;
+      if (!soon.ahead) prefetch_points(*soon.manifold);
+    }
+    const SoftPatch& patch = *entries_[i].patch;
+    const soft::Block& block = blocks_[entries_[i].place / kLanes];
+    const auto lane = static_cast<int>(entries_[i].place % kLanes);
+    if (patch.ahead) continue;
+    for (int k = 0; k < patch.count; ++k) {
+      btManifoldPoint& point = patch.manifold->getContactPoint(patch.of[static_cast<std::size_t>(k)]);
       point.m_appliedImpulse = block.points[k].impulse[lane];
       point.m_appliedImpulseLateral1 = block.rub_1[lane];
       point.m_appliedImpulseLateral2 = block.rub_2[lane];

@@ -1,31 +1,34 @@
-// The contact points of awake bodies, as the soft step solves them: in patches of one normal, coloured so that those of
-// a colour share no body that moves, side by side in blocks.
+// The contact points of awake bodies, as the soft step solves them: in patches, coloured so that those of a colour
+// share no body that moves, side by side in blocks.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "physics/soft/contacts.h"
 #include "physics/soft/lanes.h"
 
-class btPersistentManifold;
-class btRigidBody;
-
 namespace aurasim::physics {
+
+/// What resists, in the world frame.
+struct SoftInertia {
+  soft::Real inv_mass = 0;         ///< 1/kg
+  soft::Real inv_inertia[6] = {};  ///< xx, xy, xz, yy, yz, zz, 1/(kg m^2)
+};
 
 class SoftPatches {
  public:
   /// Of a substep of h_s.
   explicit SoftPatches(soft::Real h_s);
 
-  void clear();
-  /// The contacts of an island, in an order that follows from the island alone: so do the colours. Of statics a
-  /// manifold's body has no mover (0), of others its companion id says which.
-  void add(std::span<btPersistentManifold* const> manifolds);
-  /// Lays out all that was added. `bodies` of the movers; that of 0 is null.
-  void build(std::span<btRigidBody* const> bodies);
+  void clear(std::size_t movers);
+  /// Of bodies with these movers. The patches of an island come in an order that follows from the island alone: so do
+  /// the colours.
+  void add(SoftPatch& patch, std::uint32_t a, std::uint32_t b);
+  /// Lays out all that was added. `inertias` as movers; gravity in m/s^2.
+  void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 
   void warm_start(soft::Mover* movers);
   void solve(soft::Mover* movers, const soft::Substep& substep);
@@ -35,11 +38,10 @@ class SoftPatches {
   void remember() const;
 
  private:
-  struct Patch {
-    btPersistentManifold* manifold;
-    std::uint32_t a, b;
-    std::array<std::int8_t, soft::kMostPoints> points;
-    std::int8_t count, colour;
+  struct Entry {
+    SoftPatch* patch;
+    std::uint32_t a, b;   ///< movers
+    std::uint32_t place;  ///< block * kLanes + lane
   };
   /// Blocks of one colour with as many points each.
   struct Run {
@@ -51,16 +53,14 @@ class SoftPatches {
   };
 
   static Stiffness stiffness(soft::Real hertz, soft::Real h_s);
-  void split(btPersistentManifold& manifold);
-  void colour(Patch& patch);
-  void sort();
-  void fill(soft::Block& block, int lane, const Patch& patch, std::span<btRigidBody* const> bodies) const;
+  std::size_t place();
+  void fill(soft::Block& block, int lane, const Entry& entry, const soft::Mover* movers, const SoftInertia* inertias,
+            const soft::Real (&gravity)[3]) const;
 
   soft::Kernel kernel_;
   Stiffness of_bodies_, of_statics_;
-  std::vector<Patch> patches_, unsorted_;
-  std::vector<std::uint64_t> used_;   ///< colours, by mover
-  std::vector<std::uint32_t> place_;  ///< by patch: block * kLanes + lane
+  std::vector<Entry> entries_;       ///< as they came
+  std::vector<std::uint64_t> used_;  ///< colours, by mover
   std::vector<soft::Block> blocks_;
   std::vector<Run> runs_;
   bool bounces_ = false;  ///< any of them

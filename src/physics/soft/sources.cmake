@@ -1,5 +1,7 @@
 # The soft step, as part of aurasim_physics.
 set(soft_step_sources
+  soft/ahead.cpp
+  soft/contacts.cpp
   soft/islands.cpp
   soft/joints.cpp
   soft/kept_contacts.cpp

@@ -1,17 +1,16 @@
 #include "physics/soft/step.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
 #include "physics/soft/joints.h"
-#include "physics/soft/mover.h"
 #include "physics/soft/patches.h"
 
 namespace aurasim::physics {
@@ -27,8 +26,10 @@ constexpr int kJointSweeps = 4;
 
 btQuaternion turned(const Mover& m) { return {m.dq[0], m.dq[1], m.dq[2], m.dq[3]}; }
 
-void set_turned(Mover& m, const btQuaternion& q) {
-  for (int i = 0; i < 4; ++i) m.dq[i] = q[i];
+btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+void copy(Real (&to)[3], const btVector3& v) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(v[i]);
 }
 
 /// By the rotation vector rate w over h, to the second order.
@@ -40,33 +41,82 @@ void turn(Mover& m, Real h) {
   for (int i = 0; i < 4; ++i) m.dq[i] = q[i] * per_length;
 }
 
+/// The turn by the rotation vector v, rad: by the series up to half a radian, and as often again as it takes.
+btQuaternion turn_by(btVector3 v) {
+  int halved = 0;
+  for (; v.length2() > 1 && halved < 20; ++halved) v /= 2;
+  const btScalar x2 = v.length2() / 4;  // of the half angle
+  const btScalar cosine = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90 * (1 - x2 / 132)))));
+  const btScalar sinc = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156)))));
+  btQuaternion q(v.x() / 2 * sinc, v.y() / 2 * sinc, v.z() / 2 * sinc, cosine);
+  for (; halved > 0; --halved) q *= q;
+  return q;
+}
+
+/// On the parabola, and as a free body turns.
+void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
+  const btTransform& start = body.getWorldTransform();
+  const btVector3 v = body.getLinearVelocity();
+  const btVector3 p = start.getOrigin() + step_s * (v + gravity * (step_s / 2));
+  body.setLinearVelocity(v + step_s * gravity);
+  if (const std::optional<core::Vec3> inertia = tumbling_inertia(body)) {
+    const Rotation now{from_bullet(start.getBasis()), from_bullet(body.getAngularVelocity())};
+    const Rotation after = rotate_freely(now, *inertia, static_cast<double>(step_s));
+    body.setAngularVelocity(to_bullet(after.w_WB));
+    body.proceedToTransform(btTransform(to_bullet(after.R_WB), p));
+  } else if (!body.getAngularVelocity().isZero()) {
+    const btQuaternion q = turn_by(body.getAngularVelocity() * step_s) * start.getRotation();
+    body.proceedToTransform(btTransform(q.normalized(), p));
+  } else {
+    body.proceedToTransform(btTransform(start.getBasis(), p));
+  }
+}
+
 }  // namespace
 
 struct SoftStep::Impl {
+  static constexpr std::uint32_t kHeld = std::numeric_limits<std::uint32_t>::max();
+
   Impl(double step_s, int substeps)
-      : step_s(static_cast<Real>(step_s)), h_s(static_cast<Real>(step_s / substeps)), substeps(substeps), patches(h_s) {
-    forget();
-  }
+      : step_s(static_cast<btScalar>(step_s)),
+        h_s(static_cast<Real>(step_s / substeps)),
+        substeps(substeps),
+        patches(h_s) {}
 
   /// What a body is besides a mover.
   struct Body {
+    btRigidBody* rigid = nullptr;
     btTransform start = btTransform::getIdentity();
-    bool alone = true;  ///< touches nothing, no joint holds it
+    btVector3 v{0, 0, 0}, w{0, 0, 0};  ///< at the start
     std::optional<core::Vec3> tumbling_inertia;
   };
 
-  void forget();
+  bool is_held(int user_index) const {
+    const auto place = static_cast<std::size_t>(user_index);
+    return user_index >= 0 && place < mover_at.size() && mover_at[place] != 0;
+  }
+  /// 0 for statics and sleepers.
+  std::uint32_t mover_of(int user_index) const {
+    if (!is_held(user_index)) return 0;
+    const std::uint32_t mover = mover_at[static_cast<std::size_t>(user_index)];
+    return mover != kHeld ? mover : 0;
+  }
+  void take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
+               std::span<btTypedConstraint* const> joint_list);
+  void hold(int user_index);
   void add(btRigidBody& rigid);
-  void move(std::uint32_t i, Real h, bool exact);
+  void move(std::uint32_t i);
   void show(std::size_t i) const;
   void run();
 
-  Real step_s, h_s;
+  btScalar step_s;
+  Real h_s;
   int substeps;
-  Real gravity[3] = {};
-  std::vector<Mover> movers;        ///< the first never moves
-  std::vector<Body> bodies;         ///< as movers
-  std::vector<btRigidBody*> rigid;  ///< as movers
+  btVector3 gravity{0, 0, 0};
+  std::vector<std::uint32_t> mover_at;  ///< by user index; 0: touches nothing; kHeld: does, and has no mover
+  std::vector<Mover> movers;            ///< the first never moves
+  std::vector<SoftInertia> inertias;    ///< as movers
+  std::vector<Body> bodies;             ///< as movers
   SoftPatches patches;
   SoftJoints joints;
 };
@@ -74,67 +124,86 @@ struct SoftStep::Impl {
 SoftStep::SoftStep(double step_s, int substeps) : impl_(std::make_unique<Impl>(step_s, substeps)) {}
 SoftStep::~SoftStep() = default;
 
-void SoftStep::Impl::forget() {
+void SoftStep::Impl::hold(int user_index) {
+  if (user_index < 0) return;
+  const auto place = static_cast<std::size_t>(user_index);
+  if (mover_at.size() <= place) mover_at.resize(place + 1, 0);
+  mover_at[place] = kHeld;
+}
+
+/// Whoever touches nothing, and is held by no joint, flies at once.
+void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
+                             std::span<btTypedConstraint* const> joint_list) {
   movers.assign(1, {});
+  inertias.assign(1, {});
   bodies.assign(1, {});
-  rigid.assign(1, nullptr);
-  patches.clear();
-  joints.clear();
+  mover_at.clear();
+  for (const SoftTouch& touch : touches) hold(touch.a), hold(touch.b);
+  for (const btTypedConstraint* joint : joint_list) {
+    hold(joint->getRigidBodyA().getUserIndex()), hold(joint->getRigidBodyB().getUserIndex());
+  }
+  for (btRigidBody* body : awake) {
+    if (!is_held(body->getUserIndex())) {
+      fly(*body, gravity, step_s);
+    } else {
+      add(*body);
+    }
+  }
 }
 
 void SoftStep::Impl::add(btRigidBody& body) {
-  set_mover(body, movers.size());
+  mover_at[static_cast<std::size_t>(body.getUserIndex())] = static_cast<std::uint32_t>(movers.size());
   Mover& mover = movers.emplace_back();
-  for (int i = 0; i < 3; ++i) mover.v[i] = body.getLinearVelocity()[i], mover.w[i] = body.getAngularVelocity()[i];
-  bodies.push_back({body.getWorldTransform(), true, tumbling_inertia(body)});
-  rigid.push_back(&body);
+  copy(mover.v, body.getLinearVelocity());
+  copy(mover.w, body.getAngularVelocity());
+  SoftInertia& inertia = inertias.emplace_back();
+  const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
+  inertia.inv_mass = static_cast<Real>(body.getInvMass());
+  for (int i = 0, k = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) inertia.inv_inertia[k++] = static_cast<Real>(inverse[i][j]);
+  }
+  bodies.push_back(
+      {&body, body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity(), tumbling_inertia(body)});
 }
 
-/// `exact`: on the parabola; whoever touches something moves as fast as it is at the end, which keeps piles calm.
-void SoftStep::Impl::move(std::uint32_t i, Real h, bool exact) {
+/// Whoever touches something moves as fast as it is at the end of the substep, which keeps piles calm.
+void SoftStep::Impl::move(std::uint32_t i) {
   Mover& m = movers[i];
+  for (int k = 0; k < 3; ++k) m.dp[k] += h_s * m.v[k];
   const Body& body = bodies[i];
-  for (int k = 0; k < 3; ++k) {
-    m.dp[k] += h * m.v[k];
-    if (exact) m.dp[k] -= h * h / 2 * gravity[k];
-  }
   if (!body.tumbling_inertia) {
-    turn(m, h);
+    turn(m, h_s);
     return;
   }
   const btMatrix3x3& start = body.start.getBasis();
   const btMatrix3x3 now = btMatrix3x3(turned(m)) * start;
-  const Rotation after = rotate_freely({from_bullet(now), from_bullet(btVector3(m.w[0], m.w[1], m.w[2]))},
-                                       *body.tumbling_inertia, static_cast<double>(h));
+  const Rotation after =
+      rotate_freely({from_bullet(now), from_bullet(vector(m.w))}, *body.tumbling_inertia, static_cast<double>(h_s));
   btQuaternion q;
   (to_bullet(after.R_WB) * start.transpose()).getRotation(q);
-  set_turned(m, q.normalized());
-  for (int k = 0; k < 3; ++k) m.w[k] = scalar(after.w_WB[k]);
+  q.normalize();
+  for (int k = 0; k < 4; ++k) m.dq[k] = static_cast<Real>(q[k]);
+  for (int k = 0; k < 3; ++k) m.w[k] = static_cast<Real>(after.w_WB[k]);
 }
 
 void SoftStep::Impl::run() {
+  const auto count = static_cast<std::uint32_t>(movers.size());
+  const Real fall[3] = {h_s * static_cast<Real>(gravity[0]), h_s * static_cast<Real>(gravity[1]),
+                        h_s * static_cast<Real>(gravity[2])};
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
-  for (std::uint32_t i = 1; i < movers.size(); ++i) {
-    if (!bodies[i].alone) continue;
-    for (int k = 0; k < 3; ++k) movers[i].v[k] += step_s * gravity[k];
-    move(i, step_s, true);
-  }
   for (int s = 0; s < substeps; ++s) {
-    for (std::uint32_t i = 1; i < movers.size(); ++i) {
-      if (bodies[i].alone) continue;
-      for (int k = 0; k < 3; ++k) movers[i].v[k] += h_s * gravity[k];
+    for (std::uint32_t i = 1; i < count; ++i) {
+      for (int k = 0; k < 3; ++k) movers[i].v[k] += fall[k];
     }
     patches.warm_start(movers.data());
     if (!joints.empty()) {
-      for (const btRigidBody* body : joints.bodies()) show(mover_of(*body));
+      for (const std::uint32_t mover : joints.movers()) show(mover);
       joints.begin(h_s);
       for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data());
     }
     substep.pushes = true;
     patches.solve(movers.data(), substep);
-    for (std::uint32_t i = 1; i < movers.size(); ++i) {
-      if (!bodies[i].alone) move(i, h_s, false);
-    }
+    for (std::uint32_t i = 1; i < count; ++i) move(i);
     if (!joints.empty()) joints.solve(movers.data());
     substep.pushes = false;
     patches.solve(movers.data(), substep);
@@ -143,29 +212,39 @@ void SoftStep::Impl::run() {
   patches.bounce(movers.data());
 }
 
-/// Gives a body where it is now, and how fast.
+/// Gives a body where it is now, and how fast. What a mover has rounded off its speed at the start is not lost.
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
-  btRigidBody& body = *rigid[i];
-  body.setLinearVelocity({m.v[0], m.v[1], m.v[2]});
-  body.setAngularVelocity({m.w[0], m.w[1], m.w[2]});
-  const btTransform& start = bodies[i].start;
-  const btQuaternion q = (turned(m) * start.getRotation()).normalized();
-  body.proceedToTransform(btTransform(q, start.getOrigin() + btVector3(m.dp[0], m.dp[1], m.dp[2])));
+  const Body& body = bodies[i];
+  const auto after = [](const btVector3& before, const Real(&now)[3]) {
+    btVector3 v;
+    for (int k = 0; k < 3; ++k) v[k] = before[k] + (btScalar(now[k]) - btScalar(static_cast<Real>(before[k])));
+    return v;
+  };
+  body.rigid->setLinearVelocity(after(body.v, m.v));
+  body.rigid->setAngularVelocity(after(body.w, m.w));
+  const btQuaternion q = (turned(m) * body.start.getRotation()).normalized();
+  body.rigid->proceedToTransform(btTransform(q, body.start.getOrigin() + vector(m.dp)));
 }
 
-void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
                      std::span<btTypedConstraint* const> joints, const btVector3& gravity) {
   Impl& impl = *impl_;
-  impl.forget();
-  for (int i = 0; i < 3; ++i) impl.gravity[i] = gravity[i];
-  for (btRigidBody* body : bodies) impl.add(*body);
-  const auto holds = [&](const btCollisionObject& body) { impl.bodies[mover_of(body)].alone = false; };
-  for (const btPersistentManifold* manifold : manifolds) holds(*manifold->getBody0()), holds(*manifold->getBody1());
-  for (const btTypedConstraint* joint : joints) holds(joint->getRigidBodyA()), holds(joint->getRigidBodyB());
-  impl.patches.add(manifolds);
-  impl.joints.add(joints);
-  impl.patches.build(impl.rigid);
+  impl.gravity = gravity;
+  impl.take_in(bodies, touches, joints);
+  impl.patches.clear(impl.movers.size());
+  for (const SoftTouch& touch : touches) {
+    const std::uint32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
+    for (std::uint32_t i = 0; i < touch.patches; ++i) impl.patches.add(contacts.patches()[touch.first_patch + i], a, b);
+  }
+  Real pull[3];
+  copy(pull, gravity);
+  impl.patches.build(impl.movers.data(), impl.inertias.data(), pull);
+  impl.joints.clear();
+  for (btTypedConstraint* joint : joints) {
+    impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
+                    impl.mover_of(joint->getRigidBodyB().getUserIndex()));
+  }
   impl.run();
   impl.patches.remember();
   for (std::size_t i = 1; i < impl.movers.size(); ++i) impl.show(i);

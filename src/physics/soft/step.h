@@ -7,21 +7,23 @@
 #include <memory>
 #include <span>
 
-class btPersistentManifold;
 class btRigidBody;
 class btTypedConstraint;
 class btVector3;
 
 namespace aurasim::physics {
 
+class SoftContacts;
+struct SoftTouch;
+
 class SoftStep {
  public:
   SoftStep(double step_s, int substeps);
   ~SoftStep();
 
-  /// Moves and turns `bodies`: all that are awake. Each island's contacts and joints in an order that follows from the
-  /// island alone; gravity in m/s^2.
-  void solve(std::span<btRigidBody* const> bodies, std::span<btPersistentManifold* const> manifolds,
+  /// Moves and turns `bodies`: all that are awake. Each island's touches and joints come in an order that follows from
+  /// the island alone; all awake touches have their patches in `contacts`. Gravity in m/s^2.
+  void solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
              std::span<btTypedConstraint* const> joints, const btVector3& gravity);
 
  private:

@@ -1,15 +1,15 @@
 #include "physics/soft/world.h"
 
 #include <span>
+#include <utility>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/first_contacts.h"
-#include "physics/prefetch.h"
 #include "physics/settings.h"
+#include "physics/soft/contacts.h"
 #include "physics/soft/islands.h"
-#include "physics/soft/kept_contacts.h"
 #include "physics/soft/step.h"
 
 namespace aurasim::physics {
@@ -25,16 +25,22 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   SoftWorld(const WorldParts& parts, const Settings& settings)
       : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
-        step_(settings.step_s, settings.substeps) {}
+        contacts_(settings.step_s, settings.continuous),
+        step_(settings.step_s, settings.substeps),
+        looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
     damp(step_s);
     bound();
     m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
-    kept_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo());
+    contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
+                   getGravity());
     first_contacts_.look(*m_dispatcher1, *getPairCache());
-    islands_.find(span_of(m_nonStaticRigidBodies), manifolds_of(*m_dispatcher1), span_of(m_constraints));
-    step_.solve(islands_.awake(), islands_.manifolds(), islands_.joints(), getGravity());
+    islands_.find(span_of(m_nonStaticRigidBodies), contacts_.touches(), span_of(m_constraints));
+    for (SoftTouch& touch : islands_.touches()) {
+      if (touch.patches == 0) contacts_.read(touch);  // has just been woken
+    }
+    step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity());
     updateActivationState(step_s);
     return 1;
   }
@@ -54,14 +60,21 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
       if (!body->isActive()) continue;
       btVector3 low, high;
       body->getAabb(low, high);
+      if (looks_ahead_) {
+        const btVector3 way = contacts_.way(*body, getGravity()), none(0, 0, 0);
+        btVector3 back = way, on = way;
+        back.setMin(none), on.setMax(none);
+        low += back, high += on;
+      }
       m_broadphasePairCache->setAabb(body->getBroadphaseHandle(), low - margin, high + margin, m_dispatcher1);
     }
   }
 
   FirstContacts& first_contacts_;
-  KeptContacts kept_;
+  SoftContacts contacts_;
   SoftIslands islands_;
   SoftStep step_;
+  bool looks_ahead_;
 };
 
 }  // namespace

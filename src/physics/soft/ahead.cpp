@@ -1,0 +1,57 @@
+#include "physics/soft/ahead.h"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+namespace aurasim::physics {
+namespace {
+
+using Hit = btCollisionWorld::ClosestConvexResultCallback;
+
+void cast(const btCollisionShape& shape, const btTransform& from, const btVector3& way, const btCollisionObject& at,
+          Hit& hit) {
+  if (shape.isCompound()) {
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+      cast(*compound.getChildShape(i), from * compound.getChildTransform(i), way, at, hit);
+    }
+  } else if (shape.isConvex()) {
+    const btCollisionObjectWrapper target(nullptr, at.getCollisionShape(), &at, at.getWorldTransform(), -1, -1);
+    btTransform to = from;
+    to.setOrigin(from.getOrigin() + way);
+    btCollisionWorld::objectQuerySingleInternal(static_cast<const btConvexShape*>(&shape), from, to, &target, hit, 0);
+  }
+}
+
+bool can_be_cast(const btCollisionObject& object) {
+  const btCollisionShape& shape = *object.getCollisionShape();
+  return !object.isStaticObject() && (shape.isConvex() || shape.isCompound());
+}
+
+}  // namespace
+
+std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCollisionObject& b, const btVector3& way) {
+  if (!can_be_cast(a)) {
+    if (!can_be_cast(b)) return std::nullopt;
+    std::optional<SoftMeeting> turned_round = meeting_ahead(b, a, -way);
+    if (turned_round) {
+      std::swap(turned_round->r_a, turned_round->r_b);
+      turned_round->normal = -turned_round->normal;
+      turned_round->until = -turned_round->until;
+    }
+    return turned_round;
+  }
+  const btTransform& from = a.getWorldTransform();
+  Hit hit(from.getOrigin(), from.getOrigin() + way);
+  cast(*a.getCollisionShape(), from, way, b, hit);
+  if (!hit.hasHit() || hit.m_closestHitFraction <= 0) return std::nullopt;
+  const btVector3 normal = -hit.m_hitNormalWorld.normalized();
+  const btVector3 until = way * hit.m_closestHitFraction;
+  if (!(until.dot(normal) > 0)) return std::nullopt;
+  return SoftMeeting{until, normal, hit.m_hitPointWorld - from.getOrigin() - until,
+                     hit.m_hitPointWorld - b.getWorldTransform().getOrigin()};
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,226 @@
+#include "physics/soft/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btAabbUtil2.h>
+
+#include "physics/prefetch.h"
+#include "physics/soft/ahead.h"
+#include "physics/soft/kept_contacts.h"
+
+namespace aurasim::physics {
+namespace {
+
+using soft::Real;
+
+/// Cosine of the angle between normals that count as one.
+constexpr btScalar kSameNormal = btScalar(0.999);
+/// Who comes closer by less in a step is found when they touch, m.
+constexpr btScalar kLongWay_m = btScalar(0.005);
+/// Bodies that will touch are looked at where they overlap by so much, m.
+constexpr btScalar kOverlap_m = btScalar(0.002);
+
+const btCollisionObject& object_of(const btBroadphaseProxy& proxy) {
+  return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
+}
+
+void copy(Real (&to)[3], const btVector3& v) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(v[i]);
+}
+
+/// Of a pair that has a plane; its box has no bounds.
+bool is_above(const btBroadphaseProxy& body, const btCollisionObject& plane) {
+  const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
+  const btVector3 normal = plane.getWorldTransform().getBasis() * shape.getPlaneNormal();
+  const btVector3 on_plane = plane.getWorldTransform()(shape.getPlaneNormal() * shape.getPlaneConstant());
+  const btVector3 centre = (body.m_aabbMin + body.m_aabbMax) / 2, half = (body.m_aabbMax - body.m_aabbMin) / 2;
+  return normal.dot(centre - on_plane) > normal.absolute().dot(half);
+}
+
+bool is_plane(const btCollisionObject& object) {
+  return object.getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+}
+
+bool bounds_overlap(const btBroadphasePair& pair) {
+  const btBroadphaseProxy &a = *pair.m_pProxy0, &b = *pair.m_pProxy1;
+  if (!TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax)) return false;
+  if (is_plane(object_of(a))) return !is_above(b, object_of(a));
+  return !is_plane(object_of(b)) || !is_above(a, object_of(b));
+}
+
+void forget(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
+  if (pair.m_algorithm == nullptr) return;
+  pair.m_algorithm->~btCollisionAlgorithm();
+  dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+  pair.m_algorithm = nullptr;
+}
+
+void prefetch_pair(const btBroadphasePair& pair) {
+  prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
+  prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
+  if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
+}
+
+}  // namespace
+
+btManifoldArray& SoftContacts::manifolds_of(const btBroadphasePair& pair) {
+  manifolds_.resizeNoInitialize(0);
+  if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(manifolds_);
+  return manifolds_;
+}
+
+btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gravity) const {
+  if (object.isStaticObject() || !object.isActive()) return {0, 0, 0};
+  return step_s_ * (btRigidBody::upcast(&object)->getLinearVelocity() + gravity * (step_s_ / 2));
+}
+
+void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
+                        const btVector3& gravity) {
+  gravity_ = gravity;
+  touches_.clear();
+  patches_.clear();
+  btBroadphasePairArray& all = pairs.getOverlappingPairArray();
+  for (int i = 0; i < all.size(); ++i) {
+    if (i + kPrefetchDistance < all.size()) prefetch_pair(all[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance / 2 < all.size()) {
+      const btBroadphasePair& pair = all[i + kPrefetchDistance / 2];
+      prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
+      prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
+      const btManifoldArray& manifolds = manifolds_of(pair);
+      for (int k = 0; k < manifolds.size(); ++k) prefetch_head(*manifolds[k]);
+    }
+    if (i + kPrefetchDistance / 4 < all.size()) {
+      const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4]);
+      for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
+    }
+    look(all[i], dispatcher, info);
+  }
+}
+
+void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const bool awake = a.isActive() || b.isActive();
+  if (!awake) return collect(pair, false);
+  if (!bounds_overlap(pair)) return forget(pair, dispatcher);
+  const bool whole = !a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound();
+  const auto only = [&]() -> btPersistentManifold* {
+    const btManifoldArray& manifolds = manifolds_of(pair);
+    return whole && manifolds.size() == 1 && manifolds[0]->getNumContacts() > 0 ? manifolds[0] : nullptr;
+  };
+  btPersistentManifold* const before = only();
+  if (before == nullptr || !keep_contacts(*before)) {
+    dispatcher.getNearCallback()(pair, dispatcher, info);
+    if (btPersistentManifold* const told = only()) note_contacts(*told);
+  }
+  const std::size_t touched = touches_.size();
+  collect(pair, true);
+  if (looks_ahead_ && touches_.size() == touched) look_ahead(pair, dispatcher, info);
+}
+
+/// One of the two is put where they will touch for as long as their contacts are told there.
+void SoftContacts::look_ahead(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const btVector3 way = this->way(a, gravity_) - this->way(b, gravity_);
+  if (way.length2() < kLongWay_m * kLongWay_m || !a.hasContactResponse() || !b.hasContactResponse()) return;
+  if (!a.checkCollideWith(&b) || !b.checkCollideWith(&a)) return;
+  const std::optional<SoftMeeting> meeting = meeting_ahead(a, b, way);
+  if (!meeting) return;
+  const btVector3 shift = meeting->until + meeting->normal * kOverlap_m;
+  const bool first_moves = !a.isStaticObject();
+  auto& moved = *static_cast<btCollisionObject*>((first_moves ? pair.m_pProxy0 : pair.m_pProxy1)->m_clientObject);
+  const btTransform place = moved.getWorldTransform();
+  moved.setWorldTransform(btTransform(place.getBasis(), place.getOrigin() + (first_moves ? shift : -shift)));
+  dispatcher.getNearCallback()(pair, dispatcher, info);
+  collect_ahead(pair, *meeting, shift);
+  moved.setWorldTransform(place);
+}
+
+void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift) {
+  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const std::size_t first = patches_.size();
+  const btManifoldArray& manifolds = manifolds_of(pair);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() == 0) continue;
+    const btCollisionObject &body0 = *manifolds[i]->getBody0(), &body1 = *manifolds[i]->getBody1();
+    touches_.push_back({manifolds[i], body0.getUserIndex(), body1.getUserIndex(), parts_of(*manifolds[i]), true, 0, 0});
+    read(touches_.back(), &body0 == &a ? shift : -shift);
+    manifolds[i]->clearManifold();
+  }
+  if (patches_.size() == first) {  // as they touch only just
+    touches_.push_back({nullptr, a.getUserIndex(), b.getUserIndex(), {}, true, static_cast<std::uint32_t>(first), 1});
+    SoftPatch& patch = patches_.emplace_back();
+    patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
+    copy(patch.normal, meeting.normal);
+    patch.friction = static_cast<Real>(btManifoldResult::calculateCombinedFriction(&a, &b));
+    patch.restitution = static_cast<Real>(btManifoldResult::calculateCombinedRestitution(&a, &b));
+    patch.count = 1;
+    copy(patch.points[0].r_a, meeting.r_a);
+    copy(patch.points[0].r_b, meeting.r_b);
+    patch.points[0].gap = static_cast<Real>(meeting.until.dot(meeting.normal));
+  }
+  for (std::size_t i = first; i < patches_.size(); ++i) patches_[i].ahead = true;
+}
+
+void SoftContacts::collect(const btBroadphasePair& pair, bool awake) {
+  const btManifoldArray& manifolds = manifolds_of(pair);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    btPersistentManifold& manifold = *manifolds[i];
+    if (manifold.getNumContacts() == 0) continue;
+    const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+    const bool acts = a.hasContactResponse() && b.hasContactResponse();
+    touches_.push_back({&manifold, a.getUserIndex(), b.getUserIndex(), parts_of(manifold), acts, 0, 0});
+    if (awake && acts) read(touches_.back());
+  }
+}
+
+/// The impulses of friction are the patch's. The oldest point has them longest.
+void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
+  const btPersistentManifold& manifold = *touch.manifold;
+  const btVector3& centre_a = manifold.getBody0()->getWorldTransform().getOrigin();
+  const btVector3& centre_b = manifold.getBody1()->getWorldTransform().getOrigin();
+  touch.first_patch = static_cast<std::uint32_t>(patches_.size());
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    std::size_t k = touch.first_patch;
+    while (k < patches_.size() &&
+           manifold.getContactPoint(patches_[k].of[0]).m_normalWorldOnB.dot(point.m_normalWorldOnB) < kSameNormal) {
+      ++k;
+    }
+    if (k == patches_.size()) {
+      SoftPatch& made = patches_.emplace_back();
+      made.manifold = touch.manifold, made.a = touch.a, made.b = touch.b;
+      copy(made.normal, -point.m_normalWorldOnB);
+      made.friction = static_cast<Real>(point.m_combinedFriction);
+      made.restitution = static_cast<Real>(point.m_combinedRestitution);
+      made.spinning_m = static_cast<Real>(point.m_combinedSpinningFriction);
+      made.rolling_m = static_cast<Real>(point.m_combinedRollingFriction);
+    }
+    SoftPatch& patch = patches_[k];
+    int oldest = -1;
+    for (int j = 0; j < patch.count; ++j) {
+      oldest = std::max(oldest, manifold.getContactPoint(patch.of[static_cast<std::size_t>(j)]).m_lifeTime);
+    }
+    if (point.m_lifeTime > oldest) {
+      patch.rub_1 = static_cast<Real>(point.m_appliedImpulseLateral1);
+      patch.rub_2 = static_cast<Real>(point.m_appliedImpulseLateral2);
+      patch.twist = static_cast<Real>(point.m_prevRHS);
+    }
+    const auto place = static_cast<std::size_t>(patch.count++);
+    patch.of[place] = static_cast<std::int8_t>(i);
+    SoftPatch::Point& to = patch.points[place];
+    copy(to.r_a, point.getPositionWorldOnA() - centre_a);
+    copy(to.r_b, point.getPositionWorldOnB() - centre_b);
+    to.gap = static_cast<Real>(point.getDistance() - shift.dot(point.m_normalWorldOnB));
+    to.impulse = static_cast<Real>(point.m_appliedImpulse);
+  }
+  touch.patches = static_cast<std::uint32_t>(patches_.size()) - touch.first_patch;
+}
+
+}  // namespace aurasim::physics
