@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -17,10 +18,15 @@ using soft::Real;
 constexpr btScalar kErrorReduction = btScalar(0.2);
 constexpr int kMostRows = 24;  ///< of one joint: six axes with two limits, a motor and a spring each
 
-/// A row as a joint fills it in.
+/// A row as a joint fills it in. Most joints have few, so only those that they have are set up.
 struct Line {
-  btVector3 linear_a{0, 0, 0}, angular_a{0, 0, 0}, linear_b{0, 0, 0}, angular_b{0, 0, 0};
-  btScalar error = 0, mixing = 0, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+  void clear() {
+    for (btVector3* v : {&linear_a, &angular_a, &linear_b, &angular_b}) v->setZero();
+    error = mixing = 0, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+  }
+
+  btVector3 linear_a, angular_a, linear_b, angular_b;
+  btScalar error, mixing, low, high;
 };
 
 btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
@@ -34,7 +40,8 @@ void push(Real (&to)[3], const btVector3& v) {
 void SoftJoints::add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b) {
   joints_.push_back({&joint, a, b, 0, 0});
   for (const std::uint32_t mover : {a, b}) {
-    if (mover != 0) movers_.push_back(mover);
+    if (is_known_.size() <= mover) is_known_.resize(mover + 1, 0);
+    if (mover != 0 && std::exchange(is_known_[mover], 1) == 0) movers_.push_back(mover);
   }
 }
 
@@ -47,12 +54,12 @@ void SoftJoints::make_rows(Joint& joint, Real h_s) {
   joint.first_row = static_cast<std::uint32_t>(rows_.size());
   joint.rows = 0;
   if (!joint.joint->isEnabled()) return;
-  joint.joint->buildJacobian();
   btTypedConstraint::btConstraintInfo1 count{};
   joint.joint->getInfo1(&count);
   joint.rows = static_cast<std::uint32_t>(count.m_numConstraintRows);
   if (joint.rows == 0) return;
   std::array<Line, kMostRows> lines;
+  for (std::uint32_t i = 0; i < joint.rows; ++i) lines[i].clear();
   btTypedConstraint::btConstraintInfo2 info{};
   info.fps = 1 / btScalar(h_s);
   info.erp = kErrorReduction;

@@ -14,11 +14,11 @@ namespace aurasim::physics {
 
 class SoftJoints {
  public:
-  void clear() { joints_.clear(), movers_.clear(); }
+  void clear() { joints_.clear(), movers_.clear(), is_known_.clear(); }
   /// Between the bodies of movers a and b. Those of an island in an order that follows from the island alone.
   void add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b);
   bool empty() const { return joints_.empty(); }
-  /// Of all joints, some more than once.
+  /// Of all joints.
   const std::vector<std::uint32_t>& movers() const { return movers_; }
 
   /// From the present poses and velocities of the bodies. What the rows have pushed so far is forgotten.
@@ -46,6 +46,7 @@ class SoftJoints {
   std::vector<Joint> joints_;
   std::vector<Row> rows_;
   std::vector<std::uint32_t> movers_;
+  std::vector<char> is_known_;  ///< by mover: is in movers_
 };
 
 }  // namespace aurasim::physics
