@@ -217,7 +217,7 @@ void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
   const Body& body = bodies[i];
   const auto after = [](const btVector3& before, const Real(&now)[3]) {
-    btVector3 v;
+    btVector3 v(0, 0, 0);
     for (int k = 0; k < 3; ++k) v[k] = before[k] + (btScalar(now[k]) - btScalar(static_cast<Real>(before[k])));
     return v;
   };
