@@ -53,7 +53,7 @@ TEST(SoftStep, APyramidStands) {
   world.add(boxes);
   run(world, 300);
   const Change after = change(world, boxes);
-  EXPECT_LT(after.most_m, 0.015);
+  EXPECT_LT(after.most_m, 0.01);
   EXPECT_LT(after.fastest_m_s, 0.02);
 }
 

@@ -20,8 +20,7 @@ struct SoftInertia {
 
 class SoftPatches {
  public:
-  /// Of a substep of h_s.
-  explicit SoftPatches(soft::Real h_s);
+  SoftPatches(double step_s, int substeps);
 
   void clear(std::size_t movers);
   /// Of bodies with these movers. The patches of an island come in an order that follows from the island alone: so do
@@ -52,7 +51,7 @@ class SoftPatches {
     soft::Real rate_per_s, mass, impulse;
   };
 
-  static Stiffness stiffness(soft::Real hertz, soft::Real h_s);
+  static Stiffness stiffness(double times, double step_s, int substeps);
   std::size_t place();
   void fill(soft::Block& block, int lane, const Entry& entry, const soft::Mover* movers, const SoftInertia* inertias,
             const soft::Real (&gravity)[3]) const;

@@ -81,7 +81,7 @@ struct SoftStep::Impl {
       : step_s(static_cast<btScalar>(step_s)),
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
-        patches(h_s) {}
+        patches(step_s, substeps) {}
 
   /// What a body is besides a mover.
   struct Body {
