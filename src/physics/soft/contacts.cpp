@@ -13,6 +13,7 @@
 
 #include "physics/prefetch.h"
 #include "physics/soft/ahead.h"
+#include "physics/soft/convert.h"
 #include "physics/soft/kept_contacts.h"
 
 namespace aurasim::physics {
@@ -27,12 +28,8 @@ constexpr btScalar kLongWay_m = btScalar(0.005);
 /// Bodies that will touch are looked at where they overlap by so much, m.
 constexpr btScalar kOverlap_m = btScalar(0.002);
 
-const btCollisionObject& object_of(const btBroadphaseProxy& proxy) {
+const btCollisionObject& body_of(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
-}
-
-void copy(Real (&to)[3], const btVector3& v) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(v[i]);
 }
 
 /// Of a pair that has a plane; its box has no bounds.
@@ -51,8 +48,8 @@ bool is_plane(const btCollisionObject& object) {
 bool bounds_overlap(const btBroadphasePair& pair) {
   const btBroadphaseProxy &a = *pair.m_pProxy0, &b = *pair.m_pProxy1;
   if (!TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax)) return false;
-  if (is_plane(object_of(a))) return !is_above(b, object_of(a));
-  return !is_plane(object_of(b)) || !is_above(a, object_of(b));
+  if (is_plane(body_of(a))) return !is_above(b, body_of(a));
+  return !is_plane(body_of(b)) || !is_above(a, body_of(b));
 }
 
 void forget(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
@@ -62,7 +59,7 @@ void forget(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
   pair.m_algorithm = nullptr;
 }
 
-void prefetch_pair(const btBroadphasePair& pair) {
+void prefetch_bodies(const btBroadphasePair& pair) {
   prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
   prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
   if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
@@ -88,7 +85,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
   patches_.clear();
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   for (int i = 0; i < all.size(); ++i) {
-    if (i + kPrefetchDistance < all.size()) prefetch_pair(all[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance < all.size()) prefetch_bodies(all[i + kPrefetchDistance]);
     if (i + kPrefetchDistance / 2 < all.size()) {
       const btBroadphasePair& pair = all[i + kPrefetchDistance / 2];
       prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
@@ -105,7 +102,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
 }
 
 void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
-  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   const bool awake = a.isActive() || b.isActive();
   if (!awake) return collect(pair, false);
   if (!bounds_overlap(pair)) return forget(pair, dispatcher);
@@ -126,7 +123,7 @@ void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatche
 
 /// One of the two is put where they will touch for as long as their contacts are told there.
 void SoftContacts::look_ahead(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
-  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   const btVector3 way = this->way(a, gravity_) - this->way(b, gravity_);
   if (way.length2() < kLongWay_m * kLongWay_m || !a.hasContactResponse() || !b.hasContactResponse()) return;
   if (!a.checkCollideWith(&b) || !b.checkCollideWith(&a)) return;
@@ -143,7 +140,7 @@ void SoftContacts::look_ahead(btBroadphasePair& pair, btCollisionDispatcher& dis
 }
 
 void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift) {
-  const btCollisionObject &a = object_of(*pair.m_pProxy0), &b = object_of(*pair.m_pProxy1);
+  const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   const std::size_t first = patches_.size();
   const btManifoldArray& manifolds = manifolds_of(pair);
   for (int i = 0; i < manifolds.size(); ++i) {
@@ -157,12 +154,12 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     touches_.push_back({nullptr, a.getUserIndex(), b.getUserIndex(), {}, true, static_cast<std::uint32_t>(first), 1});
     SoftPatch& patch = patches_.emplace_back();
     patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
-    copy(patch.normal, meeting.normal);
+    soft::from_bullet(meeting.normal, patch.normal);
     patch.friction = static_cast<Real>(btManifoldResult::calculateCombinedFriction(&a, &b));
     patch.restitution = static_cast<Real>(btManifoldResult::calculateCombinedRestitution(&a, &b));
     patch.count = 1;
-    copy(patch.points[0].r_a, meeting.r_a);
-    copy(patch.points[0].r_b, meeting.r_b);
+    soft::from_bullet(meeting.r_a, patch.points[0].r_a);
+    soft::from_bullet(meeting.r_b, patch.points[0].r_b);
     patch.points[0].gap = static_cast<Real>(meeting.until.dot(meeting.normal));
   }
   for (std::size_t i = first; i < patches_.size(); ++i) patches_[i].ahead = true;
@@ -196,7 +193,7 @@ void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
     if (k == patches_.size()) {
       SoftPatch& made = patches_.emplace_back();
       made.manifold = touch.manifold, made.a = touch.a, made.b = touch.b;
-      copy(made.normal, -point.m_normalWorldOnB);
+      soft::from_bullet(-point.m_normalWorldOnB, made.normal);
       made.friction = static_cast<Real>(point.m_combinedFriction);
       made.restitution = static_cast<Real>(point.m_combinedRestitution);
       made.spinning_m = static_cast<Real>(point.m_combinedSpinningFriction);
@@ -215,8 +212,8 @@ void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
     const auto place = static_cast<std::size_t>(patch.count++);
     patch.of[place] = static_cast<std::int8_t>(i);
     SoftPatch::Point& to = patch.points[place];
-    copy(to.r_a, point.getPositionWorldOnA() - centre_a);
-    copy(to.r_b, point.getPositionWorldOnB() - centre_b);
+    soft::from_bullet(point.getPositionWorldOnA() - centre_a, to.r_a);
+    soft::from_bullet(point.getPositionWorldOnB() - centre_b, to.r_b);
     to.gap = static_cast<Real>(point.getDistance() - shift.dot(point.m_normalWorldOnB));
     to.impulse = static_cast<Real>(point.m_appliedImpulse);
   }

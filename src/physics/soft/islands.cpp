@@ -10,7 +10,7 @@
 namespace aurasim::physics {
 namespace {
 
-bool is_asleep(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
+bool sleeps(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void SoftIslands::settle(std::span<btRigidBody* const> bodies) {
   for (btRigidBody* body : bodies) {
     if (states_[island(*body)] == 0) {
       body->setActivationState(ISLAND_SLEEPING);
-    } else if (is_asleep(*body)) {
+    } else if (sleeps(*body)) {
       body->setActivationState(WANTS_DEACTIVATION);
       body->setDeactivationTime(0);
     }

@@ -8,6 +8,8 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/soft/convert.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -28,8 +30,6 @@ struct Line {
   btVector3 linear_a, angular_a, linear_b, angular_b;
   btScalar error, mixing, low, high;
 };
-
-btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 void push(Real (&to)[3], const btVector3& v) {
   for (int i = 0; i < 3; ++i) to[i] += static_cast<Real>(v[i]);
@@ -93,8 +93,8 @@ void SoftJoints::solve(Mover* movers) {
     Mover& b = movers[joint.b];
     for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
       Row& row = rows_[i];
-      const btScalar v = row.linear_a.dot(vector(a.v)) + row.angular_a.dot(vector(a.w)) +
-                         row.linear_b.dot(vector(b.v)) + row.angular_b.dot(vector(b.w));
+      const btScalar v = row.linear_a.dot(soft::to_bullet(a.v)) + row.angular_a.dot(soft::to_bullet(a.w)) +
+                         row.linear_b.dot(soft::to_bullet(b.v)) + row.angular_b.dot(soft::to_bullet(b.w));
       const btScalar wanted = row.impulse + (row.error - v) * row.mass - row.impulse * row.mixing;
       const btScalar total = std::clamp(wanted, row.low, row.high);
       const btScalar more = total - row.impulse;

@@ -10,6 +10,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
+#include "physics/soft/convert.h"
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
 
@@ -25,12 +26,6 @@ constexpr Real kTopPush_m_s = 3;
 constexpr int kJointSweeps = 4;
 
 btQuaternion turned(const Mover& m) { return {m.dq[0], m.dq[1], m.dq[2], m.dq[3]}; }
-
-btVector3 vector(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-void copy(Real (&to)[3], const btVector3& v) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(v[i]);
-}
 
 /// By the rotation vector rate w over h, to the second order.
 void turn(Mover& m, Real h) {
@@ -154,8 +149,8 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<cons
 void SoftStep::Impl::add(btRigidBody& body) {
   mover_at[static_cast<std::size_t>(body.getUserIndex())] = static_cast<std::uint32_t>(movers.size());
   Mover& mover = movers.emplace_back();
-  copy(mover.v, body.getLinearVelocity());
-  copy(mover.w, body.getAngularVelocity());
+  soft::from_bullet(body.getLinearVelocity(), mover.v);
+  soft::from_bullet(body.getAngularVelocity(), mover.w);
   SoftInertia& inertia = inertias.emplace_back();
   const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
   inertia.inv_mass = static_cast<Real>(body.getInvMass());
@@ -177,8 +172,8 @@ void SoftStep::Impl::move(std::uint32_t i) {
   }
   const btMatrix3x3& start = body.start.getBasis();
   const btMatrix3x3 now = btMatrix3x3(turned(m)) * start;
-  const Rotation after =
-      rotate_freely({from_bullet(now), from_bullet(vector(m.w))}, *body.tumbling_inertia, static_cast<double>(h_s));
+  const Rotation after = rotate_freely({from_bullet(now), from_bullet(soft::to_bullet(m.w))}, *body.tumbling_inertia,
+                                       static_cast<double>(h_s));
   btQuaternion q;
   (to_bullet(after.R_WB) * start.transpose()).getRotation(q);
   q.normalize();
@@ -224,7 +219,7 @@ void SoftStep::Impl::show(std::size_t i) const {
   body.rigid->setLinearVelocity(after(body.v, m.v));
   body.rigid->setAngularVelocity(after(body.w, m.w));
   const btQuaternion q = (turned(m) * body.start.getRotation()).normalized();
-  body.rigid->proceedToTransform(btTransform(q, body.start.getOrigin() + vector(m.dp)));
+  body.rigid->proceedToTransform(btTransform(q, body.start.getOrigin() + soft::to_bullet(m.dp)));
 }
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
@@ -238,7 +233,7 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftT
     for (std::uint32_t i = 0; i < touch.patches; ++i) impl.patches.add(contacts.patches()[touch.first_patch + i], a, b);
   }
   Real pull[3];
-  copy(pull, gravity);
+  soft::from_bullet(gravity, pull);
   impl.patches.build(impl.movers.data(), impl.inertias.data(), pull);
   impl.joints.clear();
   for (btTypedConstraint* joint : joints) {
