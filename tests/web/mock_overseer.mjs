@@ -139,7 +139,7 @@ export class MockOverseer {
         violations: { speed: 0, latency: 0, frame: region === 1 ? 3 : 0, promise: 0, span: 0 },
         late: region === 1 ? this.late : 0, missed: 0, frame_ms: times, physics_ms: times,
         protocol_ms: times, transport_ms: times, real_time_factor: this.state === "running" ? this.rate : 0, largest_cluster: 48, lookahead: 2, text: "",
-        listens_to: [{ region: (region + 1) % 4, since: 0 }, { region: (region + 2) % 4, since: 1200, introduced_by: (region + 1) % 4 }] };
+        listens_to: [{ region: (region + 1) % 4, since: 0 }, { region: (region + 2) % 4, since: 120, introduced_by: (region + 1) % 4 }] };
     });
   }
 

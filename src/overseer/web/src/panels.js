@@ -58,16 +58,16 @@ class NodeCard {
     this.brief = h("span.brief");
     this.p50 = h("b.big");
     this.text = h("p.node-text", { hidden: true });
-    this.listens = h("p.node-listens", { hidden: true, title: ABOUT_LISTENING });
+    this.listens = h("span.node-listens", { hidden: true });
     this.element = h("article.node", { style: `--host: ${colour}`, "data-region": region, "aria-label": `Region ${region}` },
       h("header", { tabindex: 0, onclick: () => this.#flip(), onkeydown: (event) => event.key === "Enter" && this.#flip() },
-        h("i.swatch"), h("h3", {}, `Region ${region}`), this.brief, this.state),
+        h("i.swatch"), h("h3", {}, `Region ${region}`), this.brief, this.listens, this.state),
       h("div.timing", {}, h("div.frame-time", {}, this.p50, h("span", {}, "ms")), this.spark.canvas),
       h("div.cells", {},
         cell("p99", "p99 ms", "99th percentile of the frame time"), cell("max", "max ms", "Longest frame"),
         cell("rtf", "real time", "Simulated seconds per second"), cell("bodies", "bodies", "Bodies hosted here"),
         cell("awake", "awake", "Bodies that move"), cell("handOffs", "hand-offs/s", "Bodies handed over per second")),
-      this.listens, this.warnings, this.text);
+      this.warnings, this.text);
   }
 
   #flip() {
@@ -98,9 +98,10 @@ class NodeCard {
   /** Regions near each other always listen; of the others it matters since when. */
   #showListening(regions) {
     this.listens.hidden = regions.length === 0;
-    const name = ({ region, since, introduced_by: by }) =>
-      by === undefined ? `${region}` : `${region} (since state ${grouped(since)}, by ${by})`;
-    this.listens.textContent = `listens to ${regions.map(name).join(", ")}`;
+    this.listens.textContent = `hears ${regions.map(({ region }) => region).join(", ")}`;
+    const introductions = regions.filter((one) => one.introduced_by !== undefined)
+      .map(({ region, since, introduced_by: by }) => `Region ${region}: since state ${grouped(since)}, introduced by ${by}.`);
+    this.listens.title = [ABOUT_LISTENING, ...introductions].join("\n");
   }
 
   #showWarnings(node) {
