@@ -64,11 +64,23 @@ bool CollisionWatch::flagged(core::Step step, core::Step last_violation) const {
 
 void CollisionWatch::judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
                            std::vector<SeenCollision>& out) {
+  sort_joined();
   for (const physics::Collision& c : first_contacts) {
     const bool judged_before = untouching_.erase({c.a, c.b}) > 0;
-    report({c, !judged_before && is_late(c)}, last_violation, out);
+    report({c, !judged_before && met_here(c) && is_late(c)}, last_violation, out);
   }
 }
+
+/// Two that have been in one world for longer touch as in one world, however deep: what breaks or appears may put one
+/// into the other. Whoever has joined for the last state moved then at the latest, and is found in this one.
+bool CollisionWatch::met_here(const physics::Collision& c) const {
+  const auto came = [&](const std::vector<Joined>& joined) {
+    return (find(joined, c.a) || find(joined, c.b)) && !came_together({c.a, c.b}, joined);
+  };
+  return came(joined_) || came(joined_before_);
+}
+
+void CollisionWatch::sort_joined() { std::ranges::sort(joined_, {}, &Joined::id); }
 
 void CollisionWatch::report(SeenCollision seen, core::Step last_violation, std::vector<SeenCollision>& out) {
   seen.flagged = flagged(seen.collision.step, last_violation);
@@ -83,6 +95,7 @@ void CollisionWatch::put_back(const CollisionCounts& counts) {
   states_.clear();
   overlapping_.clear();
   joined_.clear();
+  joined_before_.clear();
   untouching_.clear();
 }
 
@@ -93,22 +106,21 @@ void CollisionWatch::join(const core::Adoption& adoption) {
   }
 }
 
-const CollisionWatch::Joined* CollisionWatch::joined(core::BodyId id) const {
-  const auto found =
-      std::lower_bound(joined_.begin(), joined_.end(), id, [](const Joined& j, core::BodyId x) { return j.id < x; });
-  return found != joined_.end() && found->id == id ? &*found : nullptr;
+const CollisionWatch::Joined* CollisionWatch::find(const std::vector<Joined>& joined, core::BodyId id) {
+  const auto found = std::ranges::lower_bound(joined, id, {}, &Joined::id);
+  return found != joined.end() && found->id == id ? &*found : nullptr;
 }
 
 /// They were in one world before: whatever is between them has been judged there.
-bool CollisionWatch::came_together(const Pair& pair) const {
-  const Joined* const first = joined(pair.first);
-  const Joined* const second = joined(pair.second);
+bool CollisionWatch::came_together(const Pair& pair, const std::vector<Joined>& joined) {
+  const Joined* const first = find(joined, pair.first);
+  const Joined* const second = find(joined, pair.second);
   return first && second && first->source == second->source && first->stamp == second->stamp;
 }
 
 /// Who has left, and perhaps come back, may have been moved meanwhile.
 void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
-  const auto stays = [&](core::BodyId id) { return index_of(snapshot, id) && !joined(id); };
+  const auto stays = [&](core::BodyId id) { return index_of(snapshot, id) && !find(joined_, id); };
   std::erase_if(untouching_, [&](const Pair& pair) { return !stays(pair.first) || !stays(pair.second); });
 }
 
@@ -131,7 +143,7 @@ std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::ui
 
 void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::InterestMatching& matching,
                                     core::Step last_violation, std::vector<SeenCollision>& out) {
-  std::sort(joined_.begin(), joined_.end(), [](const Joined& a, const Joined& b) { return a.id < b.id; });
+  sort_joined();
   forget_parted(snapshot);
   for (const Joined& arrival : joined_) {
     const std::optional<std::uint32_t> here = index_of(snapshot, arrival.id);
@@ -143,9 +155,10 @@ void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::
           if (other == *here) return;
           std::optional<SeenCollision> seen = overlap_of(*here, other, snapshot, matching);
           if (!seen || !untouching_.insert({seen->collision.a, seen->collision.b}).second) return;
-          if (!came_together({seen->collision.a, seen->collision.b})) report(*seen, last_violation, out);
+          if (!came_together({seen->collision.a, seen->collision.b}, joined_)) report(*seen, last_violation, out);
         });
   }
+  joined_before_.swap(joined_);
   joined_.clear();
 }
 

@@ -1,6 +1,7 @@
 // Late and missed collisions (docs/design.md, "What is counted"), as one node can see them.
-// Late: when two bodies first touch, or come to one host without touching, they already overlap by more than one step
-// of their relative speed. Missed: two bodies of different hosts overlap in the same state.
+// Late: when two bodies have come to one host and touch in the first states that it computes of both, or come there
+// without touching, they already overlap by more than one step of their relative speed. Missed: two bodies of different
+// hosts overlap in the same state.
 #pragma once
 
 #include <cstdint>
@@ -82,12 +83,14 @@ class CollisionWatch {
     std::vector<Remembered> bodies;  ///< those near foreign auras, ascending id
   };
 
+  void sort_joined();
+  bool met_here(const physics::Collision& c) const;
   bool is_late(const physics::Collision& c) const;
   bool was_just_born(const physics::Collision& c) const;
   bool flagged(core::Step step, core::Step last_violation) const;
   const core::Pose* remembered(core::Step step, core::BodyId id) const;
-  const Joined* joined(core::BodyId id) const;
-  bool came_together(const Pair& pair) const;
+  static const Joined* find(const std::vector<Joined>& joined, core::BodyId id);
+  static bool came_together(const Pair& pair, const std::vector<Joined>& joined);
   void forget_parted(const core::Snapshot& snapshot);
   void forget_grown_up(core::Step now);
   void forget_separated(core::Step now);
@@ -103,7 +106,8 @@ class CollisionWatch {
   std::vector<std::pair<core::BodyId, core::Step>> births_;  ///< ascending id, of those that are young or unborn
   std::deque<State> states_;
   std::map<Pair, core::Step> overlapping_;  ///< counted as missed, and the newest state in which they overlapped
-  std::vector<Joined> joined_;              ///< ascending id
+  std::vector<Joined> joined_;              ///< for the state that is computed; ascending id from judge() on
+  std::vector<Joined> joined_before_;       ///< for the state before
   std::set<Pair> untouching_;               ///< overlap without a contact: judged before it comes
   CollisionCounts counts_;
 };

@@ -137,9 +137,25 @@ TEST_F(FirstContact, IsLateIfTheTwoAreDeeperInEachOtherThanTheyMoveInOneStep) {
   const double one_step_m = 6 * kStep_s + kGravity_m_s2 * kStep_s * kStep_s + kSlop_m;
   EXPECT_FALSE(touch(1, 2, one_step_m - 1e-6, 6).late);
   EXPECT_EQ(watch_.late(), 0u);
+  join({3});
   EXPECT_TRUE(touch(3, 4, one_step_m + 1e-6, 6).late);
   EXPECT_EQ(watch_.late(), 1u);
   EXPECT_EQ(watch_.missed(), 0u);
+}
+
+/// A joint that breaks, a wall that is put among them: it is as deep in one world.
+TEST_F(FirstContact, OfTwoThatHaveLongBeenHereIsNotLateHoweverDeep) {
+  pass(10);
+  EXPECT_FALSE(touch(1, 2, 0.4, 0).late);
+  join({3});
+  judge_arrivals();
+  pass(1);
+  judge_arrivals();
+  pass(1);
+  EXPECT_FALSE(touch(1, 3, 0.4, 0).late);
+  join({5, 6});
+  EXPECT_FALSE(touch(5, 6, 0.4, 0).late) << "they came together";
+  EXPECT_TRUE(touch(1, 5, 0.4, 0).late);
 }
 
 TEST_F(FirstContact, BeforeTheShapesOverlapIsNotLate) {
@@ -149,14 +165,17 @@ TEST_F(FirstContact, BeforeTheShapesOverlapIsNotLate) {
 
 TEST_F(FirstContact, InTheFirstTwoStatesIsTheScenesDoing) {
   pass(2);
+  join({2});
   EXPECT_FALSE(touch(1, 2, 0.4, 0).late);
   pass(1);
+  join({4});
   EXPECT_TRUE(touch(3, 4, 0.4, 0).late);
 }
 
 TEST_F(FirstContact, OfABodyThatIsBornInAnotherIsTheScenesDoing) {
   watch_.newborn(body(7), 20);
   go_to(22);
+  join({1});
   EXPECT_FALSE(touch(1, 7, 0.4, 0).late);
   EXPECT_FALSE(touch(7, 9, 0.4, 0).late);
   EXPECT_TRUE(touch(1, 9, 0.4, 0).late) << "the others are not young";
@@ -167,8 +186,8 @@ TEST_F(FirstContact, OfABodyThatIsBornInAnotherIsTheScenesDoing) {
 TEST_F(FirstContact, OfABodyThatWasBornElsewhereAMomentAgoIsTheScenesDoing) {
   go_to(21);
   join({7}, 1, 20, 20);
-  judge_arrivals();
   EXPECT_FALSE(touch(1, 7, 0.4, 0).late);
+  judge_arrivals();
   go_to(23);
   EXPECT_TRUE(touch(1, 7, 0.4, 0).late);
 }
@@ -185,6 +204,7 @@ using Flag = CollisionWatchTest;
 TEST_F(Flag, ABrokenPromiseExplainsWhatIsWrongUntilItsMessagesAreReplaced) {
   last_violation_ = 10;
   go_to(10 + core::horizon::blame(kLookahead));
+  join({1, 3});
   EXPECT_TRUE(touch(1, 2, 0.4, 0).flagged);
   EXPECT_EQ(watch_.unflagged(), 0u);
   pass(1);
