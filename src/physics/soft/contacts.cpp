@@ -1,7 +1,6 @@
 #include "physics/soft/contacts.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -52,12 +51,12 @@ bool bounds_overlap(const btBroadphasePair& pair) {
   return !is_plane(body_of(b)) || !is_above(a, body_of(b));
 }
 
-void forget(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
-  if (pair.m_algorithm == nullptr) return;
-  pair.m_algorithm->~btCollisionAlgorithm();
-  dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
-  pair.m_algorithm = nullptr;
+bool is_awake(const btBroadphasePair& pair) {
+  return body_of(*pair.m_pProxy0).isActive() || body_of(*pair.m_pProxy1).isActive();
 }
+
+/// Sleepers touch what they touched.
+bool needs_look(const btBroadphasePair& pair) { return !is_awake(pair) || bounds_overlap(pair); }
 
 void prefetch_bodies(const btBroadphasePair& pair) {
   prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
@@ -97,15 +96,17 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
       const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4]);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
-    look(all[i], dispatcher, info);
+    if (needs_look(all[i])) {
+      look(all[i], dispatcher, info);
+    } else {
+      pairs.cleanOverlappingPair(all[i], &dispatcher);
+    }
   }
 }
 
 void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
-  const bool awake = a.isActive() || b.isActive();
-  if (!awake) return collect(pair, false);
-  if (!bounds_overlap(pair)) return forget(pair, dispatcher);
+  if (!is_awake(pair)) return collect(pair, false);
   const bool whole = !a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound();
   const auto only = [&]() -> btPersistentManifold* {
     const btManifoldArray& manifolds = manifolds_of(pair);

@@ -1,7 +1,6 @@
 #include "physics/soft/world.h"
 
 #include <span>
-#include <utility>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
