@@ -244,6 +244,7 @@ void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) 
 
 void DdsTransport::Impl::send_aura(const core::AuraBatch& batch) {
   encode(batch, aura);
+  aura_writer.forget_acknowledged();
   count_sent(counters.aura, aura_writer.write(&aura), bytes_of(aura));
 }
 

@@ -75,6 +75,14 @@ WriteResult Writer::write(void* sample) {
   return sent ? WriteResult::kSentAtSecondTry : WriteResult::kFailed;
 }
 
+std::size_t Writer::forget_acknowledged() {
+  std::size_t forgotten = 0;
+  if (writer_->wait_for_acknowledgments({0, 0}) == ReturnCode_t::RETCODE_OK) {
+    writer_->clear_history(&forgotten);
+  }
+  return forgotten;
+}
+
 bool Writer::reaches(core::RegionId region) const {
   return std::ranges::any_of(watch_.readers(), [&](const Guid& reader) {
     return domain_.directory().region_of(reader) == std::int64_t{core::value_of(region)};

@@ -41,6 +41,11 @@ class Writer {
 
   /// `sample` is the generated type of the topic.
   WriteResult write(void* sample);
+  /// Forgets all samples if every reader has them all; returns how many there were. For volatile writers of which only
+  /// the caller's thread writes. Fast DDS 2.9 forgets them by itself, except those that a reader was still to
+  /// acknowledge when another one was matched: these stay for ever, and each heartbeat then lists what is missing after
+  /// them, one by one.
+  std::size_t forget_acknowledged();
   /// True when a reader of `region` is matched.
   bool reaches(core::RegionId region) const;
   std::size_t reader_count() const { return watch_.readers().size(); }
