@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include "core/make_aura.h"
 #include "node/local_origin.h"
@@ -66,6 +67,8 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.friction_directions = launch.physics.friction_directions;
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.continuous;
+  setup.physics.threads =
+      launch.physics.threads.value_or(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64));
   if (launch.physics.origin == config::Origin::kRegion) {
     setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
   }

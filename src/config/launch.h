@@ -46,9 +46,10 @@ struct Physics {
   std::string precision = "double";  ///< or "single"
   std::string solver = "sequential_impulse";
   int iterations = 10;
-  int friction_directions = 1;  ///< rows of friction at each contact point, 1 or 2
-  double contact_erp = 0.2;     ///< share of an overlap undone in each substep, by a speed that stays
-  bool continuous = false;      ///< fast bodies stop at what is in their way
+  int friction_directions = 1;     ///< rows of friction at each contact point, 1 or 2
+  double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that stays
+  bool continuous = false;         ///< fast bodies stop at what is in their way
+  std::optional<int> threads = 1;  ///< of a node's physics; none: as many as the host has for it
   /// Where Bullet's coordinates begin: kWorld keeps equal bits on any number of nodes, kRegion accuracy far out.
   Origin origin = Origin::kWorld;
 };

@@ -48,11 +48,6 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
     regions.complain("time.redo is on, allowed: auto or off where time.sync is free_running: nodes do not agree there");
     return;
   }
-  if (launch.physics.continuous && launch.physics.solver == "soft_step") {
-    regions.complain(
-        "physics.continuous is on, allowed: off where physics.solver is soft_step: it stops no fast bodies");
-    return;
-  }
   const double reach = reach_m(launch);
   if (launch.regions.narrowest_m() < reach && !launch.redoes()) {
     regions.complain(fmt::format(

@@ -100,7 +100,7 @@ const KeysOf<Physics>& physics_keys() {
           optional("solver", &Physics::solver, words({"sequential_impulse", "nncg", "dantzig", "soft_step"}),
                    "of contacts and joints: projected Gauss-Seidel, nonsmooth conjugate gradient, or direct (slow in "
                    "piles, knows no rolling friction); soft_step looks once a step for what touches, solves in the "
-                   "substeps, and knows no iterations, friction_directions, erp and continuous"),
+                   "substeps, and knows no iterations, friction_directions and erp"),
           optional("iterations", &Physics::iterations, integer(1, 1000), "of the solver in each substep"),
           optional("friction_directions", &Physics::friction_directions, integer(1, 2),
                    "rows of friction at each contact point; with 1, piles creep and a card house falls"),
@@ -109,6 +109,9 @@ const KeysOf<Physics>& physics_keys() {
           optional("continuous", &Physics::continuous, flag(),
                    "continuous collision detection: fast bodies stop at what is in their way instead of passing "
                    "through what is thin"),
+          optional("threads", &Physics::threads, integer(1, 64).or_word("auto"),
+                   "of each node's soft_step; their number changes no bit. auto: the host's cores, shared among the "
+                   "nodes that launch starts there"),
           optional("origin", &Physics::origin, choice<Origin>({{"world", Origin::kWorld}, {"region", Origin::kRegion}}),
                    "where Bullet's coordinates begin. world: equal bits on any number of nodes; region: in the middle "
                    "of each region, which is accurate far out"),

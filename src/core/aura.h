@@ -31,12 +31,16 @@ struct AuraRules {
   double contact_margin_m = 0.03;  ///< contacts begin at 0.02 (physics/), shapes are given to 1 mm, and a little more
   double reach_scale = 1;          ///< tests only: auras that are a little too small must fail
   double check_scale = 1;          ///< tests only: a check without its margin must miss something
-  bool sweeps = false;             ///< physics stops fast bodies at what is in their way, without a contact
+  bool sweeps = false;             ///< physics finds what is in the way of fast bodies between two looks, too
   bool redo = false;               ///< what was computed with two bodies apart that touched is computed again
   Vec3 gravity = {0, 0, -9.81};    ///< m/s^2
 
   /// How often in a step it is found what touches.
   int looks() const { return looks_once ? 1 : substeps; }
+  /// Does a look find what will touch before the next one (physics/soft/ahead.h)?
+  bool looks_ahead() const { return looks_once && sweeps; }
+  /// How often in a step of a path auras ask whether two bodies touch.
+  int instants() const { return looks_ahead() ? 4 : looks(); }
 };
 
 /// One body's predicted motion from the state in which it was last known.

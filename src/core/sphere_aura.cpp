@@ -40,10 +40,10 @@ Range SphereAura::span(double steps) const {
   return {rules().reach_scale * steps * rules().step_s * rules().top_speed_m_s, 0};
 }
 
-/// Contacts are sought at every substep, so the last (S-1)/S of a step counts, for both bodies; so does every further
+/// With S instants in a step at which contacts may be found the last (S-1)/S of a step counts, for both bodies; so does every further
 /// hop that a pull can chain through.
 Aura::Steps TightAura::chained(double own, double other, int hops) const {
-  const double more = 1.0 * (rules().looks() - 1) / rules().looks() + 1.0 * (hops - 1) * rules().lookahead;
+  const double more = 1.0 * (rules().instants() - 1) / rules().instants() + 1.0 * (hops - 1) * rules().lookahead;
   return {own + more, other + more};
 }
 

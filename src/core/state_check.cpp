@@ -149,7 +149,7 @@ StateCheck::Way StateCheck::way(const Sighting& now, const Sighting* before) con
   way.middle = 0.5 * (begin + end.pose.p_WB);
   way.reach_m += 0.5 * apart + bulge(step_s * fastest, apart) + std::min(2.0, off) * end.radius_m;
   if (!before) way.reach_m += step_s * fastest;
-  if (aura_.rules().sweeps) way.reach_m += apart;
+  if (aura_.rules().sweeps) way.reach_m += aura_.rules().looks_ahead() ? step_s * fastest : apart;
   return way;
 }
 
@@ -195,6 +195,40 @@ bool StateCheck::sweeps_into(const Motion& moving, const Motion& other, double s
   return aura_.clearance().clearance(moving.at_end.prototype, middle, other.at_end.prototype, at, allowed) <= allowed;
 }
 
+/// Do two bodies touch within `allowed_m` while the first comes by `way`? By conservative advancement (Mirtich 1996).
+bool StateCheck::meet_on(const Pose& a, const Pose& b, const Motion& of_a, const Motion& of_b, const Vec3& way,
+                         double allowed_m) const {
+  constexpr double kShortest_m = 0.001;
+  const double length = way.norm();
+  for (double gone = 0;;) {
+    const Pose at{a.p_WB + (length > 0 ? gone / length : 0) * way, a.q_WB};
+    const double limit = allowed_m + length - gone;
+    double gap = (at.p_WB - b.p_WB).norm() - of_a.at_end.radius_m - of_b.at_end.radius_m;
+    if (gap > limit) return false;
+    gap = aura_.clearance().clearance(of_a.at_end.prototype, at, of_b.at_end.prototype, b, limit);
+    if (gap > limit) return false;
+    if (gap <= allowed_m + kShortest_m) return true;
+    gone += gap - allowed_m;
+  }
+}
+
+/// Physics looks how two bodies go on from the start of the step, straight and without turning: as they fly there, or,
+/// if they have been kicked since, as they fly at the end.
+bool StateCheck::meet_ahead(const Motion& a, const Motion& b, double allowed_m) const {
+  const double step_s = aura_.rules().step_s;
+  const Vec3 fall = 0.5 * step_s * step_s * aura_.rules().gravity;
+  const auto from_start = [&](const Motion& m) -> Vec3 {
+    return m.at_start.moves ? Vec3(step_s * m.at_start.v_WB + fall) : Vec3(Vec3::Zero());
+  };
+  const auto as_at_end = [&](const Motion& m) -> Vec3 {
+    return m.at_end.moves ? Vec3(step_s * m.at_end.v_WB - fall) : Vec3(Vec3::Zero());
+  };
+  const Pose &at = a.at_start.pose, &bt = b.at_start.pose;
+  const Vec3 way = from_start(a) - from_start(b), way_at_end = as_at_end(a) - as_at_end(b);
+  if (meet_on(at, bt, a, b, way, allowed_m)) return true;
+  return (way - way_at_end).norm() > allowed_m && meet_on(at, bt, a, b, way_at_end, allowed_m);
+}
+
 /// Contacts are looked for at the start of each substep.
 bool StateCheck::touch(const Motion& a, const Motion& b) const {
   const int substeps = aura_.rules().looks();
@@ -202,6 +236,7 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
   for (int i = 0; i < substeps; ++i) {
     const double share = static_cast<double>(i) / substeps;
     const double allowed = margin + a.at_end.blur_m + b.at_end.blur_m + (i > 0 ? a.stray_m + b.stray_m : 0);
+    if (aura_.rules().looks_ahead()) return meet_ahead(a, b, allowed);
     if (aura_.rules().sweeps && (sweeps_into(a, b, share, allowed) || sweeps_into(b, a, share, allowed))) return true;
     const Pose at = pose(a, share);
     const Pose bt = pose(b, share);

@@ -72,6 +72,9 @@ class StateCheck {
   void compare_with_others(const Way& one, std::uint32_t from, double margin_m);
   Motion motion(const Sighting& now, const Sighting* before) const;
   bool touch(const Motion& a, const Motion& b) const;
+  bool meet_ahead(const Motion& a, const Motion& b, double allowed_m) const;
+  bool meet_on(const Pose& a, const Pose& b, const Motion& of_a, const Motion& of_b, const Vec3& way,
+               double allowed_m) const;
   bool sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const;
   Pose pose(const Motion& motion, double share) const;
 

@@ -59,20 +59,22 @@ double SweptAura::drop_m(double steps) const {
   return 0.5 * gravity_m_s2() * t * (t + rules().step_s);
 }
 
-double SweptAura::last_instant(int horizon_steps) const { return std::max(0.0, horizon_steps - 1.0 / rules().looks()); }
+double SweptAura::last_instant(int horizon_steps) const { return std::max(0.0, horizon_steps - 1.0 / rules().instants()); }
 
 bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
-  const int substeps = rules().looks();
+  const int instants = rules().instants();
   const double spread = rules().uncertainty * rules().step_s;
   const double last = horizon_steps;
+  // Of the way between two instants, where physics looks ahead.
+  const double half_way = rules().looks_ahead() ? 0.5 * rules().step_s * (a.v_WB - b.v_WB).norm() / instants : 0;
   // The clearance shrinks at most this fast, in metres per step.
   const double oldest = std::max(a.age_steps, b.age_steps);
   const double fall = gravity_m_s2() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules().step_s;
   const double closing =
       rules().step_s * ((a.v_WB - b.v_WB).norm() + fall + a.w_WB.norm() * a.radius_m + b.w_WB.norm() * b.radius_m +
                         rules().uncertainty * (a.speed_m_s + b.speed_m_s));
-  for (int i = 0; i < horizon_steps * substeps;) {
-    const double k = static_cast<double>(i) / substeps;
+  for (int i = 0; i < horizon_steps * instants;) {
+    const double k = static_cast<double>(i) / instants;
     if (k + 1e-9 < std::max(a.unborn_steps, b.unborn_steps)) {
       ++i;
       continue;
@@ -82,7 +84,7 @@ bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) cons
     // One of them may stand on something and not fall as its path says. If both do, that makes no difference.
     const double unfallen = drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
     const double allowed =
-        rules().reach_scale * (rules().contact_margin_m + a.blur_m + b.blur_m + unfallen +
+        rules().reach_scale * (rules().contact_margin_m + half_way + a.blur_m + b.blur_m + unfallen +
                                spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
     double gap = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
     if (gap <= allowed) {
@@ -91,7 +93,7 @@ bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) cons
       if (gap <= allowed) return true;
     }
     const double free_steps = closing > 0 ? (gap - allowed) / closing : last;
-    i += std::max(1, static_cast<int>(std::min(free_steps, last) * substeps));
+    i += std::max(1, static_cast<int>(std::min(free_steps, last) * instants));
   }
   return false;
 }

@@ -57,10 +57,26 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration) : btCollisionDis
 }
 
 btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {
+  const std::scoped_lock lock(pools_);
   btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(body0, body1);
   const btScalar limit = static_cast<btScalar>(kContactMargin);
   manifold->setContactBreakingThreshold(std::min(manifold->getContactBreakingThreshold(), limit));
   return manifold;
+}
+
+void Dispatcher::releaseManifold(btPersistentManifold* manifold) {
+  const std::scoped_lock lock(pools_);
+  btCollisionDispatcher::releaseManifold(manifold);
+}
+
+void* Dispatcher::allocateCollisionAlgorithm(int bytes) {
+  const std::scoped_lock lock(pools_);
+  return btCollisionDispatcher::allocateCollisionAlgorithm(bytes);
+}
+
+void Dispatcher::freeCollisionAlgorithm(void* memory) {
+  const std::scoped_lock lock(pools_);
+  btCollisionDispatcher::freeCollisionAlgorithm(memory);
 }
 
 }  // namespace aurasim::physics

@@ -91,6 +91,7 @@ DynamicsWorld::~DynamicsWorld() {
 void DynamicsWorld::insert(btRigidBody& body, int rank) {
   bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
   bullet_->world->addRigidBody(&body);
+  bullet_->world->updateSingleAabb(&body);  // with the margin: of a sleeper this is not done again
 }
 
 void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {

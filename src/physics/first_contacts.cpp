@@ -85,6 +85,13 @@ void FirstContacts::report_pair(const btPersistentManifold& manifold, btOverlapp
   found_.push_back(describe(*deepest));
 }
 
+void FirstContacts::add(const FirstContact& contact, const btBroadphasePair& pair) {
+  collect_manifolds(pair, of_pair_);
+  const auto touched = [this](const PartManifold& part) { return touched_before(*part.manifold); };
+  if (std::ranges::none_of(of_pair_, touched)) found_.push_back(contact);
+  for (const PartManifold& part : of_pair_) know(*part.manifold);
+}
+
 void FirstContacts::know(btPersistentManifold& manifold) const {
   manifold.m_companionIdA = static_cast<int>(now_);
   manifold.m_companionIdB = static_cast<int>(now_ - 1);

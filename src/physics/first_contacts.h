@@ -9,6 +9,7 @@
 #include "physics/contact_cache.h"
 
 class btDispatcher;
+struct btBroadphasePair;
 class btOverlappingPairCache;
 class btPersistentManifold;
 
@@ -29,6 +30,10 @@ class FirstContacts {
  public:
   /// Call once per substep, between collision detection and solver.
   void look(btDispatcher& dispatcher, btOverlappingPairCache& pairs);
+
+  /// A contact that look() does not see: when it looks, the two have not met yet. If it sees them next time, they are
+  /// not new.
+  void add(const FirstContact& contact, const btBroadphasePair& pair);
 
   /// A contact that has come with its cache from another world is not a new one.
   void know(btPersistentManifold& manifold) const;

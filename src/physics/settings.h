@@ -21,6 +21,8 @@ struct Settings {
   int looks() const { return looks_once() ? 1 : substeps; }
   Solver solver = Solver::kSequentialImpulse;
   int solver_iterations = 10;
+  /// Of the soft step. Their number changes no bit.
+  int threads = 1;
   /// Share of an overlap that contacts undo in a substep, by a speed that stays (Bullet's error reduction parameter).
   double contact_erp = 0.2;
   /// Rows of friction at each contact point: 1 along the sliding velocity, 2 across each other. Bullet's own 1 turns

@@ -61,11 +61,14 @@ TEST(SoftAhead, BoxesMeetBeforeTheyOverlap) {
   RegionWorld world(scene, ahead());
   world.add(std::vector{body(1, 0, {-2.01, 0, 0}, {20, 0, 0}), body(2, 0, {2.01, 0, 0}, {-20, 0, 0})});
   double deepest_m = 0;
+  std::size_t collisions = 0;
   for (int i = 0; i < 20; ++i) {
     world.step();
+    collisions += world.collisions().size();
     deepest_m = std::max(deepest_m, 1 - (world.records()[1].p_WB - world.records()[0].p_WB).x());
   }
   EXPECT_LT(deepest_m, 0.02);
+  EXPECT_EQ(collisions, 1U);
   const core::Vec3 momentum = world.records()[0].v_WB + world.records()[1].v_WB;
   EXPECT_LT(momentum.norm(), 1e-5);
 }

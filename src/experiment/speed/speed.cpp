@@ -57,9 +57,9 @@ void append_row(const SpeedRun& run, const std::filesystem::path& file) {
   if (is_new) {
     out << "scene,engine,precision,threads,steps,body_steps,cpu_ms,late_steps,late_cpu_ms,wall_ms,late_wall_ms\n";
   }
-  out << fmt::format("{},{},{},1,{},{:.0f},{:.3f},{},{:.3f},{:.3f},{:.3f}\n", run.scene, run.engine,
-                     physics::RegionWorld::precision(), run.steps, run.body_steps, run.cpu_ms, run.late_steps,
-                     run.late_cpu_ms, run.wall_ms, run.late_wall_ms);
+  out << fmt::format("{},{},{},{},{},{:.0f},{:.3f},{},{:.3f},{:.3f},{:.3f}\n", run.scene, run.engine,
+                     physics::RegionWorld::precision(), run.threads, run.steps, run.body_steps, run.cpu_ms,
+                     run.late_steps, run.late_cpu_ms, run.wall_ms, run.late_wall_ms);
   out.close();
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
@@ -67,7 +67,8 @@ void append_row(const SpeedRun& run, const std::filesystem::path& file) {
 SpeedRun run_into(const std::filesystem::path& directory, const SpeedScene& scene, const SpeedSettings& settings) {
   const std::string engine = "aurasim-" + settings.name;
   const std::filesystem::path file =
-      directory / "states" / fmt::format("{}.{}.{}.1.txt", scene.name, engine, physics::RegionWorld::precision());
+      directory / "states" /
+      fmt::format("{}.{}.{}.{}.txt", scene.name, engine, physics::RegionWorld::precision(), settings.physics.threads);
   std::ofstream states(file);
   SpeedRun run = run_speed(scene, settings, states);
   states.close();
@@ -97,6 +98,7 @@ SpeedRun run_speed(const SpeedScene& all, const SpeedSettings& settings, std::os
   SpeedRun run;
   run.scene = all.name;
   run.engine = "aurasim-" + settings.name;
+  run.threads = settings.physics.threads;
   run.steps = all.steps;
   run.late_steps = late_steps_of(all);
   physics::Settings physics = settings.physics;
@@ -140,7 +142,9 @@ std::vector<SpeedRun> run_speed(const SpeedPlan& plan, const std::filesystem::pa
     for (const SpeedScene& scene : scenes) {
       for (const std::string& name : plan.settings) {
         if (!next(static_cast<double>(runs.size()) / whole)) return runs;
-        runs.push_back(run_into(directory, scene, settings_named(name, plan.solver)));
+        SpeedSettings settings = settings_named(name, plan.solver);
+        settings.physics.threads = plan.threads;
+        runs.push_back(run_into(directory, scene, settings));
       }
     }
   }

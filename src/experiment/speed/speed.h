@@ -29,6 +29,7 @@ struct SpeedPlan {
   std::vector<std::string> scenes;                  ///< none: every scene
   std::vector<std::string> settings = {"default"};  ///< names of speed_settings()
   std::string solver;                               ///< instead of theirs; or empty
+  int threads = 1;
   SceneSize size = SceneSize::kWhole;
   int repeats = 1;  ///< 0: only the scenes are written
 };
@@ -37,6 +38,7 @@ struct SpeedPlan {
 struct SpeedRun {
   std::string scene;
   std::string engine;  ///< "aurasim-" and the settings
+  int threads = 1;
   core::Step steps = 0;
   double body_steps = 0;  ///< sum over the steps of the bodies that are there
   double cpu_ms = 0;

@@ -1,6 +1,7 @@
 #include "physics/soft/contacts.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -14,6 +15,7 @@
 #include "physics/soft/ahead.h"
 #include "physics/soft/convert.h"
 #include "physics/soft/kept_contacts.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -64,13 +66,14 @@ void prefetch_bodies(const btBroadphasePair& pair) {
   if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
 }
 
-}  // namespace
-
-btManifoldArray& SoftContacts::manifolds_of(const btBroadphasePair& pair) {
-  manifolds_.resizeNoInitialize(0);
-  if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(manifolds_);
-  return manifolds_;
+/// Valid until the next call.
+btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& space) {
+  space.resizeNoInitialize(0);
+  if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(space);
+  return space;
 }
+
+}  // namespace
 
 btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gravity) const {
   if (object.isStaticObject() || !object.isActive()) return {0, 0, 0};
@@ -79,37 +82,60 @@ btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gr
 
 void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
                         const btVector3& gravity) {
+  constexpr int kAtOnce = 512;  // pairs
   gravity_ = gravity;
+  for (List& list : lists_) list.touches.clear(), list.patches.clear(), list.will_meet.clear();
+  const int count = pairs.getNumOverlappingPairs();
+  std::atomic<int> taken = 0;
+  soft::side_by_side(count > kAtOnce ? threads_ : 1, [&](const soft::Worker& worker) {
+    List& list = lists_[static_cast<std::size_t>(worker.number)];
+    for (int first = taken.fetch_add(kAtOnce); first < count; first = taken.fetch_add(kAtOnce)) {
+      look(list, pairs, first, std::min(count, first + kAtOnce), dispatcher, info);
+    }
+  });
   touches_.clear();
-  patches_.clear();
+  ahead_.clear();
+  for (std::uint32_t i = 0; i < lists_.size(); ++i) {
+    for (SoftTouch& touch : lists_[i].touches) touch.list = i;
+    touches_.insert(touches_.end(), lists_[i].touches.begin(), lists_[i].touches.end());
+  }
+  for (const List& list : lists_) {
+    for (const WillMeet& two : list.will_meet) meet(two, dispatcher, info);
+  }
+}
+
+/// Nobody else touches these pairs, so what is fetched ahead of time ends with them.
+void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, int last,
+                        btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
-  for (int i = 0; i < all.size(); ++i) {
-    if (i + kPrefetchDistance < all.size()) prefetch_bodies(all[i + kPrefetchDistance]);
-    if (i + kPrefetchDistance / 2 < all.size()) {
+  for (int i = first; i < last; ++i) {
+    if (i + kPrefetchDistance < last) prefetch_bodies(all[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance / 2 < last) {
       const btBroadphasePair& pair = all[i + kPrefetchDistance / 2];
       prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
       prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
-      const btManifoldArray& manifolds = manifolds_of(pair);
+      const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_head(*manifolds[k]);
     }
-    if (i + kPrefetchDistance / 4 < all.size()) {
-      const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4]);
+    if (i + kPrefetchDistance / 4 < last) {
+      const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4], list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
     if (needs_look(all[i])) {
-      look(all[i], dispatcher, info);
+      look(list, all[i], dispatcher, info);
     } else {
       pairs.cleanOverlappingPair(all[i], &dispatcher);
     }
   }
 }
 
-void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+void SoftContacts::look(List& list, btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                        const btDispatcherInfo& info) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
-  if (!is_awake(pair)) return collect(pair, false);
+  if (!is_awake(pair)) return collect(list, pair, false);
   const bool whole = !a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound();
   const auto only = [&]() -> btPersistentManifold* {
-    const btManifoldArray& manifolds = manifolds_of(pair);
+    const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
     return whole && manifolds.size() == 1 && manifolds[0]->getNumContacts() > 0 ? manifolds[0] : nullptr;
   };
   btPersistentManifold* const before = only();
@@ -117,43 +143,51 @@ void SoftContacts::look(btBroadphasePair& pair, btCollisionDispatcher& dispatche
     dispatcher.getNearCallback()(pair, dispatcher, info);
     if (btPersistentManifold* const told = only()) note_contacts(*told);
   }
-  const std::size_t touched = touches_.size();
-  collect(pair, true);
-  if (looks_ahead_ && touches_.size() == touched) look_ahead(pair, dispatcher, info);
+  const std::size_t touched = list.touches.size();
+  collect(list, pair, true);
+  if (looks_ahead_ && list.touches.size() == touched) look_ahead(list, pair);
 }
 
-/// One of the two is put where they will touch for as long as their contacts are told there.
-void SoftContacts::look_ahead(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+void SoftContacts::look_ahead(List& list, btBroadphasePair& pair) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   const btVector3 way = this->way(a, gravity_) - this->way(b, gravity_);
   if (way.length2() < kLongWay_m * kLongWay_m || !a.hasContactResponse() || !b.hasContactResponse()) return;
   if (!a.checkCollideWith(&b) || !b.checkCollideWith(&a)) return;
-  const std::optional<SoftMeeting> meeting = meeting_ahead(a, b, way);
-  if (!meeting) return;
-  const btVector3 shift = meeting->until + meeting->normal * kOverlap_m;
-  const bool first_moves = !a.isStaticObject();
+  if (const std::optional<SoftMeeting> meeting = meeting_ahead(a, b, way)) list.will_meet.push_back({&pair, *meeting});
+}
+
+/// One of the two is put where they will touch for as long as their contacts are told there.
+void SoftContacts::meet(const WillMeet& two, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  btBroadphasePair& pair = *two.pair;
+  const btVector3 shift = two.meeting.until + two.meeting.normal * kOverlap_m;
+  const bool first_moves = !body_of(*pair.m_pProxy0).isStaticObject();
   auto& moved = *static_cast<btCollisionObject*>((first_moves ? pair.m_pProxy0 : pair.m_pProxy1)->m_clientObject);
   const btTransform place = moved.getWorldTransform();
   moved.setWorldTransform(btTransform(place.getBasis(), place.getOrigin() + (first_moves ? shift : -shift)));
   dispatcher.getNearCallback()(pair, dispatcher, info);
-  collect_ahead(pair, *meeting, shift);
+  collect_ahead(pair, two.meeting, shift);
   moved.setWorldTransform(place);
 }
 
 void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
-  const std::size_t first = patches_.size();
-  const btManifoldArray& manifolds = manifolds_of(pair);
+  List& list = lists_[0];
+  const auto first = static_cast<std::uint32_t>(list.patches.size());
+  const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
     if (manifolds[i]->getNumContacts() == 0) continue;
     const btCollisionObject &body0 = *manifolds[i]->getBody0(), &body1 = *manifolds[i]->getBody1();
-    touches_.push_back({manifolds[i], body0.getUserIndex(), body1.getUserIndex(), parts_of(*manifolds[i]), true, 0, 0});
-    read(touches_.back(), &body0 == &a ? shift : -shift);
+    SoftTouch& touch = touches_.emplace_back();
+    touch.manifold = manifolds[i], touch.a = body0.getUserIndex(), touch.b = body1.getUserIndex();
+    touch.parts = parts_of(*manifolds[i]);
+    read(list, touch, &body0 == &a ? shift : -shift);
     manifolds[i]->clearManifold();
   }
-  if (patches_.size() == first) {  // as they touch only just
-    touches_.push_back({nullptr, a.getUserIndex(), b.getUserIndex(), {}, true, static_cast<std::uint32_t>(first), 1});
-    SoftPatch& patch = patches_.emplace_back();
+  if (list.patches.size() == first) {  // as they touch only just
+    SoftTouch& touch = touches_.emplace_back();
+    touch.a = a.getUserIndex(), touch.b = b.getUserIndex();
+    touch.first_patch = first, touch.patches = 1;
+    SoftPatch& patch = list.patches.emplace_back();
     patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
     soft::from_bullet(meeting.normal, patch.normal);
     patch.friction = static_cast<Real>(btManifoldResult::calculateCombinedFriction(&a, &b));
@@ -163,36 +197,46 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     soft::from_bullet(meeting.r_b, patch.points[0].r_b);
     patch.points[0].gap = static_cast<Real>(meeting.until.dot(meeting.normal));
   }
-  for (std::size_t i = first; i < patches_.size(); ++i) patches_[i].ahead = true;
+  for (std::size_t i = first; i < list.patches.size(); ++i) list.patches[i].ahead = true;
+  if (a.isStaticObject() || b.isStaticObject()) return;
+  const auto velocity = [](const btCollisionObject& object, const btVector3& r) {
+    return btRigidBody::upcast(&object)->getVelocityInLocalPoint(r);
+  };
+  ahead_.push_back({&pair, first, static_cast<std::uint32_t>(list.patches.size()) - first,
+                    b.getWorldTransform().getOrigin() + meeting.r_b,
+                    velocity(a, meeting.r_a) - velocity(b, meeting.r_b)});
 }
 
-void SoftContacts::collect(const btBroadphasePair& pair, bool awake) {
-  const btManifoldArray& manifolds = manifolds_of(pair);
+void SoftContacts::collect(List& list, const btBroadphasePair& pair, bool awake) {
+  const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
     btPersistentManifold& manifold = *manifolds[i];
     if (manifold.getNumContacts() == 0) continue;
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
-    const bool acts = a.hasContactResponse() && b.hasContactResponse();
-    touches_.push_back({&manifold, a.getUserIndex(), b.getUserIndex(), parts_of(manifold), acts, 0, 0});
-    if (awake && acts) read(touches_.back());
+    SoftTouch& touch = list.touches.emplace_back();
+    touch.manifold = &manifold, touch.a = a.getUserIndex(), touch.b = b.getUserIndex();
+    touch.parts = parts_of(manifold);
+    touch.acts = a.hasContactResponse() && b.hasContactResponse();
+    if (awake && touch.acts) read(list, touch, {0, 0, 0});
   }
 }
 
 /// The impulses of friction are the patch's. The oldest point has them longest.
-void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
+void SoftContacts::read(List& list, SoftTouch& touch, const btVector3& shift) {
+  std::vector<SoftPatch>& patches = list.patches;
   const btPersistentManifold& manifold = *touch.manifold;
   const btVector3& centre_a = manifold.getBody0()->getWorldTransform().getOrigin();
   const btVector3& centre_b = manifold.getBody1()->getWorldTransform().getOrigin();
-  touch.first_patch = static_cast<std::uint32_t>(patches_.size());
+  touch.first_patch = static_cast<std::uint32_t>(patches.size());
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     const btManifoldPoint& point = manifold.getContactPoint(i);
     std::size_t k = touch.first_patch;
-    while (k < patches_.size() &&
-           manifold.getContactPoint(patches_[k].of[0]).m_normalWorldOnB.dot(point.m_normalWorldOnB) < kSameNormal) {
+    while (k < patches.size() &&
+           manifold.getContactPoint(patches[k].of[0]).m_normalWorldOnB.dot(point.m_normalWorldOnB) < kSameNormal) {
       ++k;
     }
-    if (k == patches_.size()) {
-      SoftPatch& made = patches_.emplace_back();
+    if (k == patches.size()) {
+      SoftPatch& made = patches.emplace_back();
       made.manifold = touch.manifold, made.a = touch.a, made.b = touch.b;
       soft::from_bullet(-point.m_normalWorldOnB, made.normal);
       made.friction = static_cast<Real>(point.m_combinedFriction);
@@ -200,7 +244,7 @@ void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
       made.spinning_m = static_cast<Real>(point.m_combinedSpinningFriction);
       made.rolling_m = static_cast<Real>(point.m_combinedRollingFriction);
     }
-    SoftPatch& patch = patches_[k];
+    SoftPatch& patch = patches[k];
     int oldest = -1;
     for (int j = 0; j < patch.count; ++j) {
       oldest = std::max(oldest, manifold.getContactPoint(patch.of[static_cast<std::size_t>(j)]).m_lifeTime);
@@ -218,7 +262,7 @@ void SoftContacts::read(SoftTouch& touch, const btVector3& shift) {
     to.gap = static_cast<Real>(point.getDistance() - shift.dot(point.m_normalWorldOnB));
     to.impulse = static_cast<Real>(point.m_appliedImpulse);
   }
-  touch.patches = static_cast<std::uint32_t>(patches_.size()) - touch.first_patch;
+  touch.patches = static_cast<std::uint32_t>(patches.size()) - touch.first_patch;
 }
 
 }  // namespace aurasim::physics

@@ -133,13 +133,15 @@ std::size_t SoftPatches::place() {
   };
   for (const Entry& entry : entries_) ++patches[kind(*entry.patch)];
   runs_.clear();
-  std::size_t blocks = 0;
+  std::size_t blocks = 0, colour = 0;
   for (std::size_t k = 0; k < kKinds; ++k) {
     if (patches[k] == 0) continue;
     const bool alone = k / kCounts == kColours;
     const std::size_t count = alone ? patches[k] : (patches[k] + kLanes - 1) / kLanes;
     next[k] = static_cast<std::uint32_t>(blocks * kLanes);
-    runs_.push_back({blocks, count, static_cast<int>(k % kCounts)});
+    if (!runs_.empty() && colour == k / kCounts) runs_.back().ends = false;
+    colour = k / kCounts;
+    runs_.push_back({blocks, count, static_cast<int>(k % kCounts), alone, true});
     blocks += count;
   }
   for (Entry& entry : entries_) {
@@ -150,17 +152,23 @@ std::size_t SoftPatches::place() {
   return blocks;
 }
 
-void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3]) {
-  blocks_.assign(place(), soft::Block{});
-  bounces_ = false;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kPrefetchDistance / 2 < entries_.size()) {
-      prefetch(entries_[i + kPrefetchDistance / 2].patch, sizeof(SoftPatch));
+void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], int threads) {
+  blocks_.resize(place());
+  bounces_ = std::ranges::any_of(entries_, [](const Entry& entry) { return entry.patch->restitution > 0; });
+  soft::side_by_side(threads, [&](const soft::Worker& worker) {
+    const auto [first_block, last_block] = worker.share(blocks_.size());
+    std::fill(blocks_.begin() + static_cast<std::ptrdiff_t>(first_block),
+              blocks_.begin() + static_cast<std::ptrdiff_t>(last_block), soft::Block{});
+    worker.wait();
+    const auto [first, last] = worker.share(entries_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetchDistance / 2 < last) {
+        prefetch(entries_[i + kPrefetchDistance / 2].patch, sizeof(SoftPatch));
+      }
+      fill(blocks_[entries_[i].place / kLanes], static_cast<int>(entries_[i].place % kLanes), entries_[i], movers,
+           inertias, gravity);
     }
-    bounces_ = bounces_ || entries_[i].patch->restitution > 0;
-    fill(blocks_[entries_[i].place / kLanes], static_cast<int>(entries_[i].place % kLanes), entries_[i], movers,
-         inertias, gravity);
-  }
+  });
 }
 
 void SoftPatches::fill(soft::Block& block, int lane, const Entry& entry, const Mover* movers,
@@ -213,41 +221,66 @@ void SoftPatches::fill(soft::Block& block, int lane, const Entry& entry, const M
   block.rub_1[lane] = patch.rub_1, block.rub_2[lane] = patch.rub_2, block.twist[lane] = patch.twist;
 }
 
-void SoftPatches::warm_start(Mover* movers) {
-  for (const Run& run : runs_) kernel_.warm_start(&blocks_[run.first], run.count, run.points, movers);
+template <class Work>
+void SoftPatches::for_each_run(const soft::Worker& worker, Work&& work) {
+  for (const Run& run : runs_) {
+    const soft::Worker alone;
+    const auto [first, last] = (run.in_order ? alone : worker).share(run.count);
+    if (first < last && (!run.in_order || worker.is_first()))
+      work(&blocks_[run.first + first], last - first, run.points);
+    if (run.ends) worker.wait();
+  }
 }
 
-void SoftPatches::solve(Mover* movers, const soft::Substep& substep) {
-  for (const Run& run : runs_) kernel_.solve(&blocks_[run.first], run.count, run.points, movers, substep);
+void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
+  for_each_run(worker, [&](const soft::Block* blocks, std::size_t count, int points) {
+    kernel_.warm_start(blocks, count, points, movers);
+  });
 }
 
-void SoftPatches::bounce(Mover* movers) {
+void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
+  for_each_run(worker, [&](soft::Block* blocks, std::size_t count, int points) {
+    kernel_.solve(blocks, count, points, movers, substep);
+  });
+}
+
+void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
   for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
-    for (const Run& run : runs_) {
-      kernel_.bounce(&blocks_[run.first], run.count, run.points, movers, -kRestSpeed_m_s);
-    }
+    for_each_run(worker, [&](soft::Block* blocks, std::size_t count, int points) {
+      kernel_.bounce(blocks, count, points, movers, -kRestSpeed_m_s);
+    });
   }
 }
 
 /// The impulses of friction are the patch's. Each point has them, in the fields that Bullet keeps for a point that it
 /// finds again, so that they are still there when one of them is lost.
-void SoftPatches::remember() const {
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kPrefetchDistance < entries_.size()) {
-      const SoftPatch& soon = *entries_[i + kPrefetchDistance].patch;
-      if (!soon.ahead) prefetch_points(*soon.manifold);
+void SoftPatches::remember(int threads) const {
+  soft::side_by_side(threads, [&](const soft::Worker& worker) {
+    const auto [first, last] = worker.share(entries_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetchDistance < last) {
+        const SoftPatch& soon = *entries_[i + kPrefetchDistance].patch;
+        if (!soon.ahead) prefetch_points(*soon.manifold);
+      }
+      remember(entries_[i]);
     }
-    const SoftPatch& patch = *entries_[i].patch;
-    const soft::Block& block = blocks_[entries_[i].place / kLanes];
-    const auto lane = static_cast<int>(entries_[i].place % kLanes);
-    if (patch.ahead) continue;
-    for (int k = 0; k < patch.count; ++k) {
-      btManifoldPoint& point = patch.manifold->getContactPoint(patch.of[static_cast<std::size_t>(k)]);
-      point.m_appliedImpulse = block.points[k].impulse[lane];
-      point.m_appliedImpulseLateral1 = block.rub_1[lane];
-      point.m_appliedImpulseLateral2 = block.rub_2[lane];
-      point.m_prevRHS = block.twist[lane];
+  });
+}
+
+void SoftPatches::remember(const Entry& entry) const {
+  SoftPatch& patch = *entry.patch;
+  const soft::Block& block = blocks_[entry.place / kLanes];
+  const auto lane = static_cast<int>(entry.place % kLanes);
+  for (int k = 0; k < patch.count; ++k) {
+    if (patch.ahead) {
+      patch.has_pressed = patch.has_pressed || block.points[k].most_impulse[lane] > 0;
+      continue;
     }
+    btManifoldPoint& point = patch.manifold->getContactPoint(patch.of[static_cast<std::size_t>(k)]);
+    point.m_appliedImpulse = block.points[k].impulse[lane];
+    point.m_appliedImpulseLateral1 = block.rub_1[lane];
+    point.m_appliedImpulseLateral2 = block.rub_2[lane];
+    point.m_prevRHS = block.twist[lane];
   }
 }
 

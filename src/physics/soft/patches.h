@@ -8,6 +8,7 @@
 
 #include "physics/soft/contacts.h"
 #include "physics/soft/lanes.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 
@@ -26,14 +27,15 @@ class SoftPatches {
   /// the colours.
   void add(SoftPatch& patch, std::uint32_t a, std::uint32_t b);
   /// Lays out all that was added. `inertias` as movers; gravity in m/s^2.
-  void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
+  void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], int threads);
 
-  void warm_start(soft::Mover* movers);
-  void solve(soft::Mover* movers, const soft::Substep& substep);
-  void bounce(soft::Mover* movers);
+  // By each worker, for its share. When they return, all have done theirs.
+  void warm_start(soft::Mover* movers, const soft::Worker& worker);
+  void solve(soft::Mover* movers, const soft::Substep& substep, const soft::Worker& worker);
+  void bounce(soft::Mover* movers, const soft::Worker& worker);
 
-  /// Writes the impulses into the manifolds, for the next step.
-  void remember() const;
+  /// Writes the impulses into the manifolds, for the next step; into patches ahead of time, whether they have pressed.
+  void remember(int threads) const;
 
  private:
   struct Entry {
@@ -45,6 +47,8 @@ class SoftPatches {
   struct Run {
     std::size_t first, count;
     int points;
+    bool in_order;  ///< they have no colour, and may share bodies
+    bool ends;      ///< its colour
   };
   struct Stiffness {
     soft::Real rate_per_s, mass, impulse;
@@ -52,6 +56,10 @@ class SoftPatches {
 
   static Stiffness stiffness(double times, double step_s, int substeps);
   std::size_t place();
+  /// work(blocks, count, points)
+  template <class Work>
+  void for_each_run(const soft::Worker& worker, Work&& work);
+  void remember(const Entry& entry) const;
   void fill(soft::Block& block, int lane, const Entry& entry, const soft::Mover* movers, const SoftInertia* inertias,
             const soft::Real (&gravity)[3]) const;
 

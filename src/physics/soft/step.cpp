@@ -13,6 +13,7 @@
 #include "physics/soft/convert.h"
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -72,8 +73,9 @@ void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
 struct SoftStep::Impl {
   static constexpr std::uint32_t kHeld = std::numeric_limits<std::uint32_t>::max();
 
-  Impl(double step_s, int substeps)
-      : step_s(static_cast<btScalar>(step_s)),
+  Impl(double step_s, int substeps, int threads)
+      : threads(threads),
+        step_s(static_cast<btScalar>(step_s)),
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
         patches(step_s, substeps) {}
@@ -99,24 +101,29 @@ struct SoftStep::Impl {
   void take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
                std::span<btTypedConstraint* const> joint_list);
   void hold(int user_index);
-  void add(btRigidBody& rigid);
-  void move(std::uint32_t i);
+  void take_in(std::size_t i);
+  void move(std::size_t i);
+  void begin_joints();
   void show(std::size_t i) const;
-  void run();
+  void run(const soft::Worker& worker);
 
+  int threads;
   btScalar step_s;
   Real h_s;
   int substeps;
   btVector3 gravity{0, 0, 0};
   std::vector<std::uint32_t> mover_at;  ///< by user index; 0: touches nothing; kHeld: does, and has no mover
-  std::vector<Mover> movers;            ///< the first never moves
-  std::vector<SoftInertia> inertias;    ///< as movers
-  std::vector<Body> bodies;             ///< as movers
+  std::vector<btRigidBody*> flying;
+  std::vector<btRigidBody*> held;     ///< as movers
+  std::vector<Mover> movers;          ///< the first never moves
+  std::vector<SoftInertia> inertias;  ///< as movers
+  std::vector<Body> bodies;           ///< as movers
   SoftPatches patches;
   SoftJoints joints;
 };
 
-SoftStep::SoftStep(double step_s, int substeps) : impl_(std::make_unique<Impl>(step_s, substeps)) {}
+SoftStep::SoftStep(double step_s, int substeps, int threads)
+    : impl_(std::make_unique<Impl>(step_s, substeps, threads)) {}
 SoftStep::~SoftStep() = default;
 
 void SoftStep::Impl::hold(int user_index) {
@@ -129,40 +136,50 @@ void SoftStep::Impl::hold(int user_index) {
 /// Whoever touches nothing, and is held by no joint, flies at once.
 void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
                              std::span<btTypedConstraint* const> joint_list) {
-  movers.assign(1, {});
-  inertias.assign(1, {});
-  bodies.assign(1, {});
   mover_at.clear();
   for (const SoftTouch& touch : touches) hold(touch.a), hold(touch.b);
   for (const btTypedConstraint* joint : joint_list) {
     hold(joint->getRigidBodyA().getUserIndex()), hold(joint->getRigidBodyB().getUserIndex());
   }
+  held.assign(1, nullptr);
+  flying.clear();
   for (btRigidBody* body : awake) {
-    if (!is_held(body->getUserIndex())) {
-      fly(*body, gravity, step_s);
+    if (is_held(body->getUserIndex())) {
+      mover_at[static_cast<std::size_t>(body->getUserIndex())] = static_cast<std::uint32_t>(held.size());
+      held.push_back(body);
     } else {
-      add(*body);
+      flying.push_back(body);
     }
   }
+  movers.resize(held.size());
+  inertias.resize(held.size());
+  bodies.resize(held.size());
+  movers[0] = {}, inertias[0] = {}, bodies[0] = {};
+  soft::side_by_side(threads, [this](const soft::Worker& worker) {
+    const auto [first_flying, last_flying] = worker.share(flying.size());
+    for (std::size_t i = first_flying; i < last_flying; ++i) fly(*flying[i], gravity, step_s);
+    const auto [first, last] = worker.share(held.size() - 1);
+    for (std::size_t i = first + 1; i <= last; ++i) take_in(i);
+  });
 }
 
-void SoftStep::Impl::add(btRigidBody& body) {
-  mover_at[static_cast<std::size_t>(body.getUserIndex())] = static_cast<std::uint32_t>(movers.size());
-  Mover& mover = movers.emplace_back();
+void SoftStep::Impl::take_in(std::size_t i) {
+  btRigidBody& body = *held[i];
+  Mover& mover = movers[i] = {};
   soft::from_bullet(body.getLinearVelocity(), mover.v);
   soft::from_bullet(body.getAngularVelocity(), mover.w);
-  SoftInertia& inertia = inertias.emplace_back();
+  SoftInertia& inertia = inertias[i];
   const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
   inertia.inv_mass = static_cast<Real>(body.getInvMass());
-  for (int i = 0, k = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) inertia.inv_inertia[k++] = static_cast<Real>(inverse[i][j]);
+  for (int row = 0, k = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) inertia.inv_inertia[k++] = static_cast<Real>(inverse[row][column]);
   }
-  bodies.push_back(
-      {&body, body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity(), tumbling_inertia(body)});
+  bodies[i] = {&body, body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity(),
+               tumbling_inertia(body)};
 }
 
 /// Whoever touches something moves as fast as it is at the end of the substep, which keeps piles calm.
-void SoftStep::Impl::move(std::uint32_t i) {
+void SoftStep::Impl::move(std::size_t i) {
   Mover& m = movers[i];
   for (int k = 0; k < 3; ++k) m.dp[k] += h_s * m.v[k];
   const Body& body = bodies[i];
@@ -181,30 +198,41 @@ void SoftStep::Impl::move(std::uint32_t i) {
   for (int k = 0; k < 3; ++k) m.w[k] = static_cast<Real>(after.w_WB[k]);
 }
 
-void SoftStep::Impl::run() {
-  const auto count = static_cast<std::uint32_t>(movers.size());
+void SoftStep::Impl::run(const soft::Worker& worker) {
+  const auto [begin, end] = worker.share(movers.size() - 1);
+  const std::size_t first = begin + 1, last = end + 1;
   const Real fall[3] = {h_s * static_cast<Real>(gravity[0]), h_s * static_cast<Real>(gravity[1]),
                         h_s * static_cast<Real>(gravity[2])};
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
   for (int s = 0; s < substeps; ++s) {
-    for (std::uint32_t i = 1; i < count; ++i) {
+    for (std::size_t i = first; i < last; ++i) {
       for (int k = 0; k < 3; ++k) movers[i].v[k] += fall[k];
     }
-    patches.warm_start(movers.data());
+    worker.wait();
+    patches.warm_start(movers.data(), worker);
     if (!joints.empty()) {
-      for (const std::uint32_t mover : joints.movers()) show(mover);
-      joints.begin(h_s);
-      for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data());
+      if (worker.is_first()) begin_joints();
+      worker.wait();
     }
     substep.pushes = true;
-    patches.solve(movers.data(), substep);
-    for (std::uint32_t i = 1; i < count; ++i) move(i);
-    if (!joints.empty()) joints.solve(movers.data());
+    patches.solve(movers.data(), substep, worker);
+    for (std::size_t i = first; i < last; ++i) move(i);
+    worker.wait();
+    if (!joints.empty()) {
+      if (worker.is_first()) joints.solve(movers.data());
+      worker.wait();
+    }
     substep.pushes = false;
-    patches.solve(movers.data(), substep);
-    if (!joints.empty()) joints.finish();
+    patches.solve(movers.data(), substep, worker);
+    if (!joints.empty() && worker.is_first()) joints.finish();
   }
-  patches.bounce(movers.data());
+  patches.bounce(movers.data(), worker);
+}
+
+void SoftStep::Impl::begin_joints() {
+  for (const std::uint32_t mover : joints.movers()) show(mover);
+  joints.begin(h_s);
+  for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data());
 }
 
 /// Gives a body where it is now, and how fast. What a mover has rounded off its speed at the start is not lost.
@@ -230,19 +258,19 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftT
   impl.patches.clear(impl.movers.size());
   for (const SoftTouch& touch : touches) {
     const std::uint32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
-    for (std::uint32_t i = 0; i < touch.patches; ++i) impl.patches.add(contacts.patches()[touch.first_patch + i], a, b);
+    for (SoftPatch& patch : contacts.patches_of(touch)) impl.patches.add(patch, a, b);
   }
   Real pull[3];
   soft::from_bullet(gravity, pull);
-  impl.patches.build(impl.movers.data(), impl.inertias.data(), pull);
+  impl.patches.build(impl.movers.data(), impl.inertias.data(), pull, impl.threads);
   impl.joints.clear();
   for (btTypedConstraint* joint : joints) {
     impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
                     impl.mover_of(joint->getRigidBodyB().getUserIndex()));
   }
-  impl.run();
-  impl.patches.remember();
-  for (std::size_t i = 1; i < impl.movers.size(); ++i) impl.show(i);
+  soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
+  impl.patches.remember(impl.threads);
+  soft::for_each_side_by_side(impl.threads, impl.movers.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }
 
 }  // namespace aurasim::physics

@@ -18,7 +18,7 @@ struct SoftTouch;
 
 class SoftStep {
  public:
-  SoftStep(double step_s, int substeps);
+  SoftStep(double step_s, int substeps, int threads);
   ~SoftStep();
 
   /// Moves and turns `bodies`: all that are awake. Each island's touches and joints come in an order that follows from

@@ -1,5 +1,6 @@
 #include "physics/soft/world.h"
 
+#include <algorithm>
 #include <span>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -24,8 +25,8 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   SoftWorld(const WorldParts& parts, const Settings& settings)
       : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
-        contacts_(settings.step_s, settings.continuous),
-        step_(settings.step_s, settings.substeps),
+        contacts_(settings.step_s, settings.continuous, settings.threads),
+        step_(settings.step_s, settings.substeps, settings.threads),
         looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
@@ -40,11 +41,23 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
       if (touch.patches == 0) contacts_.read(touch);  // has just been woken
     }
     step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity());
+    report_met();
     updateActivationState(step_s);
     return 1;
   }
 
  private:
+  /// Whom the step has brought together, maybe only for its duration.
+  void report_met() {
+    for (const SoftAhead& ahead : contacts_.ahead()) {
+      if (std::ranges::none_of(contacts_.patches_of(ahead), &SoftPatch::has_pressed)) continue;
+      const auto& a = *static_cast<const btCollisionObject*>(ahead.pair->m_pProxy0->m_clientObject);
+      const auto& b = *static_cast<const btCollisionObject*>(ahead.pair->m_pProxy1->m_clientObject);
+      first_contacts_.add({a.getUserIndex(), b.getUserIndex(), 0, static_cast<double>(ahead.v.length()), ahead.p},
+                          *ahead.pair);
+    }
+  }
+
   void damp(btScalar step_s) {
     for (btRigidBody* body : span_of(m_nonStaticRigidBodies)) {
       const bool slows = body->getLinearDamping() > 0 || body->getAngularDamping() > 0;

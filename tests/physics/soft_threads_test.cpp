@@ -1,0 +1,50 @@
+// Threads of the soft step.
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "physics/joint_scenes.h"
+
+namespace aurasim::physics::testing {
+namespace {
+
+/// A heap of everything that falls apart, with chains in it, and fast balls that come from the side.
+std::vector<core::BodyRecord> heap(core::Scene& scene) {
+  std::mt19937_64 random(3);
+  constexpr int kBodies = 700;
+  for (int i = 0; i < kBodies; ++i) {
+    const int layer = i / 49, place = i % 49;
+    const core::Vec3 p(1.3 * (place % 7) + uniform(random, -0.1, 0.1), 1.3 * (place / 7), 1 + 1.3 * layer);
+    place_body(scene, i % kKinds, p);
+    const auto id = static_cast<std::uint64_t>(i);
+    if (i % 10 == 9) add_joint(scene, core::BallJoint{}, id - 1, id, p - core::Vec3(0.65, 0, 0));
+  }
+  std::vector<core::BodyRecord> bodies = initial_records(scene);
+  for (std::size_t i = 0; i < bodies.size(); i += 50) bodies[i].v_WB = {-40, 10, 0};
+  return bodies;
+}
+
+TEST(SoftThreads, TheirNumberChangesNoBit) {
+  core::Scene scene = scene_of_all_shapes();
+  const std::vector<core::BodyRecord> bodies = heap(scene);
+  std::vector<core::BodyRecord> alone;
+  for (const int threads : {1, 2, 3, 8}) {
+    Settings settings;
+    settings.solver = Solver::kSoftStep;
+    settings.continuous = true;
+    settings.threads = threads;
+    RegionWorld world(scene, settings);
+    world.add(bodies);
+    run(world, 150);
+    if (threads == 1) alone.assign(world.records().begin(), world.records().end());
+    ASSERT_EQ(world.records().size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      ASSERT_EQ(world.records()[i].p_WB, alone[i].p_WB) << threads << " threads, body " << i;
+      ASSERT_EQ(world.records()[i].w_WB, alone[i].w_WB) << threads << " threads, body " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace aurasim::physics::testing
