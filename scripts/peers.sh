@@ -82,11 +82,13 @@ wanted() {
     $1 "," $2 "," $3 "," $4 == of { ++runs; if ($7 > 1000 * once) turn = 1 }
     END { exit !(runs < turn) }' "$out/runs.csv"
 }
-ours() { # SCENE PROGRAM PRECISION
+ours() { # SCENE PROGRAM PRECISION THREADS
   local name
   for name in ${settings//,/ }; do
-    wanted "$1" "aurasim-$name" "$3" 1 || continue
-    "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" "${quick[@]}" >/dev/null 2>&1
+    [[ $4 == 1 || $name == soft* ]] || continue # the others know no threads
+    wanted "$1" "aurasim-$name" "$3" "$4" || continue
+    "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$4" "${quick[@]}" \
+      >/dev/null 2>&1
   done
 }
 peer() { # SCENE PROGRAM ENGINE PRECISION THREADS
@@ -97,8 +99,8 @@ peer() { # SCENE PROGRAM ENGINE PRECISION THREADS
 for ((turn = 1; turn <= repeats; ++turn)); do
   for scene in ${cases//,/ }; do
     echo "turn $turn of $repeats: $scene"
-    ours "$scene" aurasim double
-    ours "$scene" aurasim-single single
+    for threads in 1 2; do ours "$scene" aurasim double "$threads"; done
+    ours "$scene" aurasim-single single 1
     for precision in double single; do peer "$scene" "bullet_$precision" bullet "$precision" 1; done
     for threads in 1 2; do
       for engine in jolt box3d; do peer "$scene" "$engine" "$engine" single "$threads"; done

@@ -30,14 +30,14 @@ core::AuraRules aura_rules(const config::Launch& launch) {
   rules.kind = launch.aura.radius;
   rules.step_s = launch.step_s();
   rules.substeps = launch.time.substeps;
-  rules.looks_once = physics::solver_named(launch.physics.solver) == physics::Solver::kSoftStep;
+  rules.looks_once = launch.physics.looks_once();
   rules.lookahead = launch.lookahead();
   rules.top_speed_m_s = launch.tolerances.speed_m_s;
   rules.frame_s = launch.tolerances.frame_s;
   rules.latency_s = launch.tolerances.latency_s;
   rules.uncertainty = launch.aura.uncertainty;
   rules.gravity = launch.scene.gravity;
-  rules.sweeps = launch.physics.continuous;
+  rules.sweeps = launch.physics.is_continuous();
   rules.redo = launch.redoes();
   return rules;
 }
@@ -66,7 +66,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.solver_iterations = launch.physics.iterations;
   setup.physics.friction_directions = launch.physics.friction_directions;
   setup.physics.contact_erp = launch.physics.contact_erp;
-  setup.physics.continuous = launch.physics.continuous;
+  setup.physics.continuous = launch.physics.is_continuous();
   setup.physics.threads =
       launch.physics.threads.value_or(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64));
   if (launch.physics.origin == config::Origin::kRegion) {

@@ -198,7 +198,7 @@ void add_settings(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(launch.physics.iterations));
   d.bytes(static_cast<std::uint64_t>(launch.physics.friction_directions));
   d.add(launch.physics.contact_erp);
-  d.bytes(launch.physics.continuous);
+  d.bytes(launch.physics.is_continuous());
   d.bytes(static_cast<std::uint64_t>(launch.physics.origin));
 }
 

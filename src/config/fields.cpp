@@ -120,7 +120,9 @@ std::optional<std::int64_t> Field::integer() const {
 std::optional<bool> Field::flag() const {
   as(Value::Kind::kFlag);
   if (is_text() && !node_->quoted && (node_->text == "true" || node_->text == "false")) return node_->text == "true";
-  refuse("true, false");
+  if (is_text() && value_->has_word(node_->text)) return std::nullopt;
+  const Value* other = value_->as(Value::Kind::kWord);
+  refuse(other ? fmt::format("{}, true, false", other->words[0].name) : "true, false");
   return std::nullopt;
 }
 

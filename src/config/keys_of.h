@@ -126,7 +126,7 @@ template <class T, class M>
 std::function<void(const Field&, T&)> into(M T::*member) {
   return [member](const Field& field, T& object) {
     if constexpr (IsOptional<M>::value) {
-      if (auto value = value_of_field<typename M::value_type>(field)) object.*member = std::move(*value);
+      object.*member = value_of_field<typename M::value_type>(field);  // none for a word such as auto
     } else {
       if (auto value = value_of_field<M>(field)) object.*member = std::move(*value);
     }

@@ -24,7 +24,7 @@ enum class Redo { kAuto, kOn, kOff };
 
 struct Time {
   double step_hz = 60;
-  int substeps = 4;
+  int substeps = 8;
   core::SyncMode sync = core::SyncMode::kBounded;
   std::optional<int> lookahead;  ///< K; nothing: from the tolerances
   Pace pace = Pace::kWall;
@@ -43,12 +43,16 @@ struct Aura {
 };
 
 struct Physics {
+  /// What touches is found once a step.
+  bool looks_once() const { return solver == "soft_step"; }
+  bool is_continuous() const { return continuous.value_or(looks_once()); }
+
   std::string precision = "double";  ///< or "single"
-  std::string solver = "sequential_impulse";
+  std::string solver = "soft_step";
   int iterations = 10;
   int friction_directions = 1;     ///< rows of friction at each contact point, 1 or 2
   double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that stays
-  bool continuous = false;         ///< fast bodies stop at what is in their way
+  std::optional<bool> continuous;  ///< fast bodies stop at what is in their way; none: where contacts are found once
   std::optional<int> threads = 1;  ///< of a node's physics; none: as many as the host has for it
   /// Where Bullet's coordinates begin: kWorld keeps equal bits on any number of nodes, kRegion accuracy far out.
   Origin origin = Origin::kWorld;

@@ -23,6 +23,8 @@ core::TightAura top_speed_aura(const Launch& launch) {
   core::AuraRules rules;
   rules.step_s = launch.step_s();
   rules.substeps = launch.time.substeps;
+  rules.looks_once = launch.physics.looks_once();
+  rules.sweeps = launch.physics.is_continuous();
   rules.lookahead = launch.lookahead();
   rules.top_speed_m_s = launch.tolerances.speed_m_s;
   return {rules, no_shapes};
@@ -52,9 +54,9 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
   if (launch.regions.narrowest_m() < reach && !launch.redoes()) {
     regions.complain(fmt::format(
         "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
-        "lookahead {}, {} substeps, largest bounding radius {:.4g} m",
-        launch.regions.narrowest_m(), reach, launch.tolerances.speed_m_s, launch.lookahead(), launch.time.substeps,
-        largest_radius_m(launch.scene)));
+        "lookahead {}, contacts looked for at {} instants of a step, largest bounding radius {:.4g} m",
+        launch.regions.narrowest_m(), reach, launch.tolerances.speed_m_s, launch.lookahead(),
+        top_speed_aura(launch).rules().instants(), largest_radius_m(launch.scene)));
     return;
   }
   const double zone = zone_m(launch);

@@ -106,9 +106,10 @@ const KeysOf<Physics>& physics_keys() {
                    "rows of friction at each contact point; with 1, piles creep and a card house falls"),
           optional("erp", &Physics::contact_erp, number(Range::from_to(0, 1)),
                    "share of an overlap that contacts undo in each substep, by a speed that stays"),
-          optional("continuous", &Physics::continuous, flag(),
+          optional("continuous", &Physics::continuous, flag().or_word("auto"),
                    "continuous collision detection: fast bodies stop at what is in their way instead of passing "
-                   "through what is thin"),
+                   "through what is thin; auto: with soft_step")
+              .usual("auto"),
           optional("threads", &Physics::threads, integer(1, 64).or_word("auto"),
                    "of each node's soft_step; their number changes no bit. auto: the host's cores, shared among the "
                    "nodes that launch starts there"),

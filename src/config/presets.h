@@ -16,8 +16,8 @@ struct Preset {
 };
 
 inline constexpr std::array<Preset, 3> kPresets = {{
-    {"fast", "sequential_impulse", 10, 2, 2},
-    {"balanced", "sequential_impulse", 20, 4, 2},
+    {"fast", "soft_step", 10, 4, 2},
+    {"balanced", "soft_step", 10, 8, 2},
     {"exact", "sequential_impulse", 50, 8, 2},
 }};
 

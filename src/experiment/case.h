@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,7 +39,7 @@ struct Case {
   double border_x_m = 0;     ///< where two nodes meet
   double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"; 1 where contacts throw resting bodies
   double contact_erp = 0.2;
-  bool continuous = false;  ///< continuous collision detection
+  std::optional<bool> continuous = {};  ///< continuous collision detection; none: with the soft step
 };
 
 /// Every case.

@@ -22,9 +22,15 @@ struct PlannedRun {
   int nodes = 1;
 };
 
+bool knows_iterations(physics::Solver solver) {
+  return solver != physics::Solver::kDantzig && solver != physics::Solver::kSoftStep;
+}
+bool knows_directions(physics::Solver solver) { return solver != physics::Solver::kSoftStep; }
+
 bool same_physics(const RunRules& a, const RunRules& b) {
-  return a.solver == b.solver && a.iterations == b.iterations && a.substeps == b.substeps &&
-         a.friction_directions == b.friction_directions;
+  return a.solver == b.solver && a.substeps == b.substeps &&
+         (a.iterations == b.iterations || !knows_iterations(a.solver)) &&
+         (a.friction_directions == b.friction_directions || !knows_directions(a.solver));
 }
 
 std::vector<PlannedRun> physics_points(const ParetoPlan& plan) {
@@ -33,11 +39,12 @@ std::vector<PlannedRun> physics_points(const ParetoPlan& plan) {
   for (const auto& [solver, name] : physics::kSolverNames) {
     rules.solver = solver;
     for (const int directions : plan.friction_directions) {
+      if (!knows_directions(solver) && directions != plan.friction_directions.front()) continue;
       rules.friction_directions = directions;
       for (const int substeps : plan.substeps) {
         rules.substeps = substeps;
         for (const int iterations : plan.iterations) {
-          if (solver == physics::Solver::kDantzig && iterations != plan.iterations.front()) continue;  // it has none
+          if (!knows_iterations(solver) && iterations != plan.iterations.front()) continue;
           rules.iterations = iterations;
           points.push_back({rules, 1});
         }

@@ -26,12 +26,12 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.protocol.self = RegionId{r};
     setup.protocol.sync = options_.sync;
     setup.protocol.aura = options_.aura;
-    setup.protocol.aura.looks_once = options_.solver == physics::Solver::kSoftStep;
     setup.protocol.neighbour_distance_m = options_.neighbour_distance_m;
     setup.protocol.shuffle_ranks_steps = options_.shuffle_ranks_steps;
     setup.physics.step_s = options_.aura.step_s;
     setup.physics.substeps = options_.aura.substeps;
     setup.physics.solver = options_.solver;
+    setup.protocol.aura.looks_once = setup.physics.looks_once();
     setup.physics.friction_directions = options_.friction_directions;
     setup.physics.solver_iterations = options_.solver_iterations;
     setup.physics.top_speed_m_s = options_.aura.top_speed_m_s;

@@ -9,7 +9,7 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   const Launch launch = workspace.launch(kSmallLaunch);
   EXPECT_EQ(launch.regions.size(), 2u);
   EXPECT_EQ(launch.time.step_hz, 60);
-  EXPECT_EQ(launch.time.substeps, 4);
+  EXPECT_EQ(launch.time.substeps, 8);
   EXPECT_EQ(launch.time.sync, core::SyncMode::kBounded);
   EXPECT_FALSE(launch.time.lookahead);
   EXPECT_EQ(launch.time.pace, Pace::kWall);
@@ -19,13 +19,30 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kSwept);
   EXPECT_EQ(launch.aura.uncertainty, 0.5);
   EXPECT_EQ(launch.physics.precision, "double");
-  EXPECT_EQ(launch.physics.solver, "sequential_impulse");
+  EXPECT_EQ(launch.physics.solver, "soft_step");
   EXPECT_EQ(launch.physics.iterations, 10);
   EXPECT_EQ(launch.dds.domain, 0);
   EXPECT_EQ(launch.dds.discovery, Discovery::kMulticast);
   EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("127.0.0.1"));
   EXPECT_TRUE(launch.dds.profiles.is_absolute());
   EXPECT_EQ(launch.observe.tick_hz, 20);
+}
+
+TEST(LaunchFile, TheDefaultsAreThePresetBalanced) {
+  const Launch launch = Workspace().launch(kSmallLaunch);
+  EXPECT_EQ(launch.physics.solver, preset_named("balanced").solver);
+  EXPECT_EQ(launch.time.substeps, preset_named("balanced").substeps);
+}
+
+TEST(LaunchFile, WhatIsAutoFollowsFromTheSolver) {
+  const Workspace workspace;
+  const std::string start = kSmallLaunch;
+  EXPECT_TRUE(workspace.launch(start).physics.is_continuous());
+  EXPECT_TRUE(workspace.launch(start + "physics: {continuous: auto}\n").physics.is_continuous());
+  EXPECT_FALSE(workspace.launch(start + "physics: {continuous: false}\n").physics.is_continuous());
+  EXPECT_FALSE(workspace.launch(start + "physics: {solver: nncg}\n").physics.is_continuous());
+  EXPECT_EQ(workspace.launch(start).physics.threads, 1);
+  EXPECT_EQ(workspace.launch(start + "physics: {threads: auto}\n").physics.threads, std::nullopt);
 }
 
 TEST(LaunchFile, APresetSetsThePhysicsAndWhatStandsBesideItGoesBefore) {
@@ -70,7 +87,7 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.physics.iterations, 30);
   EXPECT_EQ(launch.physics.friction_directions, 2);
   EXPECT_EQ(launch.physics.contact_erp, 0.1);
-  EXPECT_TRUE(launch.physics.continuous);
+  EXPECT_TRUE(launch.physics.is_continuous());
   EXPECT_EQ(launch.dds.domain, 7);
   EXPECT_EQ(launch.dds.profiles, workspace.folder() / "qos.xml");
   EXPECT_EQ(launch.dds.discovery, Discovery::kPeers);

@@ -28,7 +28,7 @@ struct Listener {
   }
   void listen() { reader.emplace(domain, aura_of_region_0(), wakeup); }
   int taken() {
-    aurasim::AuraBatch sample;
+    wire::AuraBatch sample;
     int count = 0;
     while (reader->take(&sample)) ++count;
     return count;
@@ -46,7 +46,7 @@ class WriterHistory : public ::testing::Test {
   Domain domain_{testing::settings_for(own_domain())};
   Wakeup wakeup_;
   Writer writer_{domain_, aura_of_region_0(), wakeup_};
-  aurasim::AuraBatch sample_;
+  wire::AuraBatch sample_;
 };
 
 TEST_F(WriterHistory, KeepsWhatAReaderHasNotAcknowledged) {

@@ -102,6 +102,28 @@ TEST(SoftStep, WhatFrictionHoldsDoesNotCreep) {
   EXPECT_LT((world.records()[1].p_WB - high).norm(), 1e-3);
 }
 
+/// It has been pushed out of a wall, by which contacts stay that a look at the shapes would not find any more. Its
+/// bounds have to say that it is near.
+TEST(SoftStep, ASleeperThatIsHandedOverKeepsContactsThatHaveOpened) {
+  core::Scene scene = scene_of(core::Box{});
+  scene.shapes.push_back({"wall", core::Box{core::Vec3(0.5, 2, 1)}});
+  core::StaticBody wall;
+  wall.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+  wall.pose.p_WB = {-0.95, 0, 1};
+  scene.statics.push_back(wall);
+  RegionWorld one(scene, soft_settings(4)), other(scene, soft_settings(4)), next(scene, soft_settings(4));
+  const std::vector<core::BodyRecord> box = {body(1, 0, {0, 0, 0.5})};
+  for (RegionWorld* world : {&one, &other}) world->add(box);
+  for (RegionWorld* world : {&one, &other, &next}) run(*world, 400);
+  ASSERT_FALSE(one.snapshot().bodies[0].awake);
+  next.adopt(other.release(ids_of(box)), next.step_number());
+  for (RegionWorld* world : {&one, &next}) {
+    world->add(std::vector{body(2, 0, {0.3, 0, 2.2}, {0, 0, -5})});
+    run(*world, 100);
+  }
+  EXPECT_TRUE(different(next.records(), one.records()).empty());
+}
+
 /// More contacts than there are colours: the rest are solved one by one.
 TEST(SoftStep, ASlabBearsMoreBoxesThanThereAreColours) {
   core::Scene scene = scene_of_all_shapes();

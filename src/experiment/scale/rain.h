@@ -20,7 +20,8 @@ struct Rain {
   std::string aura = "swept";
   double uncertainty = 0.5;  ///< U
   int lookahead = 0;         ///< K; 0: from the tolerances
-  int substeps = 1;          ///< as the thesis
+  std::string solver = "soft_step";
+  int substeps = 4;
   double rate_per_s = 160;
   double rain_s = 60;         ///< so long it rains
   double run_s = 60;          ///< so long it is watched

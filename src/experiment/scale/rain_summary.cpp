@@ -24,6 +24,7 @@ json json_of(const Rain& rain, const RainFigures& f) {
           {"aura", rain.aura},
           {"uncertainty", rain.uncertainty},
           {"lookahead", rain.lookahead},
+          {"solver", rain.solver},
           {"substeps", rain.substeps},
           {"rate_per_s", rain.rate_per_s},
           {"border_share", rain.border_share},

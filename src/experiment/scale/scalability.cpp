@@ -20,6 +20,7 @@ Rain begin(const ScalabilityPlan& plan, const std::string& series, const Layout&
   rain.world = world;
   rain.rate_per_s = plan.rate_per_s;
   rain.rain_s = rain.run_s = plan.run_s;
+  rain.solver = plan.solver;
   rain.substeps = plan.substeps;
   rain.lookahead = regions.count > 1 ? plan.lookahead : 0;
   return rain;

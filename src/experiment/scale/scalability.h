@@ -36,7 +36,8 @@ struct ScalabilityPlan {
   std::uint32_t repeats = 1;
   double rate_per_s = 160;
   double run_s = 60;
-  int substeps = 1;
+  std::string solver = "soft_step";
+  int substeps = 4;
   int lookahead = 0;  ///< K of runs with several nodes, but for the series of that name; 0: from the tolerances
 };
 

@@ -36,6 +36,7 @@ SpeedSettings settings_of(const std::string& name, int substeps, int iterations,
   physics.solver_iterations = iterations;
   physics.friction_directions = friction_directions;
   physics.solver = solver;
+  physics.continuous = physics.looks_once();
   return {name, physics};
 }
 

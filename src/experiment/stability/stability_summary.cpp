@@ -71,6 +71,11 @@ std::vector<Target> targets_of(const std::vector<StabilityRow>& rows) {
   require(targets, rows, {"bouncing_ball_1", 0, 0.01, 240});
   require(targets, rows, {"rolling_plate_no_erp", 0, is_double ? 1e-27 : 1e-9, 0, "exact"});
   require(targets, rows, {"bullet_ccd_on", 0, 0, 60});
+  for (const char* name : {"free_fall", "projectile"}) {
+    for (const char* preset : {"fast", "balanced"}) {
+      require(targets, rows, {name, 0, is_double ? 1e-9 : 1e-3, 0, preset});
+    }
+  }
   for (const char* name : {"stack_20", "card_house", "pyramid", "mass_ratio_100", "stack_20_may_sleep",
                            "card_house_may_sleep", "pyramid_may_sleep", "mass_ratio_100_may_sleep"}) {
     require(targets, rows, {name, 1, 0, 0, "balanced", true});
