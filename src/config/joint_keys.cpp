@@ -70,7 +70,7 @@ const KeysOf<JointMotor>& motor_keys() {
       {
           required("speed", &JointMotor::speed, number(Range::from_to(-1e4, 1e4), "rad/s"), "that it strives for"),
           required("max_impulse", &JointMotor::max_impulse, number(Range::from_to(0, 1e9), "N m s"),
-                   "at most, in each substep"),
+                   "at most, in 1/240 s, at any step and substeps"),
       });
   return keys;
 }
@@ -112,7 +112,7 @@ const KeysOf<JointSpec>& keys_of_joint() {
           optional("position", vec3("m"), "of the joint in the world at the start").otherwise("that of body A"),
           optional("collide", &JointSpec::collide, flag(), "whether A and B collide with each other"),
           optional("break_impulse", &JointSpec::break_impulse, number(Range::above(0, 1e9), "N s or N m s"),
-                   "breaks for good when it takes more in a substep")
+                   "breaks for good when it takes more in 1/240 s, or as much for longer or shorter substeps")
               .otherwise("it never breaks"),
       },
       {"ball", "hinge", "slider", "fixed", "spring"});

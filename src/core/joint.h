@@ -21,7 +21,7 @@ struct JointLimits {
 
 struct JointMotor {
   double speed = 0;        ///< of a: rad/s or m/s
-  double max_impulse = 0;  ///< in each substep: N m s or N s
+  double max_impulse = 0;  ///< in 1/240 s: N m s or N s
 };
 
 /// Holds the two origins together; turns freely.

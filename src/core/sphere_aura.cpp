@@ -40,8 +40,8 @@ Range SphereAura::span(double steps) const {
   return {rules().reach_scale * steps * rules().step_s * rules().top_speed_m_s, 0};
 }
 
-/// With S instants in a step at which contacts may be found the last (S-1)/S of a step counts, for both bodies; so does every further
-/// hop that a pull can chain through.
+/// With S instants in a step at which contacts may be found the last (S-1)/S of a step counts, for both bodies; so does
+/// every further hop that a pull can chain through.
 Aura::Steps TightAura::chained(double own, double other, int hops) const {
   const double more = 1.0 * (rules().instants() - 1) / rules().instants() + 1.0 * (hops - 1) * rules().lookahead;
   return {own + more, other + more};

@@ -59,7 +59,9 @@ double SweptAura::drop_m(double steps) const {
   return 0.5 * gravity_m_s2() * t * (t + rules().step_s);
 }
 
-double SweptAura::last_instant(int horizon_steps) const { return std::max(0.0, horizon_steps - 1.0 / rules().instants()); }
+double SweptAura::last_instant(int horizon_steps) const {
+  return std::max(0.0, horizon_steps - 1.0 / rules().instants());
+}
 
 bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
   const int instants = rules().instants();

@@ -39,7 +39,8 @@ btTransform with_x_along_z(const Pose& X_BJ) {
 
 class Maker {
  public:
-  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b) : frames_(frames), a_(a), b_(b) {}
+  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b, double times)
+      : frames_(frames), a_(a), b_(b), times_(times) {}
 
   std::unique_ptr<btTypedConstraint> operator()(const core::BallJoint&) const {
     return std::make_unique<btPoint2PointConstraint>(a_, b_, to_bullet(frames_.X_AJ.p_WB),
@@ -54,7 +55,8 @@ class Maker {
     if (joint.limits) {
       hinge->setLimit(scalar(joint.limits->low), scalar(joint.limits->high), kSoftness, kBias, kBounce);
     }
-    if (joint.motor) hinge->enableAngularMotor(true, scalar(joint.motor->speed), scalar(joint.motor->max_impulse));
+    if (joint.motor)
+      hinge->enableAngularMotor(true, scalar(joint.motor->speed), scalar(times_ * joint.motor->max_impulse));
     return hinge;
   }
 
@@ -93,6 +95,7 @@ class Maker {
   const JointFrames& frames_;
   btRigidBody& a_;
   btRigidBody& b_;
+  double times_;  ///< the impulses of kImpulseTime_s
 };
 
 }  // namespace
@@ -104,10 +107,11 @@ JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene, co
 }
 
 std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
-                                                   btRigidBody& a, btRigidBody& b) {
-  auto constraint = std::visit(Maker(frames, a, b), joint.kind);
+                                                   btRigidBody& a, btRigidBody& b, double substep_s) {
+  const double times = substep_s / kImpulseTime_s;
+  auto constraint = std::visit(Maker(frames, a, b, times), joint.kind);
   if (joint.break_impulse < static_cast<double>(SIMD_INFINITY)) {
-    constraint->setBreakingImpulseThreshold(scalar(joint.break_impulse));
+    constraint->setBreakingImpulseThreshold(scalar(times * joint.break_impulse));
   }
   return constraint;
 }

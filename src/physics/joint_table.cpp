@@ -26,12 +26,14 @@ bool has(const core::ClusterState& cluster, core::BodyId id) {
 
 }  // namespace
 
-JointTable::JointTable(const core::Scene& scene, const core::Vec3& p_WO)
-    : scene_(&scene), ground_(std::make_unique<btRigidBody>(0, nullptr, nullptr)) {
+JointTable::JointTable(const core::Scene& scene, const Settings& settings)
+    : scene_(&scene),
+      substep_s_(settings.step_s / settings.substeps),
+      ground_(std::make_unique<btRigidBody>(0, nullptr, nullptr)) {
   entries_.resize(scene.joints.size());
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const core::JointSpec& joint = scene.joints[i];
-    entries_[i].frames = frames_of(joint, scene, p_WO);
+    entries_[i].frames = frames_of(joint, scene, settings.p_WO);
     joints_of_[joint.a].push_back(core::JointId{i});
     if (joint.b) joints_of_[*joint.b].push_back(core::JointId{i});
   }
@@ -62,7 +64,7 @@ void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& wo
     btRigidBody* const a = born_body(bodies, joint.a);
     btRigidBody* const b = joint.b ? born_body(bodies, *joint.b) : ground_.get();
     if (a == nullptr || b == nullptr) continue;
-    entry.constraint = make_constraint(joint, entry.frames, *a, *b);
+    entry.constraint = make_constraint(joint, entry.frames, *a, *b, substep_s_);
     world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
     connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
   }

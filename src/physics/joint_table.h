@@ -21,8 +21,7 @@ namespace aurasim::physics {
 class JointTable {
  public:
   /// The scene outlives the table; so do the body table and the world that its functions are given, always the same.
-  /// `p_WO`: where Bullet's coordinates begin.
-  JointTable(const core::Scene& scene, const core::Vec3& p_WO);
+  JointTable(const core::Scene& scene, const Settings& settings);
 
   /// What a cluster that has just come says about its joints. Before connect().
   void restore(const core::ClusterState& cluster, const BodyTable& bodies);
@@ -53,6 +52,7 @@ class JointTable {
   void disconnect(Entry& entry, DynamicsWorld& world);
 
   const core::Scene* scene_;
+  double substep_s_;
   std::vector<Entry> entries_;                                              ///< as Scene::joints
   std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< asked by id only
   std::vector<core::JointId> connected_;                                    ///< ascending

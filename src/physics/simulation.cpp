@@ -69,7 +69,7 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
       frame_(settings.p_WO),
       shapes_(std::move(shapes)),
       timeline_(timeline),
-      joints_(scene, settings.p_WO),
+      joints_(scene, settings),
       world_(scene.gravity, settings) {
   show_statics(step_);
 }

@@ -22,6 +22,7 @@ class CommandLimits : public ::testing::Test {
     launch_.scene.shapes = {{"ball", core::Sphere{0.5}}};
     launch_.scene.prototypes = {{"ball", 0, 0, 1, true}};
     launch_.tolerances.speed_m_s = 30;
+    launch_.time.substeps = 4;
   }
   std::string problem(const core::Ask& ask, core::Step at_step = 0) const {
     std::optional<core::Shape> shape;

@@ -70,7 +70,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "physics.solver=nncg",
                                             "physics.friction_directions=2",
                                             "physics.erp=0.1",
-                                            "physics.continuous=true",
+                                            "physics.continuous=false",
                                             "scene.name=other",
                                             "scene.gravity=[0, 0, -9]",
                                             "scene.materials.stone.friction=0.5",

@@ -94,7 +94,7 @@ const std::vector<BadCase> kBadLaunches = {
     {"RegionsNarrowerThanTheReach",
      "scene: scene.yaml\nregions: {layout: columns, count: 4, width: 3}\n",
      {"launch.yaml:2:10: regions: the narrowest region is 3 m wide, allowed: at least 3.933 m, the reach of an aura: "
-      "speed 32 m/s, lookahead 2, 4 substeps, largest bounding radius 0.5 m"}},
+      "speed 32 m/s, lookahead 2, contacts looked for at 4 instants of a step, largest bounding radius 0.5 m"}},
     {"NeighbourDistanceBelowTheZone",
      kTwo.substr(0, kTwo.size() - 2) + ", neighbour_distance: 1}\n",
      {"launch.yaml:2:10: regions: neighbour_distance is 1 m, allowed: at least"}},

@@ -106,6 +106,26 @@ TEST_F(Joints, AMotorWithTooSmallAnImpulseIsSlow) {
   EXPECT_LT(body(0).w_WB.z(), 0.5);
 }
 
+TEST_F(Joints, AMotorIsAsStrongInAnySubsteps) {
+  place(kBox, {0, 0, 5});
+  join(core::HingeJoint{{}, core::JointMotor{1000, 1e-3}}, 0, {}, {0, 0, 5});
+  std::vector<double> speeds;
+  for (const Solver solver : {Solver::kSequentialImpulse, Solver::kSoftStep}) {
+    for (const int substeps : {2, 4, 8}) {
+      Settings settings;
+      settings.solver = solver;
+      settings.substeps = substeps;
+      world.emplace(scene, settings);
+      world->add(initial_records(scene));
+      run_steps(30);
+      speeds.push_back(body(0).w_WB.z());
+      EXPECT_GT(speeds.back(), 0.1);
+      EXPECT_LT(speeds.back(), 900);
+      EXPECT_NEAR(speeds.back() / speeds.front(), 1, 0.01) << substeps << " substeps";
+    }
+  }
+}
+
 TEST_F(Joints, AHingeStopsAtItsLimits) {
   for (const double side : {1.0, -1.0}) {
     scene = scene_of_all_shapes();
