@@ -233,10 +233,10 @@ bool StateCheck::meet_ahead(const Motion& a, const Motion& b, double allowed_m) 
 bool StateCheck::touch(const Motion& a, const Motion& b) const {
   const int substeps = aura_.rules().looks();
   const double margin = aura_.rules().contact_margin_m * aura_.rules().check_scale;
+  if (aura_.rules().looks_ahead()) return meet_ahead(a, b, margin + a.at_end.blur_m + b.at_end.blur_m);
   for (int i = 0; i < substeps; ++i) {
     const double share = static_cast<double>(i) / substeps;
     const double allowed = margin + a.at_end.blur_m + b.at_end.blur_m + (i > 0 ? a.stray_m + b.stray_m : 0);
-    if (aura_.rules().looks_ahead()) return meet_ahead(a, b, allowed);
     if (aura_.rules().sweeps && (sweeps_into(a, b, share, allowed) || sweeps_into(b, a, share, allowed))) return true;
     const Pose at = pose(a, share);
     const Pose bt = pose(b, share);

@@ -12,22 +12,6 @@ constexpr int kLeaving = 0;
 
 bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilterMask == kLeaving; }
 
-void prefetch_pair(const btBroadphasePair& pair) {
-  prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
-  prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
-  if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
-}
-
-/// Of a pair that is here itself.
-void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
-  prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
-  prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
-  if (pair.m_algorithm == nullptr) return;
-  manifolds.resizeNoInitialize(0);
-  pair.m_algorithm->getAllContactManifolds(manifolds);
-  for (int i = 0; i < manifolds.size(); ++i) prefetch_head(*manifolds[i]);
-}
-
 }  // namespace
 
 /// The narrow phase, which takes no pair out.

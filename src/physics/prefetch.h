@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <span>
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "core/prefetch.h"
@@ -28,6 +31,22 @@ inline void prefetch_head(const btPersistentManifold& manifold) {
 inline void prefetch_points(const btPersistentManifold& manifold) {
   const int count = manifold.getNumContacts();
   if (count > 0) prefetch(&manifold.getContactPoint(0), static_cast<std::size_t>(count) * sizeof(btManifoldPoint));
+}
+
+inline void prefetch_pair(const btBroadphasePair& pair) {
+  prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
+  prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
+  if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
+}
+
+/// Of a pair that is here itself.
+inline void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
+  prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
+  if (pair.m_algorithm == nullptr) return;
+  manifolds.resizeNoInitialize(0);
+  pair.m_algorithm->getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) prefetch_head(*manifolds[i]);
 }
 
 /// Calls `visit(manifold)` for each that has a point.

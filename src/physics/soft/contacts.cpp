@@ -60,12 +60,6 @@ bool is_awake(const btBroadphasePair& pair) {
 /// Sleepers touch what they touched.
 bool needs_look(const btBroadphasePair& pair) { return !is_awake(pair) || bounds_overlap(pair); }
 
-void prefetch_bodies(const btBroadphasePair& pair) {
-  prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
-  prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));
-  if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
-}
-
 /// Valid until the next call.
 btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& space) {
   space.resizeNoInitialize(0);
@@ -109,14 +103,8 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   for (int i = first; i < last; ++i) {
-    if (i + kPrefetchDistance < last) prefetch_bodies(all[i + kPrefetchDistance]);
-    if (i + kPrefetchDistance / 2 < last) {
-      const btBroadphasePair& pair = all[i + kPrefetchDistance / 2];
-      prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
-      prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
-      const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
-      for (int k = 0; k < manifolds.size(); ++k) prefetch_head(*manifolds[k]);
-    }
+    if (i + kPrefetchDistance < last) prefetch_pair(all[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance / 2 < last) prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
     if (i + kPrefetchDistance / 4 < last) {
       const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4], list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
