@@ -48,7 +48,7 @@ struct SpringAxis {
   double damping = 0;                 ///< N s/m or N m s/rad
 };
 
-/// Three translations along, then three rotations about, the axes of J.
+/// Three translations along the axes of J, then three rotations: about x, then y, then z as they lie by then.
 struct SpringJoint {
   std::array<SpringAxis, 6> axes;
 };

@@ -75,13 +75,15 @@ class Maker {
     return std::make_unique<btFixedConstraint>(a_, b_, to_bullet(frames_.X_AJ), to_bullet(frames_.X_BJ));
   }
 
-  /// Bullet measures its second body from its first.
+  /// Bullet measures where its second body is from its first, and how its first has turned from its second.
   std::unique_ptr<btTypedConstraint> operator()(const core::SpringJoint& joint) const {
-    auto spring =
-        std::make_unique<btGeneric6DofSpring2Constraint>(b_, a_, to_bullet(frames_.X_BJ), to_bullet(frames_.X_AJ));
+    auto spring = std::make_unique<btGeneric6DofSpring2Constraint>(b_, a_, to_bullet(frames_.X_BJ),
+                                                                   to_bullet(frames_.X_AJ), RO_ZYX);
     for (int i = 0; i < 6; ++i) {
       const core::SpringAxis& axis = joint.axes[static_cast<std::size_t>(i)];
-      spring->setLimit(i, scalar(axis.limits ? axis.limits->low : 1), scalar(axis.limits ? axis.limits->high : -1));
+      const core::JointLimits of_a = axis.limits.value_or(core::JointLimits{1, -1});  // low > high: free
+      const core::JointLimits limits = i >= 3 && axis.limits ? core::JointLimits{-of_a.high, -of_a.low} : of_a;
+      spring->setLimit(i, scalar(limits.low), scalar(limits.high));
       if (axis.stiffness == 0 && axis.damping == 0) continue;
       spring->enableSpring(i, true);
       spring->setStiffness(i, scalar(axis.stiffness));

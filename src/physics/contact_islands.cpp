@@ -90,7 +90,7 @@ void ContactIslands::collect_awake_joints(std::span<btTypedConstraint* const> jo
     const btRigidBody& a = joint->getRigidBodyA();
     const btRigidBody& b = joint->getRigidBodyB();
     if (!joint->isEnabled() || !(a.isActive() || b.isActive())) continue;
-    joint_entries_.push_back({std::max(a.getIslandTag(), b.getIslandTag()), joint->getUserConstraintId(), joint});
+    joint_entries_.push_back({std::max(a.getIslandTag(), b.getIslandTag()), joint->getUserConstraintType(), joint});
   }
   std::sort(joint_entries_.begin(), joint_entries_.end(), [](const JointEntry& a, const JointEntry& b) {
     return std::tie(a.island, a.order) < std::tie(b.island, b.order);

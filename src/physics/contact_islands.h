@@ -19,7 +19,7 @@ namespace aurasim::physics {
 
 /// Differs from Bullet's in four ways. Islands are joined by contacts, not by overlapping bounds, which remember the
 /// past. The manifolds of an island are in the order of the bodies' user indices, then of their parts, its joints in
-/// that of their user ids. Islands are
+/// that of their user types. Islands are
 /// never solved in one batch with others, because the solver stops early on the error of the whole batch. Nothing is
 /// allocated once warm.
 ///

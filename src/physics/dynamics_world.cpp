@@ -102,7 +102,7 @@ void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
 }
 
 void DynamicsWorld::connect(btTypedConstraint& joint, int order, bool bodies_collide) {
-  joint.setUserConstraintId(order);
+  joint.setUserConstraintType(order);
   bullet_->world->addConstraint(&joint, !bodies_collide);
 }
 

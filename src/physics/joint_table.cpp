@@ -33,7 +33,7 @@ JointTable::JointTable(const core::Scene& scene, const Settings& settings)
   entries_.resize(scene.joints.size());
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const core::JointSpec& joint = scene.joints[i];
-    entries_[i].frames = frames_of(joint, scene, settings.p_WO);
+    entries_[i].axes = axes_of(joint, frames_of(joint, scene, settings.p_WO), substep_s_);
     joints_of_[joint.a].push_back(core::JointId{i});
     if (joint.b) joints_of_[*joint.b].push_back(core::JointId{i});
   }
@@ -64,7 +64,8 @@ void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& wo
     btRigidBody* const a = born_body(bodies, joint.a);
     btRigidBody* const b = joint.b ? born_body(bodies, *joint.b) : ground_.get();
     if (a == nullptr || b == nullptr) continue;
-    entry.constraint = make_constraint(joint, entry.frames, *a, *b, substep_s_);
+    entry.constraint = make_constraint(joint, entry.axes.frames, *a, *b, substep_s_);
+    entry.constraint->setUserConstraintPtr(&entry.axes);
     world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
     connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
   }

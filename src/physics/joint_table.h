@@ -15,6 +15,7 @@
 #include "physics/body_table.h"
 #include "physics/constraints.h"
 #include "physics/dynamics_world.h"
+#include "physics/joint_axes.h"
 
 namespace aurasim::physics {
 
@@ -43,7 +44,7 @@ class JointTable {
 
  private:
   struct Entry {
-    JointFrames frames;
+    JointAxes axes;
     std::unique_ptr<btTypedConstraint> constraint;
     bool broken = false;
   };

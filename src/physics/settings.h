@@ -13,6 +13,7 @@ enum class Solver {
   kSoftStep,           ///< what touches is found once a step; soft contacts in substeps (soft/step.h)
 };
 
+/// By themselves those of Bullet's own step; launch files ask for the soft step if they do not say (config/presets.h).
 struct Settings {
   double step_s = 1.0 / 60;
   int substeps = 4;

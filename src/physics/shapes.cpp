@@ -7,7 +7,6 @@
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
@@ -15,29 +14,23 @@
 #include <LinearMath/btConvexHullComputer.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/hull_shape.h"
 #include "physics/inertia.h"
 
 namespace aurasim::physics {
 namespace {
 
-std::unique_ptr<btConvexHullShape> hull_through(const btVector3* points, int count) {
-  auto hull = std::make_unique<btConvexHullShape>();
-  for (int i = 0; i < count; ++i) hull->addPoint(points[i], false);
-  hull->recalcLocalAabb();
-  return hull;
-}
-
-std::unique_ptr<btConvexHullShape> exact_hull(const core::ConvexHull& shape, double margin_m) {
+std::unique_ptr<HullShape> exact_hull(const core::ConvexHull& shape, double margin_m) {
   if (shape.points.empty()) throw std::invalid_argument("a convex hull without points");
   std::vector<btVector3> points;
   for (const core::Vec3& p : shape.points) points.push_back(to_bullet(p));
-  auto hull = hull_through(points.data(), static_cast<int>(points.size()));
+  auto hull = std::make_unique<HullShape>(points.data(), static_cast<int>(points.size()));
   hull->setMargin(scalar(margin_m));
   return hull;
 }
 
 /// Bullet puts a hull's margin outside, so the faces are moved inwards by as much first.
-std::unique_ptr<btConvexHullShape> shrunken_hull(const core::ConvexHull& shape) {
+std::unique_ptr<HullShape> shrunken_hull(const core::ConvexHull& shape) {
   constexpr double kMargin = 0.04;             // m, Bullet's default
   constexpr double kShareOfInnerRadius = 0.1;  // as Bullet's safe margin of boxes
   constexpr double kMarginOfFlatHull = 0.001;  // share of the bounding radius
@@ -47,7 +40,7 @@ std::unique_ptr<btConvexHullShape> shrunken_hull(const core::ConvexHull& shape) 
         computer.compute(shape.points.front().data(), sizeof(core::Vec3), static_cast<int>(shape.points.size()),
                          scalar(kMargin), scalar(kShareOfInnerRadius));
     if (moved > 0 && computer.vertices.size() >= 4) {
-      auto hull = hull_through(&computer.vertices[0], computer.vertices.size());
+      auto hull = std::make_unique<HullShape>(&computer.vertices[0], computer.vertices.size());
       hull->setMargin(moved);
       return hull;
     }

@@ -17,7 +17,7 @@ using core::BodyId;
 using core::JointSpec;
 using core::Vec3;
 
-class Joints : public ::testing::Test {
+class Joints : public ::testing::TestWithParam<Solver> {
  protected:
   core::InitialBody& place(int kind, const Vec3& p_WB) { return place_body(scene, kind, p_WB); }
   JointSpec& join(core::JointKind kind, std::uint64_t a, std::optional<std::uint64_t> b, const Vec3& p_WJ,
@@ -27,7 +27,9 @@ class Joints : public ::testing::Test {
 
   void run_steps(int steps) {
     if (!world) {
-      world.emplace(scene, Settings{});
+      Settings settings;
+      settings.solver = GetParam();
+      world.emplace(scene, settings);
       world->add(initial_records(scene));
     }
     run(*world, steps);
@@ -56,7 +58,7 @@ class Joints : public ::testing::Test {
   std::optional<RegionWorld> world;
 };
 
-TEST_F(Joints, ABallJointHoldsTwoPointsTogether) {
+TEST_P(Joints, ABallJointHoldsTwoPointsTogether) {
   place(kBox, {0, 0, 5});
   place(kCapsule, {0.5, 0, 4}).v_WB = {3, 4, 0};
   join(core::BallJoint{}, 0, 1, {0.2, 0, 4.5});
@@ -66,7 +68,7 @@ TEST_F(Joints, ABallJointHoldsTwoPointsTogether) {
   }
 }
 
-TEST_F(Joints, AWithoutBHangsFromTheWorld) {
+TEST_P(Joints, AWithoutBHangsFromTheWorld) {
   place(kBox, {1, 0, 5});
   join(core::BallJoint{}, 0, {}, {0, 0, 5});
   double lowest = 5;
@@ -78,7 +80,7 @@ TEST_F(Joints, AWithoutBHangsFromTheWorld) {
   EXPECT_NEAR(lowest, 4, 0.05) << "it swings";
 }
 
-TEST_F(Joints, AHingeTurnsAboutItsAxisOnly) {
+TEST_P(Joints, AHingeTurnsAboutItsAxisOnly) {
   place(kBox, {0, 0, 5});
   place(kBox, {1.2, 0, 5}).w_WB = {3, 3, 3};
   join(core::HingeJoint{}, 0, 1, {0.6, 0, 5}, Vec3::UnitY());
@@ -91,7 +93,7 @@ TEST_F(Joints, AHingeTurnsAboutItsAxisOnly) {
 
 double turn_about_z(const core::BodyRecord& body) { return std::atan2(body.R_WB(1, 0), body.R_WB(0, 0)); }
 
-TEST_F(Joints, AMotorTurnsAAtItsSpeed) {
+TEST_P(Joints, AMotorTurnsAAtItsSpeed) {
   place(kBox, {0, 0, 5});
   join(core::HingeJoint{{}, core::JointMotor{2, 10}}, 0, {}, {0, 0, 5});
   run_steps(30);
@@ -99,34 +101,32 @@ TEST_F(Joints, AMotorTurnsAAtItsSpeed) {
   EXPECT_NEAR(turn_about_z(body(0)), 1, 0.05);
 }
 
-TEST_F(Joints, AMotorWithTooSmallAnImpulseIsSlow) {
+TEST_P(Joints, AMotorWithTooSmallAnImpulseIsSlow) {
   place(kBox, {0, 0, 5});
   join(core::HingeJoint{{}, core::JointMotor{2, 1e-5}}, 0, {}, {0, 0, 5});
   run_steps(30);
   EXPECT_LT(body(0).w_WB.z(), 0.5);
 }
 
-TEST_F(Joints, AMotorIsAsStrongInAnySubsteps) {
+TEST_P(Joints, AMotorIsAsStrongInAnySubsteps) {
   place(kBox, {0, 0, 5});
   join(core::HingeJoint{{}, core::JointMotor{1000, 1e-3}}, 0, {}, {0, 0, 5});
   std::vector<double> speeds;
-  for (const Solver solver : {Solver::kSequentialImpulse, Solver::kSoftStep}) {
-    for (const int substeps : {2, 4, 8}) {
-      Settings settings;
-      settings.solver = solver;
-      settings.substeps = substeps;
-      world.emplace(scene, settings);
-      world->add(initial_records(scene));
-      run_steps(30);
-      speeds.push_back(body(0).w_WB.z());
-      EXPECT_GT(speeds.back(), 0.1);
-      EXPECT_LT(speeds.back(), 900);
-      EXPECT_NEAR(speeds.back() / speeds.front(), 1, 0.01) << substeps << " substeps";
-    }
+  for (const int substeps : {2, 4, 8}) {
+    Settings settings;
+    settings.solver = GetParam();
+    settings.substeps = substeps;
+    world.emplace(scene, settings);
+    world->add(initial_records(scene));
+    run_steps(30);
+    speeds.push_back(body(0).w_WB.z());
+    EXPECT_GT(speeds.back(), 0.1);
+    EXPECT_LT(speeds.back(), 900);
+    EXPECT_NEAR(speeds.back() / speeds.front(), 1, 0.01) << substeps << " substeps";
   }
 }
 
-TEST_F(Joints, AHingeStopsAtItsLimits) {
+TEST_P(Joints, AHingeStopsAtItsLimits) {
   for (const double side : {1.0, -1.0}) {
     scene = scene_of_all_shapes();
     world.reset();
@@ -136,7 +136,7 @@ TEST_F(Joints, AHingeStopsAtItsLimits) {
   }
 }
 
-TEST_F(Joints, ASliderSlidesBetweenItsLimits) {
+TEST_P(Joints, ASliderSlidesBetweenItsLimits) {
   for (const double side : {1.0, -1.0}) {
     scene = scene_of_all_shapes();
     world.reset();
@@ -150,7 +150,7 @@ TEST_F(Joints, ASliderSlidesBetweenItsLimits) {
   }
 }
 
-TEST_F(Joints, AFixedJointMakesOneBodyOfTwo) {
+TEST_P(Joints, AFixedJointMakesOneBodyOfTwo) {
   place(kBox, {0, 0, 3}).w_WB = {2, 1, 0};
   place(kSphere, {1.5, 0, 3});
   join(core::FixedJoint{}, 0, 1, {0.7, 0, 3});
@@ -161,7 +161,7 @@ TEST_F(Joints, AFixedJointMakesOneBodyOfTwo) {
   }
 }
 
-TEST_F(Joints, ASpringSwingsWithItsOwnFrequency) {
+TEST_P(Joints, ASpringSwingsWithItsOwnFrequency) {
   scene.gravity.setZero();
   scene.materials[0].linear_damping = 0;
   place(kSphere, {0, 0, 5}).v_WB = {1, 0, 0};
@@ -176,7 +176,7 @@ TEST_F(Joints, ASpringSwingsWithItsOwnFrequency) {
   EXPECT_NEAR(body(0).v_WB.x(), -1, 0.1);
 }
 
-TEST_F(Joints, ASpringIsHeldByItsLimitsAndMeasuresA) {
+TEST_P(Joints, ASpringIsHeldByItsLimitsAndMeasuresA) {
   place(kBox, {0, 0, 5}).v_WB = {0, 2, 0};
   core::SpringJoint spring;
   for (core::SpringAxis& axis : spring.axes) axis.limits = core::JointLimits{0, 0};
@@ -187,7 +187,45 @@ TEST_F(Joints, ASpringIsHeldByItsLimitsAndMeasuresA) {
   EXPECT_NEAR(body(0).p_WB.z(), 5, 0.02);
 }
 
-TEST_F(Joints, JointedBodiesOnlyCollideWhereTheSceneSaysSo) {
+TEST_P(Joints, ASpringTurnsBetweenItsLimits) {
+  for (const std::size_t about : {0u, 1u, 2u}) {
+    for (const double side : {1.0, -1.0}) {
+      scene = scene_of_all_shapes();
+      world.reset();
+      place(kBox, {0, 0, 5}).w_WB[static_cast<int>(about)] = 4 * side;
+      core::SpringJoint spring;
+      for (core::SpringAxis& axis : spring.axes) axis.limits = core::JointLimits{0, 0};
+      spring.axes[3 + about].limits = core::JointLimits{-0.25, 0.75};
+      add_joint(scene, spring, 0, {}, {0, 0, 5}, Vec3::UnitZ());
+      const auto angle = [&] {
+        const core::Mat3& R = body(0).R_WB;
+        const auto i = static_cast<int>((about + 1) % 3), k = static_cast<int>((about + 2) % 3);
+        return std::atan2(R(k, i), R(i, i));
+      };
+      EXPECT_NEAR(farthest(side, 60, angle), side > 0 ? 0.75 : -0.25, 0.05) << "about axis " << about;
+    }
+  }
+}
+
+TEST_P(Joints, ASpringPullsBackWhatIsTurned) {
+  scene.gravity.setZero();
+  scene.materials[0].angular_damping = 0;
+  place(kSphere, {0, 0, 5}).w_WB = {0, 1, 0};
+  core::SpringJoint spring;
+  for (core::SpringAxis& axis : spring.axes) axis.limits = core::JointLimits{0, 0};
+  spring.axes[4].limits.reset();
+  spring.axes[4].stiffness = 1;
+  add_joint(scene, spring, 0, {}, {0, 0, 5}, Vec3::UnitZ());
+  double largest = 0;
+  for (int i = 0; i < 60; ++i) {
+    run_steps(1);
+    largest = std::max(largest, std::abs(body(0).R_WB(0, 2)));
+  }
+  const double inertia = 0.4 * 0.4 * 0.4;  // of 1 kg
+  EXPECT_NEAR(largest, std::sin(std::sqrt(inertia)), 0.02);
+}
+
+TEST_P(Joints, JointedBodiesOnlyCollideWhereTheSceneSaysSo) {
   for (const bool collide : {false, true}) {
     scene = scene_of_all_shapes();
     world.reset();
@@ -199,7 +237,7 @@ TEST_F(Joints, JointedBodiesOnlyCollideWhereTheSceneSaysSo) {
   }
 }
 
-TEST_F(Joints, AJointThatTakesTooMuchBreaksForGood) {
+TEST_P(Joints, AJointThatTakesTooMuchBreaksForGood) {
   place(kBox, {0, 0, 20});
   place(kBox, {3, 0, 0.45});
   join(core::BallJoint{}, 0, {}, {0, 0, 20}).break_impulse = 9.81 / 240 * 0.9;
@@ -212,8 +250,22 @@ TEST_F(Joints, AJointThatTakesTooMuchBreaksForGood) {
   EXPECT_LT(body(0).p_WB.z(), 16);
 }
 
+TEST_P(Joints, ASpringThatPullsTooHardBreaks) {
+  scene.gravity.setZero();
+  for (const bool strong : {true, false}) {
+    world.reset();
+    scene.bodies.clear(), scene.joints.clear();
+    place(kSphere, {0, 0, 5}).v_WB = {20, 0, 0};
+    core::SpringJoint spring;
+    spring.axes[0].stiffness = 1000;
+    join(spring, 0, {}, {0, 0, 5}).break_impulse = strong ? 1e3 : 0.5;  // at most 20 sqrt(1000) / 240 = 2.6
+    run_steps(60);
+    EXPECT_EQ(world->peek(std::vector{BodyId{0}}).joint_values[0], strong ? 0 : 1);
+  }
+}
+
 /// Whose halves have left since, at once and as two clusters.
-TEST_F(Joints, OneThatBrokeIsWholeAgainWhenTheWorldGoesBack) {
+TEST_P(Joints, OneThatBrokeIsWholeAgainWhenTheWorldGoesBack) {
   place(kBox, {0, 0, 20});
   place(kBox, {0, 0, 18});
   join(core::BallJoint{}, 0, {}, {0, 0, 20});
@@ -228,7 +280,7 @@ TEST_F(Joints, OneThatBrokeIsWholeAgainWhenTheWorldGoesBack) {
   EXPECT_EQ(world->peek_all().joint_values[2], 0);
 }
 
-TEST_F(Joints, JointedBodiesFallAsleepTogetherAndWakeTogether) {
+TEST_P(Joints, JointedBodiesFallAsleepTogetherAndWakeTogether) {
   place(kBox, {0, 0, 0.45});
   place(kBox, {3, 0, 0.45});
   place(kSphere, {20, 0, 0.4}).v_WB = {-12, 0, 0};
@@ -243,7 +295,7 @@ TEST_F(Joints, JointedBodiesFallAsleepTogetherAndWakeTogether) {
   }
 }
 
-TEST_F(Joints, TheSnapshotNamesPairsAndNotTheWorld) {
+TEST_P(Joints, TheSnapshotNamesPairsAndNotTheWorld) {
   for (int i = 0; i < 3; ++i) place(kBox, {2.0 * i, 0, 5});
   join(core::BallJoint{}, 2, 1, {3, 0, 5});
   join(core::BallJoint{}, 0, 1, {1, 0, 5});
@@ -255,13 +307,16 @@ TEST_F(Joints, TheSnapshotNamesPairsAndNotTheWorld) {
   EXPECT_EQ(std::pair(joints[1].a, joints[1].b), std::pair(1u, 2u));
 }
 
-TEST_F(Joints, ToABodyThatTheSceneDoesNotHaveOrToItselfAreRefused) {
+TEST_P(Joints, ToABodyThatTheSceneDoesNotHaveOrToItselfAreRefused) {
   place(kBox, {0, 0, 5});
   join(core::BallJoint{}, 0, 1, {0, 0, 5});
   EXPECT_THROW(RegionWorld(scene, Settings{}), std::invalid_argument);
   scene.joints[0].b = BodyId{0};
   EXPECT_THROW(RegionWorld(scene, Settings{}), std::invalid_argument);
 }
+
+INSTANTIATE_TEST_SUITE_P(Of, Joints, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep),
+                         [](const auto& solver) { return solver.param == Solver::kSoftStep ? "SoftStep" : "Bullet"; });
 
 }  // namespace
 }  // namespace aurasim::physics::testing

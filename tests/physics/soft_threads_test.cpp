@@ -13,12 +13,18 @@ namespace {
 std::vector<core::BodyRecord> heap(core::Scene& scene) {
   std::mt19937_64 random(3);
   constexpr int kBodies = 700;
+  core::SpringJoint spring;
+  spring.axes[0] = {core::JointLimits{-0.1, 0.1}, 100, 1};
+  spring.axes[4].stiffness = 5;
+  const std::vector<core::JointKind> kinds = {core::BallJoint{}, core::FixedJoint{},
+                                              core::HingeJoint{core::JointLimits{-0.5, 0.5}, core::JointMotor{2, 0.1}},
+                                              core::SliderJoint{core::JointLimits{-0.1, 0.1}}, spring};
   for (int i = 0; i < kBodies; ++i) {
     const int layer = i / 49, place = i % 49;
     const core::Vec3 p(1.3 * (place % 7) + uniform(random, -0.1, 0.1), 1.3 * (place / 7), 1 + 1.3 * layer);
     place_body(scene, i % kKinds, p);
     const auto id = static_cast<std::uint64_t>(i);
-    if (i % 10 == 9) add_joint(scene, core::BallJoint{}, id - 1, id, p - core::Vec3(0.65, 0, 0));
+    if (i % 10 == 9) add_joint(scene, kinds[random() % kinds.size()], id - 1, id, p - core::Vec3(0.65, 0, 0));
   }
   std::vector<core::BodyRecord> bodies = initial_records(scene);
   for (std::size_t i = 0; i < bodies.size(); i += 50) bodies[i].v_WB = {-40, 10, 0};

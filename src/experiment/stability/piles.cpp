@@ -121,7 +121,7 @@ Case balls() {
                   const double before = energy(scene, first);
                   return std::abs(energy(scene, now.bodies) - before) / before;
                 }},
-               {"deepest overlap in the end", "m", Over::kLast,
+               {"deepest overlap, mean over the states", "m", Over::kMean,
                 [](const Moment& now) { return deepest_overlap(now.bodies, kRadius); }}};
   return c;
 }

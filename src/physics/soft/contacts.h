@@ -31,7 +31,7 @@ struct SoftPatch {
   bool has_pressed = false;                            ///< ahead of time: the two have touched in the step
   int a = 0, b = 0;                                    ///< user indices: statics' are negative
   std::array<std::int8_t, soft::kMostPoints> of = {};  ///< the points in the manifold
-  std::int8_t count = 0, colour = 0;
+  std::int8_t count = 0;
   soft::Real normal[3] = {};  ///< from a to b
   soft::Real friction = 0, restitution = 0, spinning_m = 0, rolling_m = 0;
   soft::Real rub_1 = 0, rub_2 = 0, twist = 0;  ///< impulses of friction of the last substep, N s and N m s

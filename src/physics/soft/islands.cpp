@@ -48,7 +48,7 @@ void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<const Sof
     const bool moves = joint->getRigidBodyA().isActive() || joint->getRigidBodyB().isActive();
     if (joint->isEnabled() && moves) joints_.push_back(joint);
   }
-  std::ranges::sort(joints_, {}, &btTypedConstraint::getUserConstraintId);
+  std::ranges::sort(joints_, {}, &btTypedConstraint::getUserConstraintType);
 }
 
 /// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.

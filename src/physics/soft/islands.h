@@ -24,7 +24,7 @@ class SoftIslands {
   std::span<btRigidBody* const> awake() const { return awake_; }
   /// Of bodies that are awake. Ordered by the bodies' user indices, then by their parts.
   std::span<SoftTouch> touches() { return touches_; }
-  /// Ordered by their user ids.
+  /// Ordered by their user types.
   std::span<btTypedConstraint* const> joints() const { return joints_; }
 
  private:

@@ -1,116 +1,125 @@
 #include "physics/soft/joints.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/bullet_convert.h"
+#include "physics/joint_axes.h"
 #include "physics/soft/convert.h"
 
 namespace aurasim::physics {
 namespace {
 
-using soft::Mover;
+using soft::Lanes;
 using soft::Real;
 
-/// Share of a joint's error that is undone in a substep, as in Bullet's solvers.
-constexpr btScalar kErrorReduction = btScalar(0.2);
-constexpr int kMostRows = 24;  ///< of one joint: six axes with two limits, a motor and a spring each
+const JointAxes& axes_of(btTypedConstraint& joint) {
+  return *static_cast<const JointAxes*>(joint.getUserConstraintPtr());
+}
 
-/// A row as a joint fills it in. Most joints have few, so only those that they have are set up.
-struct Line {
-  void clear() {
-    for (btVector3* v : {&linear_a, &angular_a, &linear_b, &angular_b}) v->setZero();
-    error = mixing = 0, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+unsigned what_of(const JointAxes& joint) {
+  unsigned what = joint.has_motor ? soft::kJointMotor : 0;
+  for (std::size_t i = 0; i < joint.axes.size(); ++i) {
+    if (joint.axes[i].is_held) what |= soft::kHeldAxis << i;
+    if (joint.axes[i].stiffness > 0 || joint.axes[i].damping > 0) what |= soft::kSpringAxis << i;
   }
+  return what;
+}
 
-  btVector3 linear_a, angular_a, linear_b, angular_b;
-  btScalar error, mixing, low, high;
-};
-
-void push(Real (&to)[3], const btVector3& v) {
-  for (int i = 0; i < 3; ++i) to[i] += static_cast<Real>(v[i]);
+void set(Lanes (&to)[3], int lane, const btVector3& v) {
+  for (int i = 0; i < 3; ++i) to[i][lane] = static_cast<Real>(v[i]);
 }
 
 }  // namespace
 
-void SoftJoints::add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b) {
-  joints_.push_back({&joint, a, b, 0, 0});
-  for (const std::uint32_t mover : {a, b}) {
-    if (is_known_.size() <= mover) is_known_.resize(mover + 1, 0);
-    if (mover != 0 && std::exchange(is_known_[mover], 1) == 0) movers_.push_back(mover);
+SoftJoints::SoftJoints(Real substep_s) : kernel_(soft::fastest_kernel()), h_s_(substep_s) {}
+
+void SoftJoints::add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second) {
+  joints_.push_back({&joint, first, second, 0});
+  if (axes_of(joint).b_is_first) std::swap(joints_.back().a, joints_.back().b);
+}
+
+void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias, int threads) {
+  kinds_.clear();
+  for (Joint& joint : joints_) {
+    joint.what = what_of(axes_of(*joint.joint));
+    const auto place = std::ranges::lower_bound(kinds_, joint.what);
+    if (place == kinds_.end() || *place != joint.what) kinds_.insert(place, joint.what);
   }
-}
-
-void SoftJoints::begin(Real h_s) {
-  rows_.clear();
-  for (Joint& joint : joints_) make_rows(joint, h_s);
-}
-
-void SoftJoints::make_rows(Joint& joint, Real h_s) {
-  joint.first_row = static_cast<std::uint32_t>(rows_.size());
-  joint.rows = 0;
-  if (!joint.joint->isEnabled()) return;
-  btTypedConstraint::btConstraintInfo1 count{};
-  joint.joint->getInfo1(&count);
-  joint.rows = static_cast<std::uint32_t>(count.m_numConstraintRows);
-  if (joint.rows == 0) return;
-  std::array<Line, kMostRows> lines;
-  for (std::uint32_t i = 0; i < joint.rows; ++i) lines[i].clear();
-  btTypedConstraint::btConstraintInfo2 info{};
-  info.fps = 1 / btScalar(h_s);
-  info.erp = kErrorReduction;
-  info.m_J1linearAxis = lines[0].linear_a, info.m_J1angularAxis = lines[0].angular_a;
-  info.m_J2linearAxis = lines[0].linear_b, info.m_J2angularAxis = lines[0].angular_b;
-  info.rowskip = sizeof(Line) / sizeof(btScalar);
-  info.m_constraintError = &lines[0].error, info.cfm = &lines[0].mixing;
-  info.m_lowerLimit = &lines[0].low, info.m_upperLimit = &lines[0].high;
-  info.m_numIterations = 1, info.m_damping = 1;
-  joint.joint->getInfo2(&info);
-  const btRigidBody& a = joint.joint->getRigidBodyA();
-  const btRigidBody& b = joint.joint->getRigidBodyB();
-  const btScalar most = joint.joint->getBreakingImpulseThreshold();
-  for (std::uint32_t i = 0; i < joint.rows; ++i) {
-    const Line& line = lines[i];
-    Row row{line.linear_a, line.angular_a, line.linear_b, line.angular_b, {}, {}, {}, {}, 0, 0, 0, 0, 0, 0};
-    row.v_a = line.linear_a * a.getInvMass(), row.w_a = a.getInvInertiaTensorWorld() * line.angular_a;
-    row.v_b = line.linear_b * b.getInvMass(), row.w_b = b.getInvInertiaTensorWorld() * line.angular_b;
-    const btScalar response =
-        row.linear_a.dot(row.v_a) + row.angular_a.dot(row.w_a) + row.linear_b.dot(row.v_b) + row.angular_b.dot(row.w_b);
-    row.mass = response > SIMD_EPSILON ? 1 / response : 0;
-    row.error = line.error, row.mixing = line.mixing;
-    row.low = std::max(line.low, -most), row.high = std::min(line.high, most);
-    rows_.push_back(row);
-  }
-}
-
-void SoftJoints::solve(Mover* movers) {
+  layout_.clear(movers, kinds_.size());
   for (const Joint& joint : joints_) {
-    Mover& a = movers[joint.a];
-    Mover& b = movers[joint.b];
-    for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
-      Row& row = rows_[i];
-      const btScalar v = row.linear_a.dot(soft::to_bullet(a.v)) + row.angular_a.dot(soft::to_bullet(a.w)) +
-                         row.linear_b.dot(soft::to_bullet(b.v)) + row.angular_b.dot(soft::to_bullet(b.w));
-      const btScalar wanted = row.impulse + (row.error - v) * row.mass - row.impulse * row.mixing;
-      const btScalar total = std::clamp(wanted, row.low, row.high);
-      const btScalar more = total - row.impulse;
-      row.impulse = total;
-      if (joint.a != 0) push(a.v, row.v_a * more), push(a.w, row.w_a * more);
-      if (joint.b != 0) push(b.v, row.v_b * more), push(b.w, row.w_b * more);
-    }
+    layout_.add(joint.a, joint.b,
+                static_cast<std::size_t>(std::ranges::lower_bound(kinds_, joint.what) - kinds_.begin()));
   }
+  blocks_.assign(layout_.place(), soft::JointBlock{});
+  soft::for_each_side_by_side(threads, joints_.size(), [&](std::size_t i) { fill(i, inertias); });
+}
+
+void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
+  const Joint& joint = joints_[at];
+  const JointAxes& axes = axes_of(*joint.joint);
+  soft::JointBlock& block = blocks_[layout_.block(at)];
+  const int lane = layout_.lane(at);
+  block.a[lane] = joint.a, block.b[lane] = joint.b;
+  block.inv_mass_a[lane] = inertias[joint.a].inv_mass, block.inv_mass_b[lane] = inertias[joint.b].inv_mass;
+  soft::set(block.start_inertia_a, lane, inertias[joint.a].inv_inertia);
+  soft::set(block.start_inertia_b, lane, inertias[joint.b].inv_inertia);
+  const btRigidBody &first = joint.joint->getRigidBodyA(), &second = joint.joint->getRigidBodyB();
+  const btTransform& X_WA = (axes.b_is_first ? second : first).getWorldTransform();
+  const btTransform& X_WB = (axes.b_is_first ? first : second).getWorldTransform();
+  const btTransform X_WJ_a = X_WA * to_bullet(axes.frames.X_AJ), X_WJ_b = X_WB * to_bullet(axes.frames.X_BJ);
+  set(block.r_a, lane, X_WJ_a.getOrigin() - X_WA.getOrigin());
+  set(block.r_b, lane, X_WJ_b.getOrigin() - X_WB.getOrigin());
+  set(block.apart, lane, X_WJ_a.getOrigin() - X_WJ_b.getOrigin());
+  for (int i = 0; i < 3; ++i) {
+    set(block.frame_a[i], lane, X_WJ_a.getBasis().getColumn(i));
+    set(block.frame_b[i], lane, X_WJ_b.getBasis().getColumn(i));
+  }
+  for (std::size_t i = 0; i < axes.axes.size(); ++i) {
+    const JointAxes::Axis& from = axes.axes[i];
+    soft::JointBlock::Axis& to = block.axes[i];
+    to.low[lane] = static_cast<Real>(from.low), to.high[lane] = static_cast<Real>(from.high);
+    to.stiffness[lane] = static_cast<Real>(from.stiffness), to.damping[lane] = static_cast<Real>(from.damping);
+  }
+  block.motor_rad_s[lane] = static_cast<Real>(axes.motor_rad_s);
+  block.motor_impulse[lane] = static_cast<Real>(axes.motor_impulse);
+  block.whole[lane] = 1;
+  block.breaks[lane] = static_cast<Real>(axes.break_impulse);
+}
+
+void SoftJoints::look(const soft::Mover* movers, const soft::Worker& worker) {
+  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
+    kernel_.look_at_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+  });
+}
+
+void SoftJoints::begin(soft::Mover* movers, const soft::Worker& worker) {
+  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
+    kernel_.begin_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+  });
+}
+
+void SoftJoints::solve(soft::Mover* movers, const soft::Worker& worker) {
+  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
+    kernel_.solve_joints(&blocks_[first], count, kinds_[kind], movers);
+  });
 }
 
 void SoftJoints::finish() {
-  for (const Joint& joint : joints_) {
-    for (std::uint32_t i = joint.first_row; i < joint.first_row + joint.rows; ++i) {
-      joint.joint->internalSetAppliedImpulse(rows_[i].impulse);
-      if (std::abs(rows_[i].impulse) >= joint.joint->getBreakingImpulseThreshold()) joint.joint->setEnabled(false);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const soft::JointBlock& block = blocks_[layout_.block(i)];
+    const int lane = layout_.lane(i);
+    Real last = (joints_[i].what & soft::kJointMotor) != 0 ? std::abs(block.motor_took[lane]) : 0;
+    for (int axis = 0; axis < 6; ++axis) {
+      if ((joints_[i].what & soft::kHeldAxis << axis) != 0)
+        last = std::max(last, std::abs(block.axes[axis].impulse[lane]));
     }
+    joints_[i].joint->internalSetAppliedImpulse(last);
+    if (std::max(last, block.took[lane]) >= block.breaks[lane]) joints_[i].joint->setEnabled(false);
   }
 }
 

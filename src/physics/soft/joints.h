@@ -1,52 +1,61 @@
-// Joints in the soft step: rows as Bullet's joints state them, made anew in each substep from where their bodies are.
+// The joints of awake bodies, as the soft step solves them: coloured as patches are (soft/layout.h), side by side in
+// blocks. They start from nothing in each substep, from where their bodies are by then.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include <LinearMath/btVector3.h>
-
 #include "physics/soft/lanes.h"
+#include "physics/soft/layout.h"
+#include "physics/soft/patches.h"
+#include "physics/soft/threads.h"
 
 class btTypedConstraint;
 
 namespace aurasim::physics {
 
+struct JointAxes;
+
+/// What of a joint is told with it, as its user pointer: const JointAxes*.
 class SoftJoints {
  public:
-  void clear() { joints_.clear(), movers_.clear(), is_known_.clear(); }
-  /// Between the bodies of movers a and b. Those of an island in an order that follows from the island alone.
-  void add(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b);
-  bool empty() const { return joints_.empty(); }
-  /// Of all joints.
-  const std::vector<std::uint32_t>& movers() const { return movers_; }
+  explicit SoftJoints(soft::Real substep_s);
 
-  /// From the present poses and velocities of the bodies. What the rows have pushed so far is forgotten.
-  void begin(soft::Real h_s);
-  /// Each row once.
-  void solve(soft::Mover* movers);
-  /// Breaks the joints that took more than they bear in this substep.
+  void clear() { joints_.clear(); }
+  /// Between two movers, as the joint names them. Those of an island in an order that follows from the island alone.
+  void add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second);
+  /// Lays out all that was added, between bodies that are where the step began.
+  void build(std::size_t movers, std::span<const SoftInertia> inertias, int threads);
+  bool empty() const { return joints_.empty(); }
+
+  // By each worker, for its share. When they return, all have done theirs.
+  /// As the bodies are now.
+  void look(const soft::Mover* movers, const soft::Worker& worker);
+  /// A substep: what has been pushed in the one before is forgotten; springs push.
+  void begin(soft::Mover* movers, const soft::Worker& worker);
+  /// Each once.
+  void solve(soft::Mover* movers, const soft::Worker& worker);
+
+  /// Breaks the joints that took more than they bear in a substep.
   void finish();
 
  private:
-  /// J v = error, in m/s or rad/s.
-  struct Row {
-    btVector3 linear_a, angular_a, linear_b, angular_b;  ///< J
-    btVector3 v_a, w_a, v_b, w_b;                        ///< what a unit impulse changes
-    btScalar mass, error, mixing, low, high, impulse;
-  };
   struct Joint {
     btTypedConstraint* joint;
     std::uint32_t a, b;  ///< movers
-    std::uint32_t first_row, rows;
+    unsigned what;       ///< soft::kHeldAxis and so on
   };
 
-  void make_rows(Joint& joint, soft::Real h_s);
+  void fill(std::size_t at, std::span<const SoftInertia> inertias);
 
+  soft::Kernel kernel_;
+  soft::Real h_s_;
   std::vector<Joint> joints_;
-  std::vector<Row> rows_;
-  std::vector<std::uint32_t> movers_;
-  std::vector<char> is_known_;  ///< by mover: is in movers_
+  std::vector<unsigned> kinds_;  ///< what joints have, ascending
+  SoftLayout layout_;            ///< by kind
+  std::vector<soft::JointBlock> blocks_;
 };
 
 }  // namespace aurasim::physics

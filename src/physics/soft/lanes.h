@@ -1,5 +1,5 @@
-// The data of the soft step (soft/step.h), laid out for so many contact patches at a time, and its arithmetic, which is
-// compiled once for each set of instructions. No lane ever sees another, and nothing is contracted or reordered, so
+// The data of the soft step (soft/step.h), laid out for so many patches or joints at a time, and its arithmetic, which
+// is compiled once for each set of instructions. No lane ever sees another, and nothing is contracted or reordered, so
 // neither their number nor the set changes a bit.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace aurasim::physics::soft {
 
-// Nothing else may be included here or in soft/kernel.h: what is inline elsewhere would exist once for all sets.
+// Nothing else may be included here or in soft/kernel*.h: what is inline elsewhere would exist once for all sets.
 
 /// Also where bodies have doubles: speeds change by what is computed here, and bodies move by it, from where and as
 /// fast as they were at the start of the step.
@@ -17,6 +17,7 @@ inline constexpr int kLanes = 32 / sizeof(Real);
 using Lanes __attribute__((vector_size(32))) = Real;
 
 inline constexpr int kMostPoints = 4;
+inline constexpr std::size_t kPointsAtOnce = 16;  ///< of a hull
 
 /// A body, as the substeps see it.
 struct alignas(64) Mover {
@@ -59,16 +60,65 @@ struct alignas(64) Block {
   Lanes twist, roll[3];             ///< N m s
 };
 
-/// The substeps of `count` blocks of `points` points each.
+/// The bits of what joints have: axes that are held or limited, axes with springs, and a motor about the last.
+inline constexpr unsigned kHeldAxis = 1, kSpringAxis = 1 << 6, kJointMotor = 1 << 12;
+
+/// Joints of kLanes pairs of bodies. None shares a body that moves with another. What is measured is J of a from J of
+/// b: how far it is along the axes of b's, m, and the angles x, y, z of turns about x, then y, then z as they lie then,
+/// rad. Directions are the world's.
+struct alignas(64) JointBlock {
+  struct Axis {
+    Lanes low, high;           ///< m or rad; the same: held
+    Lanes stiffness, damping;  ///< N/m and N s/m, or N m/rad and N m s/rad, towards 0
+    Lanes impulse;             ///< in this substep so far, N s or N m s
+    // As the bodies are now:
+    Lanes x;            ///< m or rad
+    Lanes n[3];         ///< an impulse acts along it, or about it
+    Lanes mass;         ///< kg or kg m^2
+    Lanes wanted;       ///< of a from b, m/s or rad/s
+    Lanes least, most;  ///< impulses
+  };
+
+  std::uint32_t a[kLanes], b[kLanes];            ///< movers; 0 never moves
+  Lanes inv_mass_a, inv_mass_b;                  ///< 1/kg
+  Lanes start_inertia_a[6], start_inertia_b[6];  ///< inverse, as in Block, at the start of the step
+  Lanes r_a[3], r_b[3];                ///< of J in a and b, from the centres of mass, at the start of the step, m
+  Lanes frame_a[3][3], frame_b[3][3];  ///< axes of J in a and b at the start of the step
+  Lanes apart[3];                      ///< of J in a from J in b at the start of the step, m
+  Lanes motor_rad_s, motor_impulse;    ///< of a; N m s in a substep
+  Lanes breaks;                        ///< by such an impulse in a substep, N s or N m s
+  Lanes took;                          ///< the largest of any substep before
+  Lanes whole;                         ///< 1, or 0: broken
+  Lanes motor_took;                    ///< in this substep so far, N m s
+  Axis axes[6];
+  // As the bodies are now:
+  Lanes inv_inertia_a[6], inv_inertia_b[6];
+  Lanes arm_a[3], arm_b[3];  ///< where impulses act, from the centres of mass, m
+};
+
+/// The substeps of `count` blocks of `points` points each, or of joints that have `what`.
 struct Kernel {
   void (*warm_start)(const Block* blocks, std::size_t count, int points, Mover* movers);
   void (*solve)(Block* blocks, std::size_t count, int points, Mover* movers, const Substep& substep);
   /// Restitution, for what came closer than `threshold_m_s` (below 0).
   void (*bounce)(Block* blocks, std::size_t count, int points, Mover* movers, Real threshold_m_s);
+  /// As the bodies are now, for substeps of h_s.
+  void (*look_at_joints)(JointBlock* blocks, std::size_t count, unsigned what, const Mover* movers, Real h_s);
+  /// What has been pushed in the substep before is forgotten; springs push.
+  void (*begin_joints)(JointBlock* blocks, std::size_t count, unsigned what, Mover* movers, Real h_s);
+  /// Each axis once.
+  void (*solve_joints)(JointBlock* blocks, std::size_t count, unsigned what, Mover* movers);
+  /// The first of the `count` points, a multiple of kPointsAtOnce, that is farthest in a direction.
+  std::size_t (*farthest_double)(const double* x, const double* y, const double* z, std::size_t count,
+                                 const double (&along)[3]);
+  std::size_t (*farthest_single)(const float* x, const float* y, const float* z, std::size_t count,
+                                 const float (&along)[3]);
 };
 
 Kernel kernel_sse2();
 Kernel kernel_avx2();
 Kernel kernel_avx512();
+/// Of those that this machine can run.
+Kernel fastest_kernel();
 
 }  // namespace aurasim::physics::soft

@@ -1,32 +1,27 @@
 #include "physics/soft/patches.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/prefetch.h"
+#include "physics/soft/convert.h"
 
 namespace aurasim::physics {
 namespace {
 
-using soft::kLanes;
 using soft::Lanes;
 using soft::Mover;
 using soft::Real;
 
-/// Statics have colours of their own, which come last: what cannot give way has the last word.
-constexpr int kColoursOfBodies = 40;
-constexpr int kColours = 64;
-constexpr std::uint64_t kOfBodies = (std::uint64_t{1} << kColoursOfBodies) - 1;
-
 /// Springs, as a share of the substeps' rate: stiffer ones swing on their own; and of the steps' rate: stiffer ones
-/// undo all of an overlap before anybody looks again, and card houses fall. Of statics twice as stiff.
+/// undo all of an overlap before anybody looks again, and card houses fall. Not where both are pressed together by many
+/// times the weight of one: there only the former counts. Of statics twice as stiff.
 constexpr double kHertzOfSubsteps = 0.25, kHertzOfSteps = 1.5;
-constexpr Real kDamping = 2;  ///< times critical: with 3 piles sway, with 1 cards wander
+constexpr Real kLight = 2, kHeavy = 10;  ///< times the weight
+constexpr Real kDamping = 2;             ///< times critical: with 3 piles sway, with 1 cards wander
 /// What comes closer at less than this does not bounce.
 constexpr Real kRestSpeed_m_s = Real(0.5);
 constexpr int kBounceSweeps = 8;  ///< the points of a face share a bounce
@@ -47,9 +42,6 @@ Vec mul(const Real (&m)[6], const Vec& a) {
 }
 
 void set(Lanes (&to)[3], int lane, const Vec& v) { to[0][lane] = v.x, to[1][lane] = v.y, to[2][lane] = v.z; }
-void set(Lanes (&to)[6], int lane, const Real (&m)[6]) {
-  for (int i = 0; i < 6; ++i) to[i][lane] = m[i];
-}
 
 Real inverse(Real x) { return x > 0 ? 1 / x : 0; }
 
@@ -86,108 +78,77 @@ void invert(const Real (&m)[6], Real (&to)[6]) {
   to[5] = (m[0] * m[3] - m[1] * m[1]) * per_det;
 }
 
-soft::Kernel fastest_kernel() {
-  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) return soft::kernel_avx512();
-  if (__builtin_cpu_supports("avx2")) return soft::kernel_avx2();
-  return soft::kernel_sse2();
-}
-
 }  // namespace
 
 SoftPatches::SoftPatches(double step_s, int substeps)
-    : kernel_(fastest_kernel()),
-      of_bodies_(stiffness(1, step_s, substeps)),
-      of_statics_(stiffness(2, step_s, substeps)) {}
+    : kernel_(soft::fastest_kernel()),
+      substep_s_(static_cast<Real>(step_s / substeps)),
+      light_hertz_(static_cast<Real>(std::min(kHertzOfSubsteps * substeps, kHertzOfSteps) / step_s)),
+      heavy_hertz_(static_cast<Real>(kHertzOfSubsteps * substeps / step_s)) {}
 
-/// A spring and a damper that cannot overshoot in a substep, as a share of a rigid contact's impulse.
-SoftPatches::Stiffness SoftPatches::stiffness(double times, double step_s, int substeps) {
-  const double hertz = times * std::min(kHertzOfSubsteps * substeps, kHertzOfSteps) / step_s;
-  const auto h_s = static_cast<Real>(step_s / substeps);
-  const Real omega = static_cast<Real>(2 * std::numbers::pi * hertz);
-  const Real a = 2 * kDamping + h_s * omega;
-  const Real b = h_s * omega * a;
-  return {omega / a, b / (1 + b), 1 / (1 + b)};
+SoftPatches::Stiffness::Stiffness(Real hertz, Real substep_s) {
+  const Real omega = 2 * std::numbers::pi_v<Real> * hertz;
+  const Real a = 2 * kDamping + substep_s * omega;
+  const Real b = substep_s * omega * a;
+  rate_per_s = omega / a, mass = b / (1 + b), impulse = 1 / (1 + b);
+}
+
+/// By how many times the weight of the lighter one the two were pressed together last.
+Real SoftPatches::load(const SoftPatch& patch, Real inv_mass, Real gravity) const {
+  Real pressed = 0;
+  for (int i = 0; i < patch.count; ++i) pressed += patch.points[static_cast<std::size_t>(i)].impulse;
+  return gravity > 0 ? pressed * inv_mass / (gravity * substep_s_) : 0;
 }
 
 void SoftPatches::clear(std::size_t movers) {
-  entries_.clear();
-  used_.assign(movers, 0);
+  patches_.clear();
+  layout_.clear(movers, soft::kMostPoints + 1);
 }
 
-/// The first colour that is free. Without one it is solved by itself, after the others.
 void SoftPatches::add(SoftPatch& patch, std::uint32_t a, std::uint32_t b) {
-  const std::uint64_t free = ~(used_[a] | used_[b]) & (a != 0 && b != 0 ? kOfBodies : ~kOfBodies);
-  patch.colour = static_cast<std::int8_t>(std::countr_zero(free));
-  used_[a] |= free & -free;
-  used_[b] |= free & -free;
-  used_[0] = 0;
-  entries_.push_back({&patch, a, b, 0});
-}
-
-/// By colour, then by the number of points, else as they came. Returns the number of blocks.
-std::size_t SoftPatches::place() {
-  constexpr std::size_t kCounts = soft::kMostPoints + 1, kKinds = (kColours + 1) * kCounts;
-  std::array<std::uint32_t, kKinds> patches{}, next{};
-  const auto kind = [](const SoftPatch& patch) {
-    return static_cast<std::size_t>(patch.colour) * kCounts + static_cast<std::size_t>(patch.count);
-  };
-  for (const Entry& entry : entries_) ++patches[kind(*entry.patch)];
-  runs_.clear();
-  std::size_t blocks = 0, colour = 0;
-  for (std::size_t k = 0; k < kKinds; ++k) {
-    if (patches[k] == 0) continue;
-    const bool alone = k / kCounts == kColours;
-    const std::size_t count = alone ? patches[k] : (patches[k] + kLanes - 1) / kLanes;
-    next[k] = static_cast<std::uint32_t>(blocks * kLanes);
-    if (!runs_.empty() && colour == k / kCounts) runs_.back().ends = false;
-    colour = k / kCounts;
-    runs_.push_back({blocks, count, static_cast<int>(k % kCounts), alone, true});
-    blocks += count;
-  }
-  for (Entry& entry : entries_) {
-    std::uint32_t& of_kind = next[kind(*entry.patch)];
-    entry.place = of_kind;
-    of_kind += entry.patch->colour == kColours ? kLanes : 1;
-  }
-  return blocks;
+  patches_.push_back(&patch);
+  layout_.add(a, b, static_cast<std::size_t>(patch.count));
 }
 
 void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], int threads) {
-  blocks_.resize(place());
-  bounces_ = std::ranges::any_of(entries_, [](const Entry& entry) { return entry.patch->restitution > 0; });
+  blocks_.resize(layout_.place());
+  bounces_ = std::ranges::any_of(patches_, [](const SoftPatch* patch) { return patch->restitution > 0; });
   soft::side_by_side(threads, [&](const soft::Worker& worker) {
     const auto [first_block, last_block] = worker.share(blocks_.size());
     std::fill(blocks_.begin() + static_cast<std::ptrdiff_t>(first_block),
               blocks_.begin() + static_cast<std::ptrdiff_t>(last_block), soft::Block{});
     worker.wait();
-    const auto [first, last] = worker.share(entries_.size());
+    const auto [first, last] = worker.share(patches_.size());
     for (std::size_t i = first; i < last; ++i) {
-      if (i + kPrefetchDistance / 2 < last) {
-        prefetch(entries_[i + kPrefetchDistance / 2].patch, sizeof(SoftPatch));
-      }
-      fill(blocks_[entries_[i].place / kLanes], static_cast<int>(entries_[i].place % kLanes), entries_[i], movers,
-           inertias, gravity);
+      if (i + kPrefetchDistance / 2 < last) prefetch(patches_[i + kPrefetchDistance / 2], sizeof(SoftPatch));
+      fill(i, movers, inertias, gravity);
     }
   });
 }
 
-void SoftPatches::fill(soft::Block& block, int lane, const Entry& entry, const Mover* movers,
-                       const SoftInertia* inertias, const Real (&gravity)[3]) const {
-  const SoftPatch& patch = *entry.patch;
-  const Side a{movers[entry.a], inertias[entry.a]}, b{movers[entry.b], inertias[entry.b]};
+void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3]) {
+  const SoftPatch& patch = *patches_[at];
+  soft::Block& block = blocks_[layout_.block(at)];
+  const int lane = layout_.lane(at);
+  const std::uint32_t mover_a = layout_.a(at), mover_b = layout_.b(at);
+  const Side a{movers[mover_a], inertias[mover_a]}, b{movers[mover_b], inertias[mover_b]};
   const Vec n = vec(patch.normal), t1 = across(n), t2 = cross(n, t1);
-  block.a[lane] = entry.a, block.b[lane] = entry.b;
+  block.a[lane] = mover_a, block.b[lane] = mover_b;
   block.inv_mass_a[lane] = a.inertia.inv_mass, block.inv_mass_b[lane] = b.inertia.inv_mass;
-  set(block.inv_inertia_a, lane, a.inertia.inv_inertia);
-  set(block.inv_inertia_b, lane, b.inertia.inv_inertia);
+  soft::set(block.inv_inertia_a, lane, a.inertia.inv_inertia);
+  soft::set(block.inv_inertia_b, lane, b.inertia.inv_inertia);
   set(block.normal, lane, n), set(block.first, lane, t1), set(block.second, lane, t2);
-  const Stiffness& stiff = entry.a != 0 && entry.b != 0 ? of_bodies_ : of_statics_;
+  const Real borne =
+      load(patch, std::max(a.inertia.inv_mass, b.inertia.inv_mass), std::sqrt(dot(vec(gravity), vec(gravity))));
+  const Real heavy = std::clamp((borne - kLight) / (kHeavy - kLight), Real(0), Real(1));
+  const Real hertz = light_hertz_ + heavy * std::max(Real(0), heavy_hertz_ - light_hertz_);
+  const Stiffness stiff((mover_a != 0 && mover_b != 0 ? 1 : 2) * hertz, substep_s_);
   block.rate_per_s[lane] = stiff.rate_per_s, block.soft_mass[lane] = stiff.mass;
   block.soft_impulse[lane] = stiff.impulse;
   block.friction[lane] = patch.friction, block.restitution[lane] = patch.restitution;
   block.spinning_m[lane] = patch.spinning_m, block.rolling_m[lane] = patch.rolling_m;
 
-  const Real fall_a = entry.a != 0 ? dot(vec(gravity), n) : 0, fall_b = entry.b != 0 ? dot(vec(gravity), n) : 0;
+  const Real fall_a = mover_a != 0 ? dot(vec(gravity), n) : 0, fall_b = mover_b != 0 ? dot(vec(gravity), n) : 0;
   Vec centre_a, centre_b;
   const auto count = static_cast<std::size_t>(patch.count);
   const Real share = 1 / static_cast<Real>(count);
@@ -217,37 +178,26 @@ void SoftPatches::fill(soft::Block& block, int lane, const Entry& entry, const M
   Real both[6], rolls[6];
   for (int i = 0; i < 6; ++i) both[i] = a.inertia.inv_inertia[i] + b.inertia.inv_inertia[i];
   block.mass_twist[lane] = inverse(dot(n, mul(both, n)));
-  if (patch.rolling_m > 0) invert(both, rolls), set(block.mass_roll, lane, rolls);
+  if (patch.rolling_m > 0) invert(both, rolls), soft::set(block.mass_roll, lane, rolls);
   block.rub_1[lane] = patch.rub_1, block.rub_2[lane] = patch.rub_2, block.twist[lane] = patch.twist;
 }
 
-template <class Work>
-void SoftPatches::for_each_run(const soft::Worker& worker, Work&& work) {
-  for (const Run& run : runs_) {
-    const soft::Worker alone;
-    const auto [first, last] = (run.in_order ? alone : worker).share(run.count);
-    if (first < last && (!run.in_order || worker.is_first()))
-      work(&blocks_[run.first + first], last - first, run.points);
-    if (run.ends) worker.wait();
-  }
-}
-
 void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
-  for_each_run(worker, [&](const soft::Block* blocks, std::size_t count, int points) {
-    kernel_.warm_start(blocks, count, points, movers);
+  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+    kernel_.warm_start(&blocks_[first], count, static_cast<int>(points), movers);
   });
 }
 
 void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
-  for_each_run(worker, [&](soft::Block* blocks, std::size_t count, int points) {
-    kernel_.solve(blocks, count, points, movers, substep);
+  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+    kernel_.solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
   });
 }
 
 void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
   for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
-    for_each_run(worker, [&](soft::Block* blocks, std::size_t count, int points) {
-      kernel_.bounce(blocks, count, points, movers, -kRestSpeed_m_s);
+    layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+      kernel_.bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
     });
   }
 }
@@ -256,21 +206,21 @@ void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
 /// finds again, so that they are still there when one of them is lost.
 void SoftPatches::remember(int threads) const {
   soft::side_by_side(threads, [&](const soft::Worker& worker) {
-    const auto [first, last] = worker.share(entries_.size());
+    const auto [first, last] = worker.share(patches_.size());
     for (std::size_t i = first; i < last; ++i) {
       if (i + kPrefetchDistance < last) {
-        const SoftPatch& soon = *entries_[i + kPrefetchDistance].patch;
+        const SoftPatch& soon = *patches_[i + kPrefetchDistance];
         if (!soon.ahead) prefetch_points(*soon.manifold);
       }
-      remember(entries_[i]);
+      remember(i);
     }
   });
 }
 
-void SoftPatches::remember(const Entry& entry) const {
-  SoftPatch& patch = *entry.patch;
-  const soft::Block& block = blocks_[entry.place / kLanes];
-  const auto lane = static_cast<int>(entry.place % kLanes);
+void SoftPatches::remember(std::size_t i) const {
+  SoftPatch& patch = *patches_[i];
+  const soft::Block& block = blocks_[layout_.block(i)];
+  const int lane = layout_.lane(i);
   for (int k = 0; k < patch.count; ++k) {
     if (patch.ahead) {
       patch.has_pressed = patch.has_pressed || block.points[k].most_impulse[lane] > 0;

@@ -8,6 +8,7 @@
 
 #include "physics/soft/contacts.h"
 #include "physics/soft/lanes.h"
+#include "physics/soft/layout.h"
 #include "physics/soft/threads.h"
 
 namespace aurasim::physics {
@@ -38,37 +39,22 @@ class SoftPatches {
   void remember(int threads) const;
 
  private:
-  struct Entry {
-    SoftPatch* patch;
-    std::uint32_t a, b;   ///< movers
-    std::uint32_t place;  ///< block * kLanes + lane
-  };
-  /// Blocks of one colour with as many points each.
-  struct Run {
-    std::size_t first, count;
-    int points;
-    bool in_order;  ///< they have no colour, and may share bodies
-    bool ends;      ///< its colour
-  };
+  /// A spring and a damper that cannot overshoot in a substep, as a share of a rigid contact's impulse.
   struct Stiffness {
+    Stiffness(soft::Real hertz, soft::Real substep_s);
     soft::Real rate_per_s, mass, impulse;
   };
 
-  static Stiffness stiffness(double times, double step_s, int substeps);
-  std::size_t place();
-  /// work(blocks, count, points)
-  template <class Work>
-  void for_each_run(const soft::Worker& worker, Work&& work);
-  void remember(const Entry& entry) const;
-  void fill(soft::Block& block, int lane, const Entry& entry, const soft::Mover* movers, const SoftInertia* inertias,
-            const soft::Real (&gravity)[3]) const;
+  soft::Real load(const SoftPatch& patch, soft::Real inv_mass, soft::Real gravity) const;
+  void remember(std::size_t i) const;
+  void fill(std::size_t at, const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 
   soft::Kernel kernel_;
-  Stiffness of_bodies_, of_statics_;
-  std::vector<Entry> entries_;       ///< as they came
-  std::vector<std::uint64_t> used_;  ///< colours, by mover
+  soft::Real substep_s_;
+  soft::Real light_hertz_, heavy_hertz_;  ///< of springs between bodies
+  std::vector<SoftPatch*> patches_;       ///< as they came
+  SoftLayout layout_;                     ///< by the number of points
   std::vector<soft::Block> blocks_;
-  std::vector<Run> runs_;
   bool bounces_ = false;  ///< any of them
 };
 

@@ -8,6 +8,8 @@ set(soft_step_sources
   soft/kernel_avx2.cpp
   soft/kernel_avx512.cpp
   soft/kernel_sse2.cpp
+  soft/kernels.cpp
+  soft/layout.cpp
   soft/patches.cpp
   soft/step.cpp
   soft/world.cpp)

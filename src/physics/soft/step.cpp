@@ -23,8 +23,8 @@ using soft::Real;
 
 /// An overlap is undone no faster.
 constexpr Real kTopPush_m_s = 3;
-/// So often joints are solved before contacts in each substep: they start from nothing.
-constexpr int kJointSweeps = 4;
+/// So often joints are solved before contacts in each substep: they start from nothing. And after bodies have moved.
+constexpr int kJointSweeps = 4, kLastJointSweeps = 2;
 
 btQuaternion turned(const Mover& m) { return {m.dq[0], m.dq[1], m.dq[2], m.dq[3]}; }
 
@@ -78,7 +78,8 @@ struct SoftStep::Impl {
         step_s(static_cast<btScalar>(step_s)),
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
-        patches(step_s, substeps) {}
+        patches(step_s, substeps),
+        joints(h_s) {}
 
   /// What a body is besides a mover.
   struct Body {
@@ -103,7 +104,6 @@ struct SoftStep::Impl {
   void hold(int user_index);
   void take_in(std::size_t i);
   void move(std::size_t i);
-  void begin_joints();
   void show(std::size_t i) const;
   void run(const soft::Worker& worker);
 
@@ -203,6 +203,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
   const std::size_t first = begin + 1, last = end + 1;
   const Real fall[3] = {h_s * static_cast<Real>(gravity[0]), h_s * static_cast<Real>(gravity[1]),
                         h_s * static_cast<Real>(gravity[2])};
+  joints.look(movers.data(), worker);
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
   for (int s = 0; s < substeps; ++s) {
     for (std::size_t i = first; i < last; ++i) {
@@ -210,29 +211,18 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     }
     worker.wait();
     patches.warm_start(movers.data(), worker);
-    if (!joints.empty()) {
-      if (worker.is_first()) begin_joints();
-      worker.wait();
-    }
+    joints.begin(movers.data(), worker);
+    for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data(), worker);
     substep.pushes = true;
     patches.solve(movers.data(), substep, worker);
     for (std::size_t i = first; i < last; ++i) move(i);
     worker.wait();
-    if (!joints.empty()) {
-      if (worker.is_first()) joints.solve(movers.data());
-      worker.wait();
-    }
+    joints.look(movers.data(), worker);
+    for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers.data(), worker);
     substep.pushes = false;
     patches.solve(movers.data(), substep, worker);
-    if (!joints.empty() && worker.is_first()) joints.finish();
   }
   patches.bounce(movers.data(), worker);
-}
-
-void SoftStep::Impl::begin_joints() {
-  for (const std::uint32_t mover : joints.movers()) show(mover);
-  joints.begin(h_s);
-  for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data());
 }
 
 /// Gives a body where it is now, and how fast. What a mover has rounded off its speed at the start is not lost.
@@ -268,7 +258,9 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftT
     impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
                     impl.mover_of(joint->getRigidBodyB().getUserIndex()));
   }
+  impl.joints.build(impl.movers.size(), impl.inertias, impl.threads);
   soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
+  impl.joints.finish();
   impl.patches.remember(impl.threads);
   soft::for_each_side_by_side(impl.threads, impl.movers.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }

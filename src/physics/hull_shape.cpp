@@ -1,0 +1,47 @@
+#include "physics/hull_shape.h"
+
+#include <type_traits>
+
+#include "physics/soft/lanes.h"
+
+namespace aurasim::physics {
+namespace {
+
+const soft::Kernel& kernel() {
+  static const soft::Kernel fastest = soft::fastest_kernel();
+  return fastest;
+}
+
+template <class Number>
+std::size_t farthest(const Number* x, const Number* y, const Number* z, std::size_t count, const Number (&along)[3]) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return kernel().farthest_double(x, y, z, count, along);
+  } else {
+    return kernel().farthest_single(x, y, z, count, along);
+  }
+}
+
+}  // namespace
+
+/// Bullet asks a shape of a type that it does not know by a virtual call.
+HullShape::HullShape(const btVector3* points, int count) {
+  m_shapeType = CUSTOM_POLYHEDRAL_SHAPE_TYPE;
+  const std::size_t filled =
+      (static_cast<std::size_t>(count) + soft::kPointsAtOnce - 1) / soft::kPointsAtOnce * soft::kPointsAtOnce;
+  for (std::vector<btScalar>& coordinate : coordinates_) coordinate.reserve(filled);
+  for (std::size_t i = 0; i < filled; ++i) {
+    const btVector3& point = points[i < static_cast<std::size_t>(count) ? i : 0];
+    if (i < static_cast<std::size_t>(count)) addPoint(point, false);
+    for (int k = 0; k < 3; ++k) coordinates_[static_cast<std::size_t>(k)].push_back(point[k]);
+  }
+  recalcLocalAabb();
+}
+
+btVector3 HullShape::localGetSupportingVertexWithoutMargin(const btVector3& direction) const {
+  const btScalar along[3] = {direction.x(), direction.y(), direction.z()};
+  const std::size_t i =
+      farthest(coordinates_[0].data(), coordinates_[1].data(), coordinates_[2].data(), coordinates_[0].size(), along);
+  return {coordinates_[0][i], coordinates_[1][i], coordinates_[2][i]};
+}
+
+}  // namespace aurasim::physics

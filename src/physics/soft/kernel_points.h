@@ -1,0 +1,67 @@
+// The part of soft/kernel.h that looks for the points of hulls.
+#pragma once
+
+#include "physics/soft/kernel_vectors.h"
+
+namespace aurasim::physics::soft {
+namespace {
+
+template <class Number>
+struct Vectors;
+template <>
+struct Vectors<double> {
+  using Values __attribute__((vector_size(32))) = double;
+  using Places __attribute__((vector_size(32))) = long long;
+};
+template <>
+struct Vectors<float> {
+  using Values __attribute__((vector_size(32))) = float;
+  using Places __attribute__((vector_size(32))) = int;
+};
+
+/// The farthest so far, and which it is.
+template <class Number>
+struct Farthest {
+  typename Vectors<Number>::Values far;
+  typename Vectors<Number>::Places place;
+};
+template <class Number>
+AURASIM_INLINE Farthest<Number> farther(const Farthest<Number>& a, const Farthest<Number>& b) {
+  const auto is_b = (b.far > a.far) | ((b.far == a.far) & (b.place < a.place));
+  return {is_b ? b.far : a.far, is_b ? b.place : a.place};
+}
+
+template <class Number>
+std::size_t farthest(const Number* x, const Number* y, const Number* z, std::size_t count, const Number (&along)[3]) {
+  using Values = typename Vectors<Number>::Values;
+  using Places = typename Vectors<Number>::Places;
+  constexpr int kAtOnce = sizeof(Values) / sizeof(Number);
+  const auto load = [](const Number* from) {
+    Values to;
+    __builtin_memcpy(&to, from, sizeof to);
+    return to;
+  };
+  const auto look = [&](std::size_t i, const Places& place) {
+    return Farthest<Number>{load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2], place};
+  };
+  Places place;
+  for (int i = 0; i < kAtOnce; ++i) place[i] = i;
+  Farthest<Number> even = look(0, place), odd = look(kAtOnce, place + kAtOnce);
+  for (std::size_t i = 2 * kAtOnce; i < count; i += 2 * kAtOnce) {
+    place += 2 * kAtOnce;
+    const Farthest<Number> next = look(i, place), after = look(i + kAtOnce, place + kAtOnce);
+    const Places next_is = next.far > even.far, after_is = after.far > odd.far;
+    even = {next_is ? next.far : even.far, next_is ? next.place : even.place};
+    odd = {after_is ? after.far : odd.far, after_is ? after.place : odd.place};
+  }
+  Farthest<Number> all = farther(even, odd);
+  for (int apart = kAtOnce / 2; apart > 0; apart /= 2) {
+    Places other;
+    for (int i = 0; i < kAtOnce; ++i) other[i] = i ^ apart;
+    all = farther(all, {__builtin_shuffle(all.far, other), __builtin_shuffle(all.place, other)});
+  }
+  return static_cast<std::size_t>(all.place[0]);
+}
+
+}  // namespace
+}  // namespace aurasim::physics::soft

@@ -1,0 +1,59 @@
+#include "physics/soft/layout.h"
+
+#include <bit>
+
+#include "physics/soft/lanes.h"
+
+namespace aurasim::physics {
+namespace {
+
+using soft::kLanes;
+
+constexpr std::size_t kColoursOfBodies = 40, kColours = 64;
+constexpr std::uint64_t kOfBodies = (std::uint64_t{1} << kColoursOfBodies) - 1;
+
+}  // namespace
+
+void SoftLayout::clear(std::size_t movers, std::size_t kinds) {
+  kinds_ = kinds;
+  entries_.clear();
+  used_.assign(movers, 0);
+}
+
+/// The first colour that is free. Without one it is solved by itself, after the others.
+void SoftLayout::add(std::uint32_t a, std::uint32_t b, std::size_t kind) {
+  const std::uint64_t free = ~(used_[a] | used_[b]) & (a != 0 && b != 0 ? kOfBodies : ~kOfBodies);
+  used_[a] |= free & -free;
+  used_[b] |= free & -free;
+  used_[0] = 0;
+  const auto colour = static_cast<std::size_t>(std::countr_zero(free));
+  entries_.push_back({a, b, static_cast<std::uint32_t>(colour * kinds_ + kind), 0});
+}
+
+/// By colour, then by kind, else as they came.
+std::size_t SoftLayout::place() {
+  next_.assign((kColours + 1) * kinds_, 0);
+  for (const Entry& entry : entries_) ++next_[entry.kind];
+  runs_.clear();
+  std::size_t blocks = 0, colour = 0;
+  for (std::size_t k = 0; k < next_.size(); ++k) {
+    if (next_[k] == 0) continue;
+    const bool alone = k / kinds_ == kColours;
+    const std::size_t count = alone ? next_[k] : (next_[k] + kLanes - 1) / kLanes;
+    next_[k] = static_cast<std::uint32_t>(blocks * kLanes);
+    if (!runs_.empty() && colour == k / kinds_) runs_.back().ends = false;
+    colour = k / kinds_;
+    runs_.push_back({blocks, count, k % kinds_, alone, true});
+    blocks += count;
+  }
+  for (Entry& entry : entries_) {
+    entry.place = next_[entry.kind];
+    next_[entry.kind] += entry.kind / kinds_ == kColours ? kLanes : 1;
+  }
+  return blocks;
+}
+
+std::size_t SoftLayout::block(std::size_t i) const { return entries_[i].place / kLanes; }
+int SoftLayout::lane(std::size_t i) const { return static_cast<int>(entries_[i].place % kLanes); }
+
+}  // namespace aurasim::physics

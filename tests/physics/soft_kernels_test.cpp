@@ -1,0 +1,149 @@
+// The arithmetic of the soft step, which is compiled for several sets of instructions: none changes a bit.
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "physics/scenes.h"
+#include "physics/soft/lanes.h"
+
+namespace aurasim::physics::testing {
+namespace {
+
+/// Random numbers for all lanes from `first` to the end of the block.
+template <class AnyBlock>
+void fill_lanes(AnyBlock& block, soft::Lanes* first, std::mt19937_64& random) {
+  const auto lanes = static_cast<std::size_t>(reinterpret_cast<soft::Lanes*>(&block + 1) - first);
+  for (std::size_t i = 0; i < lanes; ++i) {
+    for (int lane = 0; lane < soft::kLanes; ++lane) {
+      first[i][lane] = random() % 8 == 0 ? 0 : static_cast<soft::Real>(uniform(random, -1, 2));
+    }
+  }
+}
+
+/// Blocks of random numbers, among them lanes without a pair.
+template <class AnyBlock>
+std::vector<AnyBlock> random_blocks(std::mt19937_64& random, std::size_t count, std::uint32_t movers) {
+  std::vector<AnyBlock> blocks(count);
+  for (AnyBlock& block : blocks) {
+    std::memset(static_cast<void*>(&block), 0, sizeof block);
+    for (int lane = 0; lane < soft::kLanes; ++lane) {
+      block.a[lane] = static_cast<std::uint32_t>(random() % movers);
+      block.b[lane] = static_cast<std::uint32_t>(random() % movers);
+    }
+    fill_lanes(block, &block.inv_mass_a, random);
+  }
+  return blocks;
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::memcmp(static_cast<const void*>(a.data()), static_cast<const void*>(b.data()), a.size() * sizeof(T)) == 0;
+}
+
+std::vector<soft::Kernel> kernels_of_this_machine() {
+  std::vector<soft::Kernel> kernels = {soft::kernel_sse2()};
+  if (__builtin_cpu_supports("avx2")) kernels.push_back(soft::kernel_avx2());
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
+    kernels.push_back(soft::kernel_avx512());
+  }
+  return kernels;
+}
+
+std::vector<soft::Mover> random_movers(std::mt19937_64& random, std::size_t count) {
+  std::vector<soft::Mover> movers(count);
+  for (std::size_t i = 1; i < movers.size(); ++i) {
+    for (auto* triple : {&movers[i].v, &movers[i].w, &movers[i].dp}) {
+      for (soft::Real& x : *triple) x = static_cast<soft::Real>(uniform(random, -1, 1));
+    }
+  }
+  return movers;
+}
+
+/// work(kernel, blocks, movers) leaves the same blocks and movers with every kernel.
+template <class AnyBlock, class Work>
+void expect_same_bits(Work&& work) {
+  constexpr std::uint32_t kMovers = 60;
+  std::mt19937_64 random(7);
+  const std::vector<AnyBlock> blocks = random_blocks<AnyBlock>(random, 50, kMovers);
+  const std::vector<soft::Mover> movers = random_movers(random, kMovers);
+  std::vector<std::vector<AnyBlock>> blocks_of;
+  std::vector<std::vector<soft::Mover>> movers_of;
+  for (const soft::Kernel& kernel : kernels_of_this_machine()) {
+    work(kernel, blocks_of.emplace_back(blocks), movers_of.emplace_back(movers));
+  }
+  EXPECT_FALSE(same_bytes(movers_of[0], movers));
+  for (const soft::Mover& mover : movers_of[0]) ASSERT_TRUE(std::isfinite(mover.v[0] + mover.w[0]));
+  for (std::size_t i = 1; i < movers_of.size(); ++i) {
+    EXPECT_TRUE(same_bytes(blocks_of[i], blocks_of[0])) << i;
+    EXPECT_TRUE(same_bytes(movers_of[i], movers_of[0])) << i;
+  }
+}
+
+TEST(SoftKernels, PatchesHaveTheSameBitsWithEverySetOfInstructions) {
+  expect_same_bits<soft::Block>([](const soft::Kernel& kernel, auto& blocks, auto& movers) {
+    kernel.warm_start(blocks.data(), blocks.size(), 4, movers.data());
+    for (const bool pushes : {true, false}) {
+      kernel.solve(blocks.data(), blocks.size(), 3, movers.data(), {240, 3, pushes});
+    }
+    kernel.bounce(blocks.data(), blocks.size(), 2, movers.data(), soft::Real(-0.5));
+  });
+}
+
+TEST(SoftKernels, JointsHaveTheSameBitsWithEverySetOfInstructions) {
+  expect_same_bits<soft::JointBlock>([](const soft::Kernel& kernel, auto& blocks, auto& movers) {
+    const unsigned all = (soft::kJointMotor << 1) - 1;
+    const auto substep_s = static_cast<soft::Real>(1.0 / 480);
+    for (const unsigned what : {all, soft::kHeldAxis * 0b111, soft::kHeldAxis * 0b011111}) {
+      kernel.look_at_joints(blocks.data(), blocks.size(), what, movers.data(), substep_s);
+      kernel.begin_joints(blocks.data(), blocks.size(), what, movers.data(), substep_s);
+      kernel.solve_joints(blocks.data(), blocks.size(), what, movers.data());
+    }
+  });
+}
+
+/// The first of those that are equally far, as Bullet's loop over the points finds.
+template <class Number>
+std::size_t farthest_in_a_loop(const std::vector<Number> (&points)[3], const Number (&along)[3]) {
+  std::size_t best = 0;
+  const auto far = [&](std::size_t i) {
+    return points[0][i] * along[0] + points[1][i] * along[1] + points[2][i] * along[2];
+  };
+  for (std::size_t i = 1; i < points[0].size(); ++i) best = far(i) > far(best) ? i : best;
+  return best;
+}
+
+template <class Number, class Farthest>
+void expect_farthest(Farthest&& farthest) {
+  std::mt19937_64 random(3);
+  for (const std::size_t blocks : {1u, 2u, 7u}) {
+    for (int trial = 0; trial < 200; ++trial) {
+      std::vector<Number> points[3];
+      for (auto& coordinate : points) {
+        // Few values: many are equally far.
+        while (coordinate.size() < blocks * soft::kPointsAtOnce) {
+          coordinate.push_back(static_cast<Number>(static_cast<int>(random() % 3) - 1));
+        }
+      }
+      const Number along[3] = {static_cast<Number>(uniform(random, -1, 1)), static_cast<Number>(trial % 2), 0};
+      const std::size_t expected = farthest_in_a_loop(points, along);
+      for (const soft::Kernel& kernel : kernels_of_this_machine()) {
+        ASSERT_EQ(farthest(kernel, points, along), expected);
+      }
+    }
+  }
+}
+
+TEST(SoftKernels, TheFarthestPointIsTheFirstOfThoseWithEverySetOfInstructions) {
+  expect_farthest<double>([](const soft::Kernel& kernel, const auto& p, const auto& along) {
+    return kernel.farthest_double(p[0].data(), p[1].data(), p[2].data(), p[0].size(), along);
+  });
+  expect_farthest<float>([](const soft::Kernel& kernel, const auto& p, const auto& along) {
+    return kernel.farthest_single(p[0].data(), p[1].data(), p[2].data(), p[0].size(), along);
+  });
+}
+
+}  // namespace
+}  // namespace aurasim::physics::testing
