@@ -4,8 +4,6 @@
 
 # What a page's figures depend on. Who writes the text does not matter, what is run does.
 simulation="CMakeLists.txt src/core src/physics src/node src/transport"
-# What no preset and no shipped scene asks for.
-simulation+=" :!src/physics/soft"
 # Counts what is late, and changes nothing: for pages of bits, errors and times.
 uncounted="$simulation :!src/node/collision_watch.*"
 # shellcheck disable=SC2034

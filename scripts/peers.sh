@@ -6,14 +6,14 @@
 #   --out       results (build/speed); an interrupted run goes on where it stopped
 #   --repeats   runs of each, by turns, of which the page has the medians (5)
 #   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
-#   --settings  of our step, as `aurasim experiment speed` has them (default,one_substep,fast,balanced); exact is slow
+#   --settings  of our step, as `aurasim experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
 #   --quick     small scenes, one run of each; the page goes to DIR instead of docs
-# Nothing else should run meanwhile. About four hours on 2 cores; minutes with --quick, most for building the engines.
+# Nothing else should run meanwhile. About two hours on 2 cores; minutes with --quick, most for building the engines.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 engines="" out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas once=120
-settings=default,one_substep,fast,balanced page=docs quick=()
+settings=fast,balanced,sequential_impulse page=docs quick=()
 usage() { sed -n '2,/^set -/{/^#/s/^# \{0,1\}//p}' "scripts/peers.sh" >&2; exit 2; }
 while (($#)); do
   case $1 in
@@ -85,7 +85,8 @@ wanted() {
 ours() { # SCENE PROGRAM PRECISION THREADS
   local name
   for name in ${settings//,/ }; do
-    [[ $4 == 1 || $name == soft* ]] || continue # the others know no threads
+    [[ $4 == 1 || $name =~ ^(fast|balanced|12_substeps)$ ]] || continue # the others know no threads
+    [[ $3 == double || $name == balanced ]] || continue
     wanted "$1" "aurasim-$name" "$3" "$4" || continue
     "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$4" "${quick[@]}" \
       >/dev/null 2>&1

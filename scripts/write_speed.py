@@ -58,7 +58,7 @@ SETTINGS = """## How each is set up, and why that is fair
 
 | | here |
 |---|---|
-| aurasim | `default`: a launch file that says nothing, 10 iterations x 4 substeps, friction in 1 direction; `one_substep`: 10 x 1, as Bullet and the thesis; `fast`, `balanced`, `exact`: presets ([accuracy.md](accuracy.md)). One thread. Compiled for any x86-64 (SSE2) |
+| aurasim | `fast`, `balanced` (what a launch file has that says nothing): the soft step with 4 and 8 substeps, for 1 and 2 threads; `12_substeps`; `sequential_impulse`: Bullet's own solver, 10 iterations x 4 substeps; `one_substep`: 10 x 1, as Bullet and the thesis; `exact`: 50 x 8 ([accuracy.md](accuracy.md)). The soft step chooses SSE2, AVX2 or AVX-512 at run time; the rest is compiled for any x86-64 (SSE2) |
 | Bullet | Debian's, both precisions, as it comes: 10 iterations, one step of 1/60 s, friction in 1 direction. One thread, SSE2. Its hulls have its margin of 40 mm *outside*: they never come close enough to overlap. It takes capsules and hulls for their boxes where it computes inertia |
 | Jolt | as it comes: 1 collision step, 10 velocity and 2 position iterations, single precision{avx2}. Boxes thinner than its rounding of 50 mm are rounded by half of their thinnest side |
 | box3d | as it comes: 4 substeps, single precision{avx2}. The ground is the top of a box of 4 km, since it has no planes |

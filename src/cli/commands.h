@@ -36,6 +36,9 @@ void add_scenes(CLI::App& experiment, Action& action);
 void add_speed(CLI::App& experiment, Action& action);
 void add_speed_errors(CLI::App& experiment, Action& action);
 
+/// What an option that chooses a solver may say.
+std::vector<std::string> solver_names();
+
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {
   std::string file;

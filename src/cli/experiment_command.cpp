@@ -19,8 +19,16 @@
 #include "experiment/loss.h"
 #include "experiment/real_trials.h"
 #include "experiment/summary.h"
+#include "physics/solver_names.h"
 
 namespace aurasim::cli {
+
+std::vector<std::string> solver_names() {
+  std::vector<std::string> names;
+  for (const auto& [solver, name] : physics::kSolverNames) names.emplace_back(name);
+  return names;
+}
+
 namespace {
 
 struct TrialArguments {

@@ -52,6 +52,11 @@ double listening_distance_m(const config::Launch& launch) {
   return std::max(launch.neighbour_distance_m, zone_m);
 }
 
+int threads_of(const config::Launch& launch, std::size_t nodes) {
+  const std::size_t share = std::max(1U, std::thread::hardware_concurrency()) / nodes;
+  return launch.physics.threads.value_or(static_cast<int>(std::clamp<std::size_t>(share, 1, 64)));
+}
+
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {
   node::NodeSetup setup;
   setup.protocol.self = region;
@@ -67,8 +72,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.friction_directions = launch.physics.friction_directions;
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.is_continuous();
-  setup.physics.threads =
-      launch.physics.threads.value_or(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64));
+  setup.physics.threads = threads_of(launch, 1);
   if (launch.physics.origin == config::Origin::kRegion) {
     setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
   }

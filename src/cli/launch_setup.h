@@ -18,6 +18,8 @@ dds::Settings dds_settings(const config::Launch& launch, std::optional<core::Reg
 core::AuraRules aura_rules(const config::Launch& launch);
 /// How far apart regions may be that listen to each other: as configured, and never less than the reach of an aura.
 double listening_distance_m(const config::Launch& launch);
+/// Of each node where so many run on this host: as the file says, else its share of the cores.
+int threads_of(const config::Launch& launch, std::size_t nodes);
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
 dds::WorldMap world_map(const config::Launch& launch);
 

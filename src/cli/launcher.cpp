@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <thread>
 
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -73,10 +72,8 @@ std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
                                     "--start-time-out",
                                     std::to_string(options_.start_time_out_s)};
   for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
-  if (!launch_.physics.threads) {  // each has its share
-    const std::size_t share = std::max(1U, std::thread::hardware_concurrency()) / launch_.regions.size();
-    words.insert(words.end(), {"--set", "physics.threads=" + std::to_string(std::clamp<std::size_t>(share, 1, 64))});
-  }
+  words.insert(words.end(),
+               {"--set", "physics.threads=" + std::to_string(threads_of(launch_, launch_.regions.size()))});
   if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
   if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
   return words;

@@ -17,7 +17,6 @@
 #include "experiment/scale/message_sizes.h"
 #include "experiment/scale/rain_summary.h"
 #include "experiment/scale/scalability.h"
-#include "physics/solver_names.h"
 
 namespace aurasim::cli {
 namespace {
@@ -113,9 +112,7 @@ void add_options(CLI::App& command, const std::shared_ptr<RainArguments>& a, con
       ->check(CLI::IsMember({"thesis", "tight", "swept"}));
   command.add_option("--rate", a->plan.rate_per_s, "bodies per second")->check(CLI::Range(1.0, 1e4));
   command.add_option("--seconds", a->plan.run_s, "simulated time of each run")->check(CLI::Range(5.0, 3600.0));
-  std::vector<std::string> solvers;
-  for (const auto& [solver, name] : physics::kSolverNames) solvers.emplace_back(name);
-  command.add_option("--solver", a->plan.solver, "of the physics")->check(CLI::IsMember(solvers));
+  command.add_option("--solver", a->plan.solver, "of the physics")->check(CLI::IsMember(solver_names()));
   command.add_option("--substeps", a->plan.substeps, "physics substeps in each step")->check(CLI::Range(1, 16));
   command.add_option("--lookahead", a->plan.lookahead, "K of runs with several nodes; 0: from the tolerances")
       ->check(CLI::Range(0, 16));

@@ -11,7 +11,6 @@
 #include "cli/progress_bar.h"
 #include "cli/stop_signal.h"
 #include "experiment/speed/speed.h"
-#include "physics/solver_names.h"
 
 namespace aurasim::cli {
 namespace {
@@ -56,9 +55,8 @@ void add_speed(CLI::App& experiments, Action& action) {
       ->delimiter(',')
       ->check(CLI::IsMember(experiment::speed_scene_names()));
   command->add_option("--settings", plan->settings, "of the step")->delimiter(',')->check(CLI::IsMember(settings));
-  std::vector<std::string> solvers;
-  for (const auto& [solver, name] : physics::kSolverNames) solvers.emplace_back(name);
-  command->add_option("--solver", plan->solver, "instead of that of the settings")->check(CLI::IsMember(solvers));
+  command->add_option("--solver", plan->solver, "instead of that of the settings")
+      ->check(CLI::IsMember(solver_names()));
   command->add_option("--threads", plan->threads, "of the soft step; with several, times are by the clock")
       ->check(CLI::Range(1, 64));
   command->add_option("--repeats", plan->repeats, "runs of each, by turns; 0 writes the scenes only")

@@ -30,7 +30,7 @@ class SpeedTest : public testing::Test {
     return path;
   }
 
-  /// The errors of our step with its default settings.
+  /// The errors of our step with the first of its settings.
   SpeedErrors run_quick(const std::string& name) const {
     const SpeedScene scene = speed_scene(name, SceneSize::kQuick);
     std::ostringstream states;

@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-"$aurasim" experiment speed --quick --settings default,fast --out "$work" >/dev/null 2>&1
+"$aurasim" experiment speed --quick --settings sequential_impulse,fast --out "$work" >/dev/null 2>&1
 "$aurasim" experiment speed-errors --out "$work"
 for table in runs errors; do
   [[ $(tail -n +2 "$work/$table.csv" | cut -d, -f1 | sort -u | tr '\n' ' ') == "card_houses gas hulls pyramid ragdolls rain " ]] ||

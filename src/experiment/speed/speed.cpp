@@ -82,10 +82,9 @@ SpeedRun run_into(const std::filesystem::path& directory, const SpeedScene& scen
 
 const std::vector<SpeedSettings>& speed_settings() {
   static const std::vector<SpeedSettings> all = [] {
-    std::vector<SpeedSettings> made = {{"default", {}}, settings_of("one_substep", 1, 10, 1)};
-    for (const int substeps : {4, 8, 12}) {
-      made.push_back(settings_of("soft" + std::to_string(substeps), substeps, 1, 2, physics::Solver::kSoftStep));
-    }
+    std::vector<SpeedSettings> made = {settings_of("sequential_impulse", 4, 10, 1),
+                                       settings_of("one_substep", 1, 10, 1),
+                                       settings_of("12_substeps", 12, 1, 2, physics::Solver::kSoftStep)};
     for (const config::Preset& p : config::kPresets) {
       made.push_back(
           settings_of(p.name, p.substeps, p.iterations, p.friction_directions, physics::solver_named(p.solver)));
