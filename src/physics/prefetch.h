@@ -10,6 +10,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "core/prefetch.h"
 
@@ -39,10 +40,23 @@ inline void prefetch_pair(const btBroadphasePair& pair) {
   if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
 }
 
+/// Where a body is and how it moves, and what resists.
+inline void prefetch_motion(const btRigidBody& body) {
+  prefetch(&body.getWorldTransform(), sizeof(btTransform));
+  prefetch(&body.getInvInertiaTensorWorld(), sizeof(btMatrix3x3) + 3 * sizeof(btVector3));  // the speeds come next
+}
+
+/// Where an object is, and the flags that say what there is to do; not what Bullet keeps for frames in between.
+inline void prefetch_object(const btCollisionObject& object) {
+  prefetch(&object.getWorldTransform(), sizeof(btTransform));
+  constexpr std::size_t kFlags = 240, kSome = 128;  // so far before the end
+  prefetch(reinterpret_cast<const char*>(&object + 1) - kFlags, kSome);
+}
+
 /// Of a pair that is here itself.
 inline void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
-  prefetch(pair.m_pProxy0->m_clientObject, sizeof(btCollisionObject));
-  prefetch(pair.m_pProxy1->m_clientObject, sizeof(btCollisionObject));
+  prefetch_object(*static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject));
+  prefetch_object(*static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject));
   if (pair.m_algorithm == nullptr) return;
   manifolds.resizeNoInitialize(0);
   pair.m_algorithm->getAllContactManifolds(manifolds);

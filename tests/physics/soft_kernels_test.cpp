@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "physics/free_rotation.h"
 #include "physics/scenes.h"
 #include "physics/soft/lanes.h"
 
@@ -102,6 +103,96 @@ TEST(SoftKernels, JointsHaveTheSameBitsWithEverySetOfInstructions) {
       kernel.solve_joints(blocks.data(), blocks.size(), what, movers.data());
     }
   });
+}
+
+/// Movers that turn fast, in whole rows, and what makes some of them tumble.
+struct Turning {
+  std::vector<soft::Mover> movers;
+  std::vector<soft::Tumblers> tumblers;
+  std::vector<Rotation> rotations;  ///< of the bodies, as movers
+  std::vector<core::Vec3> inertias;
+
+  /// Lane `to` of the first row gets what mover `from` is.
+  void copy(std::size_t from, int to) {
+    movers[static_cast<std::size_t>(to)] = movers[from];
+    const soft::Tumblers& source = tumblers[from / soft::kLanes];
+    const auto lane = static_cast<int>(from % soft::kLanes);
+    for (int k = 0; k < 4; ++k) tumblers[0].start[k][to] = source.start[k][lane];
+    for (int k = 0; k < 3; ++k) tumblers[0].inertia[k][to] = source.inertia[k][lane];
+    for (int k = 0; k < 3; ++k) tumblers[0].inv_inertia[k][to] = source.inv_inertia[k][lane];
+  }
+};
+
+Turning random_turning(std::size_t rows) {
+  std::mt19937_64 random(11);
+  Turning t;
+  t.movers = random_movers(random, rows * soft::kLanes);
+  t.tumblers.resize(rows);
+  t.rotations.resize(t.movers.size());
+  t.inertias.resize(t.movers.size(), core::Vec3::Zero());
+  for (std::size_t i = 1; i < t.movers.size(); ++i) {
+    const core::Quat q =
+        core::Quat(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1), 2).normalized();
+    const core::Vec3 w(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    const double fast = i % 3 == 0 ? 100 : 5;
+    soft::Mover& mover = t.movers[i];
+    mover.dq[0] = mover.dq[1] = mover.dq[2] = 0, mover.dq[3] = 1;
+    for (int k = 0; k < 3; ++k) mover.w[k] = static_cast<soft::Real>(fast * w[k]);
+    t.rotations[i] = {q.toRotationMatrix(), fast * w};
+    if (i % 2 == 0) continue;
+    soft::Tumblers& row = t.tumblers[i / soft::kLanes];
+    const auto lane = static_cast<int>(i % soft::kLanes);
+    row.any = true;
+    t.inertias[i] = {uniform(random, 0.1, 1), uniform(random, 0.1, 1), uniform(random, 0.1, 1)};
+    for (int k = 0; k < 4; ++k) row.start[k][lane] = static_cast<soft::Real>(q.coeffs()[k]);
+    for (int k = 0; k < 3; ++k) {
+      row.inertia[k][lane] = static_cast<soft::Real>(t.inertias[i][k]);
+      row.inv_inertia[k][lane] = 1 / row.inertia[k][lane];
+    }
+  }
+  return t;
+}
+
+constexpr auto kSubstep_s = static_cast<soft::Real>(1.0 / 480);
+
+void move(const soft::Kernel& kernel, Turning& t) {
+  kernel.move(t.movers.data(), t.tumblers.data(), 0, t.tumblers.size(), kSubstep_s, static_cast<soft::Real>(kTurn));
+}
+
+TEST(SoftKernels, MovesHaveTheSameBitsWithEverySetOfInstructions) {
+  Turning first = random_turning(20);
+  move(soft::kernel_sse2(), first);
+  for (const soft::Kernel& kernel : kernels_of_this_machine()) {
+    Turning other = random_turning(20);
+    move(kernel, other);
+    EXPECT_TRUE(same_bytes(other.movers, first.movers));
+  }
+}
+
+TEST(SoftKernels, BodiesTumbleInLanesAsAlone) {
+  Turning t = random_turning(20);
+  move(soft::fastest_kernel(), t);
+  for (std::size_t i = 1; i < t.movers.size(); i += 2) {
+    const Rotation wanted = rotate_freely(t.rotations[i], t.inertias[i], static_cast<double>(kSubstep_s));
+    const soft::Mover& mover = t.movers[i];
+    const core::Quat dq(mover.dq[3], mover.dq[0], mover.dq[1], mover.dq[2]);
+    const core::Vec3 w(mover.w[0], mover.w[1], mover.w[2]);
+    EXPECT_LT((dq.cast<double>().toRotationMatrix() * t.rotations[i].R_WB - wanted.R_WB).norm(), 2e-6) << i;
+    EXPECT_LT((w - wanted.w_WB).norm(), 3e-6 * wanted.w_WB.norm()) << i;
+  }
+}
+
+TEST(SoftKernels, NoLaneSeesAnother) {
+  Turning together = random_turning(20);
+  move(soft::fastest_kernel(), together);
+  for (std::size_t i = 1; i < together.movers.size(); ++i) {
+    Turning elsewhere = random_turning(20);
+    const int lane = 1 + static_cast<int>(i % (soft::kLanes - 1));
+    elsewhere.copy(i, lane);
+    move(soft::fastest_kernel(), elsewhere);
+    const auto to = static_cast<std::size_t>(lane);
+    EXPECT_EQ(std::memcmp(&elsewhere.movers[to], &together.movers[i], sizeof(soft::Mover)), 0) << i;
+  }
 }
 
 /// The first of those that are equally far, as Bullet's loop over the points finds.

@@ -2,14 +2,15 @@
 #pragma once
 
 #include "physics/soft/kernel_joints.h"
+#include "physics/soft/kernel_moves.h"
 #include "physics/soft/kernel_patches.h"
 #include "physics/soft/kernel_points.h"
 
 namespace aurasim::physics::soft {
 namespace {
 
-constexpr Kernel kThis = {warm_start,   solve,        bounce,           look_at_joints,
-                          begin_joints, solve_joints, farthest<double>, farthest<float>};
+constexpr Kernel kThis = {move,         warm_start,       solve,          bounce, look_at_joints, begin_joints,
+                          solve_joints, farthest<double>, farthest<float>};
 
 }  // namespace
 }  // namespace aurasim::physics::soft

@@ -41,46 +41,77 @@ AURASIM_INLINE Lanes root(Lanes a) {
 /// What scales an impulse of such a length down to `most`.
 AURASIM_INLINE Lanes share(const Lanes& length, const Lanes& most) { return length > most ? most / length : all(1); }
 
+/// Rows become columns: element i of row k becomes element k of row i.
+AURASIM_INLINE void transpose(Lanes (&rows)[kLanes]) {
+  static_assert(kLanes == 8);
+  Lanes pairs[kLanes], fours[kLanes];
+  for (int i = 0; i < kLanes; i += 2) {
+    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int i = 0; i < kLanes; i += 4) {
+    for (int k = 0; k < 2; ++k) {
+      fours[i + 2 * k] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[i + 2 * k + 1] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+  for (int i = 0; i < kLanes / 2; ++i) {
+    rows[i] = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[i + 4] = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+static_assert(sizeof(Mover) == 2 * sizeof(Lanes) && __builtin_offsetof(Mover, dp) == sizeof(Lanes));
+/// The halves of movers, as columns: v and w; or dp and dq.
+struct Half {
+  Lanes columns[kLanes];
+};
+template <class Who>  // who(lane): which mover
+AURASIM_INLINE Half load_half(const Who& who, const Mover* movers, std::size_t half) {
+  Half h;
+  for (int i = 0; i < kLanes; ++i) {
+    __builtin_memcpy(&h.columns[i], reinterpret_cast<const Lanes*>(&movers[who(i)]) + half, sizeof(Lanes));
+  }
+  transpose(h.columns);
+  return h;
+}
+/// But not into the one that never moves.
+template <class Who>
+AURASIM_INLINE void store_half(Half h, const Who& who, Mover* movers, std::size_t half) {
+  transpose(h.columns);
+  for (int i = 0; i < kLanes; ++i) {
+    if (who(i) == 0) continue;
+    __builtin_memcpy(reinterpret_cast<Lanes*>(&movers[who(i)]) + half, &h.columns[i], sizeof(Lanes));
+  }
+}
+AURASIM_INLINE auto those(const std::uint32_t (&who)[kLanes]) {
+  return [&who](int lane) { return who[lane]; };
+}
+
+AURASIM_INLINE Half speeds(const Vec& v, const Vec& w) { return {{v.x, v.y, v.z, w.x, w.y, w.z, Lanes{}, Lanes{}}}; }
+
 template <class AnyBlock>
 AURASIM_INLINE Pair velocities(const AnyBlock& block, const Mover* movers) {
-  Pair p;
-  for (int i = 0; i < kLanes; ++i) {
-    const Mover& a = movers[block.a[i]];
-    const Mover& b = movers[block.b[i]];
-    p.v_a.x[i] = a.v[0], p.v_a.y[i] = a.v[1], p.v_a.z[i] = a.v[2];
-    p.w_a.x[i] = a.w[0], p.w_a.y[i] = a.w[1], p.w_a.z[i] = a.w[2];
-    p.v_b.x[i] = b.v[0], p.v_b.y[i] = b.v[1], p.v_b.z[i] = b.v[2];
-    p.w_b.x[i] = b.w[0], p.w_b.y[i] = b.w[1], p.w_b.z[i] = b.w[2];
-  }
-  return p;
+  const Half a = load_half(those(block.a), movers, 0), b = load_half(those(block.b), movers, 0);
+  const Lanes(&i)[kLanes] = a.columns;
+  const Lanes(&k)[kLanes] = b.columns;
+  return {{i[0], i[1], i[2]}, {i[3], i[4], i[5]}, {k[0], k[1], k[2]}, {k[3], k[4], k[5]}};
 }
 template <class AnyBlock>
 AURASIM_INLINE void store(const Pair& p, const AnyBlock& block, Mover* movers) {
-  for (int i = 0; i < kLanes; ++i) {
-    if (block.a[i] != 0) {
-      Mover& a = movers[block.a[i]];
-      a.v[0] = p.v_a.x[i], a.v[1] = p.v_a.y[i], a.v[2] = p.v_a.z[i];
-      a.w[0] = p.w_a.x[i], a.w[1] = p.w_a.y[i], a.w[2] = p.w_a.z[i];
-    }
-    if (block.b[i] != 0) {
-      Mover& b = movers[block.b[i]];
-      b.v[0] = p.v_b.x[i], b.v[1] = p.v_b.y[i], b.v[2] = p.v_b.z[i];
-      b.w[0] = p.w_b.x[i], b.w[1] = p.w_b.y[i], b.w[2] = p.w_b.z[i];
-    }
-  }
+  store_half(speeds(p.v_a, p.w_a), those(block.a), movers, 0);
+  store_half(speeds(p.v_b, p.w_b), those(block.b), movers, 0);
 }
 struct Turned {
   Vec dp, q;
   Lanes q_w;
 };
+AURASIM_INLINE Turned turned(const Half& h) {
+  const Lanes(&c)[kLanes] = h.columns;
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, c[6]};
+}
 AURASIM_INLINE Turned moved(const std::uint32_t (&who)[kLanes], const Mover* movers) {
-  Turned t;
-  for (int i = 0; i < kLanes; ++i) {
-    const Mover& m = movers[who[i]];
-    t.dp.x[i] = m.dp[0], t.dp.y[i] = m.dp[1], t.dp.z[i] = m.dp[2];
-    t.q.x[i] = m.dq[0], t.q.y[i] = m.dq[1], t.q.z[i] = m.dq[2], t.q_w[i] = m.dq[3];
-  }
-  return t;
+  return turned(load_half(those(who), movers, 1));
 }
 /// By how much the turn since the start of the step changes r.
 AURASIM_INLINE Vec turn_of(const Turned& t, const Vec& r) {

@@ -19,11 +19,20 @@ using Lanes __attribute__((vector_size(32))) = Real;
 inline constexpr int kMostPoints = 4;
 inline constexpr std::size_t kPointsAtOnce = 16;  ///< of a hull
 
-/// A body, as the substeps see it.
+/// A body, as the substeps see it, in two halves.
 struct alignas(64) Mover {
   Real v[3] = {}, w[3] = {};  ///< m/s, rad/s
+  Real unused[2] = {};
   Real dp[3] = {};            ///< how far it has come since the start of the step, m
   Real dq[4] = {0, 0, 0, 1};  ///< x, y, z, w: and how it has turned
+};
+
+/// What makes kLanes movers in a row tumble: the spin of such a body changes while nothing acts on it.
+struct alignas(64) Tumblers {
+  Lanes start[4];        ///< x, y, z, w: the body's frame at the start of the step
+  Lanes inertia[3];      ///< about its axes, kg m^2; 0: it turns evenly
+  Lanes inv_inertia[3];  ///< 1/(kg m^2); likewise
+  bool any;              ///< tumbles
 };
 
 struct Substep {
@@ -98,6 +107,9 @@ struct alignas(64) JointBlock {
 
 /// The substeps of `count` blocks of `points` points each, or of joints that have `what`.
 struct Kernel {
+  /// Rows of kLanes movers each: on, by their speeds, for h_s; by turns of at most `most_rad` where they tumble.
+  void (*move)(Mover* movers, const Tumblers* tumblers, std::size_t first_row, std::size_t last_row, Real h_s,
+               Real most_rad);
   void (*warm_start)(const Block* blocks, std::size_t count, int points, Mover* movers);
   void (*solve)(Block* blocks, std::size_t count, int points, Mover* movers, const Substep& substep);
   /// Restitution, for what came closer than `threshold_m_s` (below 0).

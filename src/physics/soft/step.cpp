@@ -1,5 +1,6 @@
 #include "physics/soft/step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
+#include "physics/prefetch.h"
 #include "physics/soft/convert.h"
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
@@ -25,17 +27,6 @@ using soft::Real;
 constexpr Real kTopPush_m_s = 3;
 /// So often joints are solved before contacts in each substep: they start from nothing. And after bodies have moved.
 constexpr int kJointSweeps = 4, kLastJointSweeps = 2;
-
-btQuaternion turned(const Mover& m) { return {m.dq[0], m.dq[1], m.dq[2], m.dq[3]}; }
-
-/// By the rotation vector rate w over h, to the second order.
-void turn(Mover& m, Real h) {
-  const Real x = m.dq[0], y = m.dq[1], z = m.dq[2], w = m.dq[3], s = h / 2;
-  const Real q[4] = {x + s * (m.w[0] * w + m.w[1] * z - m.w[2] * y), y + s * (m.w[1] * w + m.w[2] * x - m.w[0] * z),
-                     z + s * (m.w[2] * w + m.w[0] * y - m.w[1] * x), w - s * (m.w[0] * x + m.w[1] * y + m.w[2] * z)};
-  const Real per_length = 1 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (int i = 0; i < 4; ++i) m.dq[i] = q[i] * per_length;
-}
 
 /// The turn by the rotation vector v, rad: by the series up to half a radian, and as often again as it takes.
 btQuaternion turn_by(btVector3 v) {
@@ -74,7 +65,8 @@ struct SoftStep::Impl {
   static constexpr std::uint32_t kHeld = std::numeric_limits<std::uint32_t>::max();
 
   Impl(double step_s, int substeps, int threads)
-      : threads(threads),
+      : kernel(soft::fastest_kernel()),
+        threads(threads),
         step_s(static_cast<btScalar>(step_s)),
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
@@ -84,9 +76,10 @@ struct SoftStep::Impl {
   /// What a body is besides a mover.
   struct Body {
     btRigidBody* rigid = nullptr;
-    btTransform start = btTransform::getIdentity();
-    btVector3 v{0, 0, 0}, w{0, 0, 0};  ///< at the start
-    std::optional<core::Vec3> tumbling_inertia;
+    // At the start:
+    btVector3 p{0, 0, 0};
+    btQuaternion q{0, 0, 0, 1};
+    btVector3 v{0, 0, 0}, w{0, 0, 0};
   };
 
   bool is_held(int user_index) const {
@@ -103,10 +96,11 @@ struct SoftStep::Impl {
                std::span<btTypedConstraint* const> joint_list);
   void hold(int user_index);
   void take_in(std::size_t i);
-  void move(std::size_t i);
+  void take_in_row(std::size_t row);
   void show(std::size_t i) const;
   void run(const soft::Worker& worker);
 
+  soft::Kernel kernel;
   int threads;
   btScalar step_s;
   Real h_s;
@@ -114,10 +108,11 @@ struct SoftStep::Impl {
   btVector3 gravity{0, 0, 0};
   std::vector<std::uint32_t> mover_at;  ///< by user index; 0: touches nothing; kHeld: does, and has no mover
   std::vector<btRigidBody*> flying;
-  std::vector<btRigidBody*> held;     ///< as movers
-  std::vector<Mover> movers;          ///< the first never moves
-  std::vector<SoftInertia> inertias;  ///< as movers
-  std::vector<Body> bodies;           ///< as movers
+  std::vector<btRigidBody*> held;        ///< as movers
+  std::vector<Mover> movers;             ///< in whole rows; the first never moves
+  std::vector<soft::Tumblers> tumblers;  ///< by row
+  std::vector<SoftInertia> inertias;     ///< as movers
+  std::vector<Body> bodies;              ///< as movers
   SoftPatches patches;
   SoftJoints joints;
 };
@@ -151,62 +146,64 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<cons
       flying.push_back(body);
     }
   }
+  held.resize((held.size() + soft::kLanes - 1) / soft::kLanes * soft::kLanes, nullptr);
   movers.resize(held.size());
+  tumblers.resize(held.size() / soft::kLanes);
   inertias.resize(held.size());
   bodies.resize(held.size());
-  movers[0] = {}, inertias[0] = {}, bodies[0] = {};
   soft::side_by_side(threads, [this](const soft::Worker& worker) {
     const auto [first_flying, last_flying] = worker.share(flying.size());
     for (std::size_t i = first_flying; i < last_flying; ++i) fly(*flying[i], gravity, step_s);
-    const auto [first, last] = worker.share(held.size() - 1);
-    for (std::size_t i = first + 1; i <= last; ++i) take_in(i);
+    const auto [first, last] = worker.share(tumblers.size());
+    for (std::size_t row = first; row < last; ++row) take_in_row(row);
   });
 }
 
+void SoftStep::Impl::take_in_row(std::size_t row) {
+  tumblers[row] = {};
+  for (std::size_t i = row * soft::kLanes; i < (row + 1) * soft::kLanes; ++i) take_in(i);
+}
+
 void SoftStep::Impl::take_in(std::size_t i) {
-  btRigidBody& body = *held[i];
   Mover& mover = movers[i] = {};
+  SoftInertia& inertia = inertias[i] = {};
+  if (held[i] == nullptr) {
+    bodies[i] = {};
+    return;
+  }
+  if (i + kPrefetchDistance / 4 < held.size() && held[i + kPrefetchDistance / 4] != nullptr) {
+    prefetch_motion(*held[i + kPrefetchDistance / 4]);
+  }
+  btRigidBody& body = *held[i];
   soft::from_bullet(body.getLinearVelocity(), mover.v);
   soft::from_bullet(body.getAngularVelocity(), mover.w);
-  SoftInertia& inertia = inertias[i];
   const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
   inertia.inv_mass = static_cast<Real>(body.getInvMass());
   for (int row = 0, k = 0; row < 3; ++row) {
     for (int column = row; column < 3; ++column) inertia.inv_inertia[k++] = static_cast<Real>(inverse[row][column]);
   }
-  bodies[i] = {&body, body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity(),
-               tumbling_inertia(body)};
-}
-
-/// Whoever touches something moves as fast as it is at the end of the substep, which keeps piles calm.
-void SoftStep::Impl::move(std::size_t i) {
-  Mover& m = movers[i];
-  for (int k = 0; k < 3; ++k) m.dp[k] += h_s * m.v[k];
-  const Body& body = bodies[i];
-  if (!body.tumbling_inertia) {
-    turn(m, h_s);
-    return;
+  const btTransform& start = body.getWorldTransform();
+  bodies[i] = {&body, start.getOrigin(), start.getRotation(), body.getLinearVelocity(), body.getAngularVelocity()};
+  const std::optional<core::Vec3> tumbling = tumbling_inertia(body);
+  if (!tumbling) return;
+  soft::Tumblers& row = tumblers[i / soft::kLanes];
+  const auto lane = static_cast<int>(i % soft::kLanes);
+  row.any = true;
+  for (int k = 0; k < 4; ++k) row.start[k][lane] = static_cast<Real>(bodies[i].q[k]);
+  for (int k = 0; k < 3; ++k) {
+    row.inertia[k][lane] = static_cast<Real>((*tumbling)[k]);
+    row.inv_inertia[k][lane] = 1 / row.inertia[k][lane];
   }
-  const btMatrix3x3& start = body.start.getBasis();
-  const btMatrix3x3 now = btMatrix3x3(turned(m)) * start;
-  const Rotation after = rotate_freely({from_bullet(now), from_bullet(soft::to_bullet(m.w))}, *body.tumbling_inertia,
-                                       static_cast<double>(h_s));
-  btQuaternion q;
-  (to_bullet(after.R_WB) * start.transpose()).getRotation(q);
-  q.normalize();
-  for (int k = 0; k < 4; ++k) m.dq[k] = static_cast<Real>(q[k]);
-  for (int k = 0; k < 3; ++k) m.w[k] = static_cast<Real>(after.w_WB[k]);
 }
 
 void SoftStep::Impl::run(const soft::Worker& worker) {
-  const auto [begin, end] = worker.share(movers.size() - 1);
-  const std::size_t first = begin + 1, last = end + 1;
+  const auto [first_row, last_row] = worker.share(tumblers.size());
   const Real fall[3] = {h_s * static_cast<Real>(gravity[0]), h_s * static_cast<Real>(gravity[1]),
                         h_s * static_cast<Real>(gravity[2])};
   joints.look(movers.data(), worker);
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
   for (int s = 0; s < substeps; ++s) {
-    for (std::size_t i = first; i < last; ++i) {
+    for (std::size_t i = std::max<std::size_t>(1, first_row * soft::kLanes); i < last_row * soft::kLanes; ++i) {
       for (int k = 0; k < 3; ++k) movers[i].v[k] += fall[k];
     }
     worker.wait();
@@ -215,7 +212,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data(), worker);
     substep.pushes = true;
     patches.solve(movers.data(), substep, worker);
-    for (std::size_t i = first; i < last; ++i) move(i);
+    kernel.move(movers.data(), tumblers.data(), first_row, last_row, h_s, static_cast<Real>(kTurn));
     worker.wait();
     joints.look(movers.data(), worker);
     for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers.data(), worker);
@@ -229,6 +226,10 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
   const Body& body = bodies[i];
+  if (body.rigid == nullptr) return;
+  if (i + kPrefetchDistance / 4 < bodies.size() && held[i + kPrefetchDistance / 4] != nullptr) {
+    prefetch_motion(*held[i + kPrefetchDistance / 4]);
+  }
   const auto after = [](const btVector3& before, const Real(&now)[3]) {
     btVector3 v(0, 0, 0);
     for (int k = 0; k < 3; ++k) v[k] = before[k] + (btScalar(now[k]) - btScalar(static_cast<Real>(before[k])));
@@ -236,8 +237,8 @@ void SoftStep::Impl::show(std::size_t i) const {
   };
   body.rigid->setLinearVelocity(after(body.v, m.v));
   body.rigid->setAngularVelocity(after(body.w, m.w));
-  const btQuaternion q = (turned(m) * body.start.getRotation()).normalized();
-  body.rigid->proceedToTransform(btTransform(q, body.start.getOrigin() + soft::to_bullet(m.dp)));
+  const btQuaternion turned(m.dq[0], m.dq[1], m.dq[2], m.dq[3]);
+  body.rigid->proceedToTransform(btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
 }
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
