@@ -13,6 +13,8 @@
 namespace aurasim::physics::testing {
 namespace {
 
+constexpr auto kSubstep_s = static_cast<soft::Real>(1.0 / 480);
+
 /// Random numbers for all lanes from `first` to the end of the block.
 template <class AnyBlock>
 void fill_lanes(AnyBlock& block, soft::Lanes* first, std::mt19937_64& random) {
@@ -96,10 +98,9 @@ TEST(SoftKernels, PatchesHaveTheSameBitsWithEverySetOfInstructions) {
 TEST(SoftKernels, JointsHaveTheSameBitsWithEverySetOfInstructions) {
   expect_same_bits<soft::JointBlock>([](const soft::Kernel& kernel, auto& blocks, auto& movers) {
     const unsigned all = (soft::kJointMotor << 1) - 1;
-    const auto substep_s = static_cast<soft::Real>(1.0 / 480);
     for (const unsigned what : {all, soft::kHeldAxis * 0b111, soft::kHeldAxis * 0b011111}) {
-      kernel.look_at_joints(blocks.data(), blocks.size(), what, movers.data(), substep_s);
-      kernel.begin_joints(blocks.data(), blocks.size(), what, movers.data(), substep_s);
+      kernel.look_at_joints(blocks.data(), blocks.size(), what, movers.data(), kSubstep_s);
+      kernel.begin_joints(blocks.data(), blocks.size(), what, movers.data(), kSubstep_s);
       kernel.solve_joints(blocks.data(), blocks.size(), what, movers.data());
     }
   });
@@ -136,7 +137,6 @@ Turning random_turning(std::size_t rows) {
     const core::Vec3 w(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
     const double fast = i % 3 == 0 ? 100 : 5;
     soft::Mover& mover = t.movers[i];
-    mover.dq[0] = mover.dq[1] = mover.dq[2] = 0, mover.dq[3] = 1;
     for (int k = 0; k < 3; ++k) mover.w[k] = static_cast<soft::Real>(fast * w[k]);
     t.rotations[i] = {q.toRotationMatrix(), fast * w};
     if (i % 2 == 0) continue;
@@ -152,8 +152,6 @@ Turning random_turning(std::size_t rows) {
   }
   return t;
 }
-
-constexpr auto kSubstep_s = static_cast<soft::Real>(1.0 / 480);
 
 void move(const soft::Kernel& kernel, Turning& t) {
   kernel.move(t.movers.data(), t.tumblers.data(), 0, t.tumblers.size(), kSubstep_s, static_cast<soft::Real>(kTurn));
