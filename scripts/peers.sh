@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-engines="" out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas once=120
+engines="" out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas,sleepers once=120
 settings=fast,balanced,sequential_impulse page=docs quick=()
 usage() { sed -n '2,/^set -/{/^#/s/^# \{0,1\}//p}' "scripts/peers.sh" >&2; exit 2; }
 while (($#)); do

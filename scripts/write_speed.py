@@ -36,6 +36,8 @@ SCENES = {
                     "0.2 m.", (FALLEN, SUNK, DRIFT, OVERLAP)),
     "gas": ("64,000 balls with a radius of 0.25 m in a closed box of 40 m, elastic, no friction, no gravity, 5 s.",
             (ENERGY, OVERLAP, LOST)),
+    "sleepers": ("10,000 cubes of 1 m in piles of four, 1.5 m apart, friction 0.6, 12 s. They may sleep, and do at the end.",
+                 (SUNK, DRIFT, OVERLAP)),
 }
 
 INTRODUCTION = """# How fast a step is, beside other engines
@@ -68,7 +70,7 @@ Every engine has its own defaults, which are what its authors recommend, but whe
 - Friction and restitution of a pair are the product of the two bodies', as Bullet and ours have it; Jolt and box3d are
   told to multiply, too. Damping and rolling friction are 0.
 - Any speed bounces where restitution is 1: the speeds below which Bullet, Jolt and box3d do not bounce are set to 0.
-- Bodies sleep by each engine's own rules in the rain, and nowhere else.
+- Bodies sleep by each engine's own rules in the rain and among the sleepers, and nowhere else.
 - Hulls are symmetric, so that centre of mass and principal axes are the same however an engine finds them. The hips of
   the ragdolls are balls, where the shipped scene has springs. Joined bodies do not collide.
 - Ours, Jolt and box3d are built here, by one compiler with `-O3` (`Release`), Jolt with link-time optimisation as its own

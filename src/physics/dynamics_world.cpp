@@ -69,7 +69,7 @@ struct DynamicsWorld::Bullet {
 
 DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings)
     : bullet_(std::make_unique<Bullet>(settings)) {
-  bullet_->broadphase.m_cupdates = 100;  // per cent of the pairs checked in each substep: stale ones cost time
+  bullet_->broadphase.m_cupdates = 10;  // per cent of the pairs are asked, in each look, whether they are still near
   // One look finds one corner of a box on a plane, and slides lose it again in the next substep. Five looks, tilted
   // every 72 degrees, find all four, however the box is turned; while it has four they are left out.
   bullet_->configuration.setPlaneConvexMultipointIterations(/*numPerturbationIterations=*/5,

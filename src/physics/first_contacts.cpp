@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -45,10 +44,10 @@ FirstContact describe(const btPersistentManifold& manifold) {
 
 }  // namespace
 
-void FirstContacts::look(btDispatcher& dispatcher, btOverlappingPairCache& pairs) {
+void FirstContacts::look(std::span<btPersistentManifold* const> manifolds, btOverlappingPairCache& pairs) {
   ++now_;
   new_.clear();
-  for_each_touching(manifolds_of(dispatcher), [this](btPersistentManifold& manifold) {
+  for_each_touching(manifolds, [this](btPersistentManifold& manifold) {
     if (!is_moving(*manifold.getBody0()) || !is_moving(*manifold.getBody1())) return;
     if (last_touch(manifold) != now_ - 1) {
       manifold.m_companionIdB = static_cast<int>(now_);

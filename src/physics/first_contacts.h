@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
 
 #include "physics/contact_cache.h"
 
-class btDispatcher;
 struct btBroadphasePair;
 class btOverlappingPairCache;
 class btPersistentManifold;
@@ -28,14 +28,16 @@ struct FirstContact {
 /// manifold last had a point, m_companionIdB the first one of that unbroken time.
 class FirstContacts {
  public:
-  /// Call once per substep, between collision detection and solver.
-  void look(btDispatcher& dispatcher, btOverlappingPairCache& pairs);
+  /// Call once per substep, between collision detection and solver, with all manifolds that may have a point, but those
+  /// of sleepers.
+  void look(std::span<btPersistentManifold* const> manifolds, btOverlappingPairCache& pairs);
 
   /// A contact that look() does not see: when it looks, the two have not met yet. If it sees them next time, they are
   /// not new.
   void add(const FirstContact& contact, const btBroadphasePair& pair);
 
-  /// A contact that has come with its cache from another world is not a new one.
+  /// A contact that has come with its cache from another world, or that was not shown as long as its bodies slept, is
+  /// not a new one if it is seen next time.
   void know(btPersistentManifold& manifold) const;
 
   /// Since the last clear(), in order of substeps; a pair may be listed more than once.

@@ -10,8 +10,6 @@
 namespace aurasim::physics {
 namespace {
 
-constexpr int kMostParts = 256;  // of one step; a body that turns by more than 12 rad in a step is not resolved
-
 /// Momentum in the body's frame and the turn made so far, as a quaternion of any length.
 struct Turning {
   core::Vec3 momentum;
@@ -44,7 +42,7 @@ Rotation rotate_freely(const Rotation& start, const core::Vec3& inertia, double 
   const core::Vec3 momentum_B = inertia.cwiseProduct(start.R_WB.transpose() * start.w_WB);
   const core::Vec3 momentum_W = start.R_WB * momentum_B;
   const double fastest = momentum_B.norm() * inverse.maxCoeff();
-  const int parts = static_cast<int>(std::clamp(std::ceil(fastest * dt_s / kTurn), 1.0, double{kMostParts}));
+  const int parts = static_cast<int>(std::clamp(std::ceil(fastest * dt_s / kTurn), 1.0, double{kMostTurns}));
   const double h = dt_s / parts;
   Turning t{momentum_B, core::Quat(start.R_WB)};
   for (int i = 0; i < parts; ++i) {

@@ -21,6 +21,7 @@ struct Rotation {
 /// of at most kTurn radians each.
 Rotation rotate_freely(const Rotation& start, const core::Vec3& inertia, double dt_s);
 inline constexpr double kTurn = 0.05;
+inline constexpr int kMostTurns = 256;  ///< of one step; a body that turns by more than 12 rad in it is not resolved
 
 /// Below this, rad/s, the spin's change in a step is lost in what contacts do; bodies at rest pay nothing.
 inline constexpr double kSlowSpin = 0.001;

@@ -7,17 +7,12 @@
 namespace aurasim::physics {
 namespace {
 
-const soft::Kernel& kernel() {
-  static const soft::Kernel fastest = soft::fastest_kernel();
-  return fastest;
-}
-
 template <class Number>
 std::size_t farthest(const Number* x, const Number* y, const Number* z, std::size_t count, const Number (&along)[3]) {
   if constexpr (std::is_same_v<Number, double>) {
-    return kernel().farthest_double(x, y, z, count, along);
+    return soft::kernel().farthest_double(x, y, z, count, along);
   } else {
-    return kernel().farthest_single(x, y, z, count, along);
+    return soft::kernel().farthest_single(x, y, z, count, along);
   }
 }
 

@@ -46,11 +46,16 @@ inline void prefetch_motion(const btRigidBody& body) {
   prefetch(&body.getInvInertiaTensorWorld(), sizeof(btMatrix3x3) + 3 * sizeof(btVector3));  // the speeds come next
 }
 
-/// Where an object is, and the flags that say what there is to do; not what Bullet keeps for frames in between.
-inline void prefetch_object(const btCollisionObject& object) {
-  prefetch(&object.getWorldTransform(), sizeof(btTransform));
+/// What an object is, whether it sleeps, and its user indices.
+inline void prefetch_flags(const btCollisionObject& object) {
   constexpr std::size_t kFlags = 240, kSome = 128;  // so far before the end
   prefetch(reinterpret_cast<const char*>(&object + 1) - kFlags, kSome);
+}
+
+/// With where it is; not what Bullet keeps for frames in between.
+inline void prefetch_object(const btCollisionObject& object) {
+  prefetch(&object.getWorldTransform(), sizeof(btTransform));
+  prefetch_flags(object);
 }
 
 /// Of a pair that is here itself.

@@ -13,6 +13,7 @@
 #include "physics/contact_islands.h"
 #include "physics/first_contacts.h"
 #include "physics/free_rotation.h"
+#include "physics/prefetch.h"
 #include "physics/settings.h"
 
 namespace aurasim::physics {
@@ -35,7 +36,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
   }
 
   void solveConstraints(btContactSolverInfo& info) override {
-    first_contacts_.look(*getDispatcher(), *getPairCache());
+    first_contacts_.look(manifolds_of(*getDispatcher()), *getPairCache());
     const auto joints = std::span(m_constraints.size() > 0 ? &m_constraints[0] : nullptr,
                                   static_cast<std::size_t>(m_constraints.size()));
     m_constraintSolver->prepareSolve(getNumCollisionObjects(), getDispatcher()->getNumManifolds());

@@ -11,9 +11,9 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 "$aurasim" experiment speed --quick --settings sequential_impulse,fast --out "$work" >/dev/null 2>&1
 "$aurasim" experiment speed-errors --out "$work"
 for table in runs errors; do
-  [[ $(tail -n +2 "$work/$table.csv" | cut -d, -f1 | sort -u | tr '\n' ' ') == "card_houses gas hulls pyramid ragdolls rain " ]] ||
+  [[ $(tail -n +2 "$work/$table.csv" | cut -d, -f1 | sort -u | tr '\n' ' ') == "card_houses gas hulls pyramid ragdolls rain sleepers " ]] ||
     fail "$table.csv does not have every scene"
-  [[ $(wc -l <"$work/$table.csv") == 13 ]] || fail "$table.csv does not have six scenes by two settings"
+  [[ $(wc -l <"$work/$table.csv") == 15 ]] || fail "$table.csv does not have seven scenes by two settings"
 done
 
 # errors.csv: scene,engine,precision,threads,overlap_m,in_static_m,drift_m,sunk_m,fallen,lost,energy,joint_gap_m,hinge_turn_rad
@@ -26,6 +26,7 @@ expect "ThePyramidStands" pyramid '$9 == 0 && $8 < 0.01'
 expect "HullsDoNotOverlapByMoreThanCentimetres" hulls '$5 < 0.05 && $10 == 0'
 expect "RagdollsHoldTogether" ragdolls '$12 < 0.05 && $13 < 0.2'
 expect "CardHousesStand" card_houses '$9 == 0'
+expect "SleepersStayWhereTheyAre" sleepers '$7 < 0.01 && $8 < 0.01'
 expect "GasKeepsItsEnergy" gas '$11 < 1e-3 && $11 > -1e-3 && $10 == 0'
 
 echo "Measured: commit none; build none; precision double." >"$work/measured.txt"

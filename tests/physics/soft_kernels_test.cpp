@@ -154,7 +154,8 @@ Turning random_turning(std::size_t rows) {
 }
 
 void move(const soft::Kernel& kernel, Turning& t) {
-  kernel.move(t.movers.data(), t.tumblers.data(), 0, t.tumblers.size(), kSubstep_s, static_cast<soft::Real>(kTurn));
+  kernel.move(t.movers.data(), t.tumblers.data(), 0, t.tumblers.size(), kSubstep_s,
+              {static_cast<soft::Real>(kTurn), soft::Real{kMostTurns}});
 }
 
 TEST(SoftKernels, MovesHaveTheSameBitsWithEverySetOfInstructions) {
@@ -169,7 +170,7 @@ TEST(SoftKernels, MovesHaveTheSameBitsWithEverySetOfInstructions) {
 
 TEST(SoftKernels, BodiesTumbleInLanesAsAlone) {
   Turning t = random_turning(20);
-  move(soft::fastest_kernel(), t);
+  move(soft::kernel(), t);
   for (std::size_t i = 1; i < t.movers.size(); i += 2) {
     const Rotation wanted = rotate_freely(t.rotations[i], t.inertias[i], static_cast<double>(kSubstep_s));
     const soft::Mover& mover = t.movers[i];
@@ -182,12 +183,12 @@ TEST(SoftKernels, BodiesTumbleInLanesAsAlone) {
 
 TEST(SoftKernels, NoLaneSeesAnother) {
   Turning together = random_turning(20);
-  move(soft::fastest_kernel(), together);
+  move(soft::kernel(), together);
   for (std::size_t i = 1; i < together.movers.size(); ++i) {
     Turning elsewhere = random_turning(20);
     const int lane = 1 + static_cast<int>(i % (soft::kLanes - 1));
     elsewhere.copy(i, lane);
-    move(soft::fastest_kernel(), elsewhere);
+    move(soft::kernel(), elsewhere);
     const auto to = static_cast<std::size_t>(lane);
     EXPECT_EQ(std::memcmp(&elsewhere.movers[to], &together.movers[i], sizeof(soft::Mover)), 0) << i;
   }

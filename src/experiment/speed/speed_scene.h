@@ -1,4 +1,4 @@
-// The six scenes by which our step is compared with those of other engines (docs/speed.md): the same bodies for all of
+// The scenes by which our step is compared with those of other engines (docs/speed.md): the same bodies for all of
 // them, without anything that two engines mean differently (damping, rolling friction, springs).
 #pragma once
 

@@ -129,6 +129,19 @@ SpeedScene boxes_in_rows(bool quick) {
   return stage.all();
 }
 
+/// Piles of four cubes that come to rest: of the last 5 s every engine should spend next to nothing.
+SpeedScene sleepers(bool quick) {
+  const int across = quick ? 5 : 50, high = 4;
+  Stage stage("sleepers", quick ? 240 : 720, 0.6);
+  stage.fixed(core::Plane{});
+  const core::PrototypeId cube = stage.kind(core::Box{}, 1);
+  stage.all().scene.prototypes.front().can_sleep = true;
+  for (int i = 0; i < across * across * high; ++i) {
+    stage.body(cube, {{1.5 * (i % across), 1.5 * (i / across % across), i / (across * across) + 0.5}});
+  }
+  return stage.all();
+}
+
 /// Three points of one octant in all eight: the centre of mass is the origin, and the principal axes are those of the
 /// body, for every engine.
 core::ConvexHull symmetric_hull(Dice& dice) {
@@ -280,6 +293,7 @@ constexpr std::pair<const char*, SceneMaker> kMakers[] = {
     {"ragdolls", ragdolls_on_stairs},
     {"card_houses", many_card_houses},
     {"gas", gas_in_a_box},
+    {"sleepers", sleepers},
 };
 
 }  // namespace

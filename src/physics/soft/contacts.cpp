@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -11,9 +12,11 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btAabbUtil2.h>
 
+#include "physics/first_contacts.h"
 #include "physics/prefetch.h"
 #include "physics/soft/ahead.h"
 #include "physics/soft/convert.h"
+#include "physics/soft/islands.h"
 #include "physics/soft/kept_contacts.h"
 #include "physics/soft/threads.h"
 
@@ -53,12 +56,30 @@ bool bounds_overlap(const btBroadphasePair& pair) {
   return !is_plane(body_of(b)) || !is_above(a, body_of(b));
 }
 
-bool is_awake(const btBroadphasePair& pair) {
-  return body_of(*pair.m_pProxy0).isActive() || body_of(*pair.m_pProxy1).isActive();
+/// Of the two bodies. They are kept in a field of the pair that Bullet does not use: bodies are far away in memory.
+struct Slots {
+  std::uint32_t a, b;
+
+  bool are_noted() const { return a != b; }
+};
+
+Slots noted_slots(const btBroadphasePair& pair) { return std::bit_cast<Slots>(pair.m_internalInfo1); }
+
+Slots slots_of(btBroadphasePair& pair) {
+  if (noted_slots(pair).are_noted()) return noted_slots(pair);
+  const Slots slots = {slot_of(body_of(*pair.m_pProxy0)), slot_of(body_of(*pair.m_pProxy1))};
+  pair.m_internalInfo1 = std::bit_cast<void*>(slots);
+  return slots;
 }
 
-/// Sleepers touch what they touched.
-bool needs_look(const btBroadphasePair& pair) { return !is_awake(pair) || bounds_overlap(pair); }
+SoftTouch touch_of(btPersistentManifold& manifold) {
+  const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+  SoftTouch touch;
+  touch.manifold = &manifold, touch.parts = parts_of(manifold);
+  touch.a = a.getUserIndex(), touch.b = b.getUserIndex(), touch.slot_a = slot_of(a), touch.slot_b = slot_of(b);
+  touch.acts = a.hasContactResponse() && b.hasContactResponse();
+  return touch;
+}
 
 /// Valid until the next call.
 btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& space) {
@@ -78,7 +99,9 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
                         const btVector3& gravity) {
   constexpr int kAtOnce = 512;  // pairs
   gravity_ = gravity;
-  for (List& list : lists_) list.touches.clear(), list.patches.clear(), list.will_meet.clear();
+  for (List& list : lists_) {
+    list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
+  }
   const int count = pairs.getNumOverlappingPairs();
   std::atomic<int> taken = 0;
   soft::side_by_side(count > kAtOnce ? threads_ : 1, [&](const soft::Worker& worker) {
@@ -88,10 +111,13 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     }
   });
   touches_.clear();
+  touches_of_sleepers_.clear();
   ahead_.clear();
   for (std::uint32_t i = 0; i < lists_.size(); ++i) {
     for (SoftTouch& touch : lists_[i].touches) touch.list = i;
     touches_.insert(touches_.end(), lists_[i].touches.begin(), lists_[i].touches.end());
+    touches_of_sleepers_.insert(touches_of_sleepers_.end(), lists_[i].touches_of_sleepers.begin(),
+                                lists_[i].touches_of_sleepers.end());
   }
   for (const List& list : lists_) {
     for (const WillMeet& two : list.will_meet) meet(two, dispatcher, info);
@@ -102,14 +128,25 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
 void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, int last,
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
+  const bool knows_sleepers = islands_.knows_sleepers();
+  const auto both_sleep = [this](const Slots& slots) { return islands_.sleeps(slots.a) && islands_.sleeps(slots.b); };
+  const auto is_wanted = [&](int i) {
+    return i < last && !(knows_sleepers && noted_slots(all[i]).are_noted() && both_sleep(noted_slots(all[i])));
+  };
   for (int i = first; i < last; ++i) {
-    if (i + kPrefetchDistance < last) prefetch_pair(all[i + kPrefetchDistance]);
-    if (i + kPrefetchDistance / 2 < last) prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
-    if (i + kPrefetchDistance / 4 < last) {
+    if (is_wanted(i + kPrefetchDistance)) prefetch_pair(all[i + kPrefetchDistance]);
+    if (is_wanted(i + kPrefetchDistance / 2)) prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
+    if (is_wanted(i + kPrefetchDistance / 4)) {
       const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4], list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
-    if (needs_look(all[i])) {
+    const Slots slots = slots_of(all[i]);
+    if (both_sleep(slots)) {  // they touch what they touched
+      if (!knows_sleepers) collect_of_sleepers(list, all[i]);
+      continue;
+    }
+    if (islands_.slept(slots.a) && islands_.slept(slots.b)) know_touches(list, all[i]);
+    if (bounds_overlap(all[i])) {
       look(list, all[i], dispatcher, info);
     } else {
       pairs.cleanOverlappingPair(all[i], &dispatcher);
@@ -117,10 +154,21 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
   }
 }
 
+void SoftContacts::add_woken(btOverlappingPairCache& pairs) {
+  btBroadphasePairArray& all = pairs.getOverlappingPairArray();
+  List& list = lists_[0];
+  const std::size_t before = list.touches.size();
+  for (int i = 0; i < all.size(); ++i) {
+    const Slots slots = slots_of(all[i]);
+    const bool both_slept = islands_.sleeps(slots.a) && islands_.sleeps(slots.b);
+    if (both_slept && (islands_.is_woken(slots.a) || islands_.is_woken(slots.b))) collect(list, all[i]);
+  }
+  touches_.insert(touches_.end(), list.touches.begin() + static_cast<std::ptrdiff_t>(before), list.touches.end());
+}
+
 void SoftContacts::look(List& list, btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
                         const btDispatcherInfo& info) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
-  if (!is_awake(pair)) return collect(list, pair, false);
   const bool whole = !a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound();
   const auto only = [&]() -> btPersistentManifold* {
     const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
@@ -132,7 +180,7 @@ void SoftContacts::look(List& list, btBroadphasePair& pair, btCollisionDispatche
     if (btPersistentManifold* const told = only()) note_contacts(*told);
   }
   const std::size_t touched = list.touches.size();
-  collect(list, pair, true);
+  collect(list, pair);
   if (looks_ahead_ && list.touches.size() == touched) look_ahead(list, pair);
 }
 
@@ -164,16 +212,16 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
   const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
     if (manifolds[i]->getNumContacts() == 0) continue;
-    const btCollisionObject &body0 = *manifolds[i]->getBody0(), &body1 = *manifolds[i]->getBody1();
     SoftTouch& touch = touches_.emplace_back();
-    touch.manifold = manifolds[i], touch.a = body0.getUserIndex(), touch.b = body1.getUserIndex();
-    touch.parts = parts_of(*manifolds[i]);
-    read(list, touch, &body0 == &a ? shift : -shift);
+    touch = touch_of(*manifolds[i]);
+    touch.ahead = true;
+    read(list, touch, manifolds[i]->getBody0() == &a ? shift : -shift);
     manifolds[i]->clearManifold();
   }
   if (list.patches.size() == first) {  // as they touch only just
     SoftTouch& touch = touches_.emplace_back();
-    touch.a = a.getUserIndex(), touch.b = b.getUserIndex();
+    touch.ahead = true;
+    touch.a = a.getUserIndex(), touch.b = b.getUserIndex(), touch.slot_a = slot_of(a), touch.slot_b = slot_of(b);
     touch.first_patch = first, touch.patches = 1;
     SoftPatch& patch = list.patches.emplace_back();
     patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
@@ -195,17 +243,27 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
                     velocity(a, meeting.r_a) - velocity(b, meeting.r_b)});
 }
 
-void SoftContacts::collect(List& list, const btBroadphasePair& pair, bool awake) {
+void SoftContacts::collect(List& list, const btBroadphasePair& pair) {
   const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
-    btPersistentManifold& manifold = *manifolds[i];
-    if (manifold.getNumContacts() == 0) continue;
-    const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
-    SoftTouch& touch = list.touches.emplace_back();
-    touch.manifold = &manifold, touch.a = a.getUserIndex(), touch.b = b.getUserIndex();
-    touch.parts = parts_of(manifold);
-    touch.acts = a.hasContactResponse() && b.hasContactResponse();
-    if (awake && touch.acts) read(list, touch, {0, 0, 0});
+    if (manifolds[i]->getNumContacts() == 0) continue;
+    SoftTouch& touch = list.touches.emplace_back(touch_of(*manifolds[i]));
+    if (touch.acts) read(list, touch, {0, 0, 0});
+  }
+}
+
+void SoftContacts::collect_of_sleepers(List& list, const btBroadphasePair& pair) {
+  const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() > 0) list.touches_of_sleepers.push_back(touch_of(*manifolds[i]));
+  }
+}
+
+/// Of two who slept until now, and who were not looked at since.
+void SoftContacts::know_touches(List& list, const btBroadphasePair& pair) const {
+  const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() > 0) first_contacts_.know(*manifolds[i]);
   }
 }
 

@@ -7,72 +7,128 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/prefetch.h"
+
 namespace aurasim::physics {
 namespace {
 
-bool sleeps(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
+bool is_asleep(const btRigidBody& body) { return body.getActivationState() == ISLAND_SLEEPING; }
+
+void stop(btRigidBody& body) {
+  body.setLinearVelocity({0, 0, 0});
+  body.setAngularVelocity({0, 0, 0});
+}
 
 }  // namespace
 
-/// The path behind it is halved.
-std::uint32_t SoftIslands::island_of(std::uint32_t body) {
-  while (parents_[body] != body) body = parents_[body] = parents_[parents_[body]];
-  return body;
+void SoftIslands::insert(btRigidBody& body) {
+  if (body.isStaticObject()) return body.setUserIndex3(0);
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::uint32_t>(states_.size()));
+    states_.push_back(0), parents_.push_back(0), is_active_.push_back(0);
+  }
+  body.setUserIndex3(static_cast<int>(free_.back()));
+  free_.pop_back();
 }
 
-void SoftIslands::unite(int a, int b) {
-  const std::uint32_t one = island_of(static_cast<std::uint32_t>(a)), other = island_of(static_cast<std::uint32_t>(b));
+void SoftIslands::remove(const btRigidBody& body) {
+  const std::uint32_t slot = slot_of(body);
+  if (slot == 0) return;
+  if (has(slot, kKept)) forget_sleepers();
+  states_[slot] = 0;
+  free_.push_back(slot);
+}
+
+void SoftIslands::call(std::span<btRigidBody* const> bodies) {
+  awake_.clear();
+  asleep_.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kPrefetchDistance < bodies.size()) prefetch_flags(*bodies[i + kPrefetchDistance]);
+    btRigidBody* const body = bodies[i];
+    const std::uint32_t slot = slot_of(*body);
+    const bool sleeps = !body->isActive();
+    if (sleeps != has(slot, kKept)) forget_sleepers();
+    if (!sleeps) parents_[slot] = slot;
+    (sleeps ? asleep_ : awake_).push_back(body);
+    const int before = has(slot, kSleeps) ? kSlept : 0;
+    states_[slot] = static_cast<std::uint8_t>(before | (sleeps ? kSleeps | kKept : kMoves));
+  }
+  if (!knows_sleepers_) std::iota(parents_.begin(), parents_.end(), 0U);
+}
+
+/// The path behind it is halved.
+std::uint32_t SoftIslands::island_of(std::uint32_t slot) {
+  while (parents_[slot] != slot) slot = parents_[slot] = parents_[parents_[slot]];
+  return slot;
+}
+
+void SoftIslands::unite(std::uint32_t a, std::uint32_t b) {
+  if (a == 0 || b == 0) return;
+  reaches_sleepers_ = reaches_sleepers_ || sleeps(a) != sleeps(b);
+  const std::uint32_t one = island_of(a), other = island_of(b);
   parents_[std::max(one, other)] = std::min(one, other);
 }
 
-void SoftIslands::find(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches,
+/// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
+void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
                        std::span<btTypedConstraint* const> joints) {
-  int last = -1;
-  for (const btRigidBody* body : bodies) last = std::max(last, body->getUserIndex());
-  parents_.resize(static_cast<std::size_t>(last + 1));
-  std::iota(parents_.begin(), parents_.end(), 0U);
-
-  for (const SoftTouch& touch : touches) {
-    if (touch.a >= 0 && touch.b >= 0) unite(touch.a, touch.b);
-  }
+  reaches_sleepers_ = false;
+  for (const SoftTouch& touch : touches) unite(touch.slot_a, touch.slot_b);
+  for (const SoftTouch& touch : of_sleepers) unite(touch.slot_a, touch.slot_b);
   for (const btTypedConstraint* joint : joints) {
-    const btRigidBody& a = joint->getRigidBodyA();
-    const btRigidBody& b = joint->getRigidBodyB();
-    if (joint->isEnabled() && !a.isStaticObject() && !b.isStaticObject()) unite(a.getUserIndex(), b.getUserIndex());
+    if (joint->isEnabled()) unite(slot_of(joint->getRigidBodyA()), slot_of(joint->getRigidBodyB()));
   }
-
-  settle(bodies);
-  sort(touches);
+  std::ranges::fill(is_active_, std::uint8_t{0});
+  for (const btRigidBody* body : awake_) {
+    if (body->getActivationState() != WANTS_DEACTIVATION) is_active_[island_of(slot_of(*body))] = 1;
+  }
+  const bool knew = knows_sleepers_;
+  knows_sleepers_ = true;
+  put_to_sleep();
+  // Who have not met by now are not joined in their sleep.
+  const auto stay = [this](const SoftTouch& touch) { return !has(touch.slot_a, kMoves) && !has(touch.slot_b, kMoves); };
+  if (std::ranges::any_of(touches, [&](const SoftTouch& touch) { return touch.ahead && stay(touch); })) {
+    forget_sleepers();
+  }
+  has_woken_any_ = false;
+  if (reaches_sleepers_) wake();
+  if (!knew) {
+    for (btRigidBody* body : asleep_) {
+      if (is_asleep(*body)) stop(*body);
+    }
+  }
   joints_.clear();
   for (btTypedConstraint* joint : joints) {
-    const bool moves = joint->getRigidBodyA().isActive() || joint->getRigidBodyB().isActive();
+    const bool moves = has(slot_of(joint->getRigidBodyA()), kMoves) || has(slot_of(joint->getRigidBodyB()), kMoves);
     if (joint->isEnabled() && moves) joints_.push_back(joint);
   }
   std::ranges::sort(joints_, {}, &btTypedConstraint::getUserConstraintType);
 }
 
-/// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
-void SoftIslands::settle(std::span<btRigidBody* const> bodies) {
-  states_.assign(parents_.size(), 0);
-  is_awake_.assign(parents_.size(), 0);
-  const auto island = [this](const btRigidBody& body) {
-    return island_of(static_cast<std::uint32_t>(body.getUserIndex()));
-  };
-  for (const btRigidBody* body : bodies) {
-    const int state = body->getActivationState();
-    if (state == ACTIVE_TAG || state == DISABLE_DEACTIVATION) states_[island(*body)] = 1;
-  }
-  awake_.clear();
-  for (btRigidBody* body : bodies) {
-    if (states_[island(*body)] == 0) {
-      body->setActivationState(ISLAND_SLEEPING);
-    } else if (sleeps(*body)) {
-      body->setActivationState(WANTS_DEACTIVATION);
-      body->setDeactivationTime(0);
+void SoftIslands::put_to_sleep() {
+  std::erase_if(awake_, [this](btRigidBody* body) {
+    const std::uint32_t slot = slot_of(*body);
+    if (is_active_[island_of(slot)] != 0) return false;
+    body->setActivationState(ISLAND_SLEEPING);
+    stop(*body);
+    states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kMoves) | kKept);
+    return true;
+  });
+}
+
+void SoftIslands::wake() {
+  for (btRigidBody* body : asleep_) {
+    const std::uint32_t slot = slot_of(*body);
+    if (is_active_[island_of(slot)] == 0) continue;
+    if (!is_asleep(*body)) {  // takes no part in the world at all, and is alone from now on
+      forget_sleepers();
+      continue;
     }
-    if (!body->isActive()) continue;
+    body->setActivationState(WANTS_DEACTIVATION);
+    body->setDeactivationTime(0);
+    states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kKept) | kMoves);
     awake_.push_back(body);
-    is_awake_[static_cast<std::size_t>(body->getUserIndex())] = 1;
+    has_woken_any_ = true;
   }
 }
 
@@ -81,12 +137,12 @@ void SoftIslands::sort(std::span<const SoftTouch> touches) {
   const auto first_of = [](const SoftTouch& touch) { return std::min(touch.a, touch.b); };
   const auto last_of = [](const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); };
   const auto counts = [&](const SoftTouch& touch) {
-    const int first = first_of(touch);
-    const bool awake =
-        is_awake_[last_of(touch)] != 0 || (first >= 0 && is_awake_[static_cast<std::size_t>(first)] != 0);
-    return touch.acts && awake;
+    return touch.acts && (has(touch.slot_a, kMoves) || has(touch.slot_b, kMoves));
   };
-  ends_.assign(parents_.size() + 1, 0);
+  int last = -1;
+  for (const btRigidBody* body : awake_) last = std::max(last, body->getUserIndex());
+  for (const SoftTouch& touch : touches) last = std::max(last, std::max(touch.a, touch.b));
+  ends_.assign(static_cast<std::size_t>(last + 2), 0);
   for (const SoftTouch& touch : touches) {
     if (counts(touch)) ++ends_[last_of(touch) + 1];
   }

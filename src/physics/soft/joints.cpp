@@ -36,7 +36,7 @@ void set(Lanes (&to)[3], int lane, const btVector3& v) {
 
 }  // namespace
 
-SoftJoints::SoftJoints(Real substep_s) : kernel_(soft::fastest_kernel()), h_s_(substep_s) {}
+SoftJoints::SoftJoints(Real substep_s) : h_s_(substep_s) {}
 
 void SoftJoints::add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second) {
   joints_.push_back({&joint, first, second, 0});
@@ -93,19 +93,19 @@ void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
 
 void SoftJoints::look(const soft::Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
-    kernel_.look_at_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+    soft::kernel().look_at_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
   });
 }
 
 void SoftJoints::begin(soft::Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
-    kernel_.begin_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+    soft::kernel().begin_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
   });
 }
 
 void SoftJoints::solve(soft::Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
-    kernel_.solve_joints(&blocks_[first], count, kinds_[kind], movers);
+    soft::kernel().solve_joints(&blocks_[first], count, kinds_[kind], movers);
   });
 }
 

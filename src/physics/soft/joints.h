@@ -28,7 +28,6 @@ class SoftJoints {
   void add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second);
   /// Lays out all that was added, between bodies that are where the step began.
   void build(std::size_t movers, std::span<const SoftInertia> inertias, int threads);
-  bool empty() const { return joints_.empty(); }
 
   // By each worker, for its share. When they return, all have done theirs.
   /// As the bodies are now.
@@ -50,7 +49,6 @@ class SoftJoints {
 
   void fill(std::size_t at, std::span<const SoftInertia> inertias);
 
-  soft::Kernel kernel_;
   soft::Real h_s_;
   std::vector<Joint> joints_;
   std::vector<unsigned> kinds_;  ///< what joints have, ascending

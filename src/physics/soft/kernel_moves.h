@@ -6,8 +6,6 @@
 namespace aurasim::physics::soft {
 namespace {
 
-constexpr Real kMostParts = 256;  // of one substep
-
 /// Of any length.
 struct Quaternion {
   Lanes v[3], w;
@@ -64,7 +62,7 @@ struct Motion {
 };
 
 /// Each lane in as many parts as it asks for.
-AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, Real most_rad) {
+AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, const Turns& turns) {
   const Quaternion start = {{t.start[0], t.start[1], t.start[2]}, t.start[3]};
   const Quaternion q_WB = mul(before.dq, start);
   const Vec w_B = rotate(conjugate(q_WB), before.w);
@@ -73,7 +71,7 @@ AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, 
   const Vec momentum_W = rotate(q_WB, momentum_B);
   const Lanes fastest =
       root(dot(momentum_B, momentum_B)) * max(t.inv_inertia[0], max(t.inv_inertia[1], t.inv_inertia[2]));
-  const Lanes wanted = min(fastest * (h_s / most_rad), all(kMostParts));
+  const Lanes wanted = min(fastest * (h_s / turns.angle_rad), all(turns.most));
   Lanes parts = all(1);
   Real most_parts = 1;
   for (int i = 0; i < kLanes; ++i) {
@@ -98,7 +96,7 @@ AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, 
 
 /// Whoever touches something moves as fast as it is at the end of the substep, which keeps piles calm.
 void move(Mover* movers, const Tumblers* tumblers, std::size_t first_row, std::size_t last_row, Real h_s,
-          Real most_rad) {
+          const Turns& turns) {
   for (std::size_t row = first_row; row < last_row; ++row) {
     const auto in_row = [row](int lane) { return row * kLanes + static_cast<std::size_t>(lane); };
     const Half speeds_before = load_half(in_row, movers, 0);
@@ -109,7 +107,7 @@ void move(Mover* movers, const Tumblers* tumblers, std::size_t first_row, std::s
     Quaternion dq = turn_evenly(now.dq, now.w, h_s);
     const Tumblers& t = tumblers[row];
     if (t.any) {
-      const Motion after = tumble(now, t, h_s, most_rad);
+      const Motion after = tumble(now, t, h_s, turns);
       const auto tumbles = t.inertia[0] > Lanes{};
       for (int i = 0; i < 3; ++i) dq.v[i] = tumbles ? after.dq.v[i] : dq.v[i];
       dq.w = tumbles ? after.dq.w : dq.w;

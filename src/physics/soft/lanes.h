@@ -105,11 +105,16 @@ struct alignas(64) JointBlock {
   Lanes arm_a[3], arm_b[3];  ///< where impulses act, from the centres of mass, m
 };
 
+/// Who tumbles does so in turns of at most so much, if there are not more of them in a substep.
+struct Turns {
+  Real angle_rad, most;
+};
+
 /// The substeps of `count` blocks of `points` points each, or of joints that have `what`.
 struct Kernel {
-  /// Rows of kLanes movers each: on, by their speeds, for h_s; by turns of at most `most_rad` where they tumble.
+  /// Rows of kLanes movers each: on, by their speeds, for h_s.
   void (*move)(Mover* movers, const Tumblers* tumblers, std::size_t first_row, std::size_t last_row, Real h_s,
-               Real most_rad);
+               const Turns& turns);
   void (*warm_start)(const Block* blocks, std::size_t count, int points, Mover* movers);
   void (*solve)(Block* blocks, std::size_t count, int points, Mover* movers, const Substep& substep);
   /// Restitution, for what came closer than `threshold_m_s` (below 0).
@@ -130,7 +135,7 @@ struct Kernel {
 Kernel kernel_sse2();
 Kernel kernel_avx2();
 Kernel kernel_avx512();
-/// Of those that this machine can run.
-Kernel fastest_kernel();
+/// The fastest that this machine can run.
+const Kernel& kernel();
 
 }  // namespace aurasim::physics::soft

@@ -81,8 +81,7 @@ void invert(const Real (&m)[6], Real (&to)[6]) {
 }  // namespace
 
 SoftPatches::SoftPatches(double step_s, int substeps)
-    : kernel_(soft::fastest_kernel()),
-      substep_s_(static_cast<Real>(step_s / substeps)),
+    : substep_s_(static_cast<Real>(step_s / substeps)),
       light_hertz_(static_cast<Real>(std::min(kHertzOfSubsteps * substeps, kHertzOfSteps) / step_s)),
       heavy_hertz_(static_cast<Real>(kHertzOfSubsteps * substeps / step_s)) {}
 
@@ -184,20 +183,20 @@ void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* i
 
 void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
-    kernel_.warm_start(&blocks_[first], count, static_cast<int>(points), movers);
+    soft::kernel().warm_start(&blocks_[first], count, static_cast<int>(points), movers);
   });
 }
 
 void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
-    kernel_.solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
+    soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
   });
 }
 
 void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
   for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
     layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
-      kernel_.bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
+      soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
     });
   }
 }

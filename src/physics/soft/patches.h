@@ -49,7 +49,6 @@ class SoftPatches {
   void remember(std::size_t i) const;
   void fill(std::size_t at, const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 
-  soft::Kernel kernel_;
   soft::Real substep_s_;
   soft::Real light_hertz_, heavy_hertz_;  ///< of springs between bodies
   std::vector<SoftPatch*> patches_;       ///< as they came

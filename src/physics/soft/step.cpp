@@ -65,18 +65,15 @@ struct SoftStep::Impl {
   static constexpr std::uint32_t kHeld = std::numeric_limits<std::uint32_t>::max();
 
   Impl(double step_s, int substeps, int threads)
-      : kernel(soft::fastest_kernel()),
-        threads(threads),
+      : threads(threads),
         step_s(static_cast<btScalar>(step_s)),
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
         patches(step_s, substeps),
         joints(h_s) {}
 
-  /// What a body is besides a mover.
+  /// A mover's body at the start.
   struct Body {
-    btRigidBody* rigid = nullptr;
-    // At the start:
     btVector3 p{0, 0, 0};
     btQuaternion q{0, 0, 0, 1};
     btVector3 v{0, 0, 0}, w{0, 0, 0};
@@ -98,9 +95,9 @@ struct SoftStep::Impl {
   void take_in(std::size_t i);
   void take_in_row(std::size_t row);
   void show(std::size_t i) const;
+  void prefetch_after(std::size_t i) const;
   void run(const soft::Worker& worker);
 
-  soft::Kernel kernel;
   int threads;
   btScalar step_s;
   Real h_s;
@@ -164,6 +161,11 @@ void SoftStep::Impl::take_in_row(std::size_t row) {
   for (std::size_t i = row * soft::kLanes; i < (row + 1) * soft::kLanes; ++i) take_in(i);
 }
 
+void SoftStep::Impl::prefetch_after(std::size_t i) const {
+  const std::size_t next = i + kPrefetchDistance / 4;
+  if (next < held.size() && held[next] != nullptr) prefetch_motion(*held[next]);
+}
+
 void SoftStep::Impl::take_in(std::size_t i) {
   Mover& mover = movers[i] = {};
   SoftInertia& inertia = inertias[i] = {};
@@ -171,10 +173,8 @@ void SoftStep::Impl::take_in(std::size_t i) {
     bodies[i] = {};
     return;
   }
-  if (i + kPrefetchDistance / 4 < held.size() && held[i + kPrefetchDistance / 4] != nullptr) {
-    prefetch_motion(*held[i + kPrefetchDistance / 4]);
-  }
-  btRigidBody& body = *held[i];
+  prefetch_after(i);
+  const btRigidBody& body = *held[i];
   soft::from_bullet(body.getLinearVelocity(), mover.v);
   soft::from_bullet(body.getAngularVelocity(), mover.w);
   const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
@@ -183,7 +183,7 @@ void SoftStep::Impl::take_in(std::size_t i) {
     for (int column = row; column < 3; ++column) inertia.inv_inertia[k++] = static_cast<Real>(inverse[row][column]);
   }
   const btTransform& start = body.getWorldTransform();
-  bodies[i] = {&body, start.getOrigin(), start.getRotation(), body.getLinearVelocity(), body.getAngularVelocity()};
+  bodies[i] = {start.getOrigin(), start.getRotation(), body.getLinearVelocity(), body.getAngularVelocity()};
   const std::optional<core::Vec3> tumbling = tumbling_inertia(body);
   if (!tumbling) return;
   soft::Tumblers& row = tumblers[i / soft::kLanes];
@@ -212,7 +212,8 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data(), worker);
     substep.pushes = true;
     patches.solve(movers.data(), substep, worker);
-    kernel.move(movers.data(), tumblers.data(), first_row, last_row, h_s, static_cast<Real>(kTurn));
+    soft::kernel().move(movers.data(), tumblers.data(), first_row, last_row, h_s,
+                        {static_cast<Real>(kTurn), Real{kMostTurns}});
     worker.wait();
     joints.look(movers.data(), worker);
     for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers.data(), worker);
@@ -226,19 +227,17 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
   const Body& body = bodies[i];
-  if (body.rigid == nullptr) return;
-  if (i + kPrefetchDistance / 4 < bodies.size() && held[i + kPrefetchDistance / 4] != nullptr) {
-    prefetch_motion(*held[i + kPrefetchDistance / 4]);
-  }
+  if (held[i] == nullptr) return;
+  prefetch_after(i);
   const auto after = [](const btVector3& before, const Real(&now)[3]) {
     btVector3 v(0, 0, 0);
     for (int k = 0; k < 3; ++k) v[k] = before[k] + (btScalar(now[k]) - btScalar(static_cast<Real>(before[k])));
     return v;
   };
-  body.rigid->setLinearVelocity(after(body.v, m.v));
-  body.rigid->setAngularVelocity(after(body.w, m.w));
+  held[i]->setLinearVelocity(after(body.v, m.v));
+  held[i]->setAngularVelocity(after(body.w, m.w));
   const btQuaternion turned(m.dq[0], m.dq[1], m.dq[2], m.dq[3]);
-  body.rigid->proceedToTransform(btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
+  held[i]->proceedToTransform(btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
 }
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -25,25 +26,34 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   SoftWorld(const WorldParts& parts, const Settings& settings)
       : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
-        contacts_(settings.step_s, settings.continuous, settings.threads),
+        contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
         step_(settings.step_s, settings.substeps, settings.threads),
         looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
+    islands_.call(span_of(m_nonStaticRigidBodies));
     damp(step_s);
     bound();
     m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
-    first_contacts_.look(*m_dispatcher1, *getPairCache());
-    islands_.find(span_of(m_nonStaticRigidBodies), contacts_.touches(), span_of(m_constraints));
-    for (SoftTouch& touch : islands_.touches()) {
-      if (touch.patches == 0) contacts_.read(touch);  // has just been woken
-    }
+    first_contacts_.look(manifolds_of(contacts_.touches()), *getPairCache());
+    islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
+    if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
+    islands_.sort(contacts_.touches());
     step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity());
     report_met();
-    updateActivationState(step_s);
+    rest(step_s);
     return 1;
+  }
+
+  void addRigidBody(btRigidBody* body) override {
+    islands_.insert(*body);
+    btDiscreteDynamicsWorld::addRigidBody(body);
+  }
+  void removeRigidBody(btRigidBody* body) override {
+    islands_.remove(*body);
+    btDiscreteDynamicsWorld::removeRigidBody(body);
   }
 
  private:
@@ -58,18 +68,37 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     }
   }
 
+  std::span<btPersistentManifold* const> manifolds_of(std::span<const SoftTouch> touches) {
+    manifolds_.clear();
+    for (const SoftTouch& touch : touches) {
+      if (touch.manifold != nullptr) manifolds_.push_back(touch.manifold);
+    }
+    return manifolds_;
+  }
+
   void damp(btScalar step_s) {
-    for (btRigidBody* body : span_of(m_nonStaticRigidBodies)) {
-      const bool slows = body->getLinearDamping() > 0 || body->getAngularDamping() > 0;
-      if (slows && body->isActive()) body->applyDamping(step_s);
+    for (btRigidBody* body : islands_.awake()) {
+      if (body->getLinearDamping() > 0 || body->getAngularDamping() > 0) body->applyDamping(step_s);
+    }
+  }
+
+  /// Who has been slow for long wants to sleep: as Bullet says, of those who may.
+  void rest(btScalar step_s) {
+    for (btRigidBody* body : islands_.awake()) {
+      body->updateDeactivation(step_s);
+      if (body->getActivationState() == DISABLE_DEACTIVATION) continue;
+      if (!body->wantsSleeping()) {
+        body->setActivationState(ACTIVE_TAG);
+      } else if (body->getActivationState() == ACTIVE_TAG) {
+        body->setActivationState(WANTS_DEACTIVATION);
+      }
     }
   }
 
   /// Of what may have moved since the last time.
   void bound() {
     const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
-    for (btRigidBody* body : span_of(m_nonStaticRigidBodies)) {
-      if (!body->isActive()) continue;
+    for (btRigidBody* body : islands_.awake()) {
       btVector3 low, high;
       body->getAabb(low, high);
       if (looks_ahead_) {
@@ -83,8 +112,9 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   }
 
   FirstContacts& first_contacts_;
-  SoftContacts contacts_;
   SoftIslands islands_;
+  SoftContacts contacts_;
+  std::vector<btPersistentManifold*> manifolds_;
   SoftStep step_;
   bool looks_ahead_;
 };
