@@ -14,10 +14,13 @@ declare -A measures=(
     :!src/experiment/pareto.cpp scripts/correctness.sh"
   [docs/correctness_over_dds.md]="$simulation src/dds idl qos src/experiment :!src/experiment/stability
     :!src/experiment/scale :!src/experiment/speed :!src/experiment/pareto.cpp scripts/correctness_over_dds.sh"
-  [docs/same_bits.md]="$uncounted src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh"
+  [docs/same_bits.md]="$uncounted src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
   [docs/scalability.md]="$simulation src/dds idl src/experiment/scale src/experiment/measured_run.* src/experiment/wire_post.*
     launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
-  [docs/speed.md]="CMakeLists.txt src/core src/physics src/experiment/speed src/config/presets.h tests/bench/peers
+  [docs/saved_worlds.md]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/saved_world.cpp idl qos
+    launch_configs src/experiment/scenes tests/bench/save_bench.cpp scripts/saved_worlds.sh scripts/scene_regions.sh"
+  # Of core, what physics computes with; the compiler and its flags are in the line itself.
+  [docs/speed.md]="src/core/body_state.h src/core/scene.* src/core/joint.h src/core/limits.h src/physics src/experiment/speed src/config/presets.h tests/bench/peers
     launch_configs/scenes/columns_rain.yaml launch_configs/scenes/ragdoll_stairs.yaml src/experiment/stability/piles.cpp
     scripts/peers.sh"
   # Packages, megabytes and minutes of a fresh Debian 12.

@@ -13,8 +13,9 @@ packages=(
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   # physics in both precisions, mathematics
   libbullet-dev libbullet-extras-dev libeigen3-dev
-  # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports
-  libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
+  # saved worlds
+  libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libzstd-dev
   # HTTP and WebSocket of the overseer, its page
   libboost1.74-dev esbuild
 )

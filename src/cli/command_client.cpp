@@ -15,6 +15,7 @@ constexpr auto kPatienceForAnswers = 6s;
 constexpr auto kPatienceForMeshes = 20s;  ///< the lead waits for 15 s until all nodes have one, and says who has not
 constexpr auto kPatienceAfterIt = 2s;     ///< once all nodes have computed its state: a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
+constexpr auto kPatienceForDisks = 20s;  ///< that a world is saved on
 constexpr auto kAgain = 500ms;
 constexpr std::uint64_t kAnyMap = 0;   ///< there is one run in a domain, and its map may be changing just now
 constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
@@ -58,6 +59,7 @@ std::uint64_t CommandClient::send(core::Command command) {
   under_way.changes_the_run = core::changes_the_run(command.ask);
   const auto* const ray = std::get_if<core::Ray>(&command.ask);
   under_way.delivery.is_ray = ray != nullptr;
+  under_way.delivery.is_save = std::holds_alternative<core::Save>(command.ask);
   if (ray != nullptr) under_way.asked = ray->regions;
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
   const Clock::duration patience = under_way.delivery.is_ray   ? Clock::duration(kPatienceForRays)
@@ -79,7 +81,9 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
     case core::Outcome::kAccepted:
       if (under_way.accepted) return;  // told again
       under_way.accepted = true;
-      under_way.deadline = Clock::now() + (under_way.changes_the_run ? kPatienceForChanges : kPatienceAfterIt);
+      under_way.deadline = Clock::now() + (under_way.changes_the_run ? Clock::duration(kPatienceForChanges)
+                                           : delivery.is_save        ? Clock::duration(kPatienceForDisks)
+                                                                     : Clock::duration(kPatienceAfterIt));
       delivery.at_step = reply.at_step;
       delivery.object = reply.object;
       return;
@@ -98,6 +102,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
     case core::Outcome::kSeen:
       under_way.answered.push_back(reply.source);
       delivery.at_step = std::max(delivery.at_step, reply.at_step);
+      if (delivery.is_save) delivery.files.push_back(reply.text);
       if (!reply.object || reply.distance_m >= delivery.distance_m) return;
       delivery.object = reply.object;
       delivery.p_W = reply.p_W;
@@ -107,9 +112,8 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   }
 }
 
-bool CommandClient::ray_has_ended(UnderWay& under_way) {
+bool CommandClient::all_have_answered(UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
-  if (!delivery.text.empty()) return true;  // refused
   delivery.silent.clear();
   const auto is_in = [](const auto& regions, core::RegionId region) {
     return std::ranges::find(regions, region) != regions.end();
@@ -118,8 +122,14 @@ bool CommandClient::ray_has_ended(UnderWay& under_way) {
     const bool asked = under_way.asked.empty() || is_in(under_way.asked, node->region);
     if (asked && !is_in(under_way.answered, node->region)) delivery.silent.push_back(node->region);
   }
+  return delivery.silent.empty() && !under_way.answered.empty();
+}
+
+bool CommandClient::ray_has_ended(UnderWay& under_way) {
+  Delivery& delivery = under_way.delivery;
+  if (!delivery.text.empty()) return true;  // refused
   const bool late = Clock::now() >= under_way.deadline;
-  if (!late && (!delivery.silent.empty() || under_way.answered.empty())) return false;
+  if (!all_have_answered(under_way) && !late) return false;
   delivery.done = !under_way.answered.empty();
   delivery.text = delivery.done ? "" : "no region has answered";
   return true;
@@ -136,6 +146,11 @@ bool CommandClient::is_on_its_way(const UnderWay& under_way) {
 bool CommandClient::has_ended(UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   if (delivery.is_ray) return ray_has_ended(under_way);
+  if (delivery.is_save && delivery.text.empty() && all_have_answered(under_way)) {
+    delivery.done = true;
+    delivery.text = fmt::format("saved state {}", delivery.at_step);
+    return true;
+  }
   if (under_way.accepted && under_way.has_time && !delivery.done) {
     delivery.done = true;
     delivery.text = fmt::format("takes effect in step {}", delivery.at_step);
@@ -154,6 +169,7 @@ bool CommandClient::has_ended(UnderWay& under_way) {
   }
   if (!delivery.text.empty()) return true;
   delivery.text = !under_way.accepted ? "no node has taken it"
+                  : delivery.is_save  ? "some regions have not saved their parts"
                   : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
                                       : "it was taken, but nobody has shown its effect";
   return true;

@@ -27,6 +27,9 @@ struct Delivery {
   core::Vec3 normal_W = core::Vec3::Zero();
   double distance_m = 0;
   std::vector<core::RegionId> silent;  ///< regions that did not answer: there may be something nearer
+  // Of a saved world:
+  bool is_save = false;
+  std::vector<std::string> files;  ///< the parts, on their nodes' hosts
 };
 
 class CommandClient {
@@ -63,6 +66,7 @@ class CommandClient {
   std::vector<const dds::Status*> live_nodes();
   void note(const core::CommandReply& reply, UnderWay& under_way);
   bool has_ended(UnderWay& under_way);
+  bool all_have_answered(UnderWay& under_way);
   bool ray_has_ended(UnderWay& under_way);
   bool is_on_its_way(const UnderWay& under_way);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/launch_setup.h"
+#include "cli/saved_world.h"
 #include "config/launch_variants.h"
 #include "core/limits.h"
 
@@ -173,6 +174,11 @@ struct Problem {
     return problem_with_change([&] { config::with_scene(c.launch, ask.name); });
   }
   std::string operator()(const core::Ray& ask) const { return problem_with(ask); }
+  std::string operator()(const core::Save& ask) const {
+    const char* const problem = problem_with_save_name(ask.file);
+    return problem != nullptr ? problem : "";
+  }
+  std::string operator()(const core::Load& ask) const { return (*this)(core::Save{ask.file}); }
 };
 
 }  // namespace

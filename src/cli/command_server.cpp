@@ -23,9 +23,11 @@ constexpr dds::MeshCacheLimits kMeshes{1024, std::size_t{256} << 20U};
 
 }  // namespace
 
-CommandServer::CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
+CommandServer::CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region,
+                             std::filesystem::path saves)
     : launch_(launch),
       region_(region),
+      saves_(std::move(saves)),
       endpoint_(participant, region, launch.regions.version()),
       issuer_(launch),
       mesh_reader_(participant, kMeshes),
@@ -53,6 +55,8 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
   leads_ = run.leads;
+  // Who leads from now on tells observers what a saved world has brought.
+  if (!std::exchange(led_, leads_) && leads_ && !additions_.orders.empty()) additions_writer_.send(additions_);
   dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
   for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});
@@ -127,7 +131,20 @@ void CommandServer::refuse(std::uint64_t request, std::string why) {
   endpoint_.reply(std::move(reply));
 }
 
+/// Before all nodes stop for it: can it be loaded?
+std::string CommandServer::problem_with_world(const core::Ask& ask) const {
+  const auto* const load = std::get_if<core::Load>(&ask);
+  if (load == nullptr || problem_with_save_name(load->file) != nullptr) return {};
+  try {
+    load_world({(saves_ / load->file).string(), false}, launch_);
+    return {};
+  } catch (const config::BadConfig& bad) {
+    return bad.errors().front();
+  }
+}
+
 void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  if (std::string why = problem_with_world(command.ask); !why.empty()) return refuse(command.request, std::move(why));
   Issued issued = issuer_.issue(
       command, run.facts, [this](const core::MeshRef& mesh) { return make_mesh(mesh); }, node);
   if (!issued.order) return refuse(command.request, std::move(issued.refused));
@@ -138,7 +155,8 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   reply.object = issued.object;
   endpoint_.reply(std::move(reply));
   const core::Action& action = issued.order->action;
-  if (core::body_of(action) || std::holds_alternative<core::Spawn>(action)) return;  // what hosts reply
+  const bool all_reply = std::holds_alternative<core::Save>(action);
+  if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
   due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : reply.at_step,
                            issued.object};
@@ -156,6 +174,18 @@ void CommandServer::publish_additions(const node::StepReport& report) {
     if (node::changes_scene(order.action)) additions_.orders.push_back(order);
   }
   if (additions_.orders.size() > before && leads_) additions_writer_.send(additions_);
+}
+
+void CommandServer::reply_saved(const PartWriter::Written& written) {
+  if (!written.error.empty()) {
+    return refuse(written.request, fmt::format("region {}: {}", core::value_of(region_), written.error));
+  }
+  core::CommandReply saved;
+  saved.request = written.request;
+  saved.outcome = core::Outcome::kSeen;
+  saved.at_step = written.step;
+  saved.text = written.file;
+  endpoint_.reply(std::move(saved));
 }
 
 void CommandServer::reply_done(std::uint64_t request, core::Step step, std::optional<core::ObjectRef> object) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "cli/order_issuer.h"
+#include "cli/saved_world.h"
 #include "config/launch.h"
 #include "core/command.h"
 #include "dds/command_bus.h"
@@ -31,12 +33,16 @@ struct RunView {
 class CommandServer {
  public:
   /// The launch is that of the run as it is now, also after it has changed.
-  CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
+  /// `saves`: its node's folder of saved worlds.
+  CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region,
+                std::filesystem::path saves);
 
   /// The run has got another map; the scene stays as it has grown.
   void change_map(core::Generation generation, core::Step step);
   /// Serves what has come. Call it between steps.
   void serve(node::Node& node, const RunView& run);
+  /// This region's part of a saved world is written, or is not.
+  void reply_saved(const PartWriter::Written& written);
   /// Replies to clients what has taken effect.
   void after_step(const node::StepReport& report);
   /// A new generation: what was under way is not any longer.
@@ -66,16 +72,18 @@ class CommandServer {
   bool is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run);
   void wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run);
   void publish_additions(const node::StepReport& report);
+  std::string problem_with_world(const core::Ask& ask) const;
   std::optional<core::Shape> make_mesh(const core::MeshRef& mesh);
 
   const config::Launch& launch_;
   core::RegionId region_;
+  std::filesystem::path saves_;
   dds::CommandServerEndpoint endpoint_;
   OrderIssuer issuer_;
   dds::MeshReader mesh_reader_;
   dds::SceneAdditionsWriter additions_writer_;
   dds::SceneAdditions additions_;
-  bool leads_ = false;
+  bool leads_ = false, led_ = false;  ///< now, and when it was last asked
   std::vector<Asked> waiting_for_mesh_;
   std::map<std::uint64_t, Due> due_;  ///< requests to report as done at their step
   std::optional<double> wanted_rate_;

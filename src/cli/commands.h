@@ -18,6 +18,7 @@ void add_node(CLI::App& program, Action& action);
 void add_launch(CLI::App& program, Action& action);
 void add_top(CLI::App& program, Action& action);
 void add_echo(CLI::App& program, Action& action);
+void add_cut(CLI::App& program, Action& action);
 void add_overseer(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);

@@ -18,6 +18,7 @@ int compare(const CompareArguments& arguments) {
   const node::Comparison c = node::compare_reports(arguments.a, arguments.b);
   if (arguments.json) {
     nlohmann::json out = {{"hashes_equal", c.hashes_equal},
+                          {"first_step", c.first_step},
                           {"steps_compared", c.steps_compared},
                           {"first_difference_step", nullptr},
                           {"bodies_compared", c.bodies_compared},
@@ -27,7 +28,8 @@ int compare(const CompareArguments& arguments) {
     if (c.first_difference_step) out["first_difference_step"] = *c.first_difference_step;
     fmt::print("{}\n", out.dump(2));
   } else if (c.hashes_equal) {
-    fmt::print("equal: {} steps, the same bits in every one\n", c.steps_compared);
+    fmt::print("equal: {} steps{}, the same bits in every one\n", c.steps_compared,
+               c.first_step > 0 ? fmt::format(" from state {} on", c.first_step) : "");
   } else {
     fmt::print(
         "different: {} steps compared, first difference in step {}; in the last state {} bodies compared, {} in "

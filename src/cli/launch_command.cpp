@@ -38,7 +38,8 @@ void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
 int run_launch(LaunchArguments arguments) {
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
   look_at_host(launch, arguments.options);
-  arguments.options.steps = arguments.length.last_step(launch);
+  const auto world = load_world(arguments.options.load, launch);  // or it is refused before anything is started
+  arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
   leave_after([&launcher] { return launcher.run(); });
@@ -56,6 +57,8 @@ void add_launch(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the nodes record");
   command->add_option("--start-time-out", arguments->options.start_time_out_s, "seconds to wait for all regions")
       ->check(CLI::Range(1, 3600));
+  arguments->options.load.add_to(*command);
+  arguments->options.save.add_to(*command);
   command->footer("Example:\n  aurasim launch demo --duration 30 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_launch(*arguments); }; });
 }

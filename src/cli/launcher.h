@@ -14,6 +14,7 @@
 #include "cli/live_table.h"
 #include "cli/node_ending.h"
 #include "cli/run_steering.h"
+#include "cli/saved_world.h"
 #include "cli/viewer_process.h"
 #include "dds/random_id.h"
 
@@ -25,6 +26,8 @@ struct LaunchOptions {
   std::optional<std::filesystem::path> report;
   bool headless = false;
   std::string recording;  ///< file; empty: none
+  LoadArguments load;
+  SaveArguments save;
   int start_time_out_s = 30;
 };
 

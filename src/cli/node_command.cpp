@@ -1,3 +1,4 @@
+#include <cmath>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "cli/leave.h"
 #include "cli/node_process.h"
 #include "cli/run_length.h"
+#include "cli/saved_world.h"
 #include "cli/scene_warnings.h"
 #include "cli/stop_signal.h"
 #include "physics/region_world.h"
@@ -24,6 +26,8 @@ struct NodeArguments {
   std::uint64_t run = 0;
   RunLength length;
   std::string report;
+  LoadArguments load;
+  SaveArguments save;
   int start_time_out_s = 30;
 };
 
@@ -63,7 +67,10 @@ int run_node(const NodeArguments& arguments) {
   options.region = core::RegionId{arguments.region};
   options.run = arguments.run;
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
-  options.steps = arguments.length.last_step(launch);
+  options.world = load_world(arguments.load, launch);
+  options.saves = arguments.save.folder;
+  options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
+  options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   NodeProcess process(launch, options);
   leave_after([&process] { return process.run(); });
@@ -82,6 +89,8 @@ void add_node(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the node records");
   command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
       ->check(CLI::Range(1, 3600));
+  arguments->load.add_to(*command);
+  arguments->save.add_to(*command);
   command->footer("Example:\n  aurasim node demo --region 0 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_node(*arguments); }; });
 }

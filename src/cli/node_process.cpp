@@ -57,6 +57,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       participant_(dds_settings(launch, options.region)),
       control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run}),
       fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),
+      saves_(options.saves, options.region),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
   status_.region = options.region;
   status_.run = options.run;
@@ -109,11 +110,13 @@ ExitCode NodeProcess::run() {
 ExitCode NodeProcess::meet_and_run() {
   if (!domain_is_free()) return not_begun();
   enter(NodeEvent::kFree);
-  control_.publish_map(world_map(launch_));
+  dds::WorldMap map = world_map(launch_);
+  map.from_step = first_step();
+  control_.publish_map(map);
   publish();
   transport_.emplace(participant_, neighbour_transport(launch_, options_.region));
   observers_.emplace(launch_, participant_, options_.region);
-  command_server_.emplace(launch_, participant_, options_.region);
+  command_server_.emplace(launch_, participant_, options_.region, options_.saves);
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
   compare_clocks();
   begin_generation(start_->generation, *start_);
@@ -158,17 +161,18 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   run_orders_.clear();
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
-  pacer_.set_epoch(0, begin.epoch_ns, begin.clock_ahead, node::read_clocks());
+  pacer_.set_epoch(first_step(), begin.epoch_ns, begin.clock_ahead, node::read_clocks());
   hold_at_.reset();
   hurry_until_ = 0;
   refusals_noted_ = 0;
   frame_times_.clear();
   paused_ = {};
-  const node::StepReport& report = node_->start();
+  const node::StepReport& report = options_.world ? node_->start(*options_.world) : node_->start();
   observers_->begin_generation(generation);
   observers_->after_step(*node_, report);
   record(node_->confirmed());
-  began_ = std::max(pacer_.due(0), Clock::now());
+  command_server_->after_step(report);
+  began_ = std::max(pacer_.due(first_step()), Clock::now());
 }
 
 bool NodeProcess::finished() const {
@@ -201,6 +205,7 @@ ExitCode NodeProcess::run_steps() {
   while (!finished()) {
     execute_commands();
     serve_clients();
+    save_parts();
     reset_if_due();
     change_if_due();
     if (!wait_until_due()) continue;
@@ -265,6 +270,9 @@ void NodeProcess::compute_step() {
   observers_->after_step(*node_, report);
   command_server_->after_step(report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
+  for (const core::Order& order : report.orders) {
+    if (std::holds_alternative<core::Save>(order.action)) saves_.expect(order);
+  }
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
   frame_times_[report.step] = {frame_ms, wait_ms_};
@@ -276,6 +284,23 @@ void NodeProcess::compute_step() {
   note(report, frame_ms);
   publish_running();
   apply_orders();
+}
+
+/// Written beside the run. Every node says to whoever has asked for it that it has.
+void NodeProcess::save_parts() {
+  for (core::WorldCut& part : node_->take_saved()) saves_.write(std::move(part), launch_);
+  for (const PartWriter::Written& written : saves_.take_written()) {
+    if (!written.error.empty()) spdlog::error("state {} was not saved: {}", written.step, written.error);
+    if (written.request != 0) command_server_->reply_saved(written);
+  }
+}
+
+/// On the lead. What is asked for by nobody is called by its state.
+void NodeProcess::save_regularly() {
+  const core::Step due = std::max(saved_last_, first_step()) + options_.save_every;
+  if (options_.save_every == 0 || node_->current_step() < due) return;
+  saved_last_ = node_->protocol().earliest_effect();
+  node_->order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
 /// All nodes do so after the same state. Observers stay with what they have seen until the run is there again.

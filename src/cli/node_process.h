@@ -16,6 +16,7 @@
 #include "cli/fence.h"
 #include "cli/node_phase.h"
 #include "cli/replica_publisher.h"
+#include "cli/saved_world.h"
 #include "config/launch.h"
 #include "dds/control.h"
 #include "dds/dds_transport.h"
@@ -32,6 +33,9 @@ struct NodeOptions {
   std::optional<core::Step> steps;  ///< stop after this state; nothing: run until told to stop
   std::optional<std::filesystem::path> report;
   std::chrono::seconds start_time_out{30};
+  std::shared_ptr<const core::WorldCut> world;  ///< saved: the run goes on from it, and comes back to it when reset
+  std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
+  core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
 };
 
 /// Between a region and those that have to hear of it.
@@ -71,6 +75,9 @@ class NodeProcess {
   void note_faults(const node::StepReport& report);
   void compute_step();
   void execute_commands();
+  core::Step first_step() const { return options_.world ? options_.world->step : 0; }
+  void save_parts();
+  void save_regularly();
   void serve_clients();
   void change_rate(double rate);
   void apply_orders();
@@ -78,6 +85,8 @@ class NodeProcess {
   void reset_if_due();
   void change_if_due();
   void change_scene(const std::string& name);
+  void change_world(const std::string& file);
+  void begin_anew();
   void change_regions(const std::vector<core::Rectangle>& boxes);
   void settle_all();
   void wait_until_all_stand();
@@ -111,6 +120,8 @@ class NodeProcess {
   std::optional<ReplicaPublisher> observers_;    ///< likewise
   std::optional<CommandServer> command_server_;  ///< likewise
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
+  PartWriter saves_;
+  core::Step saved_last_ = 0;  ///< state of the last save that nobody has asked for, on the lead
   std::unique_ptr<node::Node> node_;
   std::unique_ptr<node::Recorder> recorder_;
   node::Pacer pacer_;

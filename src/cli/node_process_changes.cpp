@@ -130,6 +130,7 @@ void NodeProcess::serve_clients() {
     return lacking;
   };
   command_server_->serve(*node_, run);
+  if (run.leads) save_regularly();
   status_.meshes = command_server_->meshes();
   if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
 }
@@ -166,17 +167,31 @@ void NodeProcess::change_if_due() {
   const core::Order order = *std::exchange(change_, std::nullopt);
   if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
   if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
+  if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
 }
 
 /// Bodies of the old scene are forgotten; the regions stay.
 void NodeProcess::change_scene(const std::string& name) {
   launch_ = config::with_scene(launch_, name);
+  options_.world.reset();
   spdlog::info("scene {} after step {}", name, node_->current_step());
+  begin_anew();
+}
+
+/// The regions stay as they are, whatever they were when it was saved.
+void NodeProcess::change_world(const std::string& file) {
+  options_.world = load_world({(options_.saves / file).string(), false}, launch_);
+  spdlog::info("{}, state {}, after step {}", file, first_step(), node_->current_step());
+  begin_anew();
+}
+
+void NodeProcess::begin_anew() {
   wait_until_all_stand();
   waits_to_start_ = generation_ + 1;
   dds::WorldMap map = world_map(launch_);
   map.agreement = status_.agreement;
   map.generation = waits_to_start_;
+  map.from_step = first_step();
   control_.publish_map(map);  // first: observers read the new scene before its bodies come
   node_.reset();
   connect_anew(neighbour_transport(launch_, options_.region));

@@ -26,10 +26,17 @@ std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
 /// Two runs in one domain would tear each other's worlds apart.
 bool NodeProcess::another_run_is_here() { return another_agreement_is_here() || the_same_run_is_here(); }
 
-/// Another map, scene or setting.
+/// Another map, scene or setting, or another state to begin with.
 bool NodeProcess::another_agreement_is_here() {
   for (const auto& [version, map] : control_.maps()) {
-    if (map.agreement == status_.agreement) continue;
+    if (map.agreement == status_.agreement && map.from_step == first_step()) continue;
+    if (map.agreement == status_.agreement) {
+      refuse(
+          fmt::format("DDS domain {} already has this run, and it begins with state {}; this one with state {}. Give "
+                      "all nodes the same saved world (--load), or use another dds.domain.",
+                      launch_.dds.domain, map.from_step, first_step()));
+      return true;
+    }
     refuse(fmt::format(
         "DDS domain {} already has a run that does not agree with this one: scene '{}', {} regions, map {:016x}, "
         "agreement {:016x}; this is scene '{}', {} regions, map {:016x}, agreement {:016x}. Use another dds.domain.",

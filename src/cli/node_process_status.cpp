@@ -70,7 +70,7 @@ void NodeProcess::publish(const std::string& text) {
 
 double NodeProcess::real_time_factor() const {
   const double wall_s = std::chrono::duration<double>(Clock::now() - began_ - paused_).count();
-  return wall_s > 0 ? static_cast<double>(node_->current_step()) * launch_.step_s() / wall_s : 1;
+  return wall_s > 0 ? static_cast<double>(node_->current_step() - first_step()) * launch_.step_s() / wall_s : 1;
 }
 
 void NodeProcess::watch_the_clock() {

@@ -73,6 +73,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_launch(*program, action);
   add_top(*program, action);
   add_echo(*program, action);
+  add_cut(*program, action);
   add_send(*program, action);
   add_overseer(*program, action);
   add_replay(*program, action);

@@ -12,9 +12,9 @@ void RunLength::add_to(CLI::App& command) {
       ->excludes(by_steps);
 }
 
-std::optional<core::Step> RunLength::last_step(const config::Launch& launch) const {
+std::optional<core::Step> RunLength::last_step(const config::Launch& launch, core::Step first) const {
   if (steps >= 0) return steps;
-  if (duration_s >= 0) return std::llround(duration_s * launch.time.step_hz);
+  if (duration_s >= 0) return first + std::llround(duration_s * launch.time.step_hz);
   return std::nullopt;
 }
 

@@ -15,8 +15,8 @@ struct RunLength {
 
   /// --steps or --duration.
   void add_to(CLI::App& command);
-  /// The last state; nothing: until told to stop.
-  std::optional<core::Step> last_step(const config::Launch& launch) const;
+  /// The last state of a run that begins with `first`; nothing: until told to stop.
+  std::optional<core::Step> last_step(const config::Launch& launch, core::Step first = 0) const;
 };
 
 }  // namespace aurasim::cli

@@ -107,6 +107,17 @@ void add_rules(CLI::App& command, const std::shared_ptr<ScenesArguments>& a) {
           "--network", a->network,
           "good: a tenth of a step of delay; bad: loss, delay, jitter, duplicates, messages that overtake others")
       ->check(CLI::IsMember({"good", "bad"}));
+  auto* save = command.add_option("--save-at", a->plan.rules.save_at,
+                                  "save the world in this state, and go on from the file as well");
+  command.add_option("--load-on", a->plan.rules.load_on, "numbers of nodes, with --save-at")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 16))
+      ->needs(save);
+  command
+      .add_option("--deaths", a->plan.rules.deaths,
+                  "so many nodes die under way, and all go back to what is kept of an earlier state")
+      ->check(CLI::Range(0, 100))
+      ->excludes(save);
   command.add_option("--set", a->plan.rules.overrides, "key.path=value, as for launch, in every world");
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -15,6 +17,7 @@
 #include "config/convex_parts.h"
 #include "config/meshes.h"
 #include "core/limits.h"
+#include "cut/cut_file.h"
 
 namespace aurasim::cli {
 namespace {
@@ -40,6 +43,7 @@ struct SendArguments {
   std::string mesh_file;
   bool in_parts = false;
   std::string scene;
+  std::string save_file;
   std::uint64_t body = 0;
   std::uint32_t fixed = 0;
   bool is_static = false;
@@ -110,6 +114,8 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
   }
   if (a.what == "rate") return core::SetRate{a.rate};
   if (a.what == "scene") return core::ChangeScene{a.scene};
+  if (a.what == "load") return core::Load{a.save_file};
+  if (a.what == "save") return core::Save{std::filesystem::path(a.save_file).filename().string()};
   if (a.what == "ray") return core::Ray{vector(a.from), vector(a.to), {}};
   core::Repartition regions;
   for (std::size_t i = 0; i + 3 < a.boxes.size(); i += 4) {
@@ -120,9 +126,28 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
 
 nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-[[noreturn]] void print_delivery(const Delivery& delivery) {
+/// The parts become the file that was asked for, if all of them are on this host.
+nlohmann::json put_together(const std::vector<std::string>& parts, const std::string& file) {
+  std::vector<std::filesystem::path> files(parts.begin(), parts.end());
+  if (!std::ranges::all_of(files, [](const auto& part) { return std::filesystem::exists(part); })) {
+    spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", file);
+    return {{"parts", parts}};
+  }
+  try {
+    cut::write_cut(file, cut::merge_cuts(files));
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  for (const std::filesystem::path& part : files) {
+    if (!std::filesystem::equivalent(part, file)) std::filesystem::remove(part);
+  }
+  return {{"file", file}, {"bytes", std::filesystem::file_size(file)}};
+}
+
+[[noreturn]] void print_delivery(const Delivery& delivery, const SendArguments& arguments) {
   if (!delivery.done) fail(delivery.text);
   nlohmann::json out = {{"step", delivery.at_step}};
+  if (delivery.is_save && !delivery.files.empty()) out.update(put_together(delivery.files, arguments.save_file));
   if (delivery.object)
     out[*delivery.object >= 0 ? "body" : "static"] = *delivery.object >= 0 ? *delivery.object : -1 - *delivery.object;
   if (delivery.is_ray) {
@@ -150,7 +175,7 @@ nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
   client.send(std::move(command));
   while (in_time()) {
     client.wait(20ms);
-    for (const Delivery& delivery : client.take()) print_delivery(delivery);
+    for (const Delivery& delivery : client.take()) print_delivery(delivery, arguments);
   }
   fail("no answer");
 }
@@ -244,6 +269,8 @@ const std::map<std::string, std::string> kExamples = {
     {"rate", "--value 0.5"},
     {"scene", "--name tower"},
     {"regions", "--boxes -40 -40 0 0 0 -40 40 0 -40 0 0 40 0 0 40 40"},
+    {"save", "world.cut"},
+    {"load", "state-1200.cut"},
     {"ray", "--from 0 0 20 --to 0 0 0"}};
 
 std::string example_of(const std::string& kind) {
@@ -285,6 +312,14 @@ void add_send(CLI::App& program, Action& action) {
       {"regions", "give the nodes other regions",
        [](CLI::App& c, SendArguments& a) {
          c.add_option("--boxes", a.boxes, "x0 y0 x1 y1 of each region, m")->required()->expected(4, 4096);
+       }},
+      {"save", "keep the world in a file",
+       [](CLI::App& c, SendArguments& a) {
+         c.add_option("WORLD", a.save_file, "the file; launch --load goes on from it")->required();
+       }},
+      {"load", "go on from a saved world",
+       [](CLI::App& c, SendArguments& a) {
+         c.add_option("WORLD", a.save_file, "in the nodes' --saves folder")->required();
        }},
       {"ray", "what is first on the way from a point to another?", ray_options}};
   for (const auto& [name, text, options] : kinds) {

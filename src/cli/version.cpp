@@ -9,6 +9,8 @@ namespace aurasim::cli {
 
 std::string commit() { return AURASIM_COMMIT; }
 
+std::string version_and_commit() { return fmt::format("aurasim {} ({})", AURASIM_VERSION, commit()); }
+
 std::string version_text() {
   return fmt::format("aurasim {} (commit {}, {}, {} precision, GCC {})", AURASIM_VERSION, commit(), AURASIM_BUILD_TYPE,
                      physics::RegionWorld::precision(), __VERSION__);

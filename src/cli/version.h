@@ -8,6 +8,9 @@ namespace aurasim::cli {
 /// The commit, with "-dirty" when sources were changed after it; "unknown" outside a repository.
 std::string commit();
 
+/// "aurasim VERSION (COMMIT)".
+std::string version_and_commit();
+
 /// Version, commit, build type, precision, compiler, in one line.
 std::string version_text();
 

@@ -179,20 +179,11 @@ void add_joints(const core::Scene& scene, Digest& d) {
   }
 }
 
-void add_settings(const Launch& launch, Digest& d) {
-  d.bytes(launch.regions.version());
-  d.add(launch.neighbour_distance_m);
+/// What decides about bits, on any map.
+void add_physics(const Launch& launch, Digest& d) {
   d.add(launch.time.step_hz);
   d.bytes(static_cast<std::uint64_t>(launch.time.substeps));
-  d.bytes(static_cast<std::uint64_t>(launch.time.sync));
-  d.bytes(static_cast<std::uint64_t>(launch.time.pace));
-  d.bytes(launch.redoes());
-  d.bytes(static_cast<std::uint64_t>(launch.lookahead()));
   d.add(launch.tolerances.speed_m_s);
-  d.add(launch.tolerances.latency_s);
-  d.add(launch.tolerances.frame_s);
-  d.bytes(static_cast<std::uint64_t>(launch.aura.radius));
-  d.add(launch.aura.uncertainty);
   d.add(std::string_view(launch.physics.precision));
   d.add(std::string_view(launch.physics.solver));
   d.bytes(static_cast<std::uint64_t>(launch.physics.iterations));
@@ -202,16 +193,41 @@ void add_settings(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(launch.physics.origin));
 }
 
+/// What else all nodes agree on.
+void add_settings(const Launch& launch, Digest& d) {
+  d.bytes(launch.regions.version());
+  d.add(launch.neighbour_distance_m);
+  d.bytes(static_cast<std::uint64_t>(launch.time.sync));
+  d.bytes(static_cast<std::uint64_t>(launch.time.pace));
+  d.bytes(launch.redoes());
+  d.bytes(static_cast<std::uint64_t>(launch.lookahead()));
+  d.add(launch.tolerances.latency_s);
+  d.add(launch.tolerances.frame_s);
+  d.bytes(static_cast<std::uint64_t>(launch.aura.radius));
+  d.add(launch.aura.uncertainty);
+}
+
+void add_world(const Launch& launch, Digest& d) {
+  d.add(std::string_view(launch.scene.name));
+  d.add(launch.scene.gravity);
+  add_things(launch.scene, d);
+  add_bodies(launch.scene, d);
+  add_joints(launch.scene, d);
+  add_physics(launch, d);
+}
+
 }  // namespace
 
 std::uint64_t Launch::agreement() const {
   Digest d;
-  d.add(std::string_view(scene.name));
-  d.add(scene.gravity);
-  add_things(scene, d);
-  add_bodies(scene, d);
-  add_joints(scene, d);
+  add_world(*this, d);
   add_settings(*this, d);
+  return d.result();
+}
+
+std::uint64_t Launch::world_identity() const {
+  Digest d;
+  add_world(*this, d);
   return d.result();
 }
 

@@ -120,6 +120,8 @@ struct Launch {
   bool redoes() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;
+  /// Likewise of what decides about bits on any map: the scene, and how physics computes it. A saved world has it.
+  std::uint64_t world_identity() const;
 };
 
 /// Everything that is wrong with a file, one message a line, each "file:line:column: field: ...".

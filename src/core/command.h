@@ -41,7 +41,7 @@ struct Ray {
 };
 
 using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity, SetRate, Repartition,
-                         ChangeScene, Ray>;
+                         ChangeScene, Ray, Save, Load>;
 
 struct Command {
   std::uint64_t request = 0;  ///< random; copies carry the same
@@ -53,7 +53,7 @@ enum class Outcome : std::uint8_t {
   kAccepted,  ///< takes effect at `at_step`
   kDone,      ///< has taken effect
   kRefused,   ///< text says why
-  kSeen,      ///< answer to a ray, from one region
+  kSeen,      ///< answer of one region: to a ray, or that its part of the world is saved
 };
 
 struct CommandReply {

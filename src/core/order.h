@@ -84,8 +84,18 @@ struct Redo {
   std::vector<TogetherPair> pairs;  ///< all that hold from then on
 };
 
+/// In the order's state every node takes its part of the world, and writes it into a file: this one, with the number of
+/// its region (src/cut/cut_file.h).
+struct Save {
+  std::string file;
+};
+/// Once the order's state has been computed, the run goes on from a saved world, which every node finds in its folder.
+struct Load {
+  std::string file;
+};
+
 using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse,
-                            SetVelocity, Repartition, ChangeScene, Redo>;
+                            SetVelocity, Repartition, ChangeScene, Redo, Save, Load>;
 
 struct Order {
   std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders
@@ -103,10 +113,11 @@ std::optional<BodyId> body_of(const std::variant<Kinds...>& what) {
   return {};
 }
 
-/// All nodes stop for it and begin anew, with another map or another scene.
+/// All nodes stop for it and begin anew, with another map, another scene or a saved world.
 template <class... Kinds>
 bool changes_the_run(const std::variant<Kinds...>& what) {
-  return std::holds_alternative<Repartition>(what) || std::holds_alternative<ChangeScene>(what);
+  return std::holds_alternative<Repartition>(what) || std::holds_alternative<ChangeScene>(what) ||
+         std::holds_alternative<Load>(what);
 }
 
 }  // namespace aurasim::core

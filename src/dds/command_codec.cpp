@@ -74,6 +74,8 @@ struct Put {
     for (const core::Rectangle& r : a.boxes) out.boxes().insert(out.boxes().end(), {r.x0, r.y0, r.x1, r.y1});
   }
   void operator()(const core::ChangeScene& a) const { out.name(a.name); }
+  void operator()(const core::Save& a) const { out.name(a.file); }
+  void operator()(const core::Load& a) const { out.name(a.file); }
   void operator()(const core::Ray& a) const {
     out.p(numbers(a.from_W));
     out.v(numbers(a.to_W));
@@ -119,6 +121,10 @@ class Get {
         return core::ChangeScene{in_.name().to_string()};
       case 9:
         return ray();
+      case 10:
+        return core::Save{in_.name().to_string()};
+      case 11:
+        return core::Load{in_.name().to_string()};
       default:
         return {};
     }

@@ -91,6 +91,8 @@ struct ToRow {
     for (const core::Rectangle& r : a.boxes) row.numbers.insert(row.numbers.end(), {r.x0, r.y0, r.x1, r.y1});
   }
   void operator()(const core::ChangeScene& a) const { row.text = a.name; }
+  void operator()(const core::Save& a) const { row.text = a.file; }
+  void operator()(const core::Load& a) const { row.text = a.file; }
   void operator()(const core::Redo& a) const {
     row.numbers.push_back(static_cast<double>(a.cut));
     for (const core::TogetherPair& pair : a.pairs) {
@@ -195,6 +197,10 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
       return count == 0 && !row.text.empty() ? Maybe(core::ChangeScene{row.text}) : Maybe();
     case 10:
       return redo_of(n);
+    case 11:
+      return count == 0 && !row.text.empty() ? Maybe(core::Save{row.text}) : Maybe();
+    case 12:
+      return count == 0 && !row.text.empty() ? Maybe(core::Load{row.text}) : Maybe();
     default:
       return {};
   }

@@ -11,6 +11,7 @@
 //    8 repartition       -; -; x0 y0 x1 y1 of each region
 //    9 change scene      -; -; - ; text: its name
 //   10 redo              -; -; cut, and a, b, until of each pair
+//   11 save, 12 load     -; -; - ; text: the file
 #pragma once
 
 #include <optional>

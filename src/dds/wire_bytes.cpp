@@ -24,7 +24,11 @@ bool deserialize(Type& type, std::span<const std::uint8_t> bytes, Sample& sample
   SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
   std::copy(bytes.begin(), bytes.end(), payload.data);
   payload.length = static_cast<std::uint32_t>(bytes.size());
-  return type.deserialize(&payload, &sample);
+  try {
+    return type.deserialize(&payload, &sample);
+  } catch (const std::exception&) {  // e.g. a boolean that is neither 0 nor 1
+    return false;
+  }
 }
 
 }  // namespace

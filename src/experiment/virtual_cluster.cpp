@@ -37,7 +37,8 @@ node::NodeSetup node_setup(const ClusterRules& rules) {
   return setup;
 }
 
-VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules)
+VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules,
+                               const core::WorldCut* world, node::Recorded recorded)
     : rules_(rules),
       map_(map),
       network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
@@ -52,7 +53,13 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
     member.node = std::make_unique<node::Node>(setup, scene, map_, mail);
     member.phase_s = r < rules.phase_s.size() ? rules.phase_s[r] : 0;
   }
-  for (Member& member : members_) member.node->start();
+  for (Member& member : members_) {
+    if (world != nullptr) {
+      member.node->start(*world, recorded);
+    } else {
+      member.node->start();
+    }
+  }
 }
 
 VirtualCluster::~VirtualCluster() = default;

@@ -41,8 +41,9 @@ node::NodeSetup node_setup(const ClusterRules& rules);
 
 class VirtualCluster {
  public:
-  /// The scene outlives the cluster.
-  VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules);
+  /// The scene outlives the cluster. `world`: saved; the run goes on from it.
+  VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules,
+                 const core::WorldCut* world = nullptr, node::Recorded recorded = node::Recorded::kNo);
   ~VirtualCluster();
 
   /// Goes on to the next step that a node computes, and says which and what it did.

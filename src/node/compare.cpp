@@ -42,13 +42,18 @@ Poses read_poses(const std::filesystem::path& folder) {
 }
 
 void compare_hashes(const Hashes& a, const Hashes& b, Comparison& result) {
+  result.first_step = std::max(a.begin()->first, b.begin()->first);
+  std::uint64_t steps = 0;
   for (const auto& [step, hash] : a) {
+    steps += step >= result.first_step;
     const auto other = b.find(step);
     if (other == b.end()) continue;
     ++result.steps_compared;
     if (other->second != hash && !result.first_difference_step) result.first_difference_step = step;
   }
-  const bool same_steps = a.size() == b.size() && result.steps_compared == a.size();
+  const bool same_end = a.rbegin()->first == b.rbegin()->first;
+  const auto after = static_cast<std::uint64_t>(std::distance(b.lower_bound(result.first_step), b.end()));
+  const bool same_steps = same_end && result.steps_compared == steps && steps == after && steps > 0;
   result.hashes_equal = same_steps && !result.first_difference_step;
 }
 

@@ -28,7 +28,8 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
       transport_(&transport),
       clearance_(physics::make_clearance_query(scene_)),
       world_(scene_, setup.physics),
-      watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_) {
+      watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_),
+      first_own_shape_(scene.shapes.size()) {
   protocol_.emplace(setup.protocol, map, *clearance_);
 }
 
@@ -57,7 +58,26 @@ void Node::host_initial_bodies() {
   world_.add(ours);
 }
 
-/// Those of them that this node hosts; pairs that a redo brings together come to one host at once.
+/// Who hosts which of all bodies of the world; pairs that a redo brings together come to one host at once. Notes who
+/// has to listen to us.
+std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
+  for (const core::TogetherPair& pair : setup_.protocol.together) {
+    const auto a = std::ranges::lower_bound(all.bodies, pair.a, {}, &core::BodyState::id);
+    const auto b = std::ranges::lower_bound(all.bodies, pair.b, {}, &core::BodyState::id);
+    if (b == all.bodies.end() || a->id != pair.a || b->id != pair.b) continue;
+    all.joints.push_back(
+        {static_cast<std::uint32_t>(a - all.bodies.begin()), static_cast<std::uint32_t>(b - all.bodies.begin())});
+  }
+  std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
+  setup_.protocol.related.clear();
+  for (const core::RegionId related :
+       core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts)) {
+    setup_.protocol.related.push_back({related, setup_.protocol.start, {}});
+  }
+  return hosts;
+}
+
+/// Those of state 0 that this node hosts.
 std::vector<core::BodyRecord> Node::initial_bodies() {
   std::vector<core::BodyRecord> records;
   for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
@@ -72,19 +92,7 @@ std::vector<core::BodyRecord> Node::initial_bodies() {
   core::Snapshot all;
   for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
   all.joints = core::joint_pairs(scene_, all.bodies);
-  for (const core::TogetherPair& pair : setup_.protocol.together) {
-    const auto a = std::ranges::lower_bound(records, pair.a, {}, &core::BodyRecord::id);
-    const auto b = std::ranges::lower_bound(records, pair.b, {}, &core::BodyRecord::id);
-    if (b == records.end() || a->id != pair.a || b->id != pair.b) continue;
-    all.joints.push_back(
-        {static_cast<std::uint32_t>(a - records.begin()), static_cast<std::uint32_t>(b - records.begin())});
-  }
-  const std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
-  setup_.protocol.related.clear();
-  for (const core::RegionId related :
-       core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts)) {
-    setup_.protocol.related.push_back({related, setup_.protocol.start, {}});
-  }
+  const std::vector<core::RegionId> hosts = hosts_at_start(std::move(all));
   std::vector<core::BodyRecord> ours;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (hosts[i] != region()) continue;
@@ -123,9 +131,12 @@ const core::Order& Node::order(const core::Action& action, std::uint64_t request
 /// What an order changes at once; the rest waits for its state.
 void Node::heed(const core::Order& order) {
   report_.orders.push_back(order);
+  remember(order);
   extend(scene_, order.action, meshes_);
   if (std::holds_alternative<core::Redo>(order.action)) {
     redo_ = order;
+  } else if (std::holds_alternative<core::Save>(order.action)) {
+    save(order.at_step);
   } else if (std::holds_alternative<core::Spawn>(order.action)) {
     to_spawn_.push_back(order);
     for (Cut& cut : cuts_) cut.to_spawn.push_back(order);
@@ -226,7 +237,9 @@ const StepReport& Node::step() {
     hold(report_);
     return report_;
   }
+  note_arrived();
   compute_step();
+  save_if_due();
   if (setup_.protocol.aura.redo) {
     if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
     if (current_step() == last_) last_cut_ = cut();
@@ -266,6 +279,9 @@ void Node::apply(const core::Changes& changes) {
       if (adoption.stamp <= cut.step) cut.joining.push_back(adoption);
     }
     if (last_cut_ && adoption.stamp <= last_cut_->step) last_cut_->joining.push_back(adoption);
+    for (Saving& saving : saving_) {
+      if (saving.cut && adoption.stamp <= saving.step) saving.cut->joining.push_back(adoption);
+    }
     adopt(adoption, nth++);
   }
 }

@@ -16,6 +16,7 @@
 #include "core/protocol.h"
 #include "core/region_map.h"
 #include "core/scene.h"
+#include "core/world_cut.h"
 #include "node/collision_watch.h"
 #include "node/phase_clock.h"
 #include "physics/region_world.h"
@@ -55,6 +56,9 @@ struct HandOffRow {
 
   bool is_pull() const { return reason == core::HandOffReason::kAuraCollision; }
 };
+
+/// Has the state that a run goes on from been recorded, with all that joined it late?
+enum class Recorded : std::uint8_t { kNo, kYes };
 
 /// A body's first host, and the state in which it exists first.
 struct Birth {
@@ -119,6 +123,9 @@ class Node {
 
   /// Takes the bodies of state 0 that are this region's and publishes them. Once, before anything else.
   const StepReport& start();
+  /// Instead: goes on from a saved world, of which every node of the run is given the whole. Throws
+  /// std::invalid_argument if it is none of this scene.
+  const StepReport& start(core::WorldCut world, Recorded recorded = Recorded::kNo);
 
   /// Takes in the mail. True when the next state may be computed.
   bool ready();
@@ -141,6 +148,14 @@ class Node {
   void give_up_redo() { protocol_->give_up_alarms(); }
   /// How often the run has gone back.
   std::uint32_t redos() const { return setup_.protocol.redo; }
+
+  /// This region's part of the world in state `step` is wanted, which has not been computed yet.
+  void save(core::Step step);
+  /// The parts that are complete: nothing can come to question them any more, and all that was under way is here.
+  std::vector<core::WorldCut> take_saved();
+  /// What this node knows by now that a world saved in an earlier state does not: a part of it without bodies, with all
+  /// orders.
+  core::WorldCut orders_now(const core::WorldCut& earlier) const;
 
   /// Orders the world to do something, as soon as all nodes can have received it, or in state `at_step` if that is
   /// later. Only on the one node that takes orders.
@@ -178,8 +193,17 @@ class Node {
   void clear_report();
   void host_initial_bodies();
   std::vector<core::BodyRecord> initial_bodies();
+  std::vector<core::RegionId> hosts_at_start(core::Snapshot all);
   void announce_births(core::Step state);
   void heed(const core::Order& order);
+  void heed_saved();
+  void remember(const core::Order& order);
+  core::Step births_known_at_start() const;
+  core::ClusterState our_part();
+  void note_arrived();
+  void save_if_due();
+  core::WorldCut part_of_world(Cut cut) const;
+  void add_orders(core::WorldCut& part, core::Step after) const;
   void announce_spawns(core::Step birth);
   void apply(const core::Changes& changes);
   void finish_state();
@@ -224,6 +248,17 @@ class Node {
   std::deque<Cut> cuts_;                         ///< ascending
   std::optional<core::Step> last_;               ///< named by keep()
   std::optional<Cut> last_cut_;                  ///< of that state
+  struct Saving {
+    core::Step step = 0;
+    std::optional<Cut> cut;
+    bool is_whole = false;  ///< what was under way has arrived
+  };
+  std::vector<Saving> saving_;
+  std::vector<core::Order> orders_;           ///< in sequence: for whoever goes on from a saved world
+  std::size_t orders_kept_ = 1024;            ///< those among them that may not be forgotten, at most
+  std::size_t first_own_shape_ = 0;           ///< of the scene, beyond those of its file
+  std::optional<core::WorldCut> begun_with_;  ///< as long as a redo may come back to it
+  std::vector<core::BodyRecord> born_soon_;   ///< announced neither there nor later
   bool settled_ = false;
   std::optional<core::Order> redo_;  ///< not yet due
   bool redo_is_ordered_ = false;     ///< by us

@@ -47,6 +47,7 @@ void Node::keep(core::Step last) {
 void Node::forget_cuts() {
   const core::Step oldest = cut_before(protocol_->confirmed() + 1, kOlderCuts).step;
   while (cuts_.front().step < oldest) cuts_.pop_front();
+  if (begun_with_ && cuts_.front().step > begun_with_->step) begun_with_.reset();
   if (protocol_->alarms_given_up() && cuts_.size() > kMostCuts) cuts_.pop_front();  // an alarm may stand for ever
 }
 
@@ -106,23 +107,28 @@ void Node::put_back() {
   const auto raise = [&](core::ClusterState& cluster) {
     for (core::BodyRecord& body : cluster.bodies) body.epoch += more;
   };
-  if (cut.step == 0) {
+  const bool is_the_beginning = cut.step == (begun_with_ ? begun_with_->step : 0);
+  if (is_the_beginning && begun_with_) {
+    cut.bodies = our_part();
+  } else if (is_the_beginning) {
     cut.bodies.bodies = initial_bodies();  // there is no time to bring a pair together later
-  } else {
-    raise(cut.bodies);
   }
+  if (!is_the_beginning) raise(cut.bodies);
   for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
 
   core::Continuation next = protocol_->continuation(cut.step, cut.claimer);
   setup_.protocol.redo = next.alarms.redo();
   setup_.protocol.start = cut.step;
   std::vector<core::Listened> related = next.related;
-  if (cut.step == 0) related.insert(related.end(), setup_.protocol.related.begin(), setup_.protocol.related.end());
+  if (is_the_beginning) related.insert(related.end(), setup_.protocol.related.begin(), setup_.protocol.related.end());
   setup_.protocol.related = std::move(related);
   protocol_.emplace(setup_.protocol, *map_, *clearance_, std::move(next));
   report_.put_back_from = from;
   report_.put_back_for = redo.pairs;
   last_cut_.reset();
+  for (Saving& saving : saving_) {
+    if (saving.step > cut.step) saving = {saving.step, {}, false};
+  }
   go_back_to(cut);
   const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
   finish_state();

@@ -5,8 +5,8 @@
 namespace aurasim::overseer {
 
 const char* name_of(const Command& command) {
-  static constexpr std::array kNames = {"pause", "resume", "reset",  "step",    "rate",     "scene", "regions",
-                                        "spawn", "static", "remove", "impulse", "velocity", "ray"};
+  static constexpr std::array kNames = {"pause",  "resume", "reset",   "step",     "rate", "scene", "regions", "spawn",
+                                        "static", "remove", "impulse", "velocity", "ray",  "save",  "load"};
   static_assert(std::variant_size_v<Command> == kNames.size());
   return kNames.at(command.index());
 }

@@ -30,6 +30,13 @@ struct SetRate {
 struct LoadScene {
   std::string name;
 };
+/// The nodes keep the world under this name, or go back to the one of this name.
+struct SaveWorld {
+  std::string name;
+};
+struct LoadWorld {
+  std::string name;
+};
 /// A new region map, one rectangle per node. That they tile the plane is for the sink to check.
 struct SetRegions {
   std::vector<core::Rectangle> boxes;
@@ -80,7 +87,7 @@ struct CastRay {
 };
 
 using Command = std::variant<Pause, Resume, Reset, StepOn, SetRate, LoadScene, SetRegions, Spawn, PlaceStatic, Remove,
-                             Impulse, SetVelocity, CastRay>;
+                             Impulse, SetVelocity, CastRay, SaveWorld, LoadWorld>;
 
 /// The word for it on the wire: "pause", "spawn", ...
 const char* name_of(const Command& command);

@@ -31,12 +31,16 @@ SetRate read_rate(const Json& json) {
   return {value};
 }
 
-LoadScene read_scene(const Json& json) {
+std::string file_name_in(const Json& json, const char* of_what) {
   const std::string name = text_of(field(json, "name"), "name", 100);
   if (name.empty() || name.find_first_of("/\\") != std::string::npos || name.front() == '.')
-    throw BadField("name is not the name of a scene");
-  return {name};
+    throw BadField(fmt::format("name is not the name of a {}", of_what));
+  return name;
 }
+
+LoadScene read_scene(const Json& json) { return {file_name_in(json, "scene")}; }
+SaveWorld read_save(const Json& json) { return {file_name_in(json, "saved world")}; }
+LoadWorld read_load(const Json& json) { return {file_name_in(json, "saved world")}; }
 
 core::Rectangle read_box(const Json& json) {
   if (!json.is_array() || json.size() != 4) throw BadField("a box is not [x0, y0, x1, y1]");
@@ -162,6 +166,8 @@ const std::vector<Reading>& readings() {
       {"impulse", {"body", "J", "p"}, as_command<read_impulse>},
       {"velocity", {"body", "v", "w"}, as_command<read_velocity>},
       {"ray", {"from", "to"}, as_command<read_ray>},
+      {"save", {"name"}, as_command<read_save>},
+      {"load", {"name"}, as_command<read_load>},
   };
   return kReadings;
 }

@@ -47,6 +47,8 @@ std::vector<core::Ask> one_of_each() {
           core::SetRate{0.5},
           core::Repartition{{{-10, -10, 0, 10}, {0, -10, 10, 10}}},
           core::ChangeScene{"tower"},
+          core::Save{"world.cut"},
+          core::Load{"world.cut"},
           core::Ray{Vec3(0, 0, 10), Vec3(0, 0, -10), {core::RegionId{0}, core::RegionId{2}}}};
 }
 

@@ -53,6 +53,8 @@ inline std::vector<core::Order> one_order_of_each_kind() {
       core::SetVelocity{core::BodyId{8}, v, -v},
       core::Repartition{{{-1, -2, 0, 3}, {0, -2, 4, 3}}},
       core::ChangeScene{"tower"},
+      core::Save{"world.cut"},
+      core::Load{"world.cut"},
       core::Redo{30, {{core::BodyId{3}, core::BodyId{1'000'000'007}, 47}}}};
   std::vector<core::Order> orders;
   for (const core::Action& action : actions) {

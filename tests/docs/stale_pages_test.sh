@@ -51,11 +51,11 @@ commit_to README.md
 expect "WhatIsNotMeasuredMakesNoPageStale"
 
 commit_to src/cli/node_process.cpp
-expect "AFileThatOnePageMeasuresMakesThatPageStale" docs/same_bits.md
+expect "AFileThatOnePageMeasuresMakesThatPageStale" docs/same_bits.md docs/saved_worlds.md
 
 commit_to src/core/aura.cpp
 of_simulation=()
-for page in "${!measures[@]}"; do [[ ${measures[$page]} != *src/core* ]] || of_simulation+=("$page"); done
+for page in "${!measures[@]}"; do [[ ! " ${measures[$page]} " =~ \ src/core\  ]] || of_simulation+=("$page"); done
 ((${#of_simulation[@]} >= 5))
 expect "TheProtocolMakesThePagesOfTheSimulationStale" "${of_simulation[@]}"
 

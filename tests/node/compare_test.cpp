@@ -49,6 +49,21 @@ TEST_F(CompareReports, TheFirstStepThatDiffersIsNamed) {
   EXPECT_EQ(result.first_difference_step, 1);
 }
 
+TEST_F(CompareReports, ARunThatGoesOnFromASavedWorldIsComparedFromThere) {
+  hashes("a", {{0, Hex64{7}}, {1, Hex64{8}}, {2, Hex64{9}}});
+  hashes("b", {{1, Hex64{8}}, {2, Hex64{9}}});
+  EXPECT_TRUE(compare().hashes_equal);
+  EXPECT_EQ(compare().first_step, 1);
+  EXPECT_EQ(compare().steps_compared, 2u);
+  hashes("b", {{2, Hex64{9}}, {3, Hex64{9}}});
+  EXPECT_FALSE(compare().hashes_equal);
+  hashes("b", {{1, Hex64{8}}, {2, Hex64{10}}});
+  EXPECT_FALSE(compare().hashes_equal);
+  EXPECT_EQ(compare().first_difference_step, 2);
+  hashes("b", {{3, Hex64{9}}});
+  EXPECT_FALSE(compare().hashes_equal);
+}
+
 TEST_F(CompareReports, ARunThatIsShorterIsNotTheSame) {
   hashes("a", {{0, Hex64{7}}, {1, Hex64{8}}});
   hashes("b", {{0, Hex64{7}}});

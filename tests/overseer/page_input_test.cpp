@@ -41,6 +41,8 @@ TEST(PageInput, EveryKindOfCommandIsRead) {
   EXPECT_EQ(sound<StepOn>(R"({"kind":"step"})").count, 1);
   EXPECT_EQ(sound<SetRate>(R"({"kind":"rate","value":0.5})").value, 0.5);
   EXPECT_EQ(sound<LoadScene>(R"({"kind":"scene","name":"tower"})").name, "tower");
+  EXPECT_EQ(sound<SaveWorld>(R"({"kind":"save","name":"a.cut"})").name, "a.cut");
+  EXPECT_EQ(sound<LoadWorld>(R"({"kind":"load","name":"a.cut"})").name, "a.cut");
   const auto regions = sound<SetRegions>(R"({"kind":"regions","boxes":[[null,null,0,null],[0,null,null,null]]})");
   EXPECT_EQ(regions.boxes[0].x1, 0);
   EXPECT_EQ(regions.boxes[1].y0, -std::numeric_limits<double>::infinity());
@@ -72,6 +74,8 @@ TEST(PageInput, WhatIsWrongIsSaid) {
   EXPECT_THAT(refused(R"({"kind":"step","count":18446744073709551615})"), HasSubstr("count"));
   EXPECT_THAT(refused(R"({"kind":"rate","value":0})"), HasSubstr("value"));
   EXPECT_THAT(refused(R"({"kind":"scene","name":"../x"})"), HasSubstr("name"));
+  EXPECT_THAT(refused(R"({"kind":"save","name":"../x"})"), HasSubstr("name"));
+  EXPECT_THAT(refused(R"({"kind":"load"})"), HasSubstr("name"));
   EXPECT_THAT(refused(R"({"kind":"regions","boxes":[[1,0,0,1]]})"), HasSubstr("inside out"));
   EXPECT_THAT(refused(R"({"kind":"regions","boxes":[]})"), HasSubstr("boxes"));
   EXPECT_THAT(refused(R"({"kind":"spawn","p":[0,0,0]})"), HasSubstr("either prototype or shape"));

@@ -115,14 +115,25 @@ Interference read_interference(const std::filesystem::path& file, const core::Sc
 }
 
 void ImpatientClient::speak(node::Node& lead) {
-  for (; next_ < requests_.size(); ++next_) {
-    Request& request = requests_[next_];
-    if (request.at_step > lead.protocol().earliest_effect()) return;
-    for (std::size_t i = 0; i < request.actions.size(); ++i) {
-      const bool is_last = i + 1 == request.actions.size();
-      const core::Order& order = lead.order(request.actions[i], next_ + 1, is_last ? request.at_step : 0);
-      if (is_last) request.at_step = order.at_step;
-    }
+  while (next_ < requests_.size() && requests_[next_].at_step <= lead.protocol().earliest_effect()) ask(lead);
+}
+
+void ImpatientClient::speak_after(const core::WorldCut& world, node::Node& lead) {
+  const auto is_known = [&](std::size_t i) {
+    return requests_[i].at_step <= world.step ||
+           std::ranges::any_of(world.orders, [&](const core::Order& order) { return order.request == i + 1; });
+  };
+  while (next_ < requests_.size() && is_known(next_)) ++next_;
+  while (next_ < requests_.size()) ask(lead);
+}
+
+/// The next one, which has its place's number.
+void ImpatientClient::ask(node::Node& lead) {
+  Request& request = requests_[next_++];
+  for (std::size_t i = 0; i < request.actions.size(); ++i) {
+    const bool is_last = i + 1 == request.actions.size();
+    const core::Order& order = lead.order(request.actions[i], next_, is_last ? request.at_step : 0);
+    if (is_last) request.at_step = order.at_step;
   }
 }
 

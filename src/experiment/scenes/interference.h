@@ -15,6 +15,7 @@
 
 #include "core/order.h"
 #include "core/scene.h"
+#include "core/world_cut.h"
 
 namespace aurasim::node {
 class Node;
@@ -45,8 +46,12 @@ class ImpatientClient {
 
   /// Before each step of the lead.
   void speak(node::Node& lead);
+  /// Instead, once, in a run that goes on from a saved world: all that the world does not know of yet.
+  void speak_after(const core::WorldCut& world, node::Node& lead);
 
  private:
+  void ask(node::Node& lead);
+
   std::vector<Request>& requests_;
   std::size_t next_ = 0;
 };

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiment/conditions.h"
 #include "experiment/on_threads.h"
@@ -82,12 +83,14 @@ SeedRow row_of(std::uint64_t seed, const WorldOutcome& o) {
 }
 
 std::string shown_rules(const ScenesPlan& plan) {
-  const nlohmann::json rules = {{"experiment", "scenes"},
-                                {"precision", physics::RegionWorld::precision()},
-                                {"steps", plan.rules.steps},
-                                {"sync", name_of(plan.rules.sync)},
-                                {"network", plan.rules.bad_network ? "bad" : "good"},
-                                {"overrides", plan.rules.overrides}};
+  nlohmann::json rules = {{"experiment", "scenes"},
+                          {"precision", physics::RegionWorld::precision()},
+                          {"steps", plan.rules.steps},
+                          {"sync", name_of(plan.rules.sync)},
+                          {"network", plan.rules.bad_network ? "bad" : "good"},
+                          {"overrides", plan.rules.overrides}};
+  if (plan.rules.save_at) rules.update({{"save_at", *plan.rules.save_at}, {"load_on", plan.rules.load_on}});
+  if (plan.rules.deaths > 0) rules["deaths"] = plan.rules.deaths;
   return rules.dump(1) + "\n";
 }
 
@@ -164,6 +167,10 @@ void write_readme(const Shrunk& shrunk, const TrialRules& rules, std::uint64_t s
   std::string command =
       fmt::format("aurasim experiment scenes --case . --network-seed {} --steps {} --sync {} --network {}", seed,
                   shrunk.steps, name_of(rules.sync), rules.bad_network ? "bad" : "good");
+  if (rules.save_at) {
+    command += fmt::format(" --save-at {} --load-on {}", *rules.save_at, fmt::join(rules.load_on, ","));
+  }
+  if (rules.deaths > 0) command += fmt::format(" --deaths {}", rules.deaths);
   for (const std::string& change : rules.overrides) command += " --set " + change;
   std::ofstream(directory / "README.md")
       << fmt::format("Seed {}, shrunk to {} bodies in {} trials: {}.\n\n    {}\n\n", seed,

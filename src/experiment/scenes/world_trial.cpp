@@ -1,28 +1,24 @@
 #include "experiment/scenes/world_trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <mutex>
-#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include "core/violation.h"
+#include "core/world_cut.h"
 #include "experiment/conditions.h"
+#include "experiment/scenes/deaths.h"
 #include "experiment/scenes/interference.h"
+#include "experiment/scenes/play.h"
 #include "experiment/scenes/world_files.h"
 #include "physics/region_world.h"
 
 namespace aurasim::experiment {
 namespace {
-
-double thread_time_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Frames and messages together take less than K steps, so that nobody waits for long; on a bad network some do.
 void set_network(ClusterRules& rules, bool bad, std::uint64_t seed) {
@@ -39,62 +35,6 @@ void set_network(ClusterRules& rules, bool bad, std::uint64_t seed) {
   rules.network.keep_order = seed % 2 == 0;
 }
 
-/// One run of a world.
-struct Played {
-  std::vector<std::uint64_t> hash;  ///< by state
-  std::uint64_t hand_offs = 0;
-  std::uint64_t broken = 0;
-  std::string first_fault;
-  std::size_t largest_cluster = 0;
-  std::size_t bodies = 0;
-  double cpu_s = 0;
-  std::uint64_t redos = 0;
-  std::uint64_t again = 0;  ///< states computed once more
-};
-
-void note_report(const node::StepReport& report, Played& played) {
-  for (const node::HashPart& part : report.hash) {
-    if (part.step < static_cast<core::Step>(played.hash.size())) {
-      played.hash[static_cast<std::size_t>(part.step)] += part.sum;
-    }
-  }
-  played.hand_offs += report.departures.size();
-  played.largest_cluster = std::max(played.largest_cluster, report.largest_cluster);
-  for (const physics::Removal& removal : report.removals) {
-    if (removal.fault.empty()) continue;
-    if (played.broken++ > 0) continue;
-    played.first_fault =
-        fmt::format("body {} in state {}: {}", core::value_of(removal.body), removal.step, removal.fault);
-  }
-}
-
-/// State 0, and what comes after it. Nothing when `stop` became true.
-std::optional<Played> play(VirtualCluster& cluster, std::vector<Request>& requests, core::Step steps, int lookahead,
-                           const std::atomic<bool>& stop) {
-  const core::Step more = 4 * lookahead + 2;  // by then, whoever was under way has arrived
-  Played played;
-  played.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
-  const double begin_s = thread_time_s();
-  const auto note_reports = [&](std::span<const node::StepReport> reports) {
-    for (const node::StepReport& report : reports) note_report(report, played);
-  };
-  for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).confirmed());
-  ImpatientClient client(requests);
-  while (cluster.slowest() < steps + more || cluster.confirmed() < steps) {
-    if (stop) return std::nullopt;
-    client.speak(cluster.node(0));
-    const VirtualCluster::Event event = cluster.next();
-    note_reports(cluster.node(core::value_of(event.region)).confirmed());
-    if (!event.report->put_back_from || event.region != core::RegionId{0}) continue;
-    ++played.redos;
-    played.again += static_cast<std::uint64_t>(*event.report->put_back_from - event.report->step);
-  }
-  for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).finish(steps + more));
-  for (std::size_t r = 0; r < cluster.size(); ++r) played.bodies += cluster.node(r).report().bodies;
-  played.cpu_s = thread_time_s() - begin_s;
-  return played;
-}
-
 void count_faults(const VirtualCluster& cluster, WorldOutcome& outcome) {
   for (std::size_t r = 0; r < cluster.size(); ++r) {
     const node::CollisionWatch& watch = cluster.node(r).collision_watch();
@@ -109,6 +49,34 @@ void count_faults(const VirtualCluster& cluster, WorldOutcome& outcome) {
   outcome.span = cluster.violations(core::ViolationKind::kSpan);
 }
 
+/// As near to a square as it gets, over the same ground.
+core::RegionMap map_of(int nodes, const core::RegionMap& like) {
+  const core::Rectangle first = like.region(core::RegionId{0});
+  const double cell_m = std::clamp(std::min(first.x1 - first.x0, first.y1 - first.y0), 4.0, 30.0);
+  auto rows = static_cast<std::size_t>(std::sqrt(nodes));
+  while (static_cast<std::size_t>(nodes) % rows != 0) --rows;
+  return core::RegionMap::grid(rows, static_cast<std::size_t>(nodes) / rows, cell_m, cell_m);
+}
+
+/// A saved world goes on with the bits that it would have had. False when `stop` became true.
+bool compare_loaded(const config::Launch& launch, const ClusterRules& cluster_rules, const core::WorldCut& world,
+                    const std::vector<std::uint64_t>& wanted, const std::vector<Request>& all_requests,
+                    const TrialRules& rules, const std::atomic<bool>& stop, WorldOutcome& outcome) {
+  for (const int nodes : rules.load_on) {
+    std::vector<Request> requests = all_requests;
+    VirtualCluster cluster(launch.scene, map_of(nodes, launch.regions), cluster_rules, &world);
+    const auto loaded = play(cluster, requests, rules.steps, launch.lookahead(), stop, nullptr, &world);
+    if (!loaded) return false;
+    const auto from = static_cast<std::ptrdiff_t>(world.step);
+    const auto first = std::mismatch(wanted.begin() + from, wanted.end(), loaded->hash.begin() + from).first;
+    if (first == wanted.end()) continue;
+    outcome.error = fmt::format("saved in state {} and loaded on {} nodes, state {} differs", world.step, nodes,
+                                first - wanted.begin());
+    return true;
+  }
+  return true;
+}
+
 /// False when `stop` became true.
 bool compare_runs(const config::Launch& launch, Interference interference, const TrialRules& rules, std::uint64_t seed,
                   const std::atomic<bool>& stop, WorldOutcome& outcome) {
@@ -117,15 +85,29 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   cluster_rules.bandwidth_B_s = std::numeric_limits<double>::infinity();  // coded as for DDS, but not held up
   cluster_rules.shuffle_ranks_steps = interference.shuffle_ranks_steps;
   set_network(cluster_rules, rules.bad_network, seed);
-  VirtualCluster regions(launch.scene, launch.regions, cluster_rules);
-  const auto many = play(regions, interference.requests, rules.steps, launch.lookahead(), stop);
+  const int lookahead = launch.lookahead();
+  std::optional<VirtualCluster> regions;
+  std::optional<Saver> saver;
+  if (rules.save_at) saver.emplace(*rules.save_at);
+  std::optional<Played> many;
+  if (rules.deaths > 0) {
+    const Disasters disasters{rules.deaths, rules.steps, seed};
+    many = play_with_deaths(disasters, launch, cluster_rules, interference.requests, stop, regions);
+  } else {
+    regions.emplace(launch.scene, launch.regions, cluster_rules);
+    many = play(*regions, interference.requests, rules.steps, lookahead, stop, saver ? &*saver : nullptr);
+  }
   if (!many) return false;
-  count_faults(regions, outcome);
+  count_faults(*regions, outcome);
   outcome.hand_offs = many->hand_offs;
   outcome.largest_cluster = many->largest_cluster;
   outcome.regions_s = many->cpu_s;
   outcome.redos = many->redos;
   outcome.computed_again = many->again;
+  if (saver && !compare_loaded(launch, cluster_rules, saver->take(regions->size()), many->hash, interference.requests,
+                               rules, stop, outcome)) {
+    return false;
+  }
   cluster_rules.aura.redo = false;
   cluster_rules.bandwidth_B_s.reset();
   VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), cluster_rules);

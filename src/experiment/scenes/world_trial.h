@@ -20,6 +20,9 @@ struct TrialRules {
   core::SyncMode sync = core::SyncMode::kDeterministic;
   bool bad_network = false;  ///< loss, delay, jitter, duplicates; every other seed has messages overtake each other
   std::vector<std::string> overrides;  ///< as --set
+  std::optional<core::Step> save_at;   ///< the world is saved in this state, and goes on from there on
+  std::vector<int> load_on;            ///< so many nodes each time, which have to have the same bits, too
+  int deaths = 0;                      ///< of nodes, one after the other, each somewhere in the run
   SetupOf setup_of;
 };
 

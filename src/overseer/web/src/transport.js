@@ -19,6 +19,8 @@ export class Transport {
     this.mode = null;
     this.running = false;
     this.rate = 1;
+    /** Names of the worlds that this page has had saved, the newest last. */
+    this.kept = [];
     this.setMode("live");
   }
 
@@ -36,11 +38,14 @@ export class Transport {
     this.slider = h("input", { type: "range", min: 0, max: 1, step: 0.01, value: sliderOf(1), "aria-label": "Speed",
       oninput: () => this.#showRate(rateOf(Number(this.slider.value))),
       onchange: () => this.setRate(rateOf(Number(this.slider.value))) });
+    this.backButton = iconButton("back", "Back to the moment kept last (n)", () => this.goBack(), { disabled: this.kept.length === 0 });
     this.rateText = h("button.rate", { type: "button", title: "Back to real time", onclick: () => this.setRate(1) });
     this.element.replaceChildren(
       this.play,
       iconButton("step", "One step (.)", () => this.step(1)),
       iconButton("reset", "Reset (x)", () => this.out.command({ kind: "reset" })),
+      iconButton("keep", "Keep this moment (m)", () => this.keep()),
+      this.backButton,
       h("span.rule"), h("span.label", {}, "Speed"), this.slider, this.rateText);
     this.#showRate(this.rate);
   }
@@ -80,6 +85,23 @@ export class Transport {
     if (this.slider) this.slider.value = String(sliderOf(this.rate));
     this.#showRate(this.rate);
     this.out.command({ kind: "rate", value: this.rate }, { what: `speed ${this.rate}×` });
+  }
+
+  /** The nodes save the world. */
+  async keep() {
+    if (this.mode !== "live") return;
+    const name = `page-${Date.now().toString(36)}-${Math.random().toString(36).slice(2, 6)}.cut`;
+    const reply = await this.out.command({ kind: "save", name }, { what: "keep" });
+    if (!reply.ok) return;
+    this.kept.push(name);
+    this.backButton.disabled = false;
+  }
+
+  /** Once, to the newest; again from there, to the one before it. */
+  async goBack() {
+    if (this.mode !== "live" || this.kept.length === 0) return;
+    const reply = await this.out.command({ kind: "load", name: this.kept.at(-1) }, { what: "back" });
+    if (reply.ok && this.kept.length > 1) this.kept.pop();
   }
 
   faster(factor) {

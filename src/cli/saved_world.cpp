@@ -1,0 +1,114 @@
+#include "cli/saved_world.h"
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/version.h"
+#include "physics/region_world.h"
+
+namespace aurasim::cli {
+namespace {
+
+constexpr std::size_t kRegularSaves = 3;
+
+}  // namespace
+
+cut::Identity identity_of(const config::Launch& launch) {
+  return {.program = version_and_commit(),
+          .precision = launch.physics.precision,
+          .launch = launch.file.filename().string(),
+          .scene = launch.scene.name,
+          .physics = fmt::format("{}, {} substeps, {:g} steps/s", launch.physics.solver, launch.time.substeps,
+                                 launch.time.step_hz),
+          .world = launch.world_identity()};
+}
+
+void LoadArguments::add_to(CLI::App& command) {
+  CLI::Option* load = command.add_option("--load", file, "a saved world to go on from (aurasim send save)");
+  command.add_flag("--other-build", other_build, "with --load: also one that another build has saved")->needs(load);
+}
+
+void SaveArguments::add_to(CLI::App& command) {
+  command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds");
+  command
+      .add_option("--save-every", every_s,
+                  "save the world so often, in simulated seconds; the newest three stay. 0: only when asked to")
+      ->check(CLI::Range(0.0, 1e9));
+}
+
+std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch) {
+  if (arguments.file.empty()) return nullptr;
+  try {
+    cut::SavedWorld world = cut::read_world(arguments.file);
+    const std::string differs =
+        cut::check_identity(arguments.file, world.identity, identity_of(launch), arguments.other_build);
+    if (!differs.empty()) spdlog::warn("{}: {}: bits may differ", arguments.file, differs);
+    return std::make_shared<const core::WorldCut>(std::move(world.cut));
+  } catch (const cut::BadCut& bad) {
+    throw config::BadConfig({bad.what()});
+  }
+}
+
+const char* problem_with_save_name(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
+  };
+  if (name.empty() || name.size() > 100) return "a saved world's name has 1 to 100 letters";
+  if (!std::ranges::all_of(name, fits) || name.front() == '.' || name.front() == '-') {
+    return "a saved world's name has letters, digits, '.', '_' and '-', and does not begin with '.' or '-'";
+  }
+  return nullptr;
+}
+
+void PartWriter::write(core::WorldCut part, const config::Launch& launch) {
+  const auto order =
+      std::ranges::find_if(expected_, [&](const core::Order& wanted) { return wanted.at_step == part.step; });
+  if (order == expected_.end()) return;
+  const std::filesystem::path name = folder_ / std::get<core::Save>(order->action).file;
+  const std::uint64_t request = order->request;
+  expected_.erase(order);
+  cut::SavedWorld world{identity_of(launch), core::value_of(region_), static_cast<std::uint32_t>(launch.regions.size()),
+                        std::move(part)};
+  writing_.push_back(std::async(std::launch::async, [folder = folder_, name, request, world = std::move(world)] {
+    Written written{request, world.cut.step, {}, {}};
+    try {
+      std::filesystem::create_directories(folder);
+      const std::filesystem::path file =
+          std::filesystem::absolute(world.parts == 1 ? name : cut::part_file(name, world.part, world.parts));
+      cut::write_cut(file, world);
+      written.file = file.string();
+    } catch (const std::exception& error) {
+      written.error = error.what();
+    }
+    return written;
+  }));
+}
+
+std::vector<PartWriter::Written> PartWriter::take_written() {
+  std::vector<Written> done;
+  std::erase_if(writing_, [&](std::future<Written>& one) {
+    if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    done.push_back(one.get());
+    forget_old_ones(done.back());
+    return true;
+  });
+  return done;
+}
+
+/// Of those that nobody has asked for.
+void PartWriter::forget_old_ones(const Written& written) {
+  if (written.request != 0 || !written.error.empty()) return;
+  regular_.push_back(written.file);
+  if (regular_.size() <= kRegularSaves) return;
+  std::error_code ignored;
+  std::filesystem::remove(regular_.front(), ignored);
+  regular_.pop_front();
+}
+
+}  // namespace aurasim::cli

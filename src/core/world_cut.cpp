@@ -1,0 +1,87 @@
+#include "core/world_cut.h"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+namespace aurasim::core {
+namespace {
+
+/// Records of bodies in ascending order, points and joint values as they come.
+void append(ClusterState& to, const ClusterState& from) {
+  const auto first_point = static_cast<std::uint32_t>(to.points.size() / kContactPointDoubles);
+  const auto first_value = static_cast<std::uint32_t>(to.joint_values.size());
+  to.bodies.insert(to.bodies.end(), from.bodies.begin(), from.bodies.end());
+  for (ManifoldRecord manifold : from.manifolds) {
+    manifold.first_point += first_point;
+    to.manifolds.push_back(manifold);
+  }
+  to.points.insert(to.points.end(), from.points.begin(), from.points.end());
+  for (JointRecord joint : from.joints) {
+    joint.first_value += first_value;
+    to.joints.push_back(joint);
+  }
+  to.joint_values.insert(to.joint_values.end(), from.joint_values.begin(), from.joint_values.end());
+}
+
+/// Of several regions, each of which knows a beginning of the same sequence, with the same left out.
+void append(std::vector<Order>& to, const std::vector<Order>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+  std::ranges::sort(to, {}, &Order::sequence);
+  const auto copies = std::ranges::unique(to, {}, &Order::sequence);
+  to.erase(copies.begin(), copies.end());
+}
+
+void append(std::vector<SavedShape>& to, const std::vector<SavedShape>& from) {
+  for (const SavedShape& shape : from) {
+    const auto is_it = [&](const SavedShape& known) {
+      return known.mesh.hash == shape.mesh.hash && known.mesh.use == shape.mesh.use;
+    };
+    if (std::ranges::none_of(to, is_it)) to.push_back(shape);
+  }
+}
+
+void refuse_twins(const WorldCut& cut) {
+  std::vector<BodyId> ids;
+  for (const BodyRecord& body : cut.bodies.bodies) ids.push_back(body.id);
+  for (const UnderWay& one : cut.under_way) {
+    for (const BodyRecord& body : one.cluster.bodies) ids.push_back(body.id);
+  }
+  std::ranges::sort(ids);
+  const auto twin = std::ranges::adjacent_find(ids);
+  if (twin == ids.end()) return;
+  throw std::invalid_argument("body " + std::to_string(value_of(*twin)) + " is in two of the parts");
+}
+
+}  // namespace
+
+WorldCut merge(std::vector<WorldCut> parts) {
+  if (parts.empty()) throw std::invalid_argument("there are no parts");
+  WorldCut whole = std::move(parts.front());
+  for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
+    if (part->step != whole.step || part->births_known != whole.births_known) {
+      throw std::invalid_argument("parts of states " + std::to_string(whole.step) + " and " +
+                                  std::to_string(part->step) + " are not of one world");
+    }
+    append(whole.bodies, part->bodies);
+    std::ranges::move(part->under_way, std::back_inserter(whole.under_way));
+    append(whole.orders, part->orders);
+    append(whole.shapes, part->shapes);
+    whole.last_order = std::max(whole.last_order, part->last_order);
+  }
+  std::ranges::sort(whole.bodies.bodies, {}, &BodyRecord::id);
+  // Of two compounds there are several, in an order of their own.
+  std::ranges::stable_sort(whole.bodies.manifolds, {},
+                           [](const ManifoldRecord& m) { return std::pair(m.object0, m.object1); });
+  refuse_twins(whole);
+  return whole;
+}
+
+std::size_t body_count(const WorldCut& cut) {
+  std::size_t count = cut.bodies.bodies.size();
+  for (const UnderWay& one : cut.under_way) count += one.cluster.bodies.size();
+  return count;
+}
+
+}  // namespace aurasim::core

@@ -1,0 +1,228 @@
+// The bytes of a saved world.
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <zstd.h>
+
+#include "cut/cut_file.h"
+#include "cut/saved_shapes.h"
+#include "dds/wire_bytes.h"
+
+namespace aurasim::cut {
+namespace {
+
+using nlohmann::json;
+
+constexpr char kMagic[] = "AURACUT1";  // the last is the number of the format
+constexpr std::size_t kMagicBytes = 8, kFormatAt = 7;
+constexpr int kLevel = 3;
+constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some ten million contact points
+constexpr std::size_t kOrdersAtOnce = 1000;
+
+/// What follows the header, each with its length.
+enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShapes };
+
+void put_number(std::string& out, std::uint32_t number) {
+  for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(number >> (8 * i) & 0xff));
+}
+
+template <class Bytes>
+void put(std::string& out, const Bytes& bytes) {
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw std::runtime_error("the world is too large");
+  put_number(out, static_cast<std::uint32_t>(bytes.size()));
+  out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+template <class Bytes>
+void put(std::string& out, Piece piece, const Bytes& bytes) {
+  out.push_back(static_cast<char>(piece));
+  put(out, bytes);
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& bytes) : rest_(bytes) {}
+
+  std::uint8_t byte() { return static_cast<std::uint8_t>(take(1)[0]); }
+  std::string_view bytes() {
+    const std::string_view length = take(4);
+    std::uint32_t count = 0;
+    for (int i = 3; i >= 0; --i) count = count << 8 | static_cast<std::uint8_t>(length[static_cast<std::size_t>(i)]);
+    return take(count);
+  }
+  bool is_at_end() const { return rest_.empty(); }
+
+ private:
+  std::string_view take(std::size_t count) {
+    if (rest_.size() < count) throw BadCut("damaged: it ends in the middle");
+    const std::string_view taken = rest_.substr(0, count);
+    rest_.remove_prefix(count);
+    return taken;
+  }
+
+  std::string_view rest_;
+};
+
+std::span<const std::uint8_t> octets(std::string_view bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+std::string compressed(const std::string& bytes) {
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  std::string out(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size = ZSTD_compress2(context.get(), out.data(), out.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+  out.resize(size);
+  return out;
+}
+
+/// However large it says that it is, memory is taken only for what comes.
+std::string decompressed(std::string_view bytes) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, 27);
+  std::string out, chunk(ZSTD_DStreamOutSize(), '\0');
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  std::size_t left = 1;
+  while (left != 0) {
+    ZSTD_outBuffer to{chunk.data(), chunk.size(), 0};
+    left = ZSTD_decompressStream(context.get(), &to, &in);
+    if (ZSTD_isError(left) != 0) throw BadCut(fmt::format("damaged: {}", ZSTD_getErrorName(left)));
+    if (left != 0 && to.pos == 0 && in.pos == in.size) throw BadCut("cut short");
+    out.append(chunk.data(), to.pos);
+    if (out.size() > kMostBytes) throw BadCut("larger than any world");
+  }
+  if (in.pos != in.size) throw BadCut("damaged: something follows its end");
+  return out;
+}
+
+json header_of(const SavedWorld& world) {
+  const Identity& id = world.identity;
+  return {{"program", id.program},
+          {"precision", id.precision},
+          {"launch", id.launch},
+          {"scene", id.scene},
+          {"physics", id.physics},
+          {"world", id.world},
+          {"part", world.part},
+          {"parts", world.parts},
+          {"step", world.cut.step},
+          {"births_known", world.cut.births_known},
+          {"last_order", world.cut.last_order},
+          {"bodies", core::body_count(world.cut)}};
+}
+
+SavedWorld from_header(std::string_view text) {
+  SavedWorld world;
+  try {
+    const json header = json::parse(text);
+    Identity& id = world.identity;
+    header.at("program").get_to(id.program);
+    header.at("precision").get_to(id.precision);
+    header.at("launch").get_to(id.launch);
+    header.at("scene").get_to(id.scene);
+    header.at("physics").get_to(id.physics);
+    header.at("world").get_to(id.world);
+    header.at("part").get_to(world.part);
+    header.at("parts").get_to(world.parts);
+    header.at("step").get_to(world.cut.step);
+    header.at("births_known").get_to(world.cut.births_known);
+    header.at("last_order").get_to(world.cut.last_order);
+  } catch (const json::exception& error) {
+    throw BadCut(fmt::format("damaged: its header: {}", error.what()));
+  }
+  constexpr core::Step kMostSteps = core::Step{1} << 52;
+  const auto is_step = [](core::Step step) { return step >= 0 && step <= kMostSteps; };
+  if (world.parts == 0 || world.part >= world.parts || !is_step(world.cut.step) || !is_step(world.cut.births_known)) {
+    throw BadCut("damaged: its header has numbers that make no sense");
+  }
+  return world;
+}
+
+core::HandOff letter(core::Step stamp, const core::ClusterState& cluster) {
+  core::HandOff letter;
+  letter.stamp = stamp;
+  letter.sequence = 1;
+  letter.cluster = cluster;
+  return letter;
+}
+
+template <class Message>
+Message sound(dds::Decoded<Message> decoded, const char* what) {
+  if (auto* message = std::get_if<Message>(&decoded)) return std::move(*message);
+  throw BadCut(fmt::format("damaged: {}: {}", what, dds::name_of(std::get<dds::WireError>(decoded))));
+}
+
+void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::WorldCut& cut) {
+  switch (piece) {
+    case Piece::kBodies:
+      cut.bodies = sound(wire.hand_off(octets(bytes), {}), "its bodies").cluster;
+      return;
+    case Piece::kUnderWay: {
+      core::HandOff hand_off = sound(wire.hand_off(octets(bytes), {}), "a cluster under way");
+      cut.under_way.push_back({hand_off.stamp, std::move(hand_off.cluster)});
+      return;
+    }
+    case Piece::kOrders: {
+      const core::AuraBatch batch = sound(wire.aura(octets(bytes), {}), "its orders");
+      cut.orders.insert(cut.orders.end(), batch.orders.begin(), batch.orders.end());
+      return;
+    }
+    case Piece::kShapes:
+      cut.shapes = decode_shapes(bytes);
+      return;
+    case Piece::kEnd:
+      return;
+  }
+  throw BadCut("damaged: it has a piece of no known kind");
+}
+
+}  // namespace
+
+std::string encode(const SavedWorld& world) {
+  const core::WorldCut& cut = world.cut;
+  dds::WireBytes wire;
+  std::string bytes;
+  put(bytes, header_of(world).dump());
+  if (!cut.bodies.bodies.empty()) put(bytes, Piece::kBodies, wire.of(letter(cut.step, cut.bodies)));
+  for (const core::UnderWay& one : cut.under_way) {
+    put(bytes, Piece::kUnderWay, wire.of(letter(one.stamp, one.cluster)));
+  }
+  for (std::size_t first = 0; first < cut.orders.size(); first += kOrdersAtOnce) {
+    core::AuraBatch batch;
+    const auto begin = cut.orders.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::size_t count = std::min(kOrdersAtOnce, cut.orders.size() - first);
+    batch.orders.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    put(bytes, Piece::kOrders, wire.of(batch));
+  }
+  if (!cut.shapes.empty()) put(bytes, Piece::kShapes, encode_shapes(cut.shapes));
+  bytes.push_back(static_cast<char>(Piece::kEnd));
+  return std::string(kMagic, kMagicBytes) + compressed(bytes);
+}
+
+SavedWorld decode(const std::string& bytes) {
+  if (bytes.size() < kMagicBytes || std::memcmp(bytes.data(), kMagic, kFormatAt) != 0) {
+    throw BadCut("this is no saved world");
+  }
+  if (bytes[kFormatAt] != kMagic[kFormatAt]) {
+    throw BadCut(fmt::format("in format {}, and this program reads format {}", bytes[kFormatAt], kMagic[kFormatAt]));
+  }
+  const std::string inside = decompressed(std::string_view(bytes).substr(kMagicBytes));
+  Reader reader(inside);
+  SavedWorld world = from_header(reader.bytes());
+  dds::WireBytes wire;
+  for (auto piece = static_cast<Piece>(reader.byte()); piece != Piece::kEnd;
+       piece = static_cast<Piece>(reader.byte())) {
+    take(piece, reader.bytes(), wire, world.cut);
+  }
+  if (!reader.is_at_end()) throw BadCut("damaged: something follows its end");
+  return world;
+}
+
+}  // namespace aurasim::cut

@@ -1,0 +1,154 @@
+#include "cut/cut_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace aurasim::cut {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, const std::string& what) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), what));
+}
+
+/// Until it is on the disk.
+void write_through(const fs::path& file, const std::string& bytes) {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) fail(file, std::strerror(errno));
+  std::size_t done = 0;
+  int error = 0;
+  while (done < bytes.size() && error == 0) {
+    const ssize_t written = ::write(fd, bytes.data() + done, bytes.size() - done);
+    if (written > 0) done += static_cast<std::size_t>(written);
+    if (written < 0 && errno != EINTR) error = errno;
+  }
+  if (error == 0 && ::fsync(fd) != 0) error = errno;
+  ::close(fd);
+  if (error == 0) return;
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  fail(file, std::strerror(error));
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw BadCut(fmt::format("{}: cannot be read", file.string()));
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Of one world?
+bool same(const Identity& a, const Identity& b) {
+  return a.world == b.world && a.precision == b.precision && a.program == b.program;
+}
+
+std::string words(const Identity& identity) {
+  return fmt::format("{} (scene {}; {}, {} precision)", identity.launch, identity.scene, identity.physics,
+                     identity.precision);
+}
+
+}  // namespace
+
+fs::path part_file(const fs::path& file, std::uint32_t part, std::uint32_t parts) {
+  return fs::path(fmt::format("{}.part-{}-of-{}", file.string(), part, parts));
+}
+
+void write_cut(const fs::path& file, const SavedWorld& world) {
+  const fs::path beside(file.string() + ".new");
+  write_through(beside, encode(world));
+  std::error_code error;
+  fs::rename(beside, file, error);
+  if (error) fail(file, error.message());
+}
+
+SavedWorld read_cut(const fs::path& file) {
+  try {
+    return decode(text_of(file));
+  } catch (const BadCut& bad) {
+    throw BadCut(fmt::format("{}: {}", file.string(), bad.what()));
+  }
+}
+
+SavedWorld merge_cuts(const std::vector<fs::path>& files) {
+  if (files.empty()) throw BadCut("there are no parts");
+  SavedWorld whole;
+  std::vector<core::WorldCut> cuts;
+  std::set<std::uint32_t> parts;
+  for (const fs::path& file : files) {
+    SavedWorld part = read_cut(file);
+    const bool is_first = parts.empty();
+    if (!is_first && (part.parts != whole.parts || !same(part.identity, whole.identity))) {
+      throw BadCut(fmt::format("{} and {} are not of one world", files.front().string(), file.string()));
+    }
+    if (!parts.insert(part.part).second) {
+      throw BadCut(fmt::format("{}: part {} is there twice", file.string(), part.part));
+    }
+    cuts.push_back(std::move(part.cut));
+    if (is_first) whole = std::move(part);
+  }
+  if (parts.size() != whole.parts) {
+    throw BadCut(fmt::format("{}: {} of {} parts are there", files.front().string(), parts.size(), whole.parts));
+  }
+  try {
+    whole.cut = core::merge(std::move(cuts));
+  } catch (const std::invalid_argument& error) {
+    throw BadCut(fmt::format("{}: {}", files.front().string(), error.what()));
+  }
+  whole.part = 0;
+  whole.parts = 1;
+  return whole;
+}
+
+std::vector<fs::path> parts_of(const fs::path& file) {
+  std::vector<fs::path> parts;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const std::string begin = file.filename().string() + ".part-";
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(begin) && !name.ends_with(".new")) parts.push_back(entry.path());
+  }
+  std::ranges::sort(parts);
+  return parts;
+}
+
+SavedWorld read_world(const fs::path& file) {
+  if (fs::exists(file)) {
+    SavedWorld world = read_cut(file);
+    if (world.parts == 1) return world;
+    throw BadCut(fmt::format("{}: this is part {} of {}; name the file without .part-...", file.string(), world.part,
+                             world.parts));
+  }
+  const std::vector<fs::path> parts = parts_of(file);
+  if (parts.empty()) throw BadCut(fmt::format("{}: there is no such file, and no parts of it", file.string()));
+  return merge_cuts(parts);
+}
+
+std::string check_identity(const fs::path& file, const Identity& found, const Identity& wanted, bool other_program) {
+  const auto refuse = [&](const std::string& why) { throw BadCut(fmt::format("{}: {}", file.string(), why)); };
+  if (found.precision != wanted.precision) {
+    refuse(fmt::format("saved in {} precision, and this is {}: physics.precision has to be {}", found.precision,
+                       wanted.precision, found.precision));
+  }
+  if (found.world != wanted.world) {
+    refuse(
+        fmt::format("the world of {}, and this is {}: it fits the launch and scene files, with the overrides, that it "
+                    "was saved with",
+                    words(found), words(wanted)));
+  }
+  if (found.program == wanted.program) return {};
+  const std::string differs = fmt::format("saved by {}, and this is {}", found.program, wanted.program);
+  if (!other_program) refuse(differs + ": --other-build loads it all the same, but bits may differ");
+  return differs;
+}
+
+}  // namespace aurasim::cut

@@ -1,0 +1,238 @@
+// Saved worlds as files: whole, in parts, damaged, cut short, and of other worlds.
+#include "cut/cut_file.h"
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include "dds/messages.h"
+
+namespace aurasim::cut {
+namespace {
+
+namespace fs = std::filesystem;
+using dds::testing::hand_off_of;
+using dds::testing::same_bits;
+using testing::HasSubstr;
+
+/// One for each test, gone at its end.
+class CutFile : public testing::Test {
+ protected:
+  CutFile() {
+    std::string pattern = (fs::temp_directory_path() / "aurasim_cut_XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  ~CutFile() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+SavedWorld world_of(std::size_t bodies) {
+  SavedWorld world;
+  world.identity = {"aurasim 0.1.0 (abc)", "double", "demo.yaml", "demo", "soft_step, 8 substeps, 60 steps/s", 0xfeed};
+  world.cut.step = 120;
+  world.cut.births_known = 128;
+  world.cut.bodies = hand_off_of(bodies).cluster;
+  core::ClusterState other = hand_off_of(2).cluster;
+  for (std::size_t i = 0; i < 2; ++i) other.bodies[i].id = core::BodyId{1'000'000 + i};
+  other.manifolds.clear(), other.points.clear();
+  world.cut.under_way = {{118, other}};
+  world.cut.orders = dds::testing::one_order_of_each_kind();
+  world.cut.last_order = 99;
+  const core::ConvexHull hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0 / 3}}};
+  const core::TriangleMesh mesh{hull.points, {{0, 1, 2}, {1, 2, 3}}};
+  const core::Compound compound{{{hull, {{1, 2, 3}, core::Quat(0.6, 0.8, 0, 0)}}, {hull, {}}}};
+  world.cut.shapes = {{{1, core::MeshUse::kHull}, hull},
+                      {{~0ULL, core::MeshUse::kTriangles}, mesh},
+                      {{3, core::MeshUse::kDecomposition}, compound}};
+  return world;
+}
+
+bool same(const core::ClusterState& a, const core::ClusterState& b) {
+  core::HandOff x, y;
+  x.cluster = a, y.cluster = b;
+  return dds::testing::same(x, y);
+}
+
+void expect_same(const SavedWorld& a, const SavedWorld& b) {
+  EXPECT_EQ(a.identity.program, b.identity.program);
+  EXPECT_EQ(a.identity.world, b.identity.world);
+  EXPECT_EQ(a.part, b.part);
+  EXPECT_EQ(a.parts, b.parts);
+  EXPECT_EQ(a.cut.step, b.cut.step);
+  EXPECT_EQ(a.cut.births_known, b.cut.births_known);
+  EXPECT_EQ(a.cut.last_order, b.cut.last_order);
+  EXPECT_TRUE(same(a.cut.bodies, b.cut.bodies));
+  ASSERT_EQ(a.cut.under_way.size(), b.cut.under_way.size());
+  for (std::size_t i = 0; i < a.cut.under_way.size(); ++i) {
+    EXPECT_EQ(a.cut.under_way[i].stamp, b.cut.under_way[i].stamp);
+    EXPECT_TRUE(same(a.cut.under_way[i].cluster, b.cut.under_way[i].cluster));
+  }
+  ASSERT_EQ(a.cut.orders.size(), b.cut.orders.size());
+  for (std::size_t i = 0; i < a.cut.orders.size(); ++i) {
+    EXPECT_EQ(a.cut.orders[i].sequence, b.cut.orders[i].sequence);
+    EXPECT_EQ(a.cut.orders[i].action.index(), b.cut.orders[i].action.index());
+  }
+  ASSERT_EQ(a.cut.shapes.size(), b.cut.shapes.size());
+  for (std::size_t i = 0; i < a.cut.shapes.size(); ++i) {
+    EXPECT_EQ(a.cut.shapes[i].mesh.hash, b.cut.shapes[i].mesh.hash);
+    EXPECT_EQ(a.cut.shapes[i].shape.index(), b.cut.shapes[i].shape.index());
+  }
+}
+
+/// What is said of bytes that are no world; empty: they are.
+std::string refusal_of(const std::string& bytes) {
+  try {
+    decode(bytes);
+    return {};
+  } catch (const BadCut& bad) {
+    return bad.what();
+  }
+}
+
+std::string refusal_of(const std::function<void()>& work) {
+  try {
+    work();
+    return {};
+  } catch (const BadCut& bad) {
+    return bad.what();
+  }
+}
+
+TEST_F(CutFile, KeepsEveryBit) {
+  const SavedWorld world = world_of(30);
+  write_cut(folder_ / "a", world);
+  const SavedWorld again = read_cut(folder_ / "a");
+  expect_same(again, world);
+  const auto& compound = std::get<core::Compound>(again.cut.shapes[2].shape);
+  EXPECT_TRUE(same_bits(compound.parts[0].pose.q_WB.coeffs(), core::Quat(0.6, 0.8, 0, 0).coeffs()));
+  EXPECT_TRUE(same_bits(std::get<core::ConvexHull>(compound.parts[0].shape).points[3], core::Vec3(0, 0, 1.0 / 3)));
+  EXPECT_FALSE(fs::exists(folder_ / "a.new"));
+}
+
+TEST_F(CutFile, AnEmptyWorldIsOne) {
+  SavedWorld world;
+  world.cut.step = 3;
+  expect_same(decode(encode(world)), world);
+}
+
+TEST_F(CutFile, IsWholeOrThePartsBesideIt) {
+  SavedWorld one = world_of(3), two = world_of(3);
+  one.parts = two.parts = 2;
+  two.part = 1;
+  two.cut.under_way.clear();
+  for (std::size_t i = 0; i < 3; ++i) two.cut.bodies.bodies[i].id = core::BodyId{500 + i};
+  two.cut.bodies.manifolds.clear(), two.cut.bodies.points.clear();
+  two.cut.orders.resize(2);
+  const fs::path file = folder_ / "w.cut";
+  EXPECT_THAT(refusal_of([&] { read_world(file); }), HasSubstr("no such file"));
+  write_cut(part_file(file, 0, 2), one);
+  EXPECT_THAT(refusal_of([&] { read_world(file); }), HasSubstr("1 of 2 parts are there"));
+  write_cut(part_file(file, 1, 2), two);
+  const SavedWorld whole = read_world(file);
+  EXPECT_EQ(whole.parts, 1U);
+  EXPECT_EQ(whole.cut.bodies.bodies.size(), 6U);
+  EXPECT_EQ(whole.cut.orders.size(), one.cut.orders.size());
+  EXPECT_THAT(refusal_of([&] { read_world(part_file(file, 1, 2)); }), HasSubstr("this is part 1 of 2"));
+  write_cut(file, whole);
+  expect_same(read_world(file), whole);
+
+  two.cut.step = 121;
+  write_cut(part_file(file, 1, 2), two);
+  EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not of one world"));
+  two.identity.world = 1;
+  write_cut(part_file(file, 1, 2), two);
+  EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not of one world"));
+}
+
+TEST_F(CutFile, OfAnotherWorldIsRefusedWithWhatWouldFit) {
+  const Identity found = world_of(1).identity;
+  Identity wanted = found;
+  EXPECT_EQ(check_identity("f", found, wanted, false), "");
+  wanted.precision = "single";
+  EXPECT_THAT(refusal_of([&] { check_identity("f", found, wanted, true); }), HasSubstr("has to be double"));
+  wanted = found;
+  wanted.world = 7;
+  wanted.scene = "rain";
+  EXPECT_THAT(refusal_of([&] { check_identity("f", found, wanted, true); }),
+              testing::AllOf(HasSubstr("scene demo"), HasSubstr("scene rain"), HasSubstr("demo.yaml")));
+  wanted = found;
+  wanted.program = "aurasim 0.2.0 (def)";
+  EXPECT_THAT(refusal_of([&] { check_identity("f", found, wanted, false); }), HasSubstr("--other-build"));
+  EXPECT_THAT(check_identity("f", found, wanted, true), HasSubstr("0.2.0"));
+}
+
+TEST_F(CutFile, CutShortIsRefused) {
+  const std::string bytes = encode(world_of(4));
+  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_NE(refusal_of(bytes.substr(0, size)), "") << size;
+  EXPECT_NE(refusal_of(std::string(bytes).append(1, 'x')), "");
+}
+
+/// Or means the same: there are bits in a frame that nobody reads.
+TEST_F(CutFile, OneWrongByteIsRefused) {
+  const std::string bytes = encode(world_of(4));
+  std::mt19937_64 random(1);
+  int unnoticed = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ static_cast<char>(1 + random() % 255));
+    if (!refusal_of(damaged).empty()) continue;
+    ++unnoticed;
+    EXPECT_EQ(encode(decode(damaged)), bytes) << i;
+  }
+  EXPECT_LT(unnoticed, 5);
+  EXPECT_THAT(refusal_of(std::string("AURACUT2").append(bytes.substr(8))), HasSubstr("format 2"));
+  EXPECT_THAT(refusal_of(std::string("PNG ....")), HasSubstr("no saved world"));
+}
+
+/// What has a sound checksum and makes no sense all the same.
+TEST_F(CutFile, AnyBytesInsideAreRefusedOrSound) {
+  const std::string bytes = encode(world_of(4));
+  std::string inside(1 << 20, '\0');
+  inside.resize(ZSTD_decompress(inside.data(), inside.size(), bytes.data() + 8, bytes.size() - 8));
+  const auto packed = [](const std::string& raw) {
+    std::string out(ZSTD_compressBound(raw.size()), '\0');
+    out.resize(ZSTD_compress(out.data(), out.size(), raw.data(), raw.size(), 1));
+    return std::string("AURACUT1").append(out);
+  };
+  ASSERT_EQ(refusal_of(packed(inside)), "");
+  std::mt19937_64 random(2);
+  int refused = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    std::string damaged = inside;
+    for (std::uint64_t n = 1 + random() % 4; n > 0; --n) {
+      const std::size_t at = random() % damaged.size();
+      switch (random() % 4) {
+        case 0:
+          damaged[at] = static_cast<char>(random());
+          break;
+        case 1:
+          damaged.erase(at, 1 + random() % 16);
+          break;
+        case 2:
+          damaged.insert(at, 1 + random() % 16, static_cast<char>(random()));
+          break;
+        default:  // a length, maybe
+          for (std::size_t k = at; k < std::min(at + 4, damaged.size()); ++k) damaged[k] = static_cast<char>(0xff);
+      }
+      if (damaged.empty()) damaged.push_back('x');
+    }
+    refused += !refusal_of(packed(damaged)).empty();
+  }
+  EXPECT_GT(refused, 2000);
+  EXPECT_LT(refused, 20'000);
+}
+
+TEST_F(CutFile, AFullDiskLeavesNoFile) {
+  EXPECT_THROW(write_cut("/dev/full/a", world_of(1)), std::runtime_error);
+  EXPECT_THROW(write_cut(folder_ / "nowhere" / "a", world_of(1)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace aurasim::cut

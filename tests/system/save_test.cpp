@@ -1,0 +1,156 @@
+// Saved worlds of real runs: `aurasim send save`, `launch --load`, `cut info`, `cut merge`.
+#include <map>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+using Hashes = std::map<std::int64_t, std::string>;
+
+class SavedWorlds : public SystemTest {
+ protected:
+  static constexpr std::int64_t kSteps = 600;
+
+  Words overrides_of(const std::string& regions) const {
+    Words all = {"time.sync=deterministic"};
+    if (!regions.empty()) all.push_back("regions=" + regions);
+    return set(all);
+  }
+
+  /// A run of the demo whose world is saved under way. Its parts go into `saves`.
+  nlohmann::json run_and_save(const std::string& name, const Words& more = {}) {
+    Process& run = launch(name, launch_file("demo"),
+                          Words{"--steps", std::to_string(kSteps), "--saves", saves()} + overrides_of("") + more);
+    expect_reaches(report_of(name), 4, 150);
+    Process& save = start(Words{"send", "save", launch_file("demo"), file()} + overrides_of("") + in_own_domain());
+    expect_exit(save, 0);
+    const nlohmann::json said = nlohmann::json::parse(save.out(), nullptr, false);
+    expect_exit(run, 0);
+    expect_all_bodies_accounted_for(report_of(name));
+    return said;
+  }
+
+  /// The hashes of a run that goes on from it.
+  Hashes load(const std::string& name, const std::string& regions, const std::string& saved) {
+    Process& run = launch(
+        name, launch_file("demo"),
+        Words{"--steps", std::to_string(kSteps), "--load", saved} + overrides_of(regions) + set({"time.pace=none"}));
+    expect_exit(run, 0);
+    expect_all_bodies_accounted_for(report_of(name));
+    return hashes(name);
+  }
+
+  Hashes hashes(const std::string& name) const {
+    Hashes all;
+    std::istringstream rows(report_of(name).state_hash());
+    for (std::string line; std::getline(rows, line);) {
+      const std::size_t comma = line.find(',');
+      if (comma != std::string::npos && line != "step,hash") all[std::stoll(line)] = line.substr(comma + 1);
+    }
+    return all;
+  }
+
+  std::string refusal_of(const Words& words) {
+    Process& run = start(words);
+    expect_exit(run, 2);
+    return run.err();
+  }
+
+  std::string saves() const { return (folder() / "saves").string(); }
+  std::string file() const { return (folder() / "world.cut").string(); }
+};
+
+TEST_F(SavedWorlds, GoOnWithTheSameBitsOnAnyNumberOfNodes) {
+  const nlohmann::json said = run_and_save("never_stopped");
+  ASSERT_EQ(said.value("file", ""), file());
+  const auto step = said.value("step", std::int64_t{0});
+  ASSERT_GT(step, 150);
+  Hashes wanted = hashes("never_stopped");
+  wanted.erase(wanted.begin(), wanted.find(step));
+  ASSERT_EQ(wanted.size(), static_cast<std::size_t>(kSteps - step + 1));
+  for (const auto& [name, regions] :
+       std::map<std::string, std::string>{{"one", "{layout: columns, count: 1, width: 40}"},
+                                          {"two", "{layout: columns, count: 2, width: 20}"},
+                                          {"four", ""},
+                                          {"nine", "{layout: grid, rows: 3, columns: 3, cell: [12, 12]}"}}) {
+    EXPECT_EQ(load(name, regions, file()), wanted) << name;
+  }
+  Process& compare =
+      start({"compare", report_of("never_stopped").folder().string(), report_of("two").folder().string()});
+  expect_exit(compare, 0);
+  EXPECT_THAT(compare.out(), ::testing::HasSubstr("from state " + std::to_string(step)));
+}
+
+TEST_F(SavedWorlds, ThatNobodyAskedForAreLoadedFromTheirParts) {
+  Process& run = launch("run", launch_file("demo"),
+                        Words{"--steps", std::to_string(kSteps), "--saves", saves(), "--save-every", "2"} +
+                            overrides_of("") + set({"time.pace=none"}));
+  expect_exit(run, 0);
+  std::set<std::int64_t> states;
+  for (const auto& entry : std::filesystem::directory_iterator(saves())) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("state-")) states.insert(std::stoll(name.substr(6)));
+  }
+  ASSERT_EQ(states.size(), 3U) << "the newest three";
+  const std::int64_t step = *states.rbegin();
+  Hashes wanted = hashes("run");
+  wanted.erase(wanted.begin(), wanted.find(step));
+  const std::string world = saves() + "/state-" + std::to_string(step) + ".cut";
+  EXPECT_EQ(load("again", "{layout: columns, count: 2, width: 20}", world), wanted);
+
+  Words merge = {"cut", "merge", file()};
+  for (int r = 0; r < 4; ++r) merge.push_back(world + ".part-" + std::to_string(r) + "-of-4");
+  expect_exit(start(merge), 0);
+  Process& info = start({"cut", "info", file()});
+  expect_exit(info, 0);
+  const nlohmann::json told = nlohmann::json::parse(info.out());
+  EXPECT_EQ(told.value("step", 0), step);
+  EXPECT_EQ(told.value("parts", 0), 1);
+  EXPECT_GT(told.value("bodies", 0), 100);
+  merge.pop_back();
+  EXPECT_THAT(refusal_of(merge), ::testing::HasSubstr("3 of 4 parts"));
+}
+
+TEST_F(SavedWorlds, OfAnotherWorldAreRefusedBeforeAnythingIsStarted) {
+  run_and_save("run");
+  const auto load_by = [&](const std::string& scene, const Words& overrides) {
+    return refusal_of(Words{"launch", launch_file(scene), "--headless", "--load", file()} + set(overrides) +
+                      in_own_domain());
+  };
+  EXPECT_THAT(load_by("tower", {}), ::testing::HasSubstr("scene corner_stacks"));
+  EXPECT_THAT(load_by("demo", {"physics.preset=fast"}), ::testing::HasSubstr("8 substeps"));
+  EXPECT_THAT(load_by("demo", {"physics.precision=single"}), ::testing::HasSubstr("double"));
+  std::string bytes = read_text(file());
+  bytes.resize(bytes.size() / 2);
+  write("world.cut", bytes);
+  EXPECT_THAT(load_by("demo", {}), ::testing::HasSubstr("cut short"));
+  std::filesystem::remove(file());
+  EXPECT_THAT(load_by("demo", {}), ::testing::HasSubstr("no such file"));
+}
+
+TEST_F(SavedWorlds, AreCalledByNothingThatLeadsElsewhere) {
+  Process& run = launch("run", launch_file("demo"), Words{"--saves", saves()} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 1);
+  Process& hidden = start(Words{"send", "save", launch_file("demo"), ".hidden"} + overrides_of("") + in_own_domain());
+  expect_exit(hidden, 1);
+  EXPECT_THAT(hidden.err(), ::testing::HasSubstr("does not begin with"));
+  run.signal(SIGTERM);
+  expect_exit(run, 0);
+}
+
+TEST_F(SavedWorlds, AFullDiskIsNamedAndTheRunGoesOn) {
+  Process& run =
+      launch("run", launch_file("demo"), Words{"--steps", "400", "--saves", "/dev/full/saves"} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 1);
+  Process& save = start(Words{"send", "save", launch_file("demo"), file()} + overrides_of("") + in_own_domain());
+  expect_exit(save, 1);
+  EXPECT_THAT(save.err(), ::testing::HasSubstr("/dev/full"));
+  expect_exit(run, 0);
+}
+
+}  // namespace
+}  // namespace aurasim::system_test
