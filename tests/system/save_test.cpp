@@ -54,6 +54,16 @@ class SavedWorlds : public SystemTest {
     return all;
   }
 
+  /// Of which there are files that nobody has asked for.
+  std::set<std::int64_t> saved_states() const {
+    std::set<std::int64_t> states;
+    for (const auto& entry : std::filesystem::directory_iterator(saves())) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("state-")) states.insert(std::stoll(name.substr(6)));
+    }
+    return states;
+  }
+
   std::string refusal_of(const Words& words) {
     Process& run = start(words);
     expect_exit(run, 2);
@@ -90,11 +100,7 @@ TEST_F(SavedWorlds, ThatNobodyAskedForAreLoadedFromTheirParts) {
                         Words{"--steps", std::to_string(kSteps), "--saves", saves(), "--save-every", "2"} +
                             overrides_of("") + set({"time.pace=none"}));
   expect_exit(run, 0);
-  std::set<std::int64_t> states;
-  for (const auto& entry : std::filesystem::directory_iterator(saves())) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("state-")) states.insert(std::stoll(name.substr(6)));
-  }
+  const std::set<std::int64_t> states = saved_states();
   ASSERT_EQ(states.size(), 3U) << "the newest three";
   const std::int64_t step = *states.rbegin();
   Hashes wanted = hashes("run");
@@ -113,6 +119,29 @@ TEST_F(SavedWorlds, ThatNobodyAskedForAreLoadedFromTheirParts) {
   EXPECT_GT(told.value("bodies", 0), 100);
   merge.pop_back();
   EXPECT_THAT(refusal_of(merge), ::testing::HasSubstr("3 of 4 parts"));
+}
+
+TEST_F(SavedWorlds, ARunGoesBackToOneWithoutEnding) {
+  Process& whole = launch("never_stopped", launch_file("demo"),
+                          Words{"--steps", "400"} + overrides_of("") + set({"time.pace=none"}));
+  expect_exit(whole, 0);
+  Process& run = launch("run", launch_file("demo"),
+                        Words{"--steps", "400", "--saves", saves(), "--save-every", "1"} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 180);
+  const std::set<std::int64_t> states = saved_states();
+  ASSERT_GE(states.size(), 2U);
+  const std::int64_t step = *std::prev(states.end(), 2);  // the newest may not be whole yet
+  const std::string world = "state-" + std::to_string(step) + ".cut";
+  const Words at = overrides_of("") + in_own_domain();
+  expect_exit(start(Words{"send", "load", launch_file("demo"), world} + at), 0);
+  Process& none = start(Words{"send", "load", launch_file("demo"), "nothing.cut"} + at);
+  expect_exit(none, 1);
+  EXPECT_THAT(none.err(), ::testing::HasSubstr("no such file"));
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("run"));
+  Hashes wanted = hashes("never_stopped");
+  wanted.erase(wanted.begin(), wanted.find(step));
+  EXPECT_EQ(hashes("run"), wanted);
 }
 
 TEST_F(SavedWorlds, OfAnotherWorldAreRefusedBeforeAnythingIsStarted) {
