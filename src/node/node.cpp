@@ -140,7 +140,9 @@ void Node::heed(const core::Order& order) {
   } else if (std::holds_alternative<core::Spawn>(order.action)) {
     to_spawn_.push_back(order);
     for (Cut& cut : cuts_) cut.to_spawn.push_back(order);
-    if (last_cut_) last_cut_->to_spawn.push_back(order);
+    for (Saving& saving : saving_) {
+      if (saving.cut) saving.cut->to_spawn.push_back(order);
+    }
   } else {
     world_.schedule(order);
   }
@@ -242,7 +244,6 @@ const StepReport& Node::step() {
   save_if_due();
   if (setup_.protocol.aura.redo) {
     if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
-    if (current_step() == last_) last_cut_ = cut();
     forget_cuts();
     order_redo();
   }
@@ -278,7 +279,6 @@ void Node::apply(const core::Changes& changes) {
     for (Cut& cut : cuts_) {
       if (adoption.stamp <= cut.step) cut.joining.push_back(adoption);
     }
-    if (last_cut_ && adoption.stamp <= last_cut_->step) last_cut_->joining.push_back(adoption);
     for (Saving& saving : saving_) {
       if (saving.cut && adoption.stamp <= saving.step) saving.cut->joining.push_back(adoption);
     }

@@ -246,12 +246,11 @@ class Node {
   };
   std::vector<Touch> touched_, touched_before_;  ///< ascending id: of the last state, and of the one before it
   std::deque<Cut> cuts_;                         ///< ascending
-  std::optional<core::Step> last_;               ///< named by keep()
-  std::optional<Cut> last_cut_;                  ///< of that state
   struct Saving {
     core::Step step = 0;
     std::optional<Cut> cut;
-    bool is_whole = false;  ///< what was under way has arrived
+    bool is_whole = false;    ///< what was under way has arrived
+    bool is_the_end = false;  ///< named by keep(): not for others
   };
   std::vector<Saving> saving_;
   std::vector<core::Order> orders_;           ///< in sequence: for whoever goes on from a saved world

@@ -65,7 +65,7 @@ void check(const core::ClusterState& cluster, const core::Scene& scene) {
 }  // namespace
 
 void Node::save(core::Step step) {
-  if (step > current_step()) saving_.push_back({step, {}, false});
+  if (step > current_step()) saving_.push_back({step, {}, false, false});
 }
 
 /// Before the clusters for the next state are taken in: those that left before a state that is saved are among them.
@@ -124,7 +124,7 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
 std::vector<core::WorldCut> Node::take_saved() {
   std::vector<core::WorldCut> complete;
   std::erase_if(saving_, [&](Saving& saving) {
-    if (!saving.is_whole || !saving.cut || confirmed_step() < saving.step) return false;
+    if (saving.is_the_end || !saving.is_whole || !saving.cut || confirmed_step() < saving.step) return false;
     complete.push_back(part_of_world(std::move(*saving.cut)));
     return true;
   });

@@ -39,7 +39,11 @@ Cut Node::cut() const {
 }
 
 void Node::keep(core::Step last) {
-  if (setup_.protocol.aura.redo && (!last_ || *last_ > last)) last_ = last;
+  if (!setup_.protocol.aura.redo) return;
+  const auto ends_before = [last](const Saving& saving) { return saving.is_the_end && saving.step <= last; };
+  if (std::ranges::any_of(saving_, ends_before)) return;
+  std::erase_if(saving_, [](const Saving& saving) { return saving.is_the_end; });
+  saving_.push_back({last, {}, false, true});
 }
 
 /// What is older than anything that a redo can still go back to. All nodes go back to the same state, so none may let
@@ -125,9 +129,8 @@ void Node::put_back() {
   protocol_.emplace(setup_.protocol, *map_, *clearance_, std::move(next));
   report_.put_back_from = from;
   report_.put_back_for = redo.pairs;
-  last_cut_.reset();
   for (Saving& saving : saving_) {
-    if (saving.step > cut.step) saving = {saving.step, {}, false};
+    if (saving.step > cut.step) saving.cut.reset(), saving.is_whole = false;
   }
   go_back_to(cut);
   const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
@@ -170,10 +173,11 @@ void Node::release_reports(core::Step until) {
 
 std::span<const StepReport> Node::finish(core::Step last) {
   confirmed_.clear();
-  settled_ = last_cut_ && last_cut_->step == last;
-  if (settled_) go_back_to(*last_cut_);
-  last_.reset();
-  last_cut_.reset();
+  const auto end = std::ranges::find_if(
+      saving_, [last](const Saving& saving) { return saving.is_the_end && saving.step == last && saving.cut; });
+  settled_ = end != saving_.end();
+  if (settled_) go_back_to(*end->cut);
+  std::erase_if(saving_, [](const Saving& saving) { return saving.is_the_end; });
   release_reports(last);
   // Who joined later has made up its part of the last states.
   for (StepReport& later : held_) {
