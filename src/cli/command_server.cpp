@@ -54,9 +54,8 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
 }
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
-  leads_ = run.leads;
   // Who leads from now on tells observers what a saved world has brought.
-  if (!std::exchange(led_, leads_) && leads_ && !additions_.orders.empty()) additions_writer_.send(additions_);
+  if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) additions_writer_.send(additions_);
   dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
   for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});

@@ -83,7 +83,7 @@ class CommandServer {
   dds::MeshReader mesh_reader_;
   dds::SceneAdditionsWriter additions_writer_;
   dds::SceneAdditions additions_;
-  bool leads_ = false, led_ = false;  ///< now, and when it was last asked
+  bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;
   std::map<std::uint64_t, Due> due_;  ///< requests to report as done at their step
   std::optional<double> wanted_rate_;

@@ -17,7 +17,7 @@ struct Same {
   bool operator()(const core::Cylinder& a, const core::Cylinder& b) const {
     return a.radius == b.radius && a.height == b.height;
   }
-  bool operator()(const core::MeshRef& a, const core::MeshRef& b) const { return a.hash == b.hash && a.use == b.use; }
+  bool operator()(const core::MeshRef& a, const core::MeshRef& b) const { return a == b; }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;

@@ -26,6 +26,8 @@ enum class MeshUse : std::uint8_t { kHull, kDecomposition, kTriangles };
 struct MeshRef {
   std::uint64_t hash = 0;
   MeshUse use = MeshUse::kHull;
+
+  bool operator==(const MeshRef&) const = default;
 };
 
 /// The scene's shapes get one more. Holds from when it is received.

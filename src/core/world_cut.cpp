@@ -35,10 +35,7 @@ void append(std::vector<Order>& to, const std::vector<Order>& from) {
 
 void append(std::vector<SavedShape>& to, const std::vector<SavedShape>& from) {
   for (const SavedShape& shape : from) {
-    const auto is_it = [&](const SavedShape& known) {
-      return known.mesh.hash == shape.mesh.hash && known.mesh.use == shape.mesh.use;
-    };
-    if (std::ranges::none_of(to, is_it)) to.push_back(shape);
+    if (std::ranges::find(to, shape.mesh, &SavedShape::mesh) == to.end()) to.push_back(shape);
   }
 }
 

@@ -33,75 +33,6 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
   protocol_.emplace(setup.protocol, map, *clearance_);
 }
 
-const StepReport& Node::start() {
-  report_ = {};
-  confirmed_.clear();
-  host_initial_bodies();
-  finish_state();
-  take_cut();
-  hold(report_);
-  return report_;
-}
-
-/// Bodies of state 0, and those born so soon after it that nobody could know of them in time.
-void Node::host_initial_bodies() {
-  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  for (const core::Injector& injector : scene_.injectors) {
-    next_injection_.push_back(core::injected_count(injector, notice, setup_.physics.step_s));
-  }
-  const std::vector<core::BodyRecord> ours = initial_bodies();
-  protocol_->listen_to(setup_.protocol.related);
-  for (const core::BodyRecord& record : ours) {
-    report_.births.push_back({record.id, record.birth});
-    if (record.birth > 0) watch_.newborn(record.id, record.birth);
-  }
-  world_.add(ours);
-}
-
-/// Who hosts which of all bodies of the world; pairs that a redo brings together come to one host at once. Notes who
-/// has to listen to us.
-std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
-  for (const core::TogetherPair& pair : setup_.protocol.together) {
-    const auto a = std::ranges::lower_bound(all.bodies, pair.a, {}, &core::BodyState::id);
-    const auto b = std::ranges::lower_bound(all.bodies, pair.b, {}, &core::BodyState::id);
-    if (b == all.bodies.end() || a->id != pair.a || b->id != pair.b) continue;
-    all.joints.push_back(
-        {static_cast<std::uint32_t>(a - all.bodies.begin()), static_cast<std::uint32_t>(b - all.bodies.begin())});
-  }
-  std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
-  setup_.protocol.related.clear();
-  for (const core::RegionId related :
-       core::related_at_start(protocol_->aura(), *map_, setup_.protocol.neighbour_distance_m, region(), all, hosts)) {
-    setup_.protocol.related.push_back({related, setup_.protocol.start, {}});
-  }
-  return hosts;
-}
-
-/// Those of state 0 that this node hosts.
-std::vector<core::BodyRecord> Node::initial_bodies() {
-  std::vector<core::BodyRecord> records;
-  for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
-  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  for (const core::Injector& injector : scene_.injectors) {
-    const std::uint64_t count = core::injected_count(injector, notice, setup_.physics.step_s);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto record = core::injected_body(injector, i, setup_.physics.step_s)) records.push_back(*record);
-    }
-  }
-  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  core::Snapshot all;
-  for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
-  all.joints = core::joint_pairs(scene_, all.bodies);
-  const std::vector<core::RegionId> hosts = hosts_at_start(std::move(all));
-  std::vector<core::BodyRecord> ours;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (hosts[i] != region()) continue;
-    ours.push_back(records[i]);
-    ours.back().epoch = first_epoch_;
-  }
-  return ours;
-}
-
 /// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
 void Node::announce_births(core::Step state) {
   const core::Step birth = state + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
@@ -154,8 +85,7 @@ void Node::announce_spawns(core::Step birth) {
     if (order.at_step > birth) return false;
     const auto& spawn = std::get<core::Spawn>(order.action);
     if (map_->owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
-    const core::InitialBody body{spawn.id, spawn.prototype, spawn.pose, spawn.v_WB, spawn.w_WB};
-    core::BodyRecord record = core::initial_record(body, order.at_step);
+    core::BodyRecord record = record_of(spawn, order.at_step);
     record.epoch = first_epoch_;
     world_.schedule(order);  // its shape may be new
     world_.add({&record, 1});

@@ -33,6 +33,10 @@ void extend(core::Scene& scene, const core::Action& action, const Meshes& meshes
   }
 }
 
+core::BodyRecord record_of(const core::Spawn& spawn, core::Step birth) {
+  return core::initial_record({spawn.id, spawn.prototype, spawn.pose, spawn.v_WB, spawn.w_WB}, birth);
+}
+
 bool changes_scene(const core::Action& action) {
   return std::holds_alternative<core::DefineShape>(action) || std::holds_alternative<core::DefinePrototype>(action) ||
          std::holds_alternative<core::AddStatic>(action) || std::holds_alternative<core::RemoveStatic>(action);

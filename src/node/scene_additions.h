@@ -15,6 +15,9 @@ namespace aurasim::node {
 void extend(core::Scene& scene, const core::Action& action,
             const std::function<std::optional<core::Shape>(const core::MeshRef&)>& meshes);
 
+/// The body that an order makes, epoch 0.
+core::BodyRecord record_of(const core::Spawn& spawn, core::Step birth);
+
 /// Does it add to what observers have to know of the scene, or take from it?
 bool changes_scene(const core::Action& action);
 

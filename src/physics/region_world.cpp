@@ -8,12 +8,6 @@
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
-namespace {
-
-/// A body that arrives later than this many states after an order does not apply it.
-constexpr core::Step kOrderMemory = 3600;
-
-}  // namespace
 
 class RegionWorld::Impl {
  public:

@@ -17,6 +17,9 @@
 
 namespace aurasim::physics {
 
+/// A body that arrives later than this many states after an order does not apply it.
+inline constexpr core::Step kOrderMemory = 3600;
+
 class RegionWorld {
  public:
   /// The scene outlives the world; its shapes, prototypes and statics may grow. Statics are put in, the scene's bodies

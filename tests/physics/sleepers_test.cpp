@@ -88,13 +88,21 @@ bool only_the_first_wakes(RegionWorld& world, int steps) {
   return first && !second;
 }
 
-TEST(Sleepers, AreNotWokenByWhomTheyNoLongerTouch) {
-  core::Scene scene = scene_of_all_shapes();
-  RegionWorld world(scene, settings());
+/// Three boxes on each other that have fallen asleep.
+class SleepingStack : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    world.add(boxes);
+    run(world, 400);
+    ASSERT_EQ(count_sleepers(world), boxes.size());
+  }
+
+  const core::Scene scene = scene_of_all_shapes();
   const std::vector<core::BodyRecord> boxes = stack(0, 3, 0, 0);
-  world.add(boxes);
-  run(world, 400);
-  ASSERT_EQ(count_sleepers(world), boxes.size());
+  RegionWorld world{scene, settings()};
+};
+
+TEST_F(SleepingStack, IsNotWokenByWhomItNoLongerTouches) {
   world.release({&boxes[1].id, 1});
   const core::BodyRecord ball = body(3, kSphere, {-1.1, 0, 0.5}, {2, 0, 0});
   world.add({&ball, 1});
@@ -122,13 +130,7 @@ TEST(Sleepers, WhoHaveNotMetDoNotWakeEachOther) {
   EXPECT_GT(just_before, 0);
 }
 
-TEST(Sleepers, WakeWhenWhatTheyLeanOnGoes) {
-  core::Scene scene = scene_of_all_shapes();
-  RegionWorld world(scene, settings());
-  const std::vector<core::BodyRecord> boxes = stack(0, 3, 0, 0);
-  world.add(boxes);
-  run(world, 400);
-  ASSERT_EQ(count_sleepers(world), boxes.size());
+TEST_F(SleepingStack, WakesWhenWhatItLeansOnGoes) {
   world.schedule({1, 0, world.step_number() + 1, core::RemoveBody{boxes[0].id}});
   run(world, 120);
   ASSERT_EQ(world.records().size(), 2U);

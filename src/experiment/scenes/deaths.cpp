@@ -17,7 +17,7 @@ class Life {
       : cluster_(cluster), lookahead_(lookahead), world_(world), recorded_(cluster.size(), -1) {
     played_.hash.assign(static_cast<std::size_t>(disasters.steps) + 1, 0);
     const core::Step begin = world != nullptr ? world->step : 0;
-    for (core::Step n = begin + kBetweenCheckpoints; n <= disasters.steps; n += kBetweenCheckpoints) {
+    for (core::Step n = begin + kBetweenCheckpoints; n < disasters.steps; n += kBetweenCheckpoints) {
       for (std::size_t r = 0; r < cluster.size(); ++r) cluster.node(r).save(n);
     }
     for (std::size_t r = 0; r < cluster.size(); ++r) record(r);
