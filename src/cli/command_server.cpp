@@ -34,9 +34,14 @@ CommandServer::CommandServer(const config::Launch& launch, dds::Participant& par
       additions_writer_(participant, region) {}
 
 void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
+  not_kept_.clear();
+  reply_all_done(0);
+  take_over(node, generation);
+}
+
+void CommandServer::take_over(node::Node& node, core::Generation generation) {
   additions_ = {generation, {}};
   issuer_.begin_generation();
-  reply_all_done(0);
   mesh_reader_.meshes().release_all();
   node.use_meshes([this](const core::MeshRef& mesh) {
     std::optional<core::Shape> shape = make_mesh(mesh);
@@ -65,7 +70,7 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
     if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
       answer(one.command, *ray, node);
     } else if (!run.leads) {
-      continue;
+      endpoint_.forget(one.command.request);  // who leads next may have to obey it
     } else if (const auto* rate = std::get_if<core::SetRate>(&one.command.ask)) {
       take_rate(one.command, *rate, node);
     } else if (mesh != nullptr && !is_everywhere(mesh->hash, one, run)) {
@@ -144,6 +149,7 @@ std::string CommandServer::problem_with_world(const core::Ask& ask) const {
 
 void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
   if (std::string why = problem_with_world(command.ask); !why.empty()) return refuse(command.request, std::move(why));
+  if (const core::Order* const known = node.ordered(command.request)) return tell_again(*known, node);
   Issued issued = issuer_.issue(
       command, run.facts, [this](const core::MeshRef& mesh) { return make_mesh(mesh); }, node);
   if (!issued.order) return refuse(command.request, std::move(issued.refused));
@@ -155,10 +161,31 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   endpoint_.reply(std::move(reply));
   const core::Action& action = issued.order->action;
   const bool all_reply = std::holds_alternative<core::Save>(action);
+  if (all_reply || core::changes_the_run(action)) not_kept_.push_back(command.request);
   if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
   due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : reply.at_step,
                            issued.object};
+}
+
+/// A lead that has died has ordered it, or this node before it started anew.
+void CommandServer::tell_again(const core::Order& order, const node::Node& node) {
+  core::CommandReply reply;
+  reply.request = order.request;
+  reply.outcome = core::Outcome::kAccepted;
+  reply.at_step = order.at_step;
+  if (const auto* spawn = std::get_if<core::Spawn>(&order.action)) reply.object = core::ref_of(spawn->id);
+  if (const auto* fixed = std::get_if<core::AddStatic>(&order.action)) reply.object = core::ref_of(fixed->id);
+  endpoint_.reply(reply);
+  due_[order.request] = {std::max(order.at_step, node.current_step()), reply.object};
+}
+
+void CommandServer::go_back(node::Node& node, core::Generation generation) {
+  for (const std::uint64_t request : std::exchange(not_kept_, {})) {
+    endpoint_.forget(request);
+    due_.erase(request);
+  }
+  take_over(node, generation);
 }
 
 std::optional<core::Shape> CommandServer::make_mesh(const core::MeshRef& ref) {

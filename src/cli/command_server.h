@@ -47,6 +47,9 @@ class CommandServer {
   void after_step(const node::StepReport& report);
   /// A new generation: what was under way is not any longer.
   void begin_generation(node::Node& node, core::Generation generation);
+  /// The run has gone back to an earlier state: what was ordered will be done again, but for orders about the run as a
+  /// whole, which are not kept; whoever still asks for those is heard anew.
+  void go_back(node::Node& node, core::Generation generation);
 
   /// Meshes that are here, by hash.
   std::vector<std::uint64_t> meshes() { return mesh_reader_.meshes().hashes(); }
@@ -68,6 +71,8 @@ class CommandServer {
   void take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node);
   void reply_done(std::uint64_t request, core::Step step, std::optional<core::ObjectRef> object = {});
   void reply_all_done(core::Step step);
+  void take_over(node::Node& node, core::Generation generation);
+  void tell_again(const core::Order& order, const node::Node& node);
   void refuse(std::uint64_t request, std::string why);
   bool is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run);
   void wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run);
@@ -85,7 +90,8 @@ class CommandServer {
   dds::SceneAdditions additions_;
   bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;
-  std::map<std::uint64_t, Due> due_;  ///< requests to report as done at their step
+  std::map<std::uint64_t, Due> due_;     ///< requests to report as done at their step
+  std::vector<std::uint64_t> not_kept_;  ///< requests of orders about the run as a whole
   std::optional<double> wanted_rate_;
 };
 

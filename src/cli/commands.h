@@ -15,6 +15,7 @@ using Action = std::function<int()>;
 void add_check(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_node(CLI::App& program, Action& action);
+void add_spare(CLI::App& program, Action& action);
 void add_launch(CLI::App& program, Action& action);
 void add_top(CLI::App& program, Action& action);
 void add_echo(CLI::App& program, Action& action);

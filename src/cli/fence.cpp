@@ -17,6 +17,13 @@ constexpr auto kLookEvery = 50ms;
 Fence::Fence(const FenceSettings& settings, Senses senses)
     : settings_(settings), senses_(std::move(senses)), quorum_(settings.region, settings.regions) {}
 
+void Fence::begin_anew(bool recovers) {
+  settings_.recovers = recovers;
+  quorum_ = node::Quorum(settings_.region, settings_.regions);
+  standing_ = node::Standing::kGoOn;
+  dead_ = 0;
+}
+
 bool Fence::open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now) {
   if (closed() || settings_.regions == 1) return !closed();
   reason_ = why_stop(held_for_dead, dead, now);
@@ -30,7 +37,7 @@ std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId
     return fmt::format("a neighbour holds region {} for dead; its bodies have other hosts", self);
   }
   // A host that stands still as a whole holds all nodes up alike: then nobody is lost.
-  if (!dead.empty() && senses_.was_held_up()) {
+  if (!dead.empty() && !settings_.recovers && senses_.was_held_up()) {
     return fmt::format(
         "region {} was held up for longer than its participant's lease, and has lost neighbours since: they have given "
         "it up",

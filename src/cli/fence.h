@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "node/quorum.h"
@@ -18,6 +19,7 @@ struct FenceSettings {
   std::uint32_t regions = 1;  ///< of the run
   bool can_be_cut = false;    ///< the others may be on other hosts
   bool never_waits = false;   ///< free_running
+  bool recovers = false;      ///< nobody goes on without a node unless another process has taken its region over
 };
 
 class Fence {
@@ -37,6 +39,10 @@ class Fence {
   bool open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
   /// For good: the node has to stop.
   bool closed() const { return !reason_.empty(); }
+  /// `reason`: for people.
+  void close(std::string reason) { reason_ = std::move(reason); }
+  /// All regions have nodes again. With `recovers` or without, from now on.
+  void begin_anew(bool recovers);
   /// Why it is closed, for people.
   const std::string& reason() const { return reason_; }
 

@@ -57,6 +57,10 @@ void add_launch(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the nodes record");
   command->add_option("--start-time-out", arguments->options.start_time_out_s, "seconds to wait for all regions")
       ->check(CLI::Range(1, 3600));
+  command
+      ->add_option("--spares", arguments->options.spares,
+                   "processes that wait to take over the region of a node that dies; without, one is started then")
+      ->check(CLI::Range(0, 64));
   arguments->options.load.add_to(*command);
   arguments->options.save.add_to(*command);
   command->footer("Example:\n  aurasim launch demo --duration 30 --report out");

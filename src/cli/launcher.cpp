@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <utility>
 
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -21,6 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kShowEvery = 250ms;
 constexpr auto kSayThatWeWait = 2s;
+constexpr auto kSilent = 2s;       // beyond its lease: a busy machine may hold it up
+constexpr int kMostDeaths = 3;     // of one region's nodes in a row, at one place
 constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process twice
 
 }  // namespace
@@ -35,7 +38,9 @@ Launcher::~Launcher() {
   signal_all(SIGKILL);
   for (Child& child : children_) {
     if (child.running) ::waitpid(child.pid, nullptr, 0);
+    if (child.successor != 0) ::waitpid(child.successor, nullptr, 0);
   }
+  for (const pid_t spare : spares_) ::waitpid(spare, nullptr, 0);
 }
 
 ExitCode Launcher::run() {
@@ -43,34 +48,33 @@ ExitCode Launcher::run() {
   start_nodes();
   if (!options_.headless || !options_.recording.empty()) viewer_.start(options_.files, options_.recording);
   auto next_show = Clock::now();
-  bool stopping = false;
   while (any_running()) {
     control_.wait(20ms);
     look_at_nodes();
+    hear_commands();
+    end_silent_nodes();
     collect_exits();
-    if (has_to_stop() && !stopping) {
-      stopping = true;
+    if (!stopping_) keep_spares();
+    if (has_to_stop() && !stopping_) {
+      stopping_ = true;
       stop_all();
     }
     if (Clock::now() < next_show) continue;
     next_show = Clock::now() + (view_.is_terminal() ? kShowEvery : 4 * kShowEvery);
     show();
   }
+  for (const pid_t spare : spares_) ::kill(spare, SIGTERM);
+  for (const pid_t spare : spares_) ::waitpid(spare, nullptr, 0);
+  spares_.clear();
   show();
   viewer_.stop();
   return conclude();
 }
 
-std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
-  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(),
-                                    "node",
-                                    options_.files.file,
-                                    "--region",
-                                    std::to_string(region),
-                                    "--run",
-                                    std::to_string(run_),
-                                    "--start-time-out",
-                                    std::to_string(options_.start_time_out_s)};
+/// What nodes and spares are told alike.
+std::vector<std::string> Launcher::words_for(const char* command) const {
+  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(), command, options_.files.file,
+                                    "--run", std::to_string(run_)};
   for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
   words.insert(words.end(),
                {"--set", "physics.threads=" + std::to_string(threads_of(launch_, launch_.regions.size()))});
@@ -80,6 +84,14 @@ std::vector<std::string> Launcher::arguments_of(std::uint32_t region) const {
                {"--saves", options_.save.folder, "--save-every", fmt::format("{}", options_.save.every_s)});
   if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
   if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
+  return words;
+}
+
+std::vector<std::string> Launcher::arguments_of(std::uint32_t region, Start start) const {
+  std::vector<std::string> words = words_for("node");
+  words.insert(words.end(),
+               {"--region", std::to_string(region), "--start-time-out", std::to_string(options_.start_time_out_s)});
+  if (start == Start::kTakeOver) words.emplace_back("--take-over");
   return words;
 }
 
@@ -96,12 +108,36 @@ void Launcher::start_nodes() {
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
     Child child;
     child.region = core::RegionId{r};
-    child.pid = start_node(r);
+    child.pid = start_node(r, Start::kWithOthers);
     children_.push_back(child);
   }
+  keep_spares();
 }
 
-pid_t Launcher::start_node(std::uint32_t region) const { return spawn(arguments_of(region)); }
+void Launcher::keep_spares() {
+  std::erase_if(spares_, [](pid_t spare) { return ::waitpid(spare, nullptr, WNOHANG) == spare; });
+  while (std::cmp_less(spares_.size(), options_.spares)) spares_.push_back(spawn(words_for("spare")));
+}
+
+/// A spare becomes the node of its region; or a new process.
+pid_t Launcher::successor_of(const Child& child) {
+  for (const dds::Status& spare : control_.spares()) {
+    const auto ours = std::ranges::find(spares_, static_cast<pid_t>(spare.pid));
+    if (ours == spares_.end()) continue;
+    dds::RunCommand take;
+    take.kind = dds::RunCommandKind::kTake;
+    take.run = run_;
+    take.region = child.region;
+    take.process = spare.process;
+    control_.send(take);
+    const pid_t pid = *ours;
+    spares_.erase(ours);
+    return pid;
+  }
+  return start_node(core::value_of(child.region), Start::kTakeOver);
+}
+
+pid_t Launcher::start_node(std::uint32_t region, Start start) const { return spawn(arguments_of(region, start)); }
 
 void Launcher::look_at_nodes() {
   for (const auto& [region, seen] : control_.statuses()) {
@@ -111,34 +147,135 @@ void Launcher::look_at_nodes() {
   }
 }
 
-void Launcher::collect_exits() {
-  for (Child& child : children_) {
-    int status = 0;
-    if (!child.running || ::waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
-    child.running = false;
-    child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    if (child.told_to_end && child.exit_code == 128 + SIGTERM) child.exit_code = 0;  // told before it could listen
-    const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
-    child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
-                 child.exit_code != static_cast<int>(ExitCode::kBroken);
-    if (child.died) {
-      spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
-                    has_begun_ ? "" : " before the run had begun: the others are ended");
+/// A node that is to leave gets a successor first.
+void Launcher::hear_commands() {
+  for (const dds::RunCommand& command : control_.take_commands()) {
+    if (command.kind != dds::RunCommandKind::kDrain || stopping_) continue;
+    for (Child& child : children_) {
+      const auto seen = control_.statuses().find(child.region);
+      const bool is_meant = seen != control_.statuses().end() && seen->second.status.process == command.process &&
+                            is_of(seen->second.status, child);
+      if (!is_meant || !child.running || child.successor != 0) continue;
+      child.successor = successor_of(child);
     }
-    // Without all of them the run cannot start: the others need not wait for their time-out.
-    cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
   }
 }
 
+/// One that hangs holds all others up; what takes its place must not meet it again.
+void Launcher::end_silent_nodes() {
+  const auto& statuses = control_.statuses();
+  const bool all_stand = std::ranges::any_of(statuses, [](const auto& entry) {
+    return !entry.second.lost && entry.second.status.state == dds::NodeState::kRecovering;
+  });
+  for (Child& child : children_) {
+    const auto seen = statuses.find(child.region);
+    const bool is_silent =
+        all_stand && child.running && seen != statuses.end() && seen->second.lost && is_of(seen->second.status, child);
+    if (!is_silent) {
+      child.lost_since.reset();
+    } else if (!child.lost_since) {
+      child.lost_since = Clock::now();
+    } else if (Clock::now() > *child.lost_since + kSilent) {
+      spdlog::error("the node of region {} shows no life: it is ended", core::value_of(child.region));
+      ::kill(child.pid, SIGKILL);
+    }
+  }
+}
+
+void Launcher::collect_exits() {
+  for (Child& child : children_) {
+    int status = 0;
+    if (child.successor != 0 && ::waitpid(child.successor, &status, WNOHANG) == child.successor) child.successor = 0;
+    if (!child.running || ::waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
+    note_exit(child, status);
+    if (child.successor != 0) {
+      if (!child.died) tell_lost(child);
+      child.pid = std::exchange(child.successor, 0);
+      child.running = true;
+      child.died = false;
+    } else if (can_be_replaced(child)) {
+      replace(child);
+    }
+  }
+}
+
+/// DDS would need a second to find out.
+void Launcher::tell_lost(const Child& child) {
+  const auto seen = control_.statuses().find(child.region);
+  if (seen == control_.statuses().end() || !is_of(seen->second.status, child)) return;
+  dds::RunCommand lost;
+  lost.kind = dds::RunCommandKind::kLost;
+  lost.run = run_;
+  lost.region = child.region;
+  lost.process = seen->second.status.process;
+  control_.hold_for_dead(lost.process);
+  control_.send(lost);
+}
+
+bool Launcher::is_of(const dds::Status& status, const Child& child) {
+  return status.pid == static_cast<std::uint32_t>(child.pid);
+}
+
+void Launcher::note_exit(Child& child, int status) {
+  child.running = false;
+  child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (child.told_to_end && child.exit_code == 128 + SIGTERM) child.exit_code = 0;  // told before it could listen
+  const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
+  child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
+               child.exit_code != static_cast<int>(ExitCode::kBroken);
+  if (child.died) {
+    spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
+                  has_begun_ ? "" : " before the run had begun: the others are ended");
+    tell_lost(child);
+    must_not_go_on_ = launch_.survival.on_death == config::OnDeath::kStop;
+  }
+  // Without all of them the run cannot start: the others need not wait for their time-out.
+  cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
+}
+
+/// The others wait for somebody who takes its region over.
+bool Launcher::can_be_replaced(const Child& child) const {
+  const bool all_wait = std::ranges::all_of(
+      children_, [](const Child& other) { return other.running || other.died; });  // and nobody has finished
+  return child.died && has_begun_ && all_wait && !stopping_ && !has_to_stop() && children_.size() > 1 &&
+         launch_.survival.on_death == config::OnDeath::kRecover;
+}
+
+void Launcher::replace(Child& child) {
+  const core::Step step = farthest_step();
+  child.deaths = step > child.died_at ? 1 : child.deaths + 1;
+  child.died_at = std::max(child.died_at, step);
+  if (child.deaths > kMostDeaths) {
+    spdlog::error(
+        "the node of region {} has died {} times before the run came beyond state {}: the others go on "
+        "without it in {} s",
+        core::value_of(child.region), child.deaths, child.died_at, launch_.survival.patience_s);
+    return;
+  }
+  child.pid = successor_of(child);
+  child.running = true;
+  child.died = false;
+  spdlog::info("the node of region {} is started again: process {}", core::value_of(child.region), child.pid);
+}
+
+/// As far as the nodes have said.
+core::Step Launcher::farthest_step() {
+  core::Step step = 0;
+  for (const auto& [region, seen] : control_.statuses()) step = std::max(step, seen.status.step);
+  return step;
+}
+
 /// Whoever asks for it, who hung up, and a run that cannot begin.
-bool Launcher::has_to_stop() const { return stop_requested() || !is_seen_ || cannot_begin_; }
+bool Launcher::has_to_stop() const { return stop_requested() || !is_seen_ || cannot_begin_ || must_not_go_on_; }
 
 bool Launcher::any_running() const {
   return std::any_of(children_.begin(), children_.end(), [](const Child& c) { return c.running; });
 }
 
 void Launcher::signal_all(int signal) {
+  for (const pid_t spare : spares_) ::kill(spare, signal);
   for (Child& child : children_) {
+    if (child.successor != 0) ::kill(child.successor, signal);
     if (!child.running) continue;
     child.told_to_end = child.told_to_end || signal == SIGTERM;
     ::kill(child.pid, signal);

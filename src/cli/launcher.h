@@ -1,6 +1,7 @@
 // One process per region on this host, watched until the last one ends.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,6 +30,7 @@ struct LaunchOptions {
   LoadArguments load;
   SaveArguments save;
   int start_time_out_s = 30;
+  int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
 };
 
 class Launcher {
@@ -46,14 +48,31 @@ class Launcher {
     bool running = true;
     int exit_code = 0;  ///< 128 + signal when it was killed
     bool told_to_end = false;
-    bool died = false;  ///< ended before the run did
+    bool died = false;                                                ///< ended before the run did
+    std::optional<std::chrono::steady_clock::time_point> lost_since;  ///< while others wait for somebody in its place
+    pid_t successor = 0;  ///< process that takes its region over when it leaves; 0: it does not
+    /// Deaths in a row of its region's nodes before the run has come further than it was then.
+    int deaths = 0;
+    core::Step died_at = 0;
   };
 
   void take_report_folder();
   void start_nodes();
-  pid_t start_node(std::uint32_t region) const;
-  std::vector<std::string> arguments_of(std::uint32_t region) const;
+  enum class Start : std::uint8_t { kWithOthers, kTakeOver };
+  pid_t start_node(std::uint32_t region, Start start) const;
+  std::vector<std::string> arguments_of(std::uint32_t region, Start start) const;
+  void hear_commands();
+  void end_silent_nodes();
   void collect_exits();
+  void tell_lost(const Child& child);
+  static bool is_of(const dds::Status& status, const Child& child);
+  void note_exit(Child& child, int status);
+  bool can_be_replaced(const Child& child) const;
+  void replace(Child& child);
+  pid_t successor_of(const Child& child);
+  std::vector<std::string> words_for(const char* command) const;
+  void keep_spares();
+  core::Step farthest_step();
   void look_at_nodes();
   bool has_to_stop() const;
   bool any_running() const;
@@ -73,9 +92,12 @@ class Launcher {
   TerminalView view_;
   std::optional<FolderLock> report_folder_;
   std::vector<Child> children_;
+  std::vector<pid_t> spares_;
   bool has_begun_ = false;     ///< a node has shown that all have met
   bool cannot_begin_ = false;  ///< a node is missing, and the others would wait for it
-  bool is_seen_ = true;        ///< the table has a reader
+  bool stopping_ = false;
+  bool must_not_go_on_ = false;  ///< a node has died, and the launch file says stop
+  bool is_seen_ = true;          ///< the table has a reader
   ViewerProcess viewer_;
 };
 

@@ -1,7 +1,6 @@
 #include <cmath>
-#include <fstream>
 #include <memory>
-#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -14,6 +13,7 @@
 #include "cli/run_length.h"
 #include "cli/saved_world.h"
 #include "cli/scene_warnings.h"
+#include "cli/spawn.h"
 #include "cli/stop_signal.h"
 #include "physics/region_world.h"
 
@@ -29,25 +29,15 @@ struct NodeArguments {
   LoadArguments load;
   SaveArguments save;
   int start_time_out_s = 30;
+  bool takes_over = false;
 };
-
-std::vector<std::string> own_command_line() {
-  std::ifstream file("/proc/self/cmdline");
-  std::vector<std::string> words;
-  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
-  return words;
-}
 
 /// The other precision is another program with the same arguments; does not return if that is the one wanted.
 void become_the_right_precision(const config::Launch& launch) {
   if (launch.physics.precision == physics::RegionWorld::precision()) return;
-  const std::string program = executable_for(launch.physics.precision).string();
   std::vector<std::string> words = own_command_line();
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  ::execv(program.c_str(), arguments.data());
-  throw std::runtime_error(fmt::format("cannot start {}", program));
+  words[0] = executable_for(launch.physics.precision).string();
+  become(std::move(words));
 }
 
 int run_node(const NodeArguments& arguments) {
@@ -59,7 +49,7 @@ int run_node(const NodeArguments& arguments) {
   become_the_right_precision(launch);
   spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
   // Once in a run; `launch` starts this node as well.
-  if (arguments.region == 0) {
+  if (arguments.region == 0 && !arguments.takes_over) {
     for (const std::string& text : scene_warnings(launch)) spdlog::warn("{}", text);
   }
   catch_stop_signals();
@@ -72,6 +62,7 @@ int run_node(const NodeArguments& arguments) {
   options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
+  options.takes_over = arguments.takes_over;
   NodeProcess process(launch, options);
   leave_after([&process] { return process.run(); });
 }
@@ -89,6 +80,8 @@ void add_node(CLI::App& program, Action& action) {
   command->add_option("--report", arguments->report, "folder for what the node records");
   command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
       ->check(CLI::Range(1, 3600));
+  command->add_flag("--take-over", arguments->takes_over,
+                    "the run is there, and its node of this region has died: go on with it");
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);
   command->footer("Example:\n  aurasim node demo --region 0 --report out");

@@ -11,10 +11,6 @@ constexpr auto kStopSurely = 1600ms;       // whoever shows no life then is kill
 constexpr auto kSilence = 3s;              // no life: lost, and nothing heard for so long
 constexpr auto kPatienceWithEnding = 30s;  // with whoever does
 
-bool has_ended(const dds::SeenStatus& seen) {
-  return seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
-}
-
 }  // namespace
 
 Urge NodeEnding::urge(Clock::time_point now, const dds::SeenStatus* seen) {
@@ -28,11 +24,11 @@ bool NodeEnding::is_given_up(Clock::time_point now, const dds::SeenStatus* seen)
   const auto waited = now - begin_;
   if (waited > kPatienceWithEnding) return true;
   if (waited <= kStopSurely) return false;
-  return seen == nullptr || (!has_ended(*seen) && seen->lost && now - seen->seen > kSilence);
+  return seen == nullptr || (!seen->has_ended() && seen->lost && now - seen->seen > kSilence);
 }
 
 bool NodeEnding::is_stuck(Clock::time_point now, const dds::SeenStatus* seen) {
-  if (seen != nullptr && has_ended(*seen)) return false;
+  if (seen != nullptr && seen->has_ended()) return false;
   if (seen != nullptr && seen->status.step > step_) {
     step_ = seen->status.step;
     moved_ = now;

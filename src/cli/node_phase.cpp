@@ -14,17 +14,19 @@ using Row = std::array<std::optional<NodePhase>, kNodeEvents>;
 
 // clang-format off
 constexpr std::array<Row, kNodePhases> kTable = {{
-    //             free         met          started      held        goes on      changes       stands       reset        last          settled   refusal      fence
-    /* listening */ {P::kMeeting, no,          no,          no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, no},
-    /* meeting   */ {no,          P::kWaiting, no,          no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, no},
-    /* waiting   */ {no,          no,          P::kRunning, no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, no},
-    /* running   */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced},
-    /* paused    */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced},
-    /* changing  */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, no},
-    /* lingering */ {no,          no,          no,          no,         no,          no,           no,          no,          no,            P::kDone, no,          no},
-    /* done      */ {},
-    /* refused   */ {},
-    /* fenced    */ {},
+    //               free         met          started      held        goes on      changes       stands       reset        last          settled   refusal      fence       death           joins
+    /* listening  */ {P::kMeeting, no,          no,          no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, no,         no,             P::kSpare},
+    /* meeting    */ {no,          P::kWaiting, no,          no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, no,         no,             no},
+    /* waiting    */ {no,          no,          P::kRunning, no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, P::kFenced, P::kRecovering, P::kSpare},
+    /* running    */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
+    /* paused     */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
+    /* changing   */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, no,         P::kRecovering, no},
+    /* lingering  */ {no,          no,          no,          no,         no,          no,           no,          no,          no,            P::kDone, no,          no,         P::kRecovering, no},
+    /* done       */ {},
+    /* refused    */ {},
+    /* fenced     */ {},
+    /* recovering */ {no,          no,          no,          no,         P::kRunning, no,           P::kWaiting, no,          P::kLingering, no,       P::kRefused, P::kFenced, P::kRecovering, no},
+    /* spare      */ {no,          no,          no,          no,         no,          no,           P::kWaiting, no,          P::kDone,      no,       P::kRefused, P::kFenced, no,             P::kSpare},
 }};
 // clang-format on
 
@@ -53,19 +55,25 @@ std::optional<dds::NodeState> state_of(NodePhase phase) {
     case NodePhase::kRefused:
     case NodePhase::kFenced:
       return dds::NodeState::kFailed;
+    case NodePhase::kRecovering:
+      return dds::NodeState::kRecovering;
+    case NodePhase::kSpare:
+      return dds::NodeState::kSpare;
   }
   return {};
 }
 
 const char* name_of(NodePhase phase) {
-  static constexpr std::array<const char*, kNodePhases> kNames = {
-      "listening", "meeting", "waiting", "running", "paused", "changing", "lingering", "done", "refused", "fenced"};
+  static constexpr std::array<const char*, kNodePhases> kNames = {"listening", "meeting",  "waiting",    "running",
+                                                                  "paused",    "changing", "lingering",  "done",
+                                                                  "refused",   "fenced",   "recovering", "spare"};
   return kNames.at(static_cast<std::size_t>(phase));
 }
 
 const char* name_of(NodeEvent event) {
-  static constexpr std::array<const char*, kNodeEvents> kNames = {
-      "free", "met", "started", "held", "goes on", "changes", "stands", "reset", "last", "settled", "refusal", "fence"};
+  static constexpr std::array<const char*, kNodeEvents> kNames = {"free",    "met",    "started", "held", "goes on",
+                                                                  "changes", "stands", "reset",   "last", "settled",
+                                                                  "refusal", "fence",  "death",   "joins"};
   return kNames.at(static_cast<std::size_t>(event));
 }
 

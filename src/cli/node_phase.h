@@ -10,18 +10,20 @@
 namespace aurasim::cli {
 
 enum class NodePhase : std::uint8_t {
-  kListening,  ///< has joined the domain and says nothing yet: is it free?
-  kMeeting,    ///< has published who it is and waits for its neighbours
-  kWaiting,    ///< is ready for the start, which region 0 gives
-  kRunning,    ///< computes, or waits for what the next state needs
-  kPaused,     ///< stands in a state until it is told to go on
-  kChanging,   ///< stands until all do: the run gets another scene or other regions
-  kLingering,  ///< has computed its last state; the others may still need what it has published
-  kDone,       ///< has ended well
-  kRefused,    ///< could not begin, or not go on: another run is here, or somebody is missing
-  kFenced,     ///< the others may go on without it (fence.h)
+  kListening,   ///< has joined the domain and says nothing yet: is it free?
+  kMeeting,     ///< has published who it is and waits for its neighbours
+  kWaiting,     ///< is ready for the start, which region 0 gives
+  kRunning,     ///< computes, or waits for what the next state needs
+  kPaused,      ///< stands in a state until it is told to go on
+  kChanging,    ///< stands until all do: the run gets another scene or other regions
+  kLingering,   ///< has computed its last state; the others may still need what it has published
+  kDone,        ///< has ended well
+  kRefused,     ///< could not begin, or not go on: another run is here, or somebody is missing
+  kFenced,      ///< the others may go on without it (fence.h)
+  kRecovering,  ///< a node has died: stands until all go back to a state that is kept
+  kSpare,       ///< has no world yet: waits to take a region over
 };
-inline constexpr std::size_t kNodePhases = 10;
+inline constexpr std::size_t kNodePhases = 12;
 
 enum class NodeEvent : std::uint8_t {
   kFree,     ///< nobody else is in the domain
@@ -36,8 +38,10 @@ enum class NodeEvent : std::uint8_t {
   kSettled,  ///< nobody needs anything of it any more
   kRefusal,
   kFence,
+  kDeath,  ///< a node of the run has died
+  kJoins,  ///< a run that has lost a node
 };
-inline constexpr std::size_t kNodeEvents = 12;
+inline constexpr std::size_t kNodeEvents = 14;
 
 /// Nothing: that cannot happen in this phase.
 std::optional<NodePhase> next_phase(NodePhase phase, NodeEvent event);

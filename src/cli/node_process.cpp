@@ -13,6 +13,7 @@
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
 #include "core/command.h"
+#include "dds/random_id.h"
 
 namespace aurasim::cli {
 namespace {
@@ -62,6 +63,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
   status_.region = options.region;
   status_.run = options.run;
   status_.pid = static_cast<std::uint32_t>(::getpid());
+  status_.process = dds::draw_id();
   status_.map_version = launch.regions.version();
   status_.agreement = launch.agreement();
   status_.footprint = launch.regions.region(options.region);
@@ -75,13 +77,14 @@ FenceSettings NodeProcess::fence_settings() const {
   settings.regions = static_cast<std::uint32_t>(launch_.regions.size());
   settings.can_be_cut = !participant_.stays_on_this_host();
   settings.never_waits = launch_.time.sync == core::SyncMode::kFreeRunning;
+  settings.recovers = recovers();
   return settings;
 }
 
 std::map<core::RegionId, node::PeerSign> NodeProcess::peer_signs() {
   std::map<core::RegionId, node::PeerSign> signs;
   for (const auto& [region, seen] : control_.statuses()) {
-    const bool left = seen.status.state == dds::NodeState::kFinished || seen.status.state == dds::NodeState::kFailed;
+    const bool left = seen.dead || seen.has_ended();
     if (region != options_.region) signs[region] = {seen.lost, left, seen.seen};
   }
   return signs;
@@ -108,19 +111,36 @@ ExitCode NodeProcess::run() {
 }
 
 ExitCode NodeProcess::meet_and_run() {
+  if (options_.takes_over) return take_over();
   if (!domain_is_free()) return not_begun();
   enter(NodeEvent::kFree);
   dds::WorldMap map = world_map(launch_);
   map.from_step = first_step();
   control_.publish_map(map);
   publish();
-  transport_.emplace(participant_, neighbour_transport(launch_, options_.region));
+  transport_.emplace(participant_, transport_settings());
   observers_.emplace(launch_, participant_, options_.region);
   command_server_.emplace(launch_, participant_, options_.region, options_.saves);
+  served_map_ = launch_.regions.version();
+  checkpoints_.emplace(participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
   compare_clocks();
   begin_generation(start_->generation, *start_);
   return run_steps();
+}
+
+/// The others stand and wait for somebody.
+ExitCode NodeProcess::take_over() {
+  checkpoints_.emplace(participant_, options_.region);
+  recover("takes the region over");
+  if (fence_.closed()) return refuse(fence_.reason());
+  return node_ ? run_steps() : not_begun();
+}
+
+dds::TransportSettings NodeProcess::transport_settings() const {
+  dds::TransportSettings settings = neighbour_transport(launch_, options_.region);
+  settings.life = life_;
+  return settings;
 }
 
 ExitCode NodeProcess::refuse(const std::string& why) {
@@ -145,6 +165,12 @@ void NodeProcess::enter(NodeEvent event) {
   phase_ = *next;
 }
 
+std::unique_ptr<node::Node> NodeProcess::make_node() {
+  node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
+  setup.hash_states = options_.report.has_value();
+  return std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
+}
+
 void NodeProcess::begin_generation(core::Generation generation, const dds::RunCommand& begin) {
   core::Inbox mail = node_ ? std::move(node_->mail()) : core::Inbox{};
   if (node_) {  // who is dead stays dead: nobody will hear of it once more
@@ -152,27 +178,34 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
       mail.peers.push_back({dead, core::PeerChange::kLost});
     }
   }
-  generation_ = generation;
-  node::NodeSetup setup = node_setup(launch_, options_.region, generation);
-  setup.hash_states = options_.report.has_value();
-  node_ = std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
+  generation_ = status_.era = generation;
+  checkpoints_->begin_era(generation);
+  node_ = make_node();
   node_->accept_early_mail(std::move(mail));
   command_server_->begin_generation(*node_, generation);
-  run_orders_.clear();
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
-  if (options_.report) recorder_ = std::make_unique<node::Recorder>(*options_.report, options_.region);
+  if (options_.report) recorder_.emplace(*options_.report, options_.region);
   pacer_.set_epoch(first_step(), begin.epoch_ns, begin.clock_ahead, node::read_clocks());
   hold_at_.reset();
+  paused_ = {};
+  begin_with(options_.world ? node_->start(*options_.world) : node_->start());
+  began_ = std::max(pacer_.due(first_step()), Clock::now());
+}
+
+/// The first state of a generation is there.
+void NodeProcess::begin_with(const node::StepReport& report) {
+  run_orders_.clear();
   hurry_until_ = 0;
   refusals_noted_ = 0;
   frame_times_.clear();
-  paused_ = {};
-  const node::StepReport& report = options_.world ? node_->start(*options_.world) : node_->start();
-  observers_->begin_generation(generation);
+  checkpoint_ = recorded_ = secured_ = 0;
+  if (launch_.regions.size() > 1) checkpoints_->use_keeper(keeper());
+  observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);
   record(node_->confirmed());
   command_server_->after_step(report);
-  began_ = std::max(pacer_.due(first_step()), Clock::now());
+  plan_checkpoint();
+  for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
 bool NodeProcess::finished() const {
@@ -181,7 +214,7 @@ bool NodeProcess::finished() const {
 
 /// The state is there, and nothing can come to question it.
 bool NodeProcess::has_reached(core::Step step) const {
-  return node_->current_step() >= step && node_->confirmed_step() >= step;
+  return node_ && node_->current_step() >= step && node_->confirmed_step() >= step;
 }
 
 /// The next state in which the run ends or changes, as far as it is known.
@@ -195,6 +228,7 @@ void NodeProcess::keep_the_end() {
 void NodeProcess::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     note_faults(report);
+    if (!report.put_back_from) recorded_ = std::max(recorded_, report.step);
     const auto times = frame_times_.find(report.step);
     if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : node::FrameTimes{});
     if (times != frame_times_.end() && !report.put_back_from) frame_times_.erase(times);
@@ -202,15 +236,32 @@ void NodeProcess::record(std::span<const node::StepReport> reports) {
 }
 
 ExitCode NodeProcess::run_steps() {
-  while (!finished()) {
+  for (;;) {
+    try {
+      run_until_end();
+      return drains_ && may_leave() ? leave_to_successor() : end();
+    } catch (const SomebodyDied& died) {
+      recover(died.what());
+    }
+  }
+}
+
+void NodeProcess::run_until_end() {
+  while (!finished() && !(drains_ && may_leave())) {
     execute_commands();
+    look_for_deaths();
     serve_clients();
     save_parts();
     reset_if_due();
     change_if_due();
     if (!wait_until_due()) continue;
+    look_for_deaths();
     compute_step();
+    plan_checkpoint();
   }
+}
+
+ExitCode NodeProcess::end() {
   const double factor = real_time_factor();
   const bool fenced = fence_.closed();
   if (fenced) spdlog::error("{}", fence_.reason());
@@ -223,7 +274,11 @@ ExitCode NodeProcess::run_steps() {
   const core::Step last = stop_at_ && !fenced && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
   record(node_->finish(last));
   if (recorder_ && !fenced && !node_->settled()) recorder_->write_settling(node_->settle());
-  if (recorder_) recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead});
+  const dds::TransportCounters& sent = transport_->counters();
+  const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
+  if (recorder_) {
+    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes()});
+  }
   if (!fenced) enter(NodeEvent::kSettled);
   if (fenced) return ExitCode::kFenced;
   return broken_bodies_ > 0 ? ExitCode::kBroken : ExitCode::kOk;
@@ -261,8 +316,11 @@ bool NodeProcess::wait_until_due() {
 }
 
 void NodeProcess::compute_step() {
-  const auto died = [](const auto& seen) { return seen.second.lost; };
-  if (std::ranges::any_of(control_.statuses(), died)) node_->give_up_redo();
+  // Who has died otherwise is waited for.
+  const auto is_gone = [this](const auto& entry) {
+    return entry.second.lost && (!recovers() || entry.second.has_ended());
+  };
+  if (std::ranges::any_of(control_.statuses(), is_gone)) node_->give_up_redo();
   const auto begin = Clock::now();
   keep_the_end();
   const node::StepReport& report = node_->step();
@@ -284,23 +342,6 @@ void NodeProcess::compute_step() {
   note(report, frame_ms);
   publish_running();
   apply_orders();
-}
-
-/// Written beside the run. Every node says to whoever has asked for it that it has.
-void NodeProcess::save_parts() {
-  for (core::WorldCut& part : node_->take_saved()) saves_.write(std::move(part), launch_);
-  for (const PartWriter::Written& written : saves_.take_written()) {
-    if (!written.error.empty()) spdlog::error("state {} was not saved: {}", written.step, written.error);
-    if (written.request != 0) command_server_->reply_saved(written);
-  }
-}
-
-/// On the lead. What is asked for by nobody is called by its state.
-void NodeProcess::save_regularly() {
-  const core::Step due = std::max(saved_last_, first_step()) + options_.save_every;
-  if (options_.save_every == 0 || node_->current_step() < due) return;
-  saved_last_ = node_->protocol().earliest_effect();
-  node_->order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
 /// All nodes do so after the same state. Observers stay with what they have seen until the run is there again.
@@ -344,6 +385,8 @@ void NodeProcess::linger() {
     return running && !stop_requested() && Clock::now() < moved + kPatienceWithRunners;
   };
   while (!all_done() && (Clock::now() < begin + kLinger || others_run())) {
+    execute_commands();
+    look_for_deaths();
     publish();
     control_.wait(10ms);
   }

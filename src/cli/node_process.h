@@ -8,9 +8,11 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "cli/checkpoints.h"
 #include "cli/command_server.h"
 #include "cli/exit_code.h"
 #include "cli/fence.h"
@@ -36,10 +38,17 @@ struct NodeOptions {
   std::shared_ptr<const core::WorldCut> world;  ///< saved: the run goes on from it, and comes back to it when reset
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
+  bool takes_over = false;                      ///< a run that goes on: its node of this region has died
 };
 
 /// Between a region and those that have to hear of it.
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
+
+/// What all were about to do together cannot be done: all go back to a state that is kept.
+class SomebodyDied : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class NodeProcess {
  public:
@@ -57,6 +66,7 @@ class NodeProcess {
   std::map<core::RegionId, node::PeerSign> peer_signs();
   bool fence_is_open();
   ExitCode meet_and_run();
+  ExitCode take_over();
   bool domain_is_free();
   bool meet_neighbours();
   bool another_run_is_here();
@@ -67,7 +77,12 @@ class NodeProcess {
   bool wait_for_start();
   /// `begin`: the command that names when.
   void begin_generation(core::Generation generation, const dds::RunCommand& begin);
+  std::unique_ptr<node::Node> make_node();
+  void begin_with(const node::StepReport& report);
+  dds::TransportSettings transport_settings() const;
   ExitCode run_steps();
+  void run_until_end();
+  ExitCode end();
   bool wait_until_due();
   std::chrono::nanoseconds time_until(core::Step step) const;
   void note_refusals();
@@ -78,6 +93,37 @@ class NodeProcess {
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
   void save_parts();
   void save_regularly();
+  cut::SavedWorld as_saved(core::WorldCut part) const;
+  void plan_checkpoint();
+  void keep_checkpoints();
+  bool recovers() const;
+  std::optional<std::string> death();
+  void look_for_deaths();
+  bool has_successor();
+  core::RegionId keeper() const;
+  bool may_leave();
+  ExitCode leave_to_successor();
+  void recover(const std::string& why);
+  void begin_to_recover();
+  bool agree_on_restore();
+  bool is_not_needed();
+  bool is_meant(core::RegionId region, const dds::Status& status) const;
+  std::vector<std::uint32_t> vacant_regions();
+  void go_on_without();
+  void call_spares();
+  void call_spare(core::RegionId region);
+  void hear_of_drain(const dds::RunCommand& drain);
+  void lead_recovery();
+  void hear_of_restore(const dds::RunCommand& restore);
+  void repeat_commands(const dds::RunCommand& restore);
+  void go_back(const dds::RunCommand& restore);
+  void take_map_of(const dds::RunCommand& restore);
+  void wait_in_recovery(std::chrono::steady_clock::time_point deadline, const char* for_what);
+  core::WorldCut gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
+  core::WorldCut decode_part(const std::string& octets) const;
+  void connect_again(const dds::RunCommand& restore);
+  void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+                      const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
   void change_rate(double rate);
   void apply_orders();
@@ -98,7 +144,7 @@ class NodeProcess {
   void record(std::span<const node::StepReport> reports);
   void note_redo(const node::StepReport& report);
   void linger();
-  dds::RunCommand with_clock_of_region_zero(dds::RunCommand start);
+  dds::RunCommand with_clock_of(core::RegionId region, dds::RunCommand command);
   void compare_clocks();
   void watch_the_clock();
   void watch_the_records();
@@ -121,9 +167,13 @@ class NodeProcess {
   std::optional<CommandServer> command_server_;  ///< likewise
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
-  core::Step saved_last_ = 0;  ///< state of the last save that nobody has asked for, on the lead
+  core::Step saved_last_ = 0;               ///< state of the last save that nobody has asked for, on the lead
+  std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
+  core::Step checkpoint_ = 0;               ///< the next state that is kept to be gone back to
+  core::Step recorded_ = 0;                 ///< state that all records have been given to `recorder_` of
+  core::Step secured_ = 0;                  ///< and that they are on disk of
   std::unique_ptr<node::Node> node_;
-  std::unique_ptr<node::Recorder> recorder_;
+  std::optional<node::Recorder> recorder_;
   node::Pacer pacer_;
   node::ClockWatch clock_watch_{node::read_clocks()};
   bool says_records_end_ = false;
@@ -135,6 +185,25 @@ class NodeProcess {
   std::optional<dds::RunCommand> start_;
   core::Generation waits_to_start_ = 0;  ///< the generation that a start command has to name
   std::optional<core::Order> change_;    ///< of the run as a whole, due now
+  struct BeforeChange {
+    config::Launch launch;
+    std::shared_ptr<const core::WorldCut> world;
+  };
+  std::optional<BeforeChange> before_change_;  ///< while one is under way
+  std::vector<dds::RunCommand> early_;         ///< of a generation that has not begun here
+  std::optional<dds::RunCommand> restore_;     ///< the newest
+  core::Generation restoring_ = 0;             ///< that a recovery is about to begin, or has begun
+  core::Generation life_ = 0;                  ///< with which the run went on after the last death
+  core::Generation life_of_node_ = 0;          ///< with which node_ has begun
+  std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
+  bool drains_ = false;                        ///< gives its region to another process as soon as there is one
+  std::optional<core::Step> successor_since_;  ///< state in which that one was first seen
+  bool goes_on_ = false;                       ///< without those who have died: nobody has taken their regions over
+  bool is_going_back_ = false;                 ///< all have agreed on restore_, and not all have begun
+  core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
+  std::chrono::steady_clock::time_point recovering_since_, idle_since_;
+  std::map<std::uint32_t, std::chrono::steady_clock::time_point> called_;  ///< regions that spares were called for
+  std::set<std::uint64_t> taken_;                                          ///< spares that were called
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;

@@ -1,6 +1,7 @@
 // What clients ask of a node, and the changes of a whole run while it runs: its rate, another scene, other regions. All
 // nodes come to a change after the same state.
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -32,7 +33,8 @@ class ChangeFailed : public std::runtime_error {
 
 /// What all regions say that they host.
 std::vector<node::Resident> take_census(const node::RepartitionSettings& settings, Clock::time_point deadline,
-                                        dds::Participant& participant, const node::Node& node) {
+                                        dds::Participant& participant, const node::Node& node,
+                                        const std::function<void()>& look_for_deaths) {
   dds::ObserverSettings watched;
   watched.map_version = settings.map->version();
   watched.region_count = static_cast<std::uint32_t>(settings.map->size());
@@ -43,6 +45,7 @@ std::vector<node::Resident> take_census(const node::RepartitionSettings& setting
     if (Clock::now() > deadline) {
       throw ChangeFailed(fmt::format("new regions: regions {} have not published what they host", census.silent()));
     }
+    look_for_deaths();
     reader.wait(kRound);
     for (const core::Replica& replica : reader.take()) census.accept(replica);
   }
@@ -54,12 +57,20 @@ std::vector<node::Resident> take_census(const node::RepartitionSettings& setting
 void NodeProcess::execute(const dds::RunCommand& command) {
   using Kind = dds::RunCommandKind;
   if (command.kind == Kind::kStart) {
-    if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of_region_zero(command);
+    if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of(core::RegionId{0}, command);
     return;
   }
+  if (command.kind == Kind::kLost) return control_.hold_for_dead(command.process);
+  if (command.kind == Kind::kRestore) return hear_of_restore(command);
+  if (command.kind == Kind::kDrain) return hear_of_drain(command);
+  if (command.generation > generation_ && command.generation == restoring_) early_.push_back(command);
   if (command.generation != generation_ || !node_) return;  // for a run that is over
   switch (command.kind) {
     case Kind::kStart:
+    case Kind::kLost:
+    case Kind::kRestore:
+    case Kind::kDrain:
+    case Kind::kTake:
       break;
     case Kind::kPause:
       hold_at_ = command.at_step;
@@ -165,9 +176,11 @@ void NodeProcess::apply_orders() {
 void NodeProcess::change_if_due() {
   if (!change_) return;
   const core::Order order = *std::exchange(change_, std::nullopt);
+  before_change_ = BeforeChange{launch_, options_.world};
   if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
   if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
   if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
+  before_change_.reset();
 }
 
 /// Bodies of the old scene are forgotten; the regions stay.
@@ -194,7 +207,7 @@ void NodeProcess::begin_anew() {
   map.from_step = first_step();
   control_.publish_map(map);  // first: observers read the new scene before its bodies come
   node_.reset();
-  connect_anew(neighbour_transport(launch_, options_.region));
+  connect_anew(transport_settings());
   begin_generation(waits_to_start_, *start_);
 }
 
@@ -212,6 +225,8 @@ void NodeProcess::wait_until_all_stand() {
     publish();
     const auto& statuses = control_.statuses();
     if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
+    execute_commands();
+    look_for_deaths();
     if (Clock::now() > deadline || stop_requested()) {
       throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
     }
@@ -224,6 +239,7 @@ void NodeProcess::settle_all() {
   if (node_->settled()) return;
   const auto deadline = Clock::now() + kPatienceWithOthers;
   while (!node_->ready_to_settle()) {
+    look_for_deaths();
     if (Clock::now() > deadline || stop_requested()) {
       throw ChangeFailed("new regions: a neighbour has not come to this state");
     }
@@ -241,6 +257,8 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
   while (!transport_->all_matched()) {
     if (Clock::now() > deadline) transport_->wait_until_matched(0ns);  // says who is missing
     if (stop_requested()) throw ChangeFailed("told to stop while the run changes");
+    execute_commands();
+    look_for_deaths();
     control_.wait(10ms);
   }
   generation_ = waits_to_start_;
@@ -251,6 +269,7 @@ void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
     publish();
     start_when_all_wait();
     execute_commands();
+    look_for_deaths();
     control_.wait(10ms);
   }
   enter(NodeEvent::kStarted);
@@ -265,10 +284,11 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
                                               &changed->regions};
   observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
   observers_->publish_census(*node_, settings.census);
-  const std::vector<core::Departure> departures =
-      node::find_new_hosts(settings, take_census(settings, deadline, participant_, *node_), *node_);
+  const std::vector<core::Departure> departures = node::find_new_hosts(
+      settings, take_census(settings, deadline, participant_, *node_, [this] { look_for_deaths(); }), *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
+  to_all.life = life_;
   to_all.neighbours.clear();
   for (std::uint32_t r = 0; r < changed->regions.size(); ++r) {
     if (core::RegionId{r} != options_.region) to_all.neighbours.push_back(core::RegionId{r});
@@ -279,6 +299,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   moved.step = node_->current_step();
   node::Exchange exchange(settings, departures, *transport_, *node_);
   while (!exchange.ready()) {
+    look_for_deaths();
     if (Clock::now() > deadline) throw ChangeFailed("new regions: not every region has sent its bodies");
     transport_->wait_for_arrival(kRound);
   }
@@ -294,10 +315,11 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   status_.map_version = launch_.regions.version();
   status_.footprint = launch_.regions.region(options_.region);
   waits_to_start_ = settings.census + 1;
-  connect_anew(neighbour_transport(launch_, options_.region));
+  connect_anew(transport_settings());
   const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
   observers_->begin_generation(generation_);
   command_server_->change_map(generation_, node_->current_step());
+  served_map_ = launch_.regions.version();
   control_.use_map(launch_.regions.version());
   refusals_noted_ = 0;
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);

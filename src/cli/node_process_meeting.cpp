@@ -148,10 +148,11 @@ void NodeProcess::name_the_dead() {
 
 /// A single message may have been long on its way, which looks like a clock that is behind; the fastest of the last
 /// statuses tells better.
-dds::RunCommand NodeProcess::with_clock_of_region_zero(dds::RunCommand start) {
-  const auto sender = control_.statuses().find(core::RegionId{0});
-  if (sender != control_.statuses().end()) start.clock_ahead = std::max(start.clock_ahead, sender->second.clock_ahead);
-  return start;
+dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunCommand command) {
+  const auto sender = control_.statuses().find(region);
+  if (sender == control_.statuses().end()) return command;
+  command.clock_ahead = std::max(command.clock_ahead, sender->second.clock_ahead);
+  return command;
 }
 
 /// Hosts whose clocks are wrong are named; the run does not depend on them.

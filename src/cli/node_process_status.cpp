@@ -63,8 +63,10 @@ void NodeProcess::publish(const std::string& text) {
   last_published_ = now;
   status_.state = state;
   status_.text = text;
-  status_.generation = generation_;
+  const bool stands = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
+  status_.generation = stands ? stands_in_ : generation_;
   status_.step = node_ ? node_->current_step() : 0;
+  if (checkpoints_) status_.parts = checkpoints_->parts();
   control_.publish_status(status_);
 }
 

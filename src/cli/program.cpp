@@ -71,6 +71,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_keys(*program, action);
   add_node(*program, action);
   add_launch(*program, action);
+  add_spare(*program, action);
   add_top(*program, action);
   add_echo(*program, action);
   add_cut(*program, action);

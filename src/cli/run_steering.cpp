@@ -108,6 +108,11 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
       return status.state == dds::NodeState::kFinished;
     case Kind::kRate:
       return status.rate == command.rate;
+    case Kind::kLost:
+    case Kind::kRestore:
+    case Kind::kDrain:
+    case Kind::kTake:
+      break;  // what nodes and launchers tell each other
   }
   return false;
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cinttypes>
+#include <cstdio>
 #include <system_error>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -64,6 +67,18 @@ const char* problem_with_save_name(const std::string& name) {
     return "a saved world's name has letters, digits, '.', '_' and '-', and does not begin with '.' or '-'";
   }
   return nullptr;
+}
+
+std::string newest_saved_world(const std::filesystem::path& folder) {
+  std::pair<core::Step, std::string> newest{-1, {}};
+  std::error_code no_folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, no_folder)) {
+    const std::string name = entry.path().filename().string();
+    core::Step step = 0;
+    if (std::sscanf(name.c_str(), "state-%" SCNd64 ".cut", &step) != 1) continue;
+    newest = std::max(newest, {step, (folder / fmt::format("state-{}.cut", step)).string()});
+  }
+  return newest.second;
 }
 
 void PartWriter::write(core::WorldCut part, const config::Launch& launch) {

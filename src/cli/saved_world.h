@@ -44,6 +44,10 @@ std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments,
 /// Null; or why a saved world may not be called so: it becomes a file's name on every node's host.
 const char* problem_with_save_name(const std::string& name);
 
+/// The file of the newest state that nodes have saved without being asked, as far as this host has parts of it; empty:
+/// there is none.
+std::string newest_saved_world(const std::filesystem::path& folder);
+
 /// Writes the parts of one region, beside the run.
 class PartWriter {
  public:

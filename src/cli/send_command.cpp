@@ -46,6 +46,7 @@ struct SendArguments {
   std::string save_file;
   std::uint64_t body = 0;
   std::uint32_t fixed = 0;
+  std::uint32_t region = 0;
   bool is_static = false;
   double radius_m = 0;
   double height_m = 0;
@@ -189,6 +190,34 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
   leave(0);
 }
 
+/// Done when another process computes the region, and nobody waits any more.
+[[noreturn]] void drain(const SendArguments& arguments, dds::ControlBus& control) {
+  const core::RegionId region{arguments.region};
+  const auto node = control.statuses().find(region);
+  if (node == control.statuses().end() || !node->second.is_live())
+    fail(fmt::format("there is no region {}", arguments.region));
+  dds::RunCommand command;
+  command.kind = Kind::kDrain;
+  command.region = region;
+  command.run = node->second.status.run;
+  command.process = node->second.status.process;
+  control.send(command);
+  const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
+  const auto computes = [](const auto& entry) {
+    const dds::NodeState state = entry.second.status.state;
+    return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
+  };
+  while (std::chrono::steady_clock::now() < deadline) {
+    control.wait(20ms);
+    const auto& statuses = control.statuses();
+    if (statuses.at(region).status.process == command.process || !std::ranges::all_of(statuses, computes)) continue;
+    const dds::Status& status = statuses.at(region).status;
+    fmt::print("drain: process {} has taken region {} over by step {}\n", status.pid, arguments.region, status.step);
+    leave(0);
+  }
+  fail("nobody has taken the region over: is there a spare, or a launcher?");
+}
+
 int send(const SendArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   dds::Participant participant(dds_settings(launch));
@@ -198,6 +227,7 @@ int send(const SendArguments& arguments) {
     fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
   }
   leave_after([&]() -> ExitCode {
+    if (arguments.what == "drain") drain(arguments, control);
     if (kSteering.contains(arguments.what)) steer(arguments, steering);
     carry(arguments, participant, control, launch.agreement());
   });
@@ -269,6 +299,7 @@ const std::map<std::string, std::string> kExamples = {
     {"rate", "--value 0.5"},
     {"scene", "--name tower"},
     {"regions", "--boxes -40 -40 0 0 0 -40 40 0 -40 0 0 40 0 0 40 40"},
+    {"drain", "2"},
     {"save", "world.cut"},
     {"load", "state-1200.cut"},
     {"ray", "--from 0 0 20 --to 0 0 0"}};
@@ -313,6 +344,8 @@ void add_send(CLI::App& program, Action& action) {
        [](CLI::App& c, SendArguments& a) {
          c.add_option("--boxes", a.boxes, "x0 y0 x1 y1 of each region, m")->required()->expected(4, 4096);
        }},
+      {"drain", "let a region's node leave: another process takes the region over",
+       [](CLI::App& c, SendArguments& a) { c.add_option("REGION", a.region, "whose node")->required(); }},
       {"save", "keep the world in a file",
        [](CLI::App& c, SendArguments& a) {
          c.add_option("WORLD", a.save_file, "the file; launch --load goes on from it")->required();

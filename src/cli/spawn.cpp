@@ -1,16 +1,38 @@
 #include "cli/spawn.h"
 
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
 
 #include <sys/prctl.h>
+#include <unistd.h>
 
 namespace aurasim::cli {
+namespace {
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+}  // namespace
+
+std::vector<std::string> own_command_line() {
+  std::ifstream file("/proc/self/cmdline");
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
+void become(std::vector<std::string> words) {
+  ::execv(words.at(0).c_str(), pointers_to(words).data());
+  throw std::runtime_error("cannot start " + words[0]);
+}
 
 pid_t spawn(std::vector<std::string> words, int output) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = pointers_to(words);
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) throw std::runtime_error("cannot start a process");

@@ -14,4 +14,9 @@ namespace aurasim::cli {
 /// std::runtime_error when no process can be started.
 pid_t spawn(std::vector<std::string> words, int output = STDOUT_FILENO);
 
+/// The words that this process was started with.
+std::vector<std::string> own_command_line();
+/// This process becomes the program `words[0]` with these arguments. Throws std::runtime_error if that fails.
+[[noreturn]] void become(std::vector<std::string> words);
+
 }  // namespace aurasim::cli

@@ -205,6 +205,8 @@ void add_settings(const Launch& launch, Digest& d) {
   d.add(launch.tolerances.frame_s);
   d.bytes(static_cast<std::uint64_t>(launch.aura.radius));
   d.add(launch.aura.uncertainty);
+  d.bytes(static_cast<std::uint64_t>(launch.survival.on_death));
+  d.bytes(static_cast<std::uint64_t>(launch.checkpoint_steps()));
 }
 
 void add_world(const Launch& launch, Digest& d) {

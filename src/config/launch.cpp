@@ -115,6 +115,11 @@ bool Launch::redoes() const {
   return on && regions.size() > 1;
 }
 
+core::Step Launch::checkpoint_steps() const {
+  if (survival.on_death != OnDeath::kRecover || regions.size() == 1) return 0;
+  return std::max<core::Step>(1, std::llround(survival.checkpoint_s * time.step_hz));
+}
+
 int Launch::lookahead() const {
   if (time.lookahead) return *time.lookahead;
   const double steps = (tolerances.frame_s + tolerances.latency_s) * time.step_hz;

@@ -21,6 +21,7 @@ enum class Pace { kWall, kNone };
 enum class Origin { kWorld, kRegion };
 /// kAuto: where the run is to have the bits of one node.
 enum class Redo { kAuto, kOn, kOff };
+enum class OnDeath { kRecover, kGoOn, kStop };
 
 struct Time {
   double step_hz = 60;
@@ -78,6 +79,13 @@ struct Dds {
   Impair impair;
 };
 
+/// What becomes of a run when one of its nodes dies.
+struct Survival {
+  OnDeath on_death = OnDeath::kRecover;
+  double checkpoint_s = 1;  ///< simulated, from one state that can be gone back to until the next
+  double patience_s = 20;   ///< so long the others wait for somebody who takes the region over
+};
+
 struct Observe {
   double tick_hz = 20;
 };
@@ -112,12 +120,15 @@ struct Launch {
   Dds dds;
   Observe observe;
   Overseer overseer;
+  Survival survival;
 
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
   /// Is every state checked, and computed again where two bodies touched on two hosts?
   bool redoes() const;
+  /// So many states lie between two that can be gone back to; 0: nobody goes back.
+  core::Step checkpoint_steps() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;
   /// Likewise of what decides about bits on any map: the scene, and how physics computes it. A saved world has it.

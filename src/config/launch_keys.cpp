@@ -179,6 +179,25 @@ const KeysOf<Observe>& observe_keys() {
   return keys;
 }
 
+const KeysOf<Survival>& survival_keys() {
+  static const KeysOf<Survival> keys(
+      "survival", "What becomes of the run when one of its nodes dies.",
+      {
+          optional(
+              "on_death", &Survival::on_death,
+              choice<OnDeath>({{"recover", OnDeath::kRecover}, {"go_on", OnDeath::kGoOn}, {"stop", OnDeath::kStop}}),
+              "recover: all stand until a process has taken the region over, go back to the newest state that is "
+              "kept of every region, and compute on from there: no body is lost, the bits are those of a run "
+              "without a death; go_on: the others go on at once without the region's bodies; stop: the run ends"),
+          optional("checkpoint", &Survival::checkpoint_s, number(Range::from_to(0.001, 1e6), "s"),
+                   "simulated time from one state that can be gone back to until the next: longer costs less, and has "
+                   "more to be computed again"),
+          optional("patience", &Survival::patience_s, number(Range::from_to(0, 1e6), "s"),
+                   "so long the others wait for a process that takes the region over; then they go on without it"),
+      });
+  return keys;
+}
+
 const KeysOf<Overseer>& overseer_keys() {
   static const KeysOf<Overseer> keys(
       "overseer", "The viewer's server.",
@@ -215,6 +234,7 @@ const KeysOf<Launch>& launch_keys() {
           optional("aura", &Launch::aura, aura_keys, "how far ahead nodes warn each other"),
           optional("physics", &Launch::physics, physics_keys, "Bullet, and how accurate it is"),
           optional("dds", map(dds_keys), "how nodes find each other"),
+          optional("survival", &Launch::survival, survival_keys, "what happens when a node dies"),
           optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
           optional("overseer", &Launch::overseer, overseer_keys, "the viewer's server"),
       });

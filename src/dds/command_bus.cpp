@@ -34,6 +34,10 @@ class Requests {
     if (known != last_reply_.end()) known->second = reply;
   }
 
+  void forget(std::uint64_t request) {
+    if (last_reply_.erase(request) > 0) std::erase(order_, request);
+  }
+
   std::optional<core::CommandReply> last_reply(std::uint64_t request) const { return last_reply_.at(request); }
 
  private:
@@ -95,6 +99,8 @@ void CommandServerEndpoint::reply(core::CommandReply reply) {
   impl_->requests.note(reply);
   impl_->replies.send(reply, impl_->map_version);
 }
+
+void CommandServerEndpoint::forget(std::uint64_t request) { impl_->requests.forget(request); }
 
 const WireErrors& CommandServerEndpoint::refused() const { return impl_->commands.refused(); }
 

@@ -25,6 +25,8 @@ class CommandServerEndpoint {
   /// may have been unknown here when the reply was sent.
   std::vector<core::Command> take();
   void reply(core::CommandReply reply);
+  /// It was not obeyed here: if somebody asks again, it is new.
+  void forget(std::uint64_t request);
 
   const WireErrors& refused() const;
 

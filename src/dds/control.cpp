@@ -19,12 +19,14 @@ using core::RegionId;
 using core::value_of;
 
 const char* name_of(NodeState state) {
-  static constexpr std::array kNames = {"starting", "waiting", "running", "paused", "finished", "failed"};
+  static constexpr std::array kNames = {"starting", "waiting", "running",    "paused",
+                                        "finished", "failed",  "recovering", "spare"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
 const char* name_of(RunCommandKind kind) {
-  static constexpr std::array kNames = {"start", "pause", "resume", "step", "reset", "stop", "rate"};
+  static constexpr std::array kNames = {"start", "pause", "resume",  "step",  "reset", "stop",
+                                        "rate",  "lost",  "restore", "drain", "take"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
@@ -76,6 +78,7 @@ struct ControlBus::Impl {
   std::map<RegionId, Guid> publishers;
   std::map<RegionId, SeenStatus> statuses;
   std::map<std::uint64_t, WorldMap> maps;
+  std::set<std::uint64_t> dead;      ///< processes that have ended
   std::set<std::uint64_t> requests;  ///< seen or sent
   WireErrors refused;
 };
@@ -124,8 +127,11 @@ void ControlBus::Impl::note(Status fresh, const Origin& origin) {
 void ControlBus::Impl::look() {
   const std::vector<RemoteWriter> writers = status_reader.watch().writers();
   for (auto& [region, of_region] : received) {
-    for (Received& one : of_region) one.seen.lost = is_lost(writers, one.writer);
-    choose_publisher(region, of_region);
+    for (Received& one : of_region) {
+      one.seen.dead = dead.contains(one.seen.status.process);
+      one.seen.lost = one.seen.dead || is_lost(writers, one.writer);
+    }
+    if (region != kNoRegion) choose_publisher(region, of_region);
     std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers[region]; });
   }
 }
@@ -177,10 +183,21 @@ std::vector<SeenStatus> ControlBus::strangers() {
   std::vector<SeenStatus> strangers;
   for (const auto& [region, of_region] : impl_->received) {
     for (const Received& one : of_region) {
-      if (one.seen.is_live() && !impl_->is_of_the_run(one)) strangers.push_back(one.seen);
+      if (region != kNoRegion && one.seen.is_live() && !impl_->is_of_the_run(one)) strangers.push_back(one.seen);
     }
   }
   return strangers;
+}
+
+void ControlBus::hold_for_dead(std::uint64_t process) { impl_->dead.insert(process); }
+
+std::vector<Status> ControlBus::spares() {
+  statuses();
+  std::vector<Status> spares;
+  for (const Received& one : impl_->received[kNoRegion]) {
+    if (one.seen.is_live() && impl_->is_of_the_run(one)) spares.push_back(one.seen.status);
+  }
+  return spares;
 }
 
 bool ControlBus::publish_map(const WorldMap& map) {

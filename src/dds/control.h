@@ -40,6 +40,11 @@ class ControlBus {
   /// Live nodes of other runs, and those that say that they are this process's region.
   std::vector<SeenStatus> strangers();
 
+  /// Those that wait for a region of this run (kNoRegion).
+  std::vector<Status> spares();
+  /// This process is no more, whatever DDS still believes.
+  void hold_for_dead(std::uint64_t process);
+
   bool publish_map(const WorldMap& map);
   /// Commands for another map than this one are refused from now on.
   void use_map(std::uint64_t map_version);

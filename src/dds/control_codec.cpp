@@ -108,14 +108,15 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   if (!finite) {
     return WireError::kNotFinite;
   }
-  if (in.state() > static_cast<std::uint8_t>(NodeState::kFailed)) {
+  if (in.state() > static_cast<std::uint8_t>(NodeState::kSpare)) {
     return WireError::kEnum;
   }
   const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
                         in.lookahead() >= 0 && all_below(in.dead(), expected.region_count) &&
                         all_below(in.refused_source(), expected.region_count) &&
                         all_below(in.listens_to(), expected.region_count) && none_negative(in.listens_since()) &&
-                        all_below(in.listens_by(), expected.region_count);
+                        all_below(in.listens_by(), expected.region_count) && none_negative(in.part_step()) &&
+                        all_below(in.part_region(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -127,14 +128,33 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
     return error;
   }
   const std::size_t listens = in.listens_to().size();
-  if (std::max({in.dead().size(), in.refused_source().size(), listens}) > kMaxRows) {
+  if (std::max({in.dead().size(), in.refused_source().size(), listens, in.part_region().size()}) > kMaxRows) {
     return WireError::kTooLarge;
   }
   if (in.refused_source().size() != in.refused_count().size() || in.listens_since().size() != listens ||
-      in.listens_by().size() != listens) {
+      in.listens_by().size() != listens || in.part_region().size() != in.part_step().size()) {
     return WireError::kLength;
   }
   return check_values(in, expected);
+}
+
+MaybeError check_command(const wire::RunControl& in) {
+  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kTake)) {
+    return WireError::kEnum;
+  }
+  const std::size_t members = in.member_process().size();
+  if (members > kMaxRows) {
+    return WireError::kTooLarge;
+  }
+  if (!same_rows(members, {{in.member_holder().size()}, {in.member_survives().size()}})) {
+    return WireError::kLength;
+  }
+  const auto kind = static_cast<RunCommandKind>(in.kind());
+  const bool has_rate = kind == RunCommandKind::kRate || kind == RunCommandKind::kRestore;
+  const bool in_range = in.request() != 0 && in.count() >= 0 && in.epoch_ns() >= 0 &&
+                        (!has_rate || core::limits::is_rate(in.rate())) &&
+                        all_below(in.member_holder(), static_cast<std::uint32_t>(members));
+  return in_range ? MaybeError{} : WireError::kRange;
 }
 
 }  // namespace
@@ -148,7 +168,11 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.agreement(status.agreement);
   out.run(status.run);
   out.pid(status.pid);
+  out.process(status.process);
   out.state(static_cast<std::uint8_t>(status.state));
+  out.era(status.era);
+  fill(out.part_region(), status.parts, [](const KeptPart& part) { return value_of(part.region); });
+  fill(out.part_step(), status.parts, [](const KeptPart& part) { return part.step; });
   encode_counts(status, out);
   encode_durations(status, out);
   out.real_time_factor(status.real_time_factor);
@@ -177,7 +201,12 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   status.agreement = in.agreement();
   status.run = in.run();
   status.pid = in.pid();
+  status.process = in.process();
   status.state = static_cast<NodeState>(in.state());
+  status.era = in.era();
+  for (std::size_t i = 0; i < in.part_region().size(); ++i) {
+    status.parts.push_back({RegionId{in.part_region()[i]}, in.part_step()[i]});
+  }
   decode_counts(in, status);
   decode_durations(in, status);
   status.real_time_factor = in.real_time_factor();
@@ -244,6 +273,13 @@ void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& o
   out.count(command.count);
   out.epoch_ns(command.epoch_ns);
   out.rate(command.rate);
+  out.region(value_of(command.region));
+  out.process(command.process);
+  out.era(command.era);
+  fill(out.member_process(), command.members, [](const RunCommand::Member& member) { return member.process; });
+  fill(out.member_holder(), command.members, [](const RunCommand::Member& member) { return value_of(member.holder); });
+  fill(out.member_survives(), command.members,
+       [](const RunCommand::Member& member) { return static_cast<std::uint8_t>(member.survives); });
 }
 
 Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected) {
@@ -254,22 +290,26 @@ Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected)
   if (const auto error = check_header(in, any_map)) {
     return *error;
   }
-  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kRate)) {
-    return WireError::kEnum;
+  if (const auto error = check_command(in)) {
+    return *error;
   }
-  const bool is_rate = in.kind() == static_cast<std::uint8_t>(RunCommandKind::kRate);
-  if (in.request() == 0 || in.count() < 0 || in.epoch_ns() < 0 || (is_rate && !core::limits::is_rate(in.rate()))) {
-    return WireError::kRange;
+  RunCommand command{.request = in.request(),
+                     .kind = static_cast<RunCommandKind>(in.kind()),
+                     .generation = in.generation(),
+                     .map_version = in.map_version(),
+                     .run = in.run(),
+                     .at_step = in.stamp(),
+                     .count = in.count(),
+                     .epoch_ns = in.epoch_ns(),
+                     .rate = in.rate(),
+                     .region = RegionId{in.region()},
+                     .process = in.process(),
+                     .era = in.era(),
+                     .members = {}};
+  for (std::size_t i = 0; i < in.member_process().size(); ++i) {
+    command.members.push_back({in.member_process()[i], RegionId{in.member_holder()[i]}, in.member_survives()[i] != 0});
   }
-  return RunCommand{.request = in.request(),
-                    .kind = static_cast<RunCommandKind>(in.kind()),
-                    .generation = in.generation(),
-                    .map_version = in.map_version(),
-                    .run = in.run(),
-                    .at_step = in.stamp(),
-                    .count = in.count(),
-                    .epoch_ns = in.epoch_ns(),
-                    .rate = in.rate()};
+  return command;
 }
 
 }  // namespace aurasim::dds

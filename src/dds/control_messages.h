@@ -13,7 +13,16 @@
 
 namespace aurasim::dds {
 
-enum class NodeState : std::uint8_t { kStarting, kWaiting, kRunning, kPaused, kFinished, kFailed };
+enum class NodeState : std::uint8_t {
+  kStarting,
+  kWaiting,
+  kRunning,
+  kPaused,
+  kFinished,
+  kFailed,
+  kRecovering,  ///< stands, because a node has died, until all go back to a state that is kept
+  kSpare,       ///< has no world yet: takes a region over
+};
 const char* name_of(NodeState state);
 
 /// Of the last second, milliseconds.
@@ -32,6 +41,16 @@ struct Violations {
   std::uint64_t span = 0;     ///< a cluster or reach wider than the neighbours that were asked
 };
 
+/// A region's part of the world in one state.
+struct KeptPart {
+  core::RegionId region{};
+  core::Step step = 0;
+  auto operator<=>(const KeptPart&) const = default;
+};
+
+/// Of a process that waits until some region needs one.
+inline constexpr core::RegionId kNoRegion{0xf'ffff};
+
 /// What a node says of itself.
 struct Status {
   core::RegionId region{};
@@ -39,9 +58,12 @@ struct Status {
   core::Step step = 0;
   std::uint64_t run = 0;  ///< number of the run; 0: its nodes were started by hand
   std::uint32_t pid = 0;
+  std::uint64_t process = 0;  ///< random number
   std::uint64_t map_version = 0;
   std::uint64_t agreement = 0;  ///< equal on all nodes of a run (config::Launch::agreement)
   NodeState state = NodeState::kStarting;
+  core::Generation era = 0;     ///< in which the scene was begun from its first state: others' parts do not fit
+  std::vector<KeptPart> parts;  ///< that it keeps
   std::uint64_t bodies = 0;
   std::uint64_t awake = 0;
   std::uint64_t foreign_auras = 0;
@@ -71,13 +93,15 @@ struct Status {
 struct SeenStatus {
   Status status;
   bool lost = false;  ///< its proof of life has ended; false again when it comes back
+  bool dead = false;  ///< and it never will: whoever started it has seen it end
   std::chrono::steady_clock::time_point seen;
   /// How far its host's wall clock is ahead of ours, as far as its last statuses tell: never more than that, and less
   /// by the time that the fastest of them has taken.
   std::chrono::nanoseconds clock_ahead{0};
 
+  bool has_ended() const { return status.state == NodeState::kFinished || status.state == NodeState::kFailed; }
   /// Neither lost nor at its end.
-  bool is_live() const { return !lost && status.state != NodeState::kFinished && status.state != NodeState::kFailed; }
+  bool is_live() const { return !lost && !has_ended(); }
 };
 
 /// Who owns what, as the launcher or a node announces it.
@@ -90,7 +114,19 @@ struct WorldMap {
   std::vector<core::Rectangle> regions;
 };
 
-enum class RunCommandKind : std::uint8_t { kStart, kPause, kResume, kStep, kReset, kStop, kRate };
+enum class RunCommandKind : std::uint8_t {
+  kStart,
+  kPause,
+  kResume,
+  kStep,
+  kReset,
+  kStop,
+  kRate,
+  kLost,
+  kRestore,
+  kDrain,
+  kTake
+};
 const char* name_of(RunCommandKind kind);
 
 struct RunCommand {
@@ -103,6 +139,17 @@ struct RunCommand {
   std::int64_t count = 0;         ///< kStep: how many steps
   std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume: of the first step after it
   double rate = 1;  ///< kRate: from `at_step` on, which is due at `epoch_ns`, simulated seconds per second
+  /// kLost: whose node has died; kDrain: whose node is to give its region to another process; kTake: what a spare is to
+  /// take over.
+  core::RegionId region{};
+  std::uint64_t process = 0;  ///< likewise: that node's, or the spare's
+  core::Generation era = 0;   ///< kRestore: `generation` begins with state `at_step` of this era, due at `epoch_ns`
+  struct Member {
+    std::uint64_t process = 0;  ///< that goes on with the region
+    core::RegionId holder{};    ///< whose node gives the region's part to all
+    bool survives = false;      ///< it knows which orders there have been
+  };
+  std::vector<Member> members;  ///< kRestore: by region
   /// How far the sender's wall clock was ahead of ours when it came, less its way. Not sent.
   std::chrono::nanoseconds clock_ahead{0};
 };

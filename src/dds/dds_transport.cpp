@@ -23,13 +23,20 @@ constexpr auto kPatienceWithListeners = std::chrono::seconds(10);
 
 /// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
 struct Link {
-  Link(Domain& domain, RegionId self, RegionId neighbour, Wakeup& wakeup)
+  Link(Domain& domain, RegionId self, RegionId neighbour, core::Generation life, Wakeup& wakeup)
       : region(neighbour),
-        aura_reader(domain, {TopicId::kAura, {partition_of(neighbour)}, self}, wakeup),
-        migration_reader(domain, {TopicId::kMigration, {partition_of(neighbour, self)}, self}, wakeup),
-        migration_writer(domain, {TopicId::kMigration, {partition_of(self, neighbour)}, self}, wakeup),
-        ack_reader(domain, {TopicId::kMigrationAck, {partition_of(neighbour, self)}, self}, wakeup),
-        ack_writer(domain, {TopicId::kMigrationAck, {partition_of(self, neighbour)}, self}, wakeup) {}
+        aura_reader(domain, {TopicId::kAura, {in_life(partition_of(neighbour), life)}, self}, wakeup),
+        migration_reader(domain, from(neighbour, self, life, TopicId::kMigration), wakeup),
+        migration_writer(domain, to(neighbour, self, life, TopicId::kMigration), wakeup),
+        ack_reader(domain, from(neighbour, self, life, TopicId::kMigrationAck), wakeup),
+        ack_writer(domain, to(neighbour, self, life, TopicId::kMigrationAck), wakeup) {}
+
+  static EndpointSpec from(RegionId neighbour, RegionId self, core::Generation life, TopicId topic) {
+    return {topic, {in_life(partition_of(neighbour, self), life)}, self};
+  }
+  static EndpointSpec to(RegionId neighbour, RegionId self, core::Generation life, TopicId topic) {
+    return {topic, {in_life(partition_of(self, neighbour), life)}, self};
+  }
 
   RegionId region;
   Reader aura_reader;
@@ -158,9 +165,10 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
     : settings(settings_in),
       expected(expected_of(settings_in)),
       participant(participant_in),
-      aura_writer(participant.domain(), {TopicId::kAura, {partition_of(settings.region)}, settings.region}, wakeup) {
+      aura_writer(participant.domain(),
+                  {TopicId::kAura, {in_life(partition_of(settings.region), settings.life)}, settings.region}, wakeup) {
   for (const RegionId neighbour : settings.neighbours) {
-    links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, wakeup));
+    links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, settings.life, wakeup));
   }
 }
 
@@ -172,7 +180,7 @@ Link* DdsTransport::Impl::find(RegionId region) {
 /// Bodies may ask for regions that were no neighbours at first.
 Link& DdsTransport::Impl::link_to(RegionId region) {
   if (Link* link = find(region)) return *link;
-  links.push_back(std::make_unique<Link>(participant.domain(), settings.region, region, wakeup));
+  links.push_back(std::make_unique<Link>(participant.domain(), settings.region, region, settings.life, wakeup));
   return *links.back();
 }
 

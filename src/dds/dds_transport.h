@@ -20,7 +20,10 @@ namespace aurasim::dds {
 struct TransportSettings {
   core::RegionId region{};
   std::vector<core::RegionId> neighbours;
-  std::uint64_t map_version = 0;   ///< messages of another map are refused and counted
+  std::uint64_t map_version = 0;  ///< messages of another map are refused and counted
+  /// Generation with which the run goes on after a death; 0: nobody has died. Who is of another one is not met: DDS
+  /// holds the endpoints of a process that was killed for alive until its lease ends.
+  core::Generation life = 0;
   std::uint32_t region_count = 0;  ///< of the map
   // Of the scene: messages that name an index at or above these are refused. What is not given is not checked.
   std::uint32_t prototype_count = 0xffff'ffffU;

@@ -1,5 +1,7 @@
 #include "dds/domain.h"
 
+#include <utility>
+
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
@@ -40,6 +42,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"shape", "aurasim::wire::MeshShape"},
     {"orders", "aurasim::wire::AuraBatch"},
     {"cluster_graph", "aurasim::wire::ClusterGraph"},
+    {"checkpoint", "aurasim::wire::Checkpoint"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -57,6 +60,16 @@ std::string partition_of(core::RegionId source) { return fmt::format("region/{}"
 
 std::string partition_of(core::RegionId source, core::RegionId destination) {
   return fmt::format("region/{}/to/{}", core::value_of(source), core::value_of(destination));
+}
+
+std::string in_life(std::string partition, core::Generation life) {
+  return life == 0 ? std::move(partition) : fmt::format("{}/since/{}", partition, life);
+}
+
+std::string in_any_life(const std::string& partition) { return partition + "/since/*"; }
+
+std::string partition_to(core::RegionId destination) {
+  return fmt::format("region/*/to/{}", core::value_of(destination));
 }
 
 Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
@@ -104,6 +117,7 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
       TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
       TypeSupport(new GuardedType<wire::ClusterGraphPubSubType>()),
+      TypeSupport(new GuardedType<wire::CheckpointPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -34,9 +34,10 @@ enum class TopicId : std::uint8_t {
   kCommandReply,
   kShape,
   kOrders,
-  kClusterGraph
+  kClusterGraph,
+  kCheckpoint
 };
-inline constexpr std::size_t kTopicCount = 13;
+inline constexpr std::size_t kTopicCount = 14;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 
@@ -45,6 +46,12 @@ inline const std::string kWorldPartition = "world";
 inline const std::string kEveryRegionPartition = "region/*";
 std::string partition_of(core::RegionId source);
 std::string partition_of(core::RegionId source, core::RegionId destination);
+/// Of what nodes say to each other: also by generation, once somebody has died (dds_transport.h). 0: nobody has.
+std::string in_life(std::string partition, core::Generation life);
+/// Of all generations.
+std::string in_any_life(const std::string& partition);
+/// What any region says to this one.
+std::string partition_to(core::RegionId destination);
 
 /// Thread-safe.
 class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {

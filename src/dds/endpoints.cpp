@@ -75,11 +75,11 @@ WriteResult Writer::write(void* sample) {
   return sent ? WriteResult::kSentAtSecondTry : WriteResult::kFailed;
 }
 
+bool Writer::all_acknowledged() { return writer_->wait_for_acknowledgments({0, 0}) == ReturnCode_t::RETCODE_OK; }
+
 std::size_t Writer::forget_acknowledged() {
   std::size_t forgotten = 0;
-  if (writer_->wait_for_acknowledgments({0, 0}) == ReturnCode_t::RETCODE_OK) {
-    writer_->clear_history(&forgotten);
-  }
+  if (all_acknowledged()) writer_->clear_history(&forgotten);
   return forgotten;
 }
 

@@ -46,6 +46,8 @@ class Writer {
   /// acknowledge when another one was matched: these stay for ever, and each heartbeat then lists what is missing after
   /// them, one by one.
   std::size_t forget_acknowledged();
+  /// Every matched reader has every sample. Does not wait.
+  bool all_acknowledged();
   /// True when a reader of `region` is matched.
   bool reaches(core::RegionId region) const;
   std::size_t reader_count() const { return watch_.readers().size(); }

@@ -83,7 +83,7 @@ Json to_json(types::DynamicData& data, types::MemberId id, types::DynamicType& t
 
 /// Whoever only watches must hold nobody up: where no history is asked for, what is lost on the way stays lost.
 EndpointSpec watching(TopicId topic, const std::string& partition) {
-  EndpointSpec spec{topic, {partition}, {}, {}};
+  EndpointSpec spec{topic, {partition, in_any_life(partition)}, {}, {}};
   spec.best_effort_if_volatile = true;
   return spec;
 }
@@ -118,6 +118,7 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
       break;
     case TopicId::kMigration:
     case TopicId::kMigrationAck:
+    case TopicId::kCheckpoint:
       each_region([&](core::RegionId source) {
         each_region([&](core::RegionId destination) { partitions.push_back(partition_of(source, destination)); });
       });

@@ -116,6 +116,9 @@ struct StepReport {
   std::vector<core::TogetherPair> put_back_for;  ///< the pairs that come to one host in time now
 };
 
+/// What a scene begins with, as a saved world: all that Node::start() knows by itself.
+core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_s);
+
 class Node {
  public:
   /// Map and transport outlive the node. The scene is copied: orders add to it.
@@ -133,14 +136,16 @@ class Node {
   /// Computes the next state, or goes back to an earlier one where the run is to be computed again. Only when ready().
   const StepReport& step();
   /// The reports that can be relied on since the last step, in order: with AuraRules::redo those of states that nothing
-  /// can come to question any more, otherwise the last one. Valid until the next step.
+  /// can come to question any more, with the hashes of states that nothing can join any more; otherwise the last one.
+  /// Valid until the next step.
   std::span<const StepReport> confirmed() const { return confirmed_; }
   /// The run may end after state `last`, or change: finish() will need it.
   void keep(core::Step last);
   /// No alarm can come to question this state any more. Reports follow later.
   core::Step confirmed_step() const;
-  /// Once state `last` is confirmed, and the run is over: the reports up to it that have not been given out. The world
-  /// is that of state `last`, with all that was under way, if keep() named it.
+  /// Once state `last` is confirmed, and the run is over: the reports up to it that have not been given out, and one
+  /// more of state `last` with what has joined it since. The world is that of state `last`, with all that was under
+  /// way, if keep() named it.
   std::span<const StepReport> finish(core::Step last);
   /// finish() has taken in what was under way.
   bool settled() const { return settled_; }
@@ -160,6 +165,9 @@ class Node {
   /// Orders the world to do something, as soon as all nodes can have received it, or in state `at_step` if that is
   /// later. Only on the one node that takes orders.
   const core::Order& order(const core::Action& action, std::uint64_t request, core::Step at_step = 0);
+  /// What has become of a client's request, if it has been ordered, here or elsewhere: as far as is known here, and not
+  /// longer than orders are kept. Null: nothing is known. Not of orders about the run as a whole.
+  const core::Order* ordered(std::uint64_t request) const;
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }
   /// As it has grown.
   const core::Scene& scene() const { return scene_; }
@@ -224,8 +232,9 @@ class Node {
   void forget_cuts();
   void order_redo();
   const Cut& cut_before(core::Step touch, std::size_t farther) const;
-  void hold(const StepReport& report);
+  void hold(StepReport report);
   void release_reports(core::Step until);
+  void release_hashes(core::Step until, StepReport& report);
   void confirm_all();
 
   NodeSetup setup_;
@@ -264,6 +273,14 @@ class Node {
   core::Epoch first_epoch_ = 0;      ///< of bodies that are new
   std::size_t stubborn_ = 0;         ///< redos in a row that have not brought a pair together
   std::deque<StepReport> held_;      ///< not confirmed yet
+  struct HeldHash {
+    core::Step told_in = 0;     ///< report
+    bool told_by_redo = false;  ///< of what has joined anew
+    HashPart part;
+  };
+  std::vector<HeldHash> hash_parts_;  ///< of states that may get more
+  core::Step released_ = -1;          ///< reports up to this one have been given out
+  core::Step hashed_ = -1;            ///< likewise, the hashes of states
   std::vector<StepReport> confirmed_;
   double mail_s_ = 0;  ///< time spent with the mail since the last step
   StepReport report_;

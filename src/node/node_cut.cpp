@@ -75,6 +75,12 @@ std::vector<core::WorldCut> Node::take_saved() {
   return complete;
 }
 
+/// A request that defines a shape for its body is the order of the body.
+const core::Order* Node::ordered(std::uint64_t request) const {
+  const auto found = std::ranges::find(orders_.rbegin(), orders_.rend(), request, &core::Order::request);
+  return request == 0 || found == orders_.rend() ? nullptr : &*found;
+}
+
 /// For worlds that are saved later.
 void Node::remember(const core::Order& order) {
   if (core::changes_the_run(order.action) || std::holds_alternative<core::Redo>(order.action) ||

@@ -147,28 +147,49 @@ void Node::go_back_to(const Cut& cut) {
   for (const core::Adoption& adoption : cut.joining) adopt(adoption, nth++);
 }
 
-/// Keeps a report until its state is confirmed.
-void Node::hold(const StepReport& report) {
+/// Keeps a report until its state is confirmed. A redo may go back farther than to what has been confirmed: the same
+/// states are computed again, and have been reported.
+void Node::hold(StepReport report) {
   if (!setup_.protocol.aura.redo) {
-    confirmed_.push_back(report);
+    confirmed_.push_back(std::move(report));
     return;
   }
-  held_.push_back(report);
   if (report.put_back_from) {
-    const auto discarded = std::ranges::find_if(held_, [&](const StepReport& held) {
-      return held.step > report.step || (held.step == report.step && held.put_back_from);
+    const auto is_later = [&](const auto& one) { return one.step > report.step; };
+    std::erase_if(held_, is_later);
+    std::erase_if(hash_parts_, [&](const HeldHash& one) {
+      return one.told_in > report.step || (one.told_in == report.step && one.told_by_redo);
     });
-    held_.erase(discarded, held_.end() - 1);
   }
-  release_reports(cuts_.front().step);
+  for (const HashPart& part : report.hash) {
+    hash_parts_.push_back({report.step, report.put_back_from.has_value(), part});
+  }
+  report.hash.clear();
+  if (report.put_back_from || report.step > released_) held_.push_back(std::move(report));
+  release_reports(confirmed_step());
 }
 
-/// Not what a redo has come back to, as long as another one may come back there, too.
 void Node::release_reports(core::Step until) {
-  while (!held_.empty() && held_.front().step + (held_.front().put_back_from ? 1 : 0) <= until) {
-    confirmed_.push_back(std::move(held_.front()));
-    held_.pop_front();
+  for (const Saving& saving : saving_) {
+    if (saving.is_the_end) until = std::min(until, saving.step);  // the run will not have been farther
   }
+  while (!held_.empty() && held_.front().step <= until) {
+    StepReport& report = confirmed_.emplace_back(std::move(held_.front()));
+    held_.pop_front();
+    released_ = std::max(released_, report.step);
+    // What joins last for a state does so K states later.
+    release_hashes(released_ - setup_.protocol.aura.lookahead, report);
+  }
+}
+
+/// Of states up to `until`, which are whole. Those that were computed again have been told.
+void Node::release_hashes(core::Step until, StepReport& report) {
+  std::erase_if(hash_parts_, [&](const HeldHash& one) {
+    if (one.part.step > until) return false;
+    if (one.part.step > hashed_) report.hash.push_back(one.part);
+    return true;
+  });
+  hashed_ = std::max(hashed_, until);
 }
 
 std::span<const StepReport> Node::finish(core::Step last) {
@@ -177,25 +198,25 @@ std::span<const StepReport> Node::finish(core::Step last) {
       saving_, [last](const Saving& saving) { return saving.is_the_end && saving.step == last && saving.cut; });
   settled_ = end != saving_.end();
   if (settled_) go_back_to(*end->cut);
-  std::erase_if(saving_, [](const Saving& saving) { return saving.is_the_end; });
   release_reports(last);
+  std::erase_if(saving_, [](const Saving& saving) { return saving.is_the_end; });
   // Who joined later has made up its part of the last states.
-  for (StepReport& later : held_) {
-    StepReport& rest = confirmed_.emplace_back();
-    rest.step = later.step;
-    rest.hash = std::move(later.hash);
-    std::erase_if(rest.hash, [last](const HashPart& part) { return part.step > last; });
-    rest.arrivals = std::move(later.arrivals);
-    std::erase_if(rest.arrivals, [last](const HandOffRow& row) { return row.stamp > last; });
+  StepReport rest;
+  rest.step = last;
+  for (const StepReport& later : held_) {
+    std::ranges::copy_if(later.arrivals, std::back_inserter(rest.arrivals),
+                         [last](const HandOffRow& row) { return row.stamp <= last; });
   }
+  release_hashes(last, rest);
+  if (!rest.arrivals.empty() || !rest.hash.empty()) confirmed_.push_back(std::move(rest));
   held_.clear();
+  hash_parts_.clear();
   return confirmed_;
 }
 
 /// There is no way back to before another map.
 void Node::confirm_all() {
-  confirmed_.insert(confirmed_.end(), std::make_move_iterator(held_.begin()), std::make_move_iterator(held_.end()));
-  held_.clear();
+  release_reports(current_step());
   cuts_.clear();
   redo_.reset();
   redo_is_ordered_ = false;

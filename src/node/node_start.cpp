@@ -104,18 +104,25 @@ std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
   return hosts;
 }
 
-/// Those of state 0 that this node hosts.
-std::vector<core::BodyRecord> Node::initial_bodies() {
-  std::vector<core::BodyRecord> records;
-  for (const core::InitialBody& body : scene_.bodies) records.push_back(core::initial_record(body));
-  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  for (const core::Injector& injector : scene_.injectors) {
-    const std::uint64_t count = core::injected_count(injector, notice, setup_.physics.step_s);
+core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_s) {
+  core::WorldCut world;
+  world.births_known = core::horizon::birth_notice(lookahead);
+  std::vector<core::BodyRecord>& records = world.bodies.bodies;
+  for (const core::InitialBody& body : scene.bodies) records.push_back(core::initial_record(body));
+  for (const core::Injector& injector : scene.injectors) {
+    const std::uint64_t count = core::injected_count(injector, world.births_known, step_s);
     for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto record = core::injected_body(injector, i, setup_.physics.step_s)) records.push_back(*record);
+      if (auto record = core::injected_body(injector, i, step_s)) records.push_back(*record);
     }
   }
-  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::ranges::sort(records, {}, &core::BodyRecord::id);
+  return world;
+}
+
+/// Those of state 0 that this node hosts.
+std::vector<core::BodyRecord> Node::initial_bodies() {
+  const std::vector<core::BodyRecord> records =
+      first_world(scene_, setup_.protocol.aura.lookahead, setup_.physics.step_s).bodies.bodies;
   core::Snapshot all;
   for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
   all.joints = core::joint_pairs(scene_, all.bodies);

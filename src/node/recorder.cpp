@@ -1,9 +1,12 @@
 #include "node/recorder.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "node/csv.h"
 
 namespace aurasim::node {
 namespace {
@@ -24,31 +27,53 @@ std::filesystem::path make_folder(const std::filesystem::path& folder, core::Reg
   return folder;
 }
 
+/// Rows of states up to `after`, by the columns that say so; nothing: no rows at all.
+RowFile::Keep up_to(std::optional<core::Step> after, std::size_t column) {
+  if (!after) return {};
+  return [after, column](std::span<const std::string_view> cells) {
+    return cells.size() > column && std::cmp_less_equal(whole(cells[column]), *after);
+  };
+}
+
+/// Who came is told by the state in which it took part first.
+RowFile::Keep moves_up_to(std::optional<core::Step> after) {
+  if (!after) return {};
+  return [after](std::span<const std::string_view> cells) {
+    return cells.size() > 3 && std::cmp_less_equal(whole(cells[cells[1] == "out" ? 2 : 3]), *after);
+  };
+}
+
 }  // namespace
 
 std::filesystem::path Recorder::region_folder(const std::filesystem::path& folder, core::RegionId region) {
   return folder / fmt::format("region_{}", core::value_of(region));
 }
 
-Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region)
+Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region, std::optional<core::Step> after)
     : region_(region),
       folder_(make_folder(region_folder(folder, region), region)),
       steps_(folder_ / "steps.csv",
              "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
-             "largest_cluster,hand_offs_out,hand_offs_in,violations\n"),
+             "largest_cluster,hand_offs_out,hand_offs_in,violations\n",
+             up_to(after, 1)),
       collisions_(folder_ / "collisions.csv",
                   "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
-                  "violation_flagged\n"),
+                  "violation_flagged\n",
+                  up_to(after, 1)),
       migrations_(folder_ / "migrations.csv",
-                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n"),
-      violations_(folder_ / "violations.csv", "region,step,kind,of_region,body,value,allowed\n"),
-      births_(folder_ / "births.csv", "region,body,birth_step\n"),
-      removals_(folder_ / "removals.csv", "region,body,removed_step\n"),
-      hashes_(folder_ / "state_hash.csv", "step,hash\n") {}
+                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n",
+                  moves_up_to(after)),
+      violations_(folder_ / "violations.csv", "region,step,kind,of_region,body,value,allowed\n", up_to(after, 1)),
+      births_(folder_ / "births.csv", "region,body,birth_step\n", up_to(after, 2)),
+      removals_(folder_ / "removals.csv", "region,body,removed_step\n", up_to(after, 2)),
+      hashes_(folder_ / "state_hash.csv", "step,hash\n", up_to(after, 0)),
+      flushed_(after.value_or(0)) {}
 
 void Recorder::write(const StepReport& r, const FrameTimes& times) {
   if (r.put_back_from) return note_redo(r);
   if (end_) return;
+  if (r.step <= last_) return write_settling(r);  // what has come since
+  last_ = r.step;
   steps_.add("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", core::value_of(region_), r.step,
              times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s, 1e3 * r.durations.protocol_s,
              1e3 * r.durations.transport_s, r.bodies, r.awake, r.foreign_auras, r.projecting, r.largest_cluster,
@@ -121,6 +146,10 @@ void Recorder::end_records(const RowFile& failed) {
   if (!end_) end_ = RecordsEnd{flushed_, failed.failure()};
 }
 
+void Recorder::secure() {
+  if (!end_) flush(std::max(last_, flushed_));
+}
+
 void Recorder::finish(Node& node, const Ending& ending) {
   if (!end_) flush(node.current_step());
   try {
@@ -176,6 +205,8 @@ void Recorder::write_summary(Node& node, const Ending& ending) const {
       {"let_go", p.counters().let_go},
       {"stale_arrivals", p.counters().stale_arrivals},
       {"dead_regions", dead},
+      {"sent_bytes", ending.sent_bytes},
+      {"checkpoint_bytes", ending.checkpoint_bytes},
   };
   constexpr std::size_t kMostPairs = 16;
   summary["redos"] = nlohmann::json::array();

@@ -25,6 +25,8 @@ struct Ending {
   double real_time_factor = 1;
   std::string outcome;
   std::vector<core::RegionId> dead_regions;
+  std::uint64_t sent_bytes = 0;        ///< to neighbours: auras, hand-offs, acknowledgements; without RTPS headers
+  std::uint64_t checkpoint_bytes = 0;  ///< parts of the world, to their keeper
 };
 
 /// Where the records end before the run does.
@@ -35,10 +37,14 @@ struct RecordsEnd {
 
 class Recorder {
  public:
-  /// Creates `folder`/region_<r>; throws std::runtime_error when that fails.
-  Recorder(const std::filesystem::path& folder, core::RegionId region);
+  /// Creates `folder`/region_<r>; throws std::runtime_error when that fails. With `after`: goes on with what is there,
+  /// of which what is told of later states than that one has not been.
+  Recorder(const std::filesystem::path& folder, core::RegionId region, std::optional<core::Step> after = {});
 
   void write(const StepReport& report, const FrameTimes& times);
+
+  /// Everything written so far is out of this process' hands.
+  void secure();
 
   /// What came in after the last step.
   void write_settling(const StepReport& report);
@@ -70,6 +76,7 @@ class Recorder {
     std::vector<core::TogetherPair> pairs;  ///< that it was for, and those of earlier ones that still hold
   };
   std::vector<Redo> redos_;
+  core::Step last_ = -1;  ///< state written
   core::Step flushed_ = 0;
   std::optional<RecordsEnd> end_;
 };

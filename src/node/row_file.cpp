@@ -1,8 +1,12 @@
 #include "node/row_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -25,15 +29,40 @@ std::string cannot_write(const std::filesystem::path& file) {
   return fmt::format("cannot write {}: {}", file.string(), std::strerror(errno));
 }
 
+std::string rows_to_keep(const std::filesystem::path& file, const RowFile::Keep& keep) {
+  std::string kept;
+  std::vector<std::string_view> cells;
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);                        // the header
+  while (std::getline(in, line) && !in.eof()) {  // a row without its end may be half a row
+    cells.clear();
+    for (std::size_t begin = 0; begin <= line.size();) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      cells.push_back(std::string_view(line).substr(begin, end - begin));
+      begin = end + 1;
+    }
+    if (keep(cells)) kept.append(line).push_back('\n');
+  }
+  return kept;
+}
+
 }  // namespace
 
-RowFile::RowFile(const std::filesystem::path& file, const std::string& header)
-    : path_(file), file_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)), buffer_(header) {
-  if (file_ < 0) throw std::runtime_error(cannot_write(file));
-  if (!flush()) {
-    ::close(file_);
-    throw std::runtime_error(failure_);
+RowFile::RowFile(const std::filesystem::path& file, const std::string& header, const Keep& keep)
+    : path_(file), buffer_(header) {
+  // Whoever is killed meanwhile leaves the old file.
+  std::filesystem::path fresh = file;
+  if (keep) {
+    buffer_ += rows_to_keep(file, keep);
+    fresh += ".new";
   }
+  file_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file_ < 0) throw std::runtime_error(cannot_write(fresh));
+  if (flush() && (!keep || ::rename(fresh.c_str(), file.c_str()) == 0)) return;
+  const std::string why = failure_.empty() ? cannot_write(file) : failure_;
+  ::close(file_);
+  throw std::runtime_error(why);
 }
 
 RowFile::~RowFile() {

@@ -3,7 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -11,8 +14,12 @@ namespace aurasim::node {
 
 class RowFile {
  public:
-  /// An empty file with one header line. Throws std::runtime_error when there can be none.
-  RowFile(const std::filesystem::path& file, const std::string& header);
+  /// Which rows of a file stay, by their cells.
+  using Keep = std::function<bool(std::span<const std::string_view> cells)>;
+
+  /// An empty file with one header line; with `keep` those rows that are there already and are to stay. Throws
+  /// std::runtime_error when there can be none.
+  RowFile(const std::filesystem::path& file, const std::string& header, const Keep& keep = {});
   ~RowFile();
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;

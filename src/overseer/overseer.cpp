@@ -32,11 +32,13 @@ WorldView::RegionState region_state(const dds::SeenStatus& seen) {
   switch (seen.status.state) {
     case dds::NodeState::kRunning:
     case dds::NodeState::kPaused:
+    case dds::NodeState::kRecovering:
       return seen.lost ? State::kDead : State::kLive;
     case dds::NodeState::kFailed:
       return State::kDead;
     case dds::NodeState::kStarting:
     case dds::NodeState::kWaiting:
+    case dds::NodeState::kSpare:
     case dds::NodeState::kFinished:
       return State::kAbsent;
   }
@@ -236,6 +238,7 @@ std::string Overseer::state_of_run() const {
       return entry.second.status.state == state && (state == State::kFinished || !entry.second.lost);
     });
   };
+  if (any(State::kRecovering)) return "recovering";
   if (any(State::kRunning)) return "running";
   if (any(State::kPaused)) return "paused";
   if (any(State::kStarting) || any(State::kWaiting) || nodes_.empty()) return "starting";

@@ -65,7 +65,7 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.version(0); }), "malformed");
   EXPECT_EQ(after([](auto& w) { w.version(kProtocolVersion + 1); }), "version");
   EXPECT_EQ(after([](auto& w) { w.source(4); }), "range");
-  EXPECT_EQ(after([](auto& w) { w.state(6); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.state(8); }), "enum");
   EXPECT_EQ(after([](auto& w) { w.frame_max_ms(kNan); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.real_time_factor(-1); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(kNan); }), "range");
@@ -77,6 +77,9 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.listens_since()[0] = -1; }), "range");
   EXPECT_EQ(after([](auto& w) { w.listens_since().pop_back(); }), "length");
   EXPECT_EQ(after([](auto& w) { w.listens_by().pop_back(); }), "length");
+  EXPECT_EQ(after([](auto& w) { w.part_region({4}), w.part_step({60}); }), "range");
+  EXPECT_EQ(after([](auto& w) { w.part_region({3}), w.part_step({-60}); }), "range");
+  EXPECT_EQ(after([](auto& w) { w.part_region({3}); }), "length");
 }
 
 TEST(MapCodec, RoundTripKeepsEverything) {
@@ -125,6 +128,26 @@ TEST(CommandCodec, RoundTripKeepsEverything) {
   }
 }
 
+TEST(CommandCodec, ARestoreNamesAProcessForEachRegion) {
+  RunCommand restore = command_of(RunCommandKind::kRestore);
+  restore.request = 5;
+  restore.era = 2;
+  restore.members = {{11, core::RegionId{0}, true}, {12, core::RegionId{0}, false}};
+  wire::RunControl sample;
+  encode(restore, 99, sample);
+  const RunCommand again = std::get<RunCommand>(decode(sample, {}));
+  EXPECT_EQ(again.era, 2U);
+  ASSERT_EQ(again.members.size(), 2U);
+  EXPECT_EQ(again.members[1].process, 12U);
+  EXPECT_EQ(again.members[1].holder, core::RegionId{0});
+  EXPECT_TRUE(again.members[0].survives);
+  EXPECT_FALSE(again.members[1].survives);
+  sample.member_holder()[1] = 2;
+  EXPECT_EQ(verdict(sample), "range") << "there are two regions";
+  sample.member_holder().pop_back();
+  EXPECT_EQ(verdict(sample), "length");
+}
+
 TEST(CommandCodec, RefusesWhatIsNotSound) {
   const auto after = [](const std::function<void(wire::RunControl&)>& spoil) {
     RunCommand command = command_of(RunCommandKind::kPause);
@@ -139,7 +162,7 @@ TEST(CommandCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto&) {}), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(0); }), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(78); }), "map_version");
-  EXPECT_EQ(after([](auto& w) { w.kind(7); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.kind(11); }), "enum");
   for (const double rate : {0.0, 1e-300, 0.009, 10.1, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     const auto ask = [rate](auto& w) {
       w.kind(6);

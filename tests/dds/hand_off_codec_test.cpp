@@ -78,7 +78,7 @@ TEST_P(SpoiltHandOff, IsRefusedForTheRightReason) {
 using Wire = wire::Migration;
 const Spoilt kSpoilt[] = {
     {"BytesThatAreNotTheType", [](Wire& w) { w.version(0); }, WireError::kMalformed},
-    {"OtherVersion", [](Wire& w) { w.version(9); }, WireError::kVersion},
+    {"OtherVersion", [](Wire& w) { w.version(kProtocolVersion + 1); }, WireError::kVersion},
     {"OtherMap", [](Wire& w) { w.map_version(1); }, WireError::kMapVersion},
     {"OtherSource", [](Wire& w) { w.source(3); }, WireError::kSource},
     {"OtherDestination", [](Wire& w) { w.destination(3); }, WireError::kSource},

@@ -46,7 +46,7 @@ TEST(ReplicaCodec, RoundTripKeepsEverything) {
 TEST(ReplicaCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(verdict_after([](auto&) {}), "accepted");
   EXPECT_EQ(verdict_after([](auto& w) { w.version(0); }), "malformed");
-  EXPECT_EQ(verdict_after([](auto& w) { w.version(9); }), "version");
+  EXPECT_EQ(verdict_after([](auto& w) { w.version(kProtocolVersion + 1); }), "version");
   EXPECT_EQ(verdict_after([](auto& w) { w.map_version(1); }), "map_version");
   EXPECT_EQ(verdict_after([](auto& w) { w.source(4); }), "range");
   EXPECT_EQ(verdict_after([](auto& w) { w.stamp(-1); }), "range");

@@ -41,7 +41,7 @@ cut_longer_than_lease() {
   local name=long_cut host=$1 said
   echo "-- $name"
   said=$(scripts/netns_lab.sh run $launch --duration 7 --report "$reports/$name" --set dds.domain=185 \
-    --set "dds.profiles=$PWD/qos/aurasim.xml" --cut "$host@1.5+4" 2>&1) && fail "$name: nothing was noticed"
+    --set "dds.profiles=$PWD/qos/aurasim.xml" --set survival.on_death=go_on --cut "$host@1.5+4" 2>&1) && fail "$name: nothing was noticed"
   echo "$said"
   grep -q "region $host hears nothing from" <<<"$said" || fail "$name: host $host did not say why it stops"
   [[ $(field "$name" '.bodies_lost + .bodies_duplicated') == 0 ]] || fail "$name: bodies lost or doubled"

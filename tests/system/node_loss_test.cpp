@@ -1,4 +1,5 @@
-// Nodes and launchers that are killed. The liveliness lease of qos/aurasim.xml is 1 s.
+// Nodes that are killed in runs that go on without them (recovery_test.cpp: that go back), and launchers. The
+// liveliness lease of qos/aurasim.xml is 1 s.
 #include <algorithm>
 #include <csignal>
 #include <map>
@@ -15,23 +16,10 @@ namespace {
 
 constexpr double kLongestWaitMs = 15'000;  // the lease, and margin for a busy host
 
+const Words kGoesOn = set({"survival.on_death=go_on"});
+
 class NodeLoss : public SystemTest {
  protected:
-  pid_t node_of(const Process& launcher, int region) const {
-    for (const pid_t child : children_of(launcher.pid())) {
-      const Words words = command_line_of(child);
-      const auto flag = std::find(words.begin(), words.end(), "--region");
-      if (flag != words.end() && flag + 1 != words.end() && *(flag + 1) == std::to_string(region)) return child;
-    }
-    return 0;
-  }
-
-  void kill_node(const Process& launcher, int region) const {
-    const pid_t node = node_of(launcher, region);
-    ASSERT_GT(node, 0);
-    ::kill(node, SIGKILL);
-  }
-
   void expect_survivors_finish(const Report& report, int dead, std::int64_t last) const {
     std::map<int, std::int64_t> reached;
     std::map<int, double> longest_wait_ms;
@@ -109,7 +97,7 @@ class NodeLoss : public SystemTest {
 
   /// `aurasim send`; returns the step that it names.
   std::int64_t send(const Words& words) {
-    Process& program = start(Words{"send"} + words + Words{launch_file("demo")} + in_own_domain());
+    Process& program = start(Words{"send"} + words + Words{launch_file("demo")} + kGoesOn + in_own_domain());
     expect_exit(program, 0);
     const std::string said = program.out();
     const std::size_t at = said.find("step ");
@@ -118,7 +106,7 @@ class NodeLoss : public SystemTest {
 
   void expect_region_can_die(int dead) {
     const Report report = report_of("run");
-    Process& run = launch("run", launch_file("demo"), {"--duration", "6"});
+    Process& run = launch("run", launch_file("demo"), Words{"--duration", "6"} + kGoesOn);
     expect_reaches(report, 4, 120);
     ASSERT_NO_FATAL_FAILURE(kill_node(run, dead));
     expect_exit(run, 1);
@@ -137,7 +125,7 @@ TEST_F(NodeLoss, RegionZeroWhichStartedTheRunMayDieToo) { expect_region_can_die(
 // Nodes write their records to disk every 60 steps. Killed just before that, while paused, so that the step is known.
 TEST_F(NodeLoss, NoBodyOfADeadNodeIsForgotten) {
   const Report report = report_of("run");
-  Process& run = launch("run", launch_file("demo"));
+  Process& run = launch("run", launch_file("demo"), kGoesOn);
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
   const std::int64_t paused_at = send({"pause"});
   ASSERT_GT(paused_at, 0);
@@ -157,7 +145,7 @@ TEST_F(NodeLoss, NoBodyOfADeadNodeIsForgotten) {
 // Its participant's lease is 5 s: the others have given it up, and it must not go on as if nothing had been.
 TEST_F(NodeLoss, ANodeThatWasHeldUpForLongerThanItsLeaseStops) {
   const Report report = report_of("run");
-  Process& run = launch("run", launch_file("demo"), {"--duration", "10"});
+  Process& run = launch("run", launch_file("demo"), Words{"--duration", "10"} + kGoesOn);
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
   const pid_t node = node_of(run, 2);
   ASSERT_GT(node, 0);
@@ -182,12 +170,12 @@ TEST_F(NodeLoss, WhoDiesWhileTheNodesMeetIsNamedAndNobodyWaitsForIt) {
 
 /// All nodes would have to come back to state 0, and the dead one's bodies with them.
 TEST_F(NodeLoss, AResetAfterADeathIsRefusedByNameAndTheRunCanStillBeSteered) {
-  Process& run = launch("run", launch_file("demo"));
+  Process& run = launch("run", launch_file("demo"), kGoesOn);
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 60));
   ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
   ASSERT_TRUE(wait_until([&] { return run.err().find("region 2 died") != std::string::npos; }, kGenerous));
   const auto refused = [&] {
-    Process& reset = start(Words{"send", "reset", launch_file("demo")} + in_own_domain());
+    Process& reset = start(Words{"send", "reset", launch_file("demo")} + kGoesOn + in_own_domain());
     return reset.wait(kGenerous) == 1 && reset.err().find("dead regions [2]") != std::string::npos;
   };
   EXPECT_TRUE(refused());
@@ -200,7 +188,7 @@ TEST_F(NodeLoss, AResetAfterADeathIsRefusedByNameAndTheRunCanStillBeSteered) {
 
 /// As when a node dies while a reset is under way.
 TEST_F(NodeLoss, SurvivorsOfAResetDoNotWaitForTheDead) {
-  Process& run = launch("run", launch_file("demo"));
+  Process& run = launch("run", launch_file("demo"), kGoesOn);
   dds::Settings settings;
   settings.domain = test::own_domain();
   settings.profiles = AURASIM_SOURCE_DIR "/qos/aurasim.xml";

@@ -149,8 +149,9 @@ TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
 }
 
 TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
-  ASSERT_NO_FATAL_FAILURE(start_run());
-  Process& overseer = start_overseer();
+  const Words goes_on = set({"survival.on_death=go_on"});
+  ASSERT_NO_FATAL_FAILURE(start_run(goes_on));
+  Process& overseer = start_overseer(goes_on);
   Page page(port_of(overseer));
   const auto of_the_dead = [&] {
     std::size_t count = 0;

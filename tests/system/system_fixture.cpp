@@ -1,6 +1,7 @@
 #include "system_fixture.h"
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 
 #include <sys/wait.h>
@@ -67,6 +68,21 @@ Process& SystemTest::start(const Words& words) { return start_program(Words{AURA
 
 Process& SystemTest::launch(const std::string& name, const std::string& file, const Words& more) {
   return start(Words{"launch", file, "--headless", "--report", (folder_ / name).string()} + in_own_domain() + more);
+}
+
+pid_t SystemTest::node_of(const Process& launcher, int region) const {
+  for (const pid_t child : children_of(launcher.pid())) {
+    const Words words = command_line_of(child);
+    const auto flag = std::find(words.begin(), words.end(), "--region");
+    if (flag != words.end() && flag + 1 != words.end() && *(flag + 1) == std::to_string(region)) return child;
+  }
+  return 0;
+}
+
+void SystemTest::kill_node(const Process& launcher, int region) const {
+  const pid_t node = node_of(launcher, region);
+  ASSERT_GT(node, 0);
+  ::kill(node, SIGKILL);
 }
 
 void SystemTest::expect_exit(Process& process, int code, Clock::duration time_out) const {

@@ -50,6 +50,10 @@ class SystemTest : public ::testing::Test {
   Process& launch(const std::string& name, const std::string& file, const Words& more = {});
   Report report_of(const std::string& name) const { return Report(folder_ / name); }
 
+  /// The process of a region's node; 0: there is none.
+  pid_t node_of(const Process& launcher, int region) const;
+  void kill_node(const Process& launcher, int region) const;
+
   void expect_exit(Process& process, int code, Clock::duration time_out = kGenerous) const;
   /// Waits until every node of a run has written down this step.
   void expect_reaches(const Report& report, int regions, std::int64_t step) const;

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Kills nodes of real runs at random, 100 times one and 20 times two at once, and compares every state with that of the run
+# that nobody disturbed; measures what keeping parts costs a healthy run. Writes docs/recovery.md. About 25 minutes on 2
+# cores, where nothing else runs; goes on where it was stopped.
+#   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--domain N=73] [--out DIR=build/recovery]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+deaths=100 pairs=20 domain=73 out=build/recovery
+while [[ ${1:-} == --* ]]; do
+  case $1 in
+    --deaths) deaths=$2 ;;
+    --pairs) pairs=$2 ;;
+    --domain) domain=$2 ;;
+    --out) out=$2 ;;
+    *) printf 'recovery.sh: %s?\n' "$1" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/recovery.md "$out" double
+failures=0
+/usr/bin/python3 scripts/recovery.py --deaths "$deaths" --pairs "$pairs" --domain "$domain" --out "$out" || failures=1
+/usr/bin/python3 scripts/recovery_cost.py --domain "$domain" --out "$out"
+/usr/bin/python3 scripts/write_recovery.py "$out"
+echo "written: docs/recovery.md" >&2
+exit "$failures"

@@ -1,0 +1,285 @@
+// What the nodes do when one of them has died: all stand until a process has taken its region over, go back to the
+// newest state of which everybody's part is kept, and compute on from there (docs/design.md, "When a node dies").
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/launch_setup.h"
+#include "cli/node_process.h"
+#include "cli/restore_plan.h"
+#include "cli/stop_signal.h"
+#include "config/launch_variants.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Kind = dds::Checkpoint::Kind;
+
+constexpr auto kInRecovery = 5ms;
+constexpr auto kPatienceWithParts = 10s;
+
+}  // namespace
+
+void NodeProcess::recover(const std::string& why) {
+  spdlog::warn("region {} stands at state {}: {}", core::value_of(options_.region),
+               node_ ? node_->current_step() : first_step(), why);
+  begin_to_recover();
+  while (!stop_requested() && !fence_.closed()) {
+    enter(node_ ? NodeEvent::kDeath : NodeEvent::kJoins);
+    stands_in_ = std::max(generation_, restoring_);
+    is_going_back_ = false;
+    try {
+      if (!agree_on_restore()) return;
+      go_back(*restore_);
+      return;
+    } catch (const SomebodyDied& again) {
+      spdlog::warn("region {}: {}, once more", core::value_of(options_.region), again.what());
+    }
+  }
+}
+
+/// What a change of the run had begun is forgotten: whoever wanted it asks again.
+void NodeProcess::begin_to_recover() {
+  recovering_since_ = idle_since_ = Clock::now();
+  if (before_change_) {
+    launch_ = std::move(before_change_->launch);
+    options_.world = std::move(before_change_->world);
+    before_change_.reset();
+  }
+  run_orders_.clear();
+  change_.reset();
+  frame_times_.clear();
+}
+
+/// False when the run ends, or goes on without those who have died.
+bool NodeProcess::agree_on_restore() {
+  const std::chrono::duration<double> patience(launch_.survival.patience_s);
+  auto somebody_came = Clock::now();  // or nobody was missing
+  while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
+    if (stop_requested()) return false;
+    if (node_) node_->ready();
+    const bool may_go_on = !node_ || fence_is_open();
+    if (fence_.closed()) return false;
+    if (vacant_regions().empty()) somebody_came = Clock::now();
+    if (node_ && Clock::now() > somebody_came + patience) {
+      go_on_without();
+      return false;
+    }
+    if (!node_ && is_not_needed()) return false;
+    publish(fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant_regions(), ", ")));
+    if (may_go_on && node_) {
+      call_spares();
+      lead_recovery();
+    }
+    execute_commands();
+    control_.wait(kInRecovery);
+  }
+  return true;
+}
+
+void NodeProcess::go_on_without() {
+  const std::string regions = fmt::format("{}", fmt::join(vacant_regions(), ", "));
+  notice_ = fmt::format("nobody has taken over regions [{}] in {} s", regions, launch_.survival.patience_s);
+  if (life_ != life_of_node_) {  // in a recovery that was broken off we have let go of all endpoints
+    return fence_.close(notice_ + ": the run cannot go on");
+  }
+  goes_on_ = true;
+  restoring_ = 0;
+  fence_.begin_anew(false);
+  notice_ += ": the run goes on without their bodies";
+  spdlog::error("region {}: {}", core::value_of(options_.region), notice_);
+  enter(NodeEvent::kGoesOn);
+}
+
+/// The lowest region that knows the world says to what state all go back, once somebody is there for each region.
+void NodeProcess::lead_recovery() {
+  std::map<core::RegionId, dds::SeenStatus> nodes = control_.statuses();
+  nodes[options_.region].status = status_;
+  std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
+  if (!plan || plan->lead != options_.region) return;
+  dds::RunCommand restore = plan->command;
+  if (restore.count == 1) {
+    restore.at_step = first_step();
+    const std::string saved = newest_saved_world(options_.saves);
+    spdlog::warn("no state is kept of every region: all begin again from state {}. The newest saved world here: {}",
+                 restore.at_step, saved.empty() ? "none" : saved);
+  }
+  restore.run = options_.run;
+  restore.region = options_.region;
+  const node::Instant now = node::read_clocks();
+  restore.epoch_ns = now.wall_ns + std::chrono::nanoseconds(pacer_.due(restore.at_step) - now.steady).count();
+  restore.rate = pacer_.rate();
+  dds::WorldMap map = world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = restore.generation;
+  map.from_step = restore.at_step;
+  control_.publish_map(map);
+  restore.request = control_.send(restore);
+  restore_ = restore;
+  repeat_commands(restore);
+}
+
+/// It names the processes that go on: another one with our region is none of ours.
+void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
+  const std::size_t region = core::value_of(options_.region);
+  const bool is_new = restore.generation > std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
+  if (!is_new || restore.members.size() != launch_.regions.size()) return;
+  if (restore.members[region].process == status_.process) {
+    restore_ = with_clock_of(restore.region, restore);
+  } else if (node_) {
+    fence_.close(fmt::format("another process has taken over region {}", region));
+  }
+}
+
+/// Whoever takes a region over has not heard of a pause, and those who have would forget a reset.
+void NodeProcess::repeat_commands(const dds::RunCommand& restore) {
+  dds::RunCommand command;
+  command.generation = restore.generation;
+  command.run = options_.run;
+  const auto repeat = [&](dds::RunCommandKind kind, core::Step at_step) {
+    command.kind = kind;
+    command.at_step = at_step;
+    command.request = 0;
+    control_.send(command);
+  };
+  if (reset_) repeat(dds::RunCommandKind::kReset, std::max(reset_->at_step, restore.at_step));
+  if (hold_at_) repeat(dds::RunCommandKind::kPause, *hold_at_);
+  if (stop_at_) repeat(dds::RunCommandKind::kStop, *stop_at_);
+}
+
+/// Throws SomebodyDied.
+void NodeProcess::go_back(const dds::RunCommand& restore) {
+  restoring_ = restore.generation;
+  is_going_back_ = true;
+  take_map_of(restore);
+  std::map<core::RegionId, std::string> parts;
+  const core::WorldCut world = gather(restore, parts);
+  connect_again(restore);
+  begin_restored(restore, world, parts);
+  is_going_back_ = false;
+}
+
+/// The scene and the regions that the run goes on with.
+void NodeProcess::take_map_of(const dds::RunCommand& restore) {
+  const dds::WorldMap* map = nullptr;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  while (map == nullptr) {
+    for (const auto& [version, known] : control_.maps()) {
+      if (known.generation == restore.generation && known.agreement == status_.agreement) map = &known;
+    }
+    if (map == nullptr) wait_in_recovery(deadline, "the map");
+  }
+  if (map->scene != launch_.scene.name) launch_ = config::with_scene(launch_, map->scene);
+  if (map->map_version != launch_.regions.version()) launch_ = config::with_regions(launch_, map->regions);
+  status_.map_version = launch_.regions.version();
+  status_.footprint = launch_.regions.region(options_.region);
+  control_.use_map(launch_.regions.version());
+  if (observers_ && command_server_ && served_map_ == launch_.regions.version()) return;
+  observers_.emplace(launch_, participant_, options_.region);
+  command_server_.emplace(launch_, participant_, options_.region, options_.saves);
+  served_map_ = launch_.regions.version();
+}
+
+void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
+  if (stop_requested()) throw SomebodyDied("told to stop");
+  if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));
+  execute_commands();
+  look_for_deaths();
+  publish();
+  control_.wait(kInRecovery);
+}
+
+/// The world of all parts, with what everybody knows by now of what was ordered.
+core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  const std::size_t regions = launch_.regions.size();
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  const auto give = [&](core::RegionId region, Kind kind, const std::string& octets) {
+    checkpoints_->give({region, kind, restore.generation, restore.at_step, octets});
+  };
+  core::WorldCut whole;
+  if (from_first) {
+    whole = options_.world ? *options_.world : node::first_world(launch_.scene, launch_.lookahead(), launch_.step_s());
+  } else {
+    for (std::uint32_t r = 0; r < regions; ++r) {
+      const core::RegionId region{r};
+      if (restore.members[r].holder != options_.region) continue;
+      if (const std::string* octets = checkpoints_->find(region, restore.at_step)) give(region, Kind::kGoBack, *octets);
+    }
+    while (checkpoints_->given(restore.generation, Kind::kGoBack).size() < regions) {
+      wait_in_recovery(deadline, "the parts of the world");
+    }
+    parts = checkpoints_->given(restore.generation, Kind::kGoBack);
+    std::vector<core::WorldCut> cuts;
+    for (const auto& [region, octets] : parts) cuts.push_back(decode_part(octets));
+    whole = core::merge(std::move(cuts));
+  }
+  std::size_t survivors = 0;
+  for (const dds::RunCommand::Member& member : restore.members) survivors += member.survives;
+  if (restore.members.at(core::value_of(options_.region)).survives && node_) {
+    give(options_.region, Kind::kOrders, cut::encode(as_saved(node_->orders_now(whole))));
+  }
+  while (checkpoints_->given(restore.generation, Kind::kOrders).size() < survivors) {
+    wait_in_recovery(deadline, "the orders that others know");
+  }
+  std::vector<core::WorldCut> all = {std::move(whole)};
+  for (const auto& [region, octets] : checkpoints_->given(restore.generation, Kind::kOrders)) {
+    all.push_back(decode_part(octets));
+  }
+  return core::merge(std::move(all));
+}
+
+core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
+  cut::SavedWorld part = cut::decode(octets);
+  const std::string differs = cut::check_identity("checkpoint", part.identity, identity_of(launch_), true);
+  if (!differs.empty()) spdlog::warn("region {}: {}: bits may differ", core::value_of(options_.region), differs);
+  return std::move(part.cut);
+}
+
+/// With new endpoints, which those of the dead are not matched with.
+void NodeProcess::connect_again(const dds::RunCommand& restore) {
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  life_ = restore.generation;
+  transport_.reset();
+  transport_.emplace(participant_, transport_settings());
+  while (!transport_->all_matched()) wait_in_recovery(deadline, "its neighbours");
+  generation_ = waits_to_start_ = restore.generation;
+  start_.reset();
+  enter(NodeEvent::kStands);
+  while (!start_) {
+    start_when_all_wait();
+    if (!start_) wait_in_recovery(deadline, "the others");
+  }
+  enter(NodeEvent::kStarted);
+}
+
+void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+                                 const std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  node_ = make_node();
+  life_of_node_ = life_;
+  command_server_->go_back(*node_, generation_);
+  recorder_.reset();  // or it would write the rest of its rows into the files of the next
+  if (options_.report) {
+    recorder_.emplace(*options_.report, options_.region, from_first ? std::nullopt : std::optional(restore.at_step));
+  }
+  pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
+  status_.rate = restore.rate;
+  fence_.begin_anew(true);
+  checkpoints_->go_back(restore.era, restore.at_step, parts);
+  status_.era = restore.era;
+  reset_.reset();
+  if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
+  begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
+  const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();
+  notice_ = fmt::format("went back to state {} after {:.2f} s", node_->current_step(), stood_s);
+  spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+}
+
+}  // namespace aurasim::cli

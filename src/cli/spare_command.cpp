@@ -1,0 +1,132 @@
+// A process without a region: when a node of the run dies or leaves, it is told to take that region over.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/launch_setup.h"
+#include "cli/leave.h"
+#include "cli/run_length.h"
+#include "cli/saved_world.h"
+#include "cli/spawn.h"
+#include "cli/stop_signal.h"
+#include "dds/control.h"
+#include "dds/random_id.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRound = 50ms;
+
+struct SpareArguments {
+  FileArguments files;
+  std::uint64_t run = 0;
+  std::string report;
+  RunLength length;
+  LoadArguments load;
+  SaveArguments save;
+};
+
+class Spare {
+ public:
+  Spare(const config::Launch& launch, std::uint64_t run)
+      : participant_(dds_settings(launch)),
+        control_(participant_, {.region = dds::kNoRegion, .agreement = launch.agreement(), .run = run_if_known(run)}) {
+    status_.region = dds::kNoRegion;
+    status_.state = dds::NodeState::kSpare;
+    status_.agreement = launch.agreement();
+    status_.map_version = launch.regions.version();
+    status_.footprint = launch.regions.region(core::RegionId{0});
+    status_.run = run;
+    status_.pid = static_cast<std::uint32_t>(::getpid());
+    status_.process = dds::draw_id();
+    status_.text = "a spare: takes over a region whose node dies";
+  }
+
+  /// The region and run to take over; nothing: the run has ended, or somebody has asked us to.
+  std::optional<dds::RunCommand> wait() {
+    bool has_seen_it = false;
+    while (!stop_requested()) {
+      const auto& statuses = control_.statuses();
+      const auto lives = [](const auto& entry) { return entry.second.is_live(); };
+      const auto live = std::ranges::find_if(statuses, lives);
+      if (live != statuses.end()) status_.run = live->second.status.run;
+      if (has_seen_it && std::ranges::all_of(statuses, [&](const auto& entry) {
+            return entry.second.status.state == dds::NodeState::kFinished;
+          })) {
+        return std::nullopt;
+      }
+      has_seen_it = has_seen_it || live != statuses.end();
+      for (const dds::RunCommand& command : control_.take_commands()) {
+        if (command.kind == dds::RunCommandKind::kTake && command.process == status_.process) return command;
+      }
+      control_.publish_status(status_);
+      control_.wait(kRound);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static std::optional<std::uint64_t> run_if_known(std::uint64_t run) {
+    return run == 0 ? std::nullopt : std::optional(run);
+  }
+
+  dds::Participant participant_;
+  dds::ControlBus control_;
+  dds::Status status_;
+};
+
+/// With our arguments, as the node of that region.
+std::vector<std::string> words_of_node(const dds::RunCommand& take) {
+  std::vector<std::string> words = own_command_line();
+  words[0] = std::filesystem::read_symlink("/proc/self/exe").string();
+  *std::ranges::find(words, "spare") = "node";
+  if (std::ranges::find(words, "--run") == words.end()) {
+    words.insert(words.end(), {"--run", std::to_string(take.run)});
+  }
+  words.insert(words.end(), {"--take-over", "--region", std::to_string(core::value_of(take.region))});
+  return words;
+}
+
+int run_spare(const SpareArguments& arguments) {
+  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  load_world(arguments.load, launch);  // or it is refused now
+  spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
+  catch_stop_signals();
+  std::optional<dds::RunCommand> take;
+  {
+    Spare spare(launch, arguments.run);
+    take = spare.wait();
+  }
+  if (!take) leave(0);
+  spdlog::info("takes over region {}", core::value_of(take->region));
+  become(words_of_node(*take));
+}
+
+}  // namespace
+
+void add_spare(CLI::App& program, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("spare", "wait for a run, and take over a region whose node dies or leaves");
+  const auto arguments = std::make_shared<SpareArguments>();
+  arguments->files.add_to(*command);
+  command->add_option("--run", arguments->run, "the number of the run that is meant; 0: whichever is there");
+  command->add_option("--report", arguments->report, "folder for what it records as a node");
+  arguments->length.add_to(*command);
+  arguments->load.add_to(*command);
+  arguments->save.add_to(*command);
+  command->footer("Example:\n  aurasim spare demo");
+  command->callback([arguments, &action] { action = [arguments] { return run_spare(*arguments); }; });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,59 @@
+#include "dds/checkpoint_bus.h"
+
+#include <optional>
+
+#include "dds/checkpoint_codec.h"
+#include "dds/typed_endpoints.h"
+
+namespace aurasim::dds {
+
+struct CheckpointBus::Impl {
+  Impl(Participant& participant_in, core::RegionId region_in)
+      : participant(participant_in),
+        region(region_in),
+        to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup),
+        reader(participant.domain(), {TopicId::kCheckpoint, {partition_to(region), kWorldPartition}, region}, wakeup) {}
+
+  Participant& participant;
+  core::RegionId region;
+  Wakeup wakeup;
+  TypedWriter<wire::Checkpoint> to_all;
+  std::optional<core::RegionId> keeper;
+  std::optional<TypedWriter<wire::Checkpoint>> to_keeper;
+  TypedReader<wire::Checkpoint> reader;
+};
+
+CheckpointBus::CheckpointBus(Participant& participant, core::RegionId region)
+    : impl_(std::make_unique<Impl>(participant, region)) {}
+
+CheckpointBus::~CheckpointBus() = default;
+
+void CheckpointBus::use_keeper(core::RegionId keeper) {
+  if (impl_->keeper == keeper) return;
+  impl_->keeper = keeper;
+  impl_->to_keeper.emplace(impl_->participant.domain(),
+                           EndpointSpec{TopicId::kCheckpoint, {partition_of(impl_->region, keeper)}, impl_->region},
+                           impl_->wakeup);
+}
+
+bool CheckpointBus::send(const Checkpoint& checkpoint) {
+  impl_->participant.progress();
+  if (checkpoint.kind != Checkpoint::Kind::kToKeep) return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
+  return !impl_->to_keeper || impl_->to_keeper->send(checkpoint) != WriteResult::kFailed;
+}
+
+bool CheckpointBus::is_kept() {
+  return impl_->to_keeper && impl_->to_keeper->reader_count() > 0 && impl_->to_keeper->all_acknowledged();
+}
+
+std::vector<Checkpoint> CheckpointBus::take() {
+  impl_->participant.progress();
+  impl_->wakeup.clear();
+  std::vector<Checkpoint> taken;
+  impl_->reader.take_all({}, taken);
+  return taken;
+}
+
+const WireErrors& CheckpointBus::refused() const { return impl_->reader.refused(); }
+
+}  // namespace aurasim::dds

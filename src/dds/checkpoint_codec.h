@@ -1,0 +1,16 @@
+// dds/checkpoint.h as a wire type, and back. As in codec.h; what its octets say is checked by cut/.
+#pragma once
+
+#include "dds/checkpoint.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class Checkpoint;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const Checkpoint& checkpoint, wire::Checkpoint& out);
+Decoded<Checkpoint> decode(const wire::Checkpoint& in, const Expected& expected);
+
+}  // namespace aurasim::dds

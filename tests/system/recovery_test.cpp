@@ -1,0 +1,153 @@
+// Nodes that are killed in runs that go back to the newest state that is kept, and compute on from there: nothing is
+// lost, and every later state has the bits of the run that nobody disturbed.
+#include <csignal>
+#include <map>
+#include <sstream>
+
+#include <signal.h>
+
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+class Recovery : public SystemTest {
+ protected:
+  static constexpr std::int64_t kSteps = 480;
+  const Words kDeterministic = set({"time.sync=deterministic", "survival.checkpoint=0.5"});
+
+  Process& run_of_demo(const Words& more = {}) {
+    return launch("run", launch_file("demo"), Words{"--steps", std::to_string(kSteps)} + kDeterministic + more);
+  }
+
+  std::string undisturbed() {
+    Process& run =
+        launch("undisturbed", launch_file("demo"),
+               Words{"--steps", std::to_string(kSteps)} + kDeterministic + set({"regions.count=1", "time.pace=none"}));
+    expect_exit(run, 0);
+    return report_of("undisturbed").state_hash();
+  }
+
+  void expect_undisturbed(Process& run) {
+    expect_exit(run, 0);
+    const Report report = report_of("run");
+    expect_all_bodies_accounted_for(report);
+    EXPECT_EQ(report.count("steps"), kSteps);
+    EXPECT_TRUE(report.entry("dead_regions").empty());
+    EXPECT_EQ(report.state_hash(), undisturbed());
+  }
+
+  static std::size_t times(const std::string& text, const std::string& what) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+    return count;
+  }
+
+  bool says(Process& run, const std::string& what, std::size_t how_often = 1) {
+    return wait_until([&] { return times(run.err() + run.out(), what) >= how_often; }, kGenerous);
+  }
+};
+
+TEST_F(Recovery, ARegionOfADeadNodeComesBackWithTheSameBits) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 0));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 3));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_undisturbed(run);
+}
+
+/// Region 2 keeps the parts of region 1.
+TEST_F(Recovery, AlsoANodeAndItsKeeperThenFromTheFirstState) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  EXPECT_TRUE(says(run, "went back to state 0", 4));
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, AnotherDeathWhileAllRecover) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 3));
+  ASSERT_TRUE(says(run, "is started again"));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, OneAfterTheOther) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 60);
+  for (int region = 0; region < 4; ++region) {
+    ASSERT_NO_FATAL_FAILURE(kill_node(run, region));
+    ASSERT_TRUE(says(run, "went back to state", 4 * (static_cast<std::size_t>(region) + 1)));
+  }
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, ASpareTakesARegionOver) {
+  Process& run = run_of_demo({"--spares", "1"});
+  expect_reaches(report_of("run"), 4, 120);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  EXPECT_TRUE(says(run, "spare: takes over region 2"));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, ANodeThatIsDrainedLeavesWithoutALoss) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  const pid_t before = node_of(run, 1);
+  Process& drain = start(Words{"send", "drain", launch_file("demo"), "1"} + kDeterministic + in_own_domain());
+  expect_exit(drain, 0);
+  EXPECT_THAT(drain.out(), ::testing::HasSubstr("has taken region 1 over"));
+  EXPECT_NE(node_of(run, 1), before);
+  expect_undisturbed(run);
+}
+
+TEST_F(Recovery, AnOrderIsObeyedOnceThoughWhoTookItDies) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  Process& spawn = start(Words{"send", "spawn", launch_file("demo"), "--radius", "0.5", "--p", "3", "3", "9"} +
+                         kDeterministic + in_own_domain());
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 0));
+  expect_exit(spawn, 0);
+  expect_exit(run, 0);
+  const Report report = report_of("run");
+  expect_all_bodies_accounted_for(report);
+  undisturbed();
+  EXPECT_EQ(report.count("bodies_spawned"), report_of("undisturbed").count("bodies_spawned") + 1);
+}
+
+TEST_F(Recovery, AWorldThatIsPausedStaysSo) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  const Words about = kDeterministic + in_own_domain();
+  expect_exit(start(Words{"send", "pause", launch_file("demo")} + about), 0);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 3));
+  EXPECT_TRUE(says(run, "went back to state", 4));
+  expect_exit(start(Words{"send", "step", launch_file("demo"), "--count", "10"} + about), 0);
+  expect_exit(start(Words{"send", "resume", launch_file("demo")} + about), 0);
+  expect_undisturbed(run);
+}
+
+}  // namespace
+}  // namespace aurasim::system_test
