@@ -198,6 +198,7 @@ void CommandServer::publish_additions(const node::StepReport& report) {
   const std::size_t before = additions_.orders.size();
   for (const core::Order& order : report.orders) {
     if (node::changes_scene(order.action)) additions_.orders.push_back(order);
+    issuer_.note(order);
   }
   if (additions_.orders.size() > before && leads_) additions_writer_.send(additions_);
 }

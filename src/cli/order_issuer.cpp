@@ -47,6 +47,21 @@ void OrderIssuer::begin_generation() {
   own_shapes_.clear();
   own_kinds_.clear();
   shapes_ = prototypes_ = statics_ = 0;
+  noted_shapes_ = noted_kinds_ = 0;
+}
+
+void OrderIssuer::note(const core::Order& order) {
+  if (const auto* defined = std::get_if<core::DefineShape>(&order.action)) {
+    const std::size_t index = launch_.scene.shapes.size() + noted_shapes_++;
+    const auto is_it = [index](const OwnShape& known) { return known.index == index; };
+    if (std::ranges::any_of(own_shapes_, is_it)) return;
+    own_shapes_.push_back({defined->shape, static_cast<std::uint32_t>(index)});
+  }
+  if (const auto* kind = std::get_if<core::DefinePrototype>(&order.action)) {
+    const core::PrototypeId id{static_cast<std::uint32_t>(launch_.scene.prototypes.size() + noted_kinds_++)};
+    const auto is_it = [id](const OwnKind& known) { return known.id == id; };
+    if (std::ranges::none_of(own_kinds_, is_it)) own_kinds_.push_back({kind->shape, kind->mass_kg, id});
+  }
 }
 
 Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, const node::MeshSource& meshes,

@@ -33,6 +33,8 @@ class OrderIssuer {
   explicit OrderIssuer(const config::Launch& launch) : launch_(launch) {}
 
   void begin_generation();
+  /// Orders as they come, in sequence: also those of who has led before.
+  void note(const core::Order& order);
   /// The run goes on after a change.
   void reopen() { closed_ = false; }
 
@@ -62,6 +64,7 @@ class OrderIssuer {
   };
   std::vector<OwnShape> own_shapes_;
   std::vector<OwnKind> own_kinds_;
+  std::size_t noted_shapes_ = 0, noted_kinds_ = 0;
 };
 
 /// The mesh that a command brings a shape by, if it does.
