@@ -63,7 +63,7 @@ ExitCode Launcher::run() {
     next_show = Clock::now() + (view_.is_terminal() ? kShowEvery : 4 * kShowEvery);
     show();
   }
-  for (const pid_t spare : spares_) ::kill(spare, SIGTERM);
+  for (const pid_t spare : spares_) ::kill(spare, SIGKILL);  // it has nothing to bring to an end
   for (const pid_t spare : spares_) ::waitpid(spare, nullptr, 0);
   spares_.clear();
   show();
