@@ -63,7 +63,9 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   if (command.kind == Kind::kLost) return control_.hold_for_dead(command.process);
   if (command.kind == Kind::kRestore) return hear_of_restore(command);
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
-  if (command.generation > generation_ && command.generation == restoring_) early_.push_back(command);
+  if (command.generation > generation_ && restore_ && command.generation == restore_->generation) {
+    early_.push_back(command);
+  }
   if (command.generation != generation_ || !node_) return;  // for a run that is over
   switch (command.kind) {
     case Kind::kStart:

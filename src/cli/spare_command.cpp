@@ -108,7 +108,7 @@ int run_spare(const SpareArguments& arguments) {
     Spare spare(launch, arguments.run);
     take = spare.wait();
     if (!take) leave(0);  // silently, as nodes do
-  }  // or the next program would inherit its sockets
+  }                       // or the next program would inherit its sockets
   spdlog::info("takes over region {}", core::value_of(take->region));
   become(words_of_node(*take));
 }
