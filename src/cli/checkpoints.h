@@ -25,7 +25,6 @@ class Checkpoints {
 
   /// The scene is begun from its first state: what was kept before does not fit.
   void begin_era(core::Generation era);
-  core::Generation era() const { return era_; }
   /// Who keeps ours from now on.
   void use_keeper(core::RegionId keeper) { bus_.use_keeper(keeper); }
 

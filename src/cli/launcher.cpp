@@ -124,12 +124,7 @@ pid_t Launcher::successor_of(const Child& child) {
   for (const dds::Status& spare : control_.spares()) {
     const auto ours = std::ranges::find(spares_, static_cast<pid_t>(spare.pid));
     if (ours == spares_.end()) continue;
-    dds::RunCommand take;
-    take.kind = dds::RunCommandKind::kTake;
-    take.run = run_;
-    take.region = child.region;
-    take.process = spare.process;
-    control_.send(take);
+    control_.send(about_process(dds::RunCommandKind::kTake, run_, child.region, spare.process));
     const pid_t pid = *ours;
     spares_.erase(ours);
     return pid;
@@ -203,13 +198,9 @@ void Launcher::collect_exits() {
 void Launcher::tell_lost(const Child& child) {
   const auto seen = control_.statuses().find(child.region);
   if (seen == control_.statuses().end() || !is_of(seen->second.status, child)) return;
-  dds::RunCommand lost;
-  lost.kind = dds::RunCommandKind::kLost;
-  lost.run = run_;
-  lost.region = child.region;
-  lost.process = seen->second.status.process;
-  control_.hold_for_dead(lost.process);
-  control_.send(lost);
+  const std::uint64_t process = seen->second.status.process;
+  control_.hold_for_dead(process);
+  control_.send(about_process(dds::RunCommandKind::kLost, run_, child.region, process));
 }
 
 bool Launcher::is_of(const dds::Status& status, const Child& child) {

@@ -114,9 +114,7 @@ ExitCode NodeProcess::meet_and_run() {
   if (options_.takes_over) return take_over();
   if (!domain_is_free()) return not_begun();
   enter(NodeEvent::kFree);
-  dds::WorldMap map = world_map(launch_);
-  map.from_step = first_step();
-  control_.publish_map(map);
+  publish_map(generation_, first_step());
   publish();
   transport_.emplace(participant_, transport_settings());
   observers_.emplace(launch_, participant_, options_.region);

@@ -110,7 +110,7 @@ class NodeProcess {
   bool is_meant(core::RegionId region, const dds::Status& status) const;
   std::vector<std::uint32_t> vacant_regions();
   void go_on_without();
-  void call_spares();
+  void call_spares(const std::vector<std::uint32_t>& vacant);
   void call_spare(core::RegionId region);
   void hear_of_drain(const dds::RunCommand& drain);
   void lead_recovery();
@@ -133,6 +133,7 @@ class NodeProcess {
   void change_scene(const std::string& name);
   void change_world(const std::string& file);
   void begin_anew();
+  void publish_map(core::Generation generation, core::Step from_step);
   void change_regions(const std::vector<core::Rectangle>& boxes);
   void settle_all();
   void wait_until_all_stand();

@@ -200,14 +200,19 @@ void NodeProcess::change_world(const std::string& file) {
   begin_anew();
 }
 
+/// The agreement is that of the beginning, whatever has changed since.
+void NodeProcess::publish_map(core::Generation generation, core::Step from_step) {
+  dds::WorldMap map = world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = generation;
+  map.from_step = from_step;
+  control_.publish_map(map);
+}
+
 void NodeProcess::begin_anew() {
   wait_until_all_stand();
   waits_to_start_ = generation_ + 1;
-  dds::WorldMap map = world_map(launch_);
-  map.agreement = status_.agreement;
-  map.generation = waits_to_start_;
-  map.from_step = first_step();
-  control_.publish_map(map);  // first: observers read the new scene before its bodies come
+  publish_map(waits_to_start_, first_step());  // first: observers read the new scene before its bodies come
   node_.reset();
   connect_anew(transport_settings());
   begin_generation(waits_to_start_, *start_);
@@ -328,11 +333,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   observers_->after_step(*node_, report);
   record(node_->confirmed());
   pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
-  dds::WorldMap map = world_map(launch_);
-  map.agreement = status_.agreement;
-  map.generation = generation_;
-  map.from_step = node_->current_step();
-  control_.publish_map(map);
+  publish_map(generation_, node_->current_step());
   spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
                moved.arrivals.size());
 }

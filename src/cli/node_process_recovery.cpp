@@ -66,15 +66,16 @@ bool NodeProcess::agree_on_restore() {
     if (node_) node_->ready();
     const bool may_go_on = !node_ || fence_is_open();
     if (fence_.closed()) return false;
-    if (vacant_regions().empty()) somebody_came = Clock::now();
+    const std::vector<std::uint32_t> vacant = vacant_regions();
+    if (vacant.empty()) somebody_came = Clock::now();
     if (node_ && Clock::now() > somebody_came + patience) {
       go_on_without();
       return false;
     }
     if (!node_ && is_not_needed()) return false;
-    publish(fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant_regions(), ", ")));
+    publish(fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
     if (may_go_on && node_) {
-      call_spares();
+      call_spares(vacant);
       lead_recovery();
     }
     execute_commands();
@@ -115,11 +116,7 @@ void NodeProcess::lead_recovery() {
   const node::Instant now = node::read_clocks();
   restore.epoch_ns = now.wall_ns + std::chrono::nanoseconds(pacer_.due(restore.at_step) - now.steady).count();
   restore.rate = pacer_.rate();
-  dds::WorldMap map = world_map(launch_);
-  map.agreement = status_.agreement;
-  map.generation = restore.generation;
-  map.from_step = restore.at_step;
-  control_.publish_map(map);
+  publish_map(restore.generation, restore.at_step);
   restore.request = control_.send(restore);
   restore_ = restore;
   repeat_commands(restore);

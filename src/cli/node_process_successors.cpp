@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/node_process.h"
+#include "cli/run_steering.h"
 
 namespace aurasim::cli {
 namespace {
@@ -101,8 +102,7 @@ std::vector<std::uint32_t> NodeProcess::vacant_regions() {
 
 /// The lowest region that stands tells spares which of the vacant regions they take over. A launcher starts its own
 /// nodes again, and is faster.
-void NodeProcess::call_spares() {
-  const std::vector<std::uint32_t> vacant = vacant_regions();
+void NodeProcess::call_spares(const std::vector<std::uint32_t>& vacant) {
   std::erase_if(called_, [&](const auto& call) {
     return std::ranges::find(vacant, call.first) == vacant.end() || Clock::now() > call.second + kPatienceWithSpare;
   });
@@ -120,13 +120,8 @@ void NodeProcess::call_spare(core::RegionId region) {
   const auto free =
       std::ranges::find_if(spares, [this](const dds::Status& spare) { return !taken_.contains(spare.process); });
   if (free == spares.end()) return;
-  dds::RunCommand take;
-  take.kind = dds::RunCommandKind::kTake;
-  take.run = options_.run;
-  take.region = region;
-  take.process = free->process;
-  control_.send(take);
-  taken_.insert(take.process);
+  control_.send(about_process(dds::RunCommandKind::kTake, options_.run, region, free->process));
+  taken_.insert(free->process);
   called_[core::value_of(region)] = Clock::now();
 }
 
@@ -165,12 +160,7 @@ bool NodeProcess::may_leave() {
 ExitCode NodeProcess::leave_to_successor() {
   spdlog::info("region {} leaves after state {}: another process takes over", core::value_of(options_.region),
                node_->current_step());
-  dds::RunCommand lost;
-  lost.kind = dds::RunCommandKind::kLost;
-  lost.run = options_.run;
-  lost.region = options_.region;
-  lost.process = status_.process;
-  control_.send(lost);
+  control_.send(about_process(dds::RunCommandKind::kLost, options_.run, options_.region, status_.process));
   return ExitCode::kOk;
 }
 

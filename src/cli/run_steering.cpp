@@ -21,6 +21,15 @@ constexpr double kNoticeS = 0.3;
 
 }  // namespace
 
+dds::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId region, std::uint64_t process) {
+  dds::RunCommand command;
+  command.kind = kind;
+  command.run = run;
+  command.region = region;
+  command.process = process;
+  return command;
+}
+
 bool RunSteering::belongs(const dds::SeenStatus& seen) const {
   return seen.is_live() && seen.status.agreement == agreement_;
 }

@@ -17,6 +17,10 @@ class SteeringRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What is said of one node, or to one spare: lost, drain, take.
+dds::RunCommand about_process(dds::RunCommandKind kind, std::uint64_t run, core::RegionId region,
+                              std::uint64_t process);
+
 class RunSteering {
  public:
   /// Both outlive it.

@@ -196,12 +196,8 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
   const auto node = control.statuses().find(region);
   if (node == control.statuses().end() || !node->second.is_live())
     fail(fmt::format("there is no region {}", arguments.region));
-  dds::RunCommand command;
-  command.kind = Kind::kDrain;
-  command.region = region;
-  command.run = node->second.status.run;
-  command.process = node->second.status.process;
-  control.send(command);
+  const std::uint64_t leaving = node->second.status.process;
+  control.send(about_process(Kind::kDrain, node->second.status.run, region, leaving));
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   const auto computes = [](const auto& entry) {
     const dds::NodeState state = entry.second.status.state;
@@ -210,7 +206,7 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
   while (std::chrono::steady_clock::now() < deadline) {
     control.wait(20ms);
     const auto& statuses = control.statuses();
-    if (statuses.at(region).status.process == command.process || !std::ranges::all_of(statuses, computes)) continue;
+    if (statuses.at(region).status.process == leaving || !std::ranges::all_of(statuses, computes)) continue;
     const dds::Status& status = statuses.at(region).status;
     fmt::print("drain: process {} has taken region {} over by step {}\n", status.pid, arguments.region, status.step);
     leave(0);

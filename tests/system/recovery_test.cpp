@@ -37,6 +37,15 @@ class Recovery : public SystemTest {
     EXPECT_EQ(report.state_hash(), undisturbed());
   }
 
+  /// These nodes are killed one right after the other, once all have computed 120 states.
+  void expect_survives(Process& run, std::initializer_list<int> regions,
+                       const std::string& goes_back = "went back to state") {
+    expect_reaches(report_of("run"), 4, 120);
+    for (const int region : regions) ASSERT_NO_FATAL_FAILURE(kill_node(run, region));
+    EXPECT_TRUE(says(run, goes_back, 4));
+    expect_undisturbed(run);
+  }
+
   static std::size_t times(const std::string& text, const std::string& what) {
     std::size_t count = 0;
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
@@ -48,39 +57,15 @@ class Recovery : public SystemTest {
   }
 };
 
-TEST_F(Recovery, ARegionOfADeadNodeComesBackWithTheSameBits) {
-  Process& run = run_of_demo();
-  expect_reaches(report_of("run"), 4, 120);
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
-  EXPECT_TRUE(says(run, "went back to state", 4));
-  expect_undisturbed(run);
-}
+TEST_F(Recovery, ARegionOfADeadNodeComesBackWithTheSameBits) { expect_survives(run_of_demo(), {2}); }
 
-TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) {
-  Process& run = run_of_demo();
-  expect_reaches(report_of("run"), 4, 120);
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 0));
-  EXPECT_TRUE(says(run, "went back to state", 4));
-  expect_undisturbed(run);
-}
+TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) { expect_survives(run_of_demo(), {0}); }
 
-TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) {
-  Process& run = run_of_demo();
-  expect_reaches(report_of("run"), 4, 120);
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 3));
-  EXPECT_TRUE(says(run, "went back to state", 4));
-  expect_undisturbed(run);
-}
+TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) { expect_survives(run_of_demo(), {1, 3}); }
 
 /// Region 2 keeps the parts of region 1.
 TEST_F(Recovery, AlsoANodeAndItsKeeperThenFromTheFirstState) {
-  Process& run = run_of_demo();
-  expect_reaches(report_of("run"), 4, 120);
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
-  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
-  EXPECT_TRUE(says(run, "went back to state 0", 4));
-  expect_undisturbed(run);
+  expect_survives(run_of_demo(), {1, 2}, "went back to state 0");
 }
 
 TEST_F(Recovery, AnotherDeathWhileAllRecover) {
