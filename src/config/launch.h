@@ -76,6 +76,7 @@ struct Dds {
   Discovery discovery = Discovery::kMulticast;
   std::vector<std::string> interfaces = {"127.0.0.1"};
   std::vector<std::string> peers;  ///< for Discovery::kPeers and kServer: "address" or "address:port"
+  std::filesystem::path security;  ///< folder with this process's keys, absolute once read; empty: an open run
   Impair impair;
 };
 
@@ -90,10 +91,17 @@ struct Observe {
   double tick_hz = 20;
 };
 
+/// PEM files, absolute once read.
+struct Tls {
+  std::filesystem::path certificate;  ///< with those of its issuers behind it, if there are any
+  std::filesystem::path key;
+};
+
 /// Of the viewer's server.
 struct Overseer {
   std::string bind = "127.0.0.1";  ///< address that it listens on
   int port = 8080;                 ///< 0: any that is free
+  std::optional<Tls> tls;          ///< nothing: plain HTTP
 };
 
 /// Where the scene file says something, for messages about it.
