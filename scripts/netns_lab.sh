@@ -7,8 +7,10 @@
 #   scripts/netns_lab.sh impair [loss=PERCENT] [rate=RATE] [delay=TIME]   of every host; no argument: none any more
 #   scripts/netns_lab.sh cut HOST | restore HOST                          its link (hosts count from 0)
 #   scripts/netns_lab.sh run LAUNCH [--duration S] [--report DIR] [--cut HOST@AT+FOR] [--discovery multicast|peers|server]
-#                            [--set KEY=VALUE ...]   one node on each host; with --report also the merged report. --cut:
-#                            AT seconds after the host's node began, for FOR seconds ("HOST@AT": for good)
+#                            [--regions N] [--set KEY=VALUE ...]   one node on each host; with --report also the merged
+#                            report. --cut: AT seconds after the host's node began, for FOR seconds ("HOST@AT": for good);
+#                            --deaf, --mute: likewise, but only what comes to the host, or only what it sends, is lost.
+#                            --regions: hosts from N on have spares
 #   scripts/netns_lab.sh aurasim HOST|switch COMMAND LAUNCH [OPTION ...]  top, send, echo, overseer ... on a host
 #   scripts/netns_lab.sh on HOST|switch COMMAND ...                       anything, e.g. tshark
 # AURASIM_LAB: prefix of the namespaces' names (default auralab), for several laboratories at a time.

@@ -9,20 +9,56 @@ end_run() {
   for pid in "${node_pids[@]}" "${helper_pids[@]}"; do kill "$pid" 2>/dev/null || true; done
 }
 
-# HOST@AT+FOR or HOST@AT
+# HOST@AT+FOR or HOST@AT; how: cut, deaf or mute
 cut_in_time() {
-  local report=$1 plan=$2
+  local report=$1 how=$2 plan=$3
   [[ $plan =~ ^([0-9]+)@([0-9.]+)(\+([0-9.]+))?$ ]] || usage
   local host=${BASH_REMATCH[1]} at=${BASH_REMATCH[2]} for=${BASH_REMATCH[4]}
   until [[ -e $report/region_$host/steps.csv ]]; do sleep 0.05; done
   sleep "$at"
-  link "$host" down
-  echo "$(date +%T) host $host is cut off" >&2
+  separate "$how" "$host"
+  echo "$(date +%T) host $host is cut off ($how)" >&2
   [[ -n $for ]] || return 0
   sleep "$for"
-  link "$host" up
+  rejoin "$how" "$host"
   echo "$(date +%T) host $host is back" >&2
 }
+
+separate() {
+  case $1 in
+    cut) link "$2" down ;;
+    deaf) refuse_from "$2" 0.0.0.0/0 ;;
+    mute) for_others "$2" refuse_from "$(address "$2")" ;;
+  esac
+}
+
+rejoin() {
+  case $1 in
+    cut) link "$2" up ;;
+    deaf) accept_all "$2" ;;
+    mute) for_others "$2" accept_all ;;
+  esac
+}
+
+# HOST FUNCTION ARGUMENT...: the function for each other host
+for_others() {
+  local host=$1 other
+  for other in $(hosts) switch; do
+    [[ $other == "$host" ]] || "$2" "$other" "${@:3}"
+  done
+}
+
+# What comes to the first from the second is dropped where it comes in. Loopback stays.
+refuse_from() {
+  ip netns exec "$(ns "$1")" nft -f - <<<"table inet auracut {
+ chain input {
+  type filter hook input priority 0;
+  iifname != \"lo\" ip saddr $2 meta l4proto udp drop
+ }
+}"
+}
+
+accept_all() { ip netns exec "$(ns "$1")" nft delete table inet auracut; }
 
 # It would use shared memory, too, and leave it behind: it gets one of its own (ip netns exec has its own mounts).
 start_server() {
@@ -33,11 +69,13 @@ start_server() {
 }
 
 start_nodes() {
-  local launch=$1 host flags
+  local launch=$1 host flags role
   shift
   for host in $(hosts); do
     mapfile -t flags < <(flags_of "$host" "$discovery")
-    ip netns exec "$(ns "$host")" "$aurasim" node "$launch" --region "$host" "${flags[@]}" "$@" &
+    role=(node "$launch" --region "$host")
+    [[ -z $regions || $host -lt $regions ]] || role=(spare "$launch")
+    ip netns exec "$(ns "$host")" "$aurasim" "${role[@]}" "${flags[@]}" "$@" &
     node_pids+=($!)
   done
 }
@@ -54,12 +92,13 @@ collect_nodes() {
 }
 
 run() {
-  local launch=${1:?} report='' plan='' discovery=multicast ok=0 options=() settings=()
+  local launch=${1:?} report='' plan='' how='' regions='' discovery=multicast ok=0 options=() settings=()
   shift
   while [[ $# -gt 0 ]]; do
     case $1 in
       --report) report=$2 ;;
-      --cut) plan=$2 ;;
+      --cut | --deaf | --mute) how=${1#--} plan=$2 ;;
+      --regions) regions=$2 ;;
       --discovery) discovery=$2 ;;
       --duration | --steps | --start-time-out) options+=("$1" "$2") ;;
       --set) settings+=(--set "$2") ;;
@@ -68,7 +107,7 @@ run() {
     shift 2
   done
   need_host 0
-  [[ -z $plan || -n $report ]] || fail "--cut counts from the node's first record: give --report" 2
+  [[ -z $plan || -n $report ]] || fail "--$how counts from the node's first record: give --report" 2
   if [[ -n $report ]]; then
     rm -rf "$report"/region_* # of an earlier run
     options+=(--report "$report")
@@ -77,7 +116,7 @@ run() {
   [[ $discovery != server ]] || start_server
   start_nodes "$launch" "${options[@]}" "${settings[@]}"
   if [[ -n $plan ]]; then
-    cut_in_time "$report" "$plan" &
+    cut_in_time "$report" "$how" "$plan" &
     helper_pids+=($!)
   fi
   collect_nodes || ok=1

@@ -25,8 +25,8 @@ class Checkpoints {
 
   /// The scene is begun from its first state: what was kept before does not fit.
   void begin_era(core::Generation era);
-  /// Who keeps ours from now on.
-  void use_keeper(core::RegionId keeper) { bus_.use_keeper(keeper); }
+  /// Who keeps ours from now on (dds::CheckpointBus).
+  void use_keeper(core::RegionId keeper, core::Generation life) { bus_.use_keeper(keeper, life); }
 
   /// Our part in a state. It counts once all states up to `recorded` are on disk: what is recorded of it, too, is gone
   /// with the node otherwise.

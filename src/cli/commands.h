@@ -41,6 +41,9 @@ void add_speed_errors(CLI::App& experiment, Action& action);
 /// What an option that chooses a solver may say.
 std::vector<std::string> solver_names();
 
+/// Of a node, and of a spare that becomes one: whoever has started it sees to its region when it dies.
+void add_has_launcher(CLI::App& command, bool& has_launcher);
+
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {
   std::string file;

@@ -11,6 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLookEvery = 50ms;
+/// Whoever waits so long for the others to be heard again gives up: Fast DDS may not have matched it anew.
+constexpr auto kLongestCut = 10min;
 
 }  // namespace
 
@@ -44,9 +46,10 @@ std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId
         self);
   }
   if (settings_.can_be_cut) look(dead, now);
-  if (standing_ != node::Standing::kCutOff) return {};
+  if (!is_cut_off()) return {};
   std::vector<std::uint32_t> silent;
   for (const core::RegionId lost : quorum_.lost()) silent.push_back(core::value_of(lost));
+  if (settings_.recovers && now < cut_off_since_ + kLongestCut) return {};
   return fmt::format(
       "region {} hears nothing from regions [{}], half of the run or more: they may have died, or this host is cut off "
       "and they go on without it",
@@ -60,7 +63,9 @@ void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now)
   dead_ = dead.size();
   std::map<core::RegionId, node::PeerSign> signs = senses_.peers();
   for (const core::RegionId region : dead) signs[region].lost = true;
-  standing_ = quorum_.judge(signs, now);
+  const node::Standing standing = quorum_.judge(signs, now);
+  if (standing != standing_) cut_off_since_ = now;
+  standing_ = standing;
 }
 
 }  // namespace aurasim::cli

@@ -19,7 +19,8 @@ struct FenceSettings {
   std::uint32_t regions = 1;  ///< of the run
   bool can_be_cut = false;    ///< the others may be on other hosts
   bool never_waits = false;   ///< free_running
-  bool recovers = false;      ///< nobody goes on without a node unless another process has taken its region over
+  /// Nobody goes on without a node unless another process has taken its region over: who is cut off stands, and waits.
+  bool recovers = false;
 };
 
 class Fence {
@@ -37,6 +38,8 @@ class Fence {
   /// True while the node may compute its next state. `held_for_dead`: by a neighbour. `dead`: neighbours that it holds
   /// for dead itself. Cheap while there are none.
   bool open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
+  /// Hears too few of the others to know what they do.
+  bool is_cut_off() const { return standing_ == node::Standing::kCutOff; }
   /// For good: the node has to stop.
   bool closed() const { return !reason_.empty(); }
   /// `reason`: for people.
@@ -54,7 +57,8 @@ class Fence {
   Senses senses_;
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
-  std::size_t dead_ = 0;  ///< neighbours when last looked
+  Clock::time_point cut_off_since_;  ///< if it is
+  std::size_t dead_ = 0;             ///< neighbours when last looked
   Clock::time_point next_look_;
   std::string reason_;
 };

@@ -73,8 +73,12 @@ ExitCode Launcher::run() {
 
 /// What nodes and spares are told alike.
 std::vector<std::string> Launcher::words_for(const char* command) const {
-  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(), command, options_.files.file,
-                                    "--run", std::to_string(run_)};
+  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(),
+                                    command,
+                                    options_.files.file,
+                                    "--run",
+                                    std::to_string(run_),
+                                    "--has-launcher"};
   for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
   words.insert(words.end(),
                {"--set", "physics.threads=" + std::to_string(threads_of(launch_, launch_.regions.size()))});
@@ -210,7 +214,7 @@ bool Launcher::is_of(const dds::Status& status, const Child& child) {
 void Launcher::note_exit(Child& child, int status) {
   child.running = false;
   child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  if (child.told_to_end && child.exit_code == 128 + SIGTERM) child.exit_code = 0;  // told before it could listen
+  if (child.told_to_end && child.exit_code == 128 + SIGINT) child.exit_code = 0;  // told before it could listen
   const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
   child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
                child.exit_code != static_cast<int>(ExitCode::kBroken);
@@ -268,7 +272,7 @@ void Launcher::signal_all(int signal) {
   for (Child& child : children_) {
     if (child.successor != 0) ::kill(child.successor, signal);
     if (!child.running) continue;
-    child.told_to_end = child.told_to_end || signal == SIGTERM;
+    child.told_to_end = child.told_to_end || signal == SIGINT;
     ::kill(child.pid, signal);
   }
 }
@@ -279,7 +283,7 @@ void Launcher::stop_all() {
   if (has_begun_ && steering.find_run(0ms)) {
     steering.send(dds::RunCommandKind::kStop);
   } else {
-    signal_all(SIGTERM);
+    signal_all(SIGINT);
   }
   const auto begin = Clock::now();
   std::vector<NodeEnding> endings(children_.size(), NodeEnding(begin));
@@ -306,7 +310,7 @@ void Launcher::urge(Child& child, NodeEnding& ending) {
   const Urge urge = ending.urge(Clock::now(), seen == statuses.end() ? nullptr : &seen->second);
   if (urge == Urge::kNone) return;
   child.told_to_end = true;
-  ::kill(child.pid, urge == Urge::kKill ? SIGKILL : SIGTERM);
+  ::kill(child.pid, urge == Urge::kKill ? SIGKILL : SIGINT);
 }
 
 std::vector<std::uint32_t> Launcher::running_regions() const {

@@ -10,6 +10,7 @@
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
+#include "cli/other_role.h"
 #include "cli/run_length.h"
 #include "cli/saved_world.h"
 #include "cli/scene_warnings.h"
@@ -30,6 +31,7 @@ struct NodeArguments {
   SaveArguments save;
   int start_time_out_s = 30;
   bool takes_over = false;
+  bool has_launcher = false;
 };
 
 /// The other precision is another program with the same arguments; does not return if that is the one wanted.
@@ -63,11 +65,23 @@ int run_node(const NodeArguments& arguments) {
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;
+  options.has_launcher = arguments.has_launcher;
   NodeProcess process(launch, options);
-  leave_after([&process] { return process.run(); });
+  leave_after([&process] {
+    const ExitCode code = process.run();
+    if (!process.comes_back_as_spare()) return code;
+    spdlog::info("comes back as a spare");
+    become(words_of_spare(own_words()));
+  });
 }
 
 }  // namespace
+
+void add_has_launcher(CLI::App& command, bool& has_launcher) {
+  command
+      .add_flag("--has-launcher", has_launcher, "whoever has started this process starts another one when a node dies")
+      ->group("");
+}
 
 void add_node(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("node", "run one region");
@@ -82,6 +96,7 @@ void add_node(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 3600));
   command->add_flag("--take-over", arguments->takes_over,
                     "the run is there, and its node of this region has died: go on with it");
+  add_has_launcher(*command, arguments->has_launcher);
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);
   command->footer("Example:\n  aurasim node demo --region 0 --report out");

@@ -127,6 +127,10 @@ ExitCode NodeProcess::meet_and_run() {
   return run_steps();
 }
 
+bool NodeProcess::comes_back_as_spare() const {
+  return fence_.closed() && !options_.has_launcher && launch_.survival.on_death == config::OnDeath::kRecover;
+}
+
 /// The others stand and wait for somebody.
 ExitCode NodeProcess::take_over() {
   checkpoints_.emplace(participant_, options_.region);
@@ -193,11 +197,12 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
 /// The first state of a generation is there.
 void NodeProcess::begin_with(const node::StepReport& report) {
   run_orders_.clear();
+  if (recovers()) let_sigterm_ask_to_leave(options_.has_launcher);
   hurry_until_ = 0;
   refusals_noted_ = 0;
   frame_times_.clear();
   checkpoint_ = recorded_ = secured_ = 0;
-  if (launch_.regions.size() > 1) checkpoints_->use_keeper(keeper());
+  if (launch_.regions.size() > 1) checkpoints_->use_keeper(keeper(), life_);
   observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);
   record(node_->confirmed());
@@ -206,7 +211,8 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
-bool NodeProcess::finished() const {
+bool NodeProcess::finished() {
+  if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
   return stop_requested() || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
 }
 
@@ -237,7 +243,7 @@ ExitCode NodeProcess::run_steps() {
   for (;;) {
     try {
       run_until_end();
-      return drains_ && may_leave() ? leave_to_successor() : end();
+      return leaves_now() || (leaves_by_ && can_leave_to_others()) ? leave_to_successor() : end();
     } catch (const SomebodyDied& died) {
       recover(died.what());
     }
@@ -245,7 +251,8 @@ ExitCode NodeProcess::run_steps() {
 }
 
 void NodeProcess::run_until_end() {
-  while (!finished() && !(drains_ && may_leave())) {
+  while (!finished() && !leaves_now()) {
+    leave_if_asked();
     execute_commands();
     look_for_deaths();
     serve_clients();
@@ -275,7 +282,8 @@ ExitCode NodeProcess::end() {
   const dds::TransportCounters& sent = transport_->counters();
   const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
   if (recorder_) {
-    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes()});
+    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes(),
+                               checkpoints_->left_out()});
   }
   if (!fenced) enter(NodeEvent::kSettled);
   if (fenced) return ExitCode::kFenced;

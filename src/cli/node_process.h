@@ -39,6 +39,7 @@ struct NodeOptions {
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
   bool takes_over = false;                      ///< a run that goes on: its node of this region has died
+  bool has_launcher = false;                    ///< who starts another process when a node dies, and ends them all
 };
 
 /// Between a region and those that have to hear of it.
@@ -55,6 +56,8 @@ class NodeProcess {
   NodeProcess(const config::Launch& launch, const NodeOptions& options);
 
   ExitCode run();
+  /// After it: the others do without this process, which may be of use to them once more.
+  bool comes_back_as_spare() const;
 
  private:
   struct Window {  ///< of about the last second, milliseconds
@@ -100,8 +103,11 @@ class NodeProcess {
   std::optional<std::string> death();
   void look_for_deaths();
   bool has_successor();
-  core::RegionId keeper() const;
+  core::RegionId keeper();
+  bool leaves_now() { return drains_ && may_leave(); }
   bool may_leave();
+  bool can_leave_to_others();
+  void leave_if_asked();
   ExitCode leave_to_successor();
   void recover(const std::string& why);
   void begin_to_recover();
@@ -111,10 +117,13 @@ class NodeProcess {
   std::vector<std::uint32_t> vacant_regions();
   void go_on_without();
   void call_spares(const std::vector<std::uint32_t>& vacant);
-  void call_spare(core::RegionId region);
+  bool call_spare(core::RegionId region);
+  bool is_next_after(core::RegionId region);
+  bool stand_in(const std::vector<std::uint32_t>& vacant);
   void hear_of_drain(const dds::RunCommand& drain);
   void lead_recovery();
   void hear_of_restore(const dds::RunCommand& restore);
+  void throw_away_after(core::Step step);
   void repeat_commands(const dds::RunCommand& restore);
   void go_back(const dds::RunCommand& restore);
   void take_map_of(const dds::RunCommand& restore);
@@ -138,7 +147,7 @@ class NodeProcess {
   void settle_all();
   void wait_until_all_stand();
   void connect_anew(const dds::TransportSettings& settings);
-  bool finished() const;
+  bool finished();
   bool has_reached(core::Step step) const;
   void keep_the_end();
   bool is_about_to_change() const;
@@ -177,7 +186,7 @@ class NodeProcess {
   std::optional<node::Recorder> recorder_;
   node::Pacer pacer_;
   node::ClockWatch clock_watch_{node::read_clocks()};
-  bool says_records_end_ = false;
+  bool says_records_end_ = false, says_left_out_ = false;
   std::string notice_;  ///< for people, in the status while the node runs
   core::Generation generation_ = 0;
   std::optional<core::Step> hold_at_;  ///< paused once this state has been computed
@@ -198,13 +207,20 @@ class NodeProcess {
   core::Generation life_of_node_ = 0;          ///< with which node_ has begun
   std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
   bool drains_ = false;                        ///< gives its region to another process as soon as there is one
-  std::optional<core::Step> successor_since_;  ///< state in which that one was first seen
-  bool goes_on_ = false;                       ///< without those who have died: nobody has taken their regions over
-  bool is_going_back_ = false;                 ///< all have agreed on restore_, and not all have begun
+  std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: not later than this
+  std::set<std::uint64_t> leaving_;                                 ///< processes that drain
+  std::optional<core::Step> successor_since_;                       ///< state in which that one was first seen
+  bool goes_on_ = false;            ///< without those who have died: nobody has taken their regions over
+  bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
   core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
   std::chrono::steady_clock::time_point recovering_since_, idle_since_;
   std::map<std::uint32_t, std::chrono::steady_clock::time_point> called_;  ///< regions that spares were called for
   std::set<std::uint64_t> taken_;                                          ///< spares that were called
+  struct StandIn {
+    int times = 0;
+    core::Step at = 0;
+  };
+  std::map<std::uint32_t, StandIn> stood_in_;  ///< processes that one of us was to start for a region, in a row
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;

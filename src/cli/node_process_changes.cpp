@@ -60,7 +60,10 @@ void NodeProcess::execute(const dds::RunCommand& command) {
     if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of(core::RegionId{0}, command);
     return;
   }
-  if (command.kind == Kind::kLost) return control_.hold_for_dead(command.process);
+  if (command.kind == Kind::kLost) {
+    if (command.process == status_.process) fence_.close("the others hold this process for dead");
+    return control_.hold_for_dead(command.process);
+  }
   if (command.kind == Kind::kRestore) return hear_of_restore(command);
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
   if (command.generation > generation_ && restore_ && command.generation == restore_->generation) {

@@ -44,6 +44,13 @@ void NodeProcess::keep_checkpoints() {
     secured_ = recorded_;
   }
   checkpoints_->progress(secured_);
+  if (checkpoints_->left_out() == 0 || says_left_out_) return;
+  says_left_out_ = true;
+  notice_ = fmt::format(
+      "region {} takes longer for a part of the world than from one to the next: after a death all may "
+      "have to go back farther (survival.checkpoint)",
+      core::value_of(keeper()));
+  spdlog::warn("{}", notice_);
 }
 
 /// On the lead. What is asked for by nobody is called by its state.
@@ -59,9 +66,18 @@ cut::SavedWorld NodeProcess::as_saved(core::WorldCut part) const {
           std::move(part)};
 }
 
-/// Who keeps our parts.
-core::RegionId NodeProcess::keeper() const {
-  return core::RegionId{(core::value_of(options_.region) + 1) % static_cast<std::uint32_t>(launch_.regions.size())};
+/// Who keeps our parts: the next region's node on another host, or the next one where there is no other host.
+core::RegionId NodeProcess::keeper() {
+  const auto regions = static_cast<std::uint32_t>(launch_.regions.size());
+  const auto behind = [&](std::uint32_t i) { return core::RegionId{(core::value_of(options_.region) + i) % regions}; };
+  const auto& statuses = control_.statuses();
+  const auto self = statuses.find(options_.region);
+  for (std::uint32_t i = 1; i < regions; ++i) {
+    const auto other = statuses.find(behind(i));
+    if (self == statuses.end() || other == statuses.end()) continue;
+    if (other->second.host != self->second.host) return behind(i);
+  }
+  return behind(1);
 }
 
 }  // namespace aurasim::cli

@@ -23,6 +23,7 @@ using Kind = dds::Checkpoint::Kind;
 
 constexpr auto kInRecovery = 5ms;
 constexpr auto kPatienceWithParts = 10s;
+constexpr auto kPatienceWithStandIn = 20s;
 
 }  // namespace
 
@@ -59,21 +60,28 @@ void NodeProcess::begin_to_recover() {
 
 /// False when the run ends, or goes on without those who have died.
 bool NodeProcess::agree_on_restore() {
-  const std::chrono::duration<double> patience(launch_.survival.patience_s);
+  const auto patience =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(launch_.survival.patience_s));
   auto somebody_came = Clock::now();  // or nobody was missing
   while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
     if (stop_requested()) return false;
+    leave_if_asked();
+    if (leaves_by_ && Clock::now() > *leaves_by_) return false;
     if (node_) node_->ready();
     const bool may_go_on = !node_ || fence_is_open();
     if (fence_.closed()) return false;
     const std::vector<std::uint32_t> vacant = vacant_regions();
-    if (vacant.empty()) somebody_came = Clock::now();
+    if (vacant.empty() || !may_go_on) somebody_came = Clock::now();
     if (node_ && Clock::now() > somebody_came + patience) {
-      go_on_without();
-      return false;
+      if (!stand_in(vacant)) {
+        go_on_without();
+        return false;
+      }
+      somebody_came = Clock::now() + kPatienceWithStandIn - patience;
     }
     if (!node_ && is_not_needed()) return false;
-    publish(fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
+    publish(fence_.is_cut_off() ? "hears too few of the others, and waits for them"
+                                : fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
     if (may_go_on && node_) {
       call_spares(vacant);
       lead_recovery();
@@ -130,8 +138,20 @@ void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
   if (restore.members[region].process == status_.process) {
     restore_ = with_clock_of(restore.region, restore);
   } else if (node_) {
-    fence_.close(fmt::format("another process has taken over region {}", region));
+    fence_.close(fmt::format("another process has taken over region {} in state {}", region, restore.at_step));
+    throw_away_after(restore.at_step);
   }
+}
+
+/// What this process has computed and recorded alone is not what has become of the world.
+void NodeProcess::throw_away_after(core::Step step) {
+  if (node_->current_step() > step) {
+    spdlog::warn("region {}: states {} to {} of this process are thrown away", core::value_of(options_.region),
+                 step + 1, node_->current_step());
+  }
+  const bool has_successor = recorder_ && recorder_->is_replaced();
+  recorder_.reset();
+  if (options_.report && !has_successor) recorder_.emplace(*options_.report, options_.region, step);
 }
 
 /// Whoever takes a region over has not heard of a pause, and those who have would forget a reset.

@@ -58,7 +58,8 @@ void NodeProcess::publish_running() {
 
 void NodeProcess::publish(const std::string& text) {
   const auto now = Clock::now();
-  const dds::NodeState state = state_of(phase_).value();
+  const bool is_cut_off = phase_ == NodePhase::kRecovering && fence_.is_cut_off();
+  const dds::NodeState state = is_cut_off ? dds::NodeState::kCutOff : state_of(phase_).value();
   if (state == status_.state && now - last_published_ < kStatusPeriod) return;
   last_published_ = now;
   status_.state = state;

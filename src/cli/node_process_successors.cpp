@@ -6,7 +6,10 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/node_process.h"
+#include "cli/other_role.h"
 #include "cli/run_steering.h"
+#include "cli/spawn.h"
+#include "cli/stop_signal.h"
 
 namespace aurasim::cli {
 namespace {
@@ -17,6 +20,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kPatienceWithSpare = 5s;
 constexpr auto kLaunchersFirst = 5s;
 constexpr auto kPatienceOfSuccessor = 30s;
+constexpr auto kPatienceWithSuccessor = 20s;
+constexpr int kMostStandIns = 3;  // for one region in a row, at one place
 
 }  // namespace
 
@@ -48,7 +53,8 @@ std::optional<std::string> NodeProcess::death() {
     if (!is_going_back_ && !seen.lost && state == dds::NodeState::kSpare && !is_member) {
       return fmt::format("the node of region {} has left", number);
     }
-    const bool stands = state == dds::NodeState::kRecovering || state == dds::NodeState::kSpare;
+    const bool stands =
+        state == dds::NodeState::kRecovering || state == dds::NodeState::kSpare || state == dds::NodeState::kCutOff;
     if (!seen.lost && stands && seen.status.generation >= current) {
       return fmt::format("region {} says that a node has died", number);
     }
@@ -109,34 +115,92 @@ void NodeProcess::call_spares(const std::vector<std::uint32_t>& vacant) {
   for (const auto& [region, seen] : control_.statuses()) {
     if (region < options_.region && !seen.lost && seen.status.state == dds::NodeState::kRecovering) return;
   }
-  if (options_.run != 0 && Clock::now() < recovering_since_ + kLaunchersFirst) return;
+  if (options_.has_launcher && Clock::now() < recovering_since_ + kLaunchersFirst) return;
   for (const std::uint32_t region : vacant) {
     if (!called_.contains(region)) call_spare(core::RegionId{region});
   }
 }
 
-void NodeProcess::call_spare(core::RegionId region) {
+bool NodeProcess::call_spare(core::RegionId region) {
   const std::vector<dds::Status> spares = control_.spares();
   const auto free =
       std::ranges::find_if(spares, [this](const dds::Status& spare) { return !taken_.contains(spare.process); });
-  if (free == spares.end()) return;
+  if (free == spares.end()) return false;
   control_.send(about_process(dds::RunCommandKind::kTake, options_.run, region, free->process));
   taken_.insert(free->process);
   called_[core::value_of(region)] = Clock::now();
+  return true;
+}
+
+/// Of those that stay.
+bool NodeProcess::is_next_after(core::RegionId region) {
+  const auto regions = static_cast<std::uint32_t>(launch_.regions.size());
+  const auto& statuses = control_.statuses();
+  for (std::uint32_t i = 1; i < regions; ++i) {
+    const core::RegionId next{(core::value_of(region) + i) % regions};
+    if (next == options_.region) return !leaving_.contains(status_.process);
+    const auto other = statuses.find(next);
+    if (other != statuses.end() && other->second.is_live() && !leaving_.contains(other->second.status.process)) {
+      return false;
+    }
+  }
+  return false;
+}
+
+/// Nobody has come for these regions: the host of the next region each does the work of two. A launcher has its own
+/// reasons not to start a process again. False: that has been tried often enough.
+bool NodeProcess::stand_in(const std::vector<std::uint32_t>& vacant) {
+  if (options_.has_launcher) return false;
+  for (const std::uint32_t region : vacant) {
+    StandIn& tried = stood_in_[region];
+    const core::Step step = node_->current_step();
+    tried = step > tried.at ? StandIn{1, step} : StandIn{tried.times + 1, tried.at};
+    if (tried.times > kMostStandIns) return false;
+    if (!is_next_after(core::RegionId{region})) continue;
+    spdlog::warn("nobody has taken region {} over: this host does, beside region {}", region,
+                 core::value_of(options_.region));
+    spawn_apart(words_of_successor(own_words(), core::RegionId{region}, options_.run));
+  }
+  return true;
 }
 
 /// Somebody wants a node to leave. Its launcher starts a successor; where nodes were started by hand, the lowest region
-/// calls a spare.
+/// calls a spare, and where there is none the host of the next region starts one.
 void NodeProcess::hear_of_drain(const dds::RunCommand& drain) {
   if (!recovers()) return;
   const auto& statuses = control_.statuses();
   const auto meant = statuses.find(drain.region);
   const bool is_self = drain.region == options_.region && drain.process == status_.process;
+  const bool is_there = is_self || (meant != statuses.end() && meant->second.status.process == drain.process);
+  if (!is_there || !leaving_.insert(drain.process).second) return;
   drains_ = drains_ || is_self;
+  if (options_.has_launcher) return;
   const bool leads = std::ranges::none_of(
       statuses, [this](const auto& entry) { return entry.first < options_.region && entry.second.is_live(); });
-  const bool is_there = is_self || (meant != statuses.end() && meant->second.status.process == drain.process);
-  if (options_.run == 0 && leads && is_there) call_spare(drain.region);
+  if (!control_.spares().empty()) {
+    if (leads) call_spare(drain.region);
+  } else if (!is_self && is_next_after(drain.region)) {
+    spdlog::info("the node of region {} is to leave: this host takes it over, beside region {}",
+                 core::value_of(drain.region), core::value_of(options_.region));
+    spawn_apart(words_of_successor(own_words(), drain.region, options_.run));
+  }
+}
+
+/// Somebody stays who can go on with what we have.
+bool NodeProcess::can_leave_to_others() {
+  if (!recovers()) return false;
+  return std::ranges::any_of(control_.statuses(), [this](const auto& entry) {
+    return entry.first != options_.region && entry.second.is_live() && !leaving_.contains(entry.second.status.process);
+  });
+}
+
+/// SIGTERM: its host goes down, the run does not.
+void NodeProcess::leave_if_asked() {
+  if (!asked_to_leave() || leaves_by_) return;
+  leaves_by_ = Clock::now() + kPatienceWithSuccessor;
+  dds::RunCommand drain = about_process(dds::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
+  control_.send(drain);
+  hear_of_drain(drain);
 }
 
 /// There is another process for our region, and a state since then that everybody keeps: nobody has to go back far.
@@ -144,11 +208,14 @@ bool NodeProcess::may_leave() {
   if (!has_successor()) return false;
   if (!successor_since_) successor_since_ = node_->current_step();
   const std::vector<dds::KeptPart> ours = checkpoints_->parts();
+  const core::RegionId keeper = this->keeper();
+  const auto& statuses = control_.statuses();
+  const bool stands = phase_ == NodePhase::kPaused;  // then there will be no newer state
   return std::ranges::any_of(ours, [&](const dds::KeptPart& part) {
-    if (part.region != options_.region || part.step < *successor_since_) return false;
-    return std::ranges::all_of(control_.statuses(), [&](const auto& entry) {
+    if (part.region != options_.region || (part.step < *successor_since_ && !stands)) return false;
+    return std::ranges::all_of(statuses, [&](const auto& entry) {
       const dds::KeptPart theirs{entry.first, part.step};
-      const bool is_keeper = entry.first == keeper();
+      const bool is_keeper = entry.first == keeper;
       const auto& kept = entry.second.status.parts;
       return entry.first == options_.region || (std::ranges::find(kept, theirs) != kept.end() &&
                                                 (!is_keeper || std::ranges::find(kept, part) != kept.end()));
@@ -158,8 +225,8 @@ bool NodeProcess::may_leave() {
 
 /// As if it had died, in a moment that costs the others least.
 ExitCode NodeProcess::leave_to_successor() {
-  spdlog::info("region {} leaves after state {}: another process takes over", core::value_of(options_.region),
-               node_->current_step());
+  spdlog::info("region {} leaves after state {}: {}", core::value_of(options_.region), node_->current_step(),
+               has_successor() ? "another process takes over" : "nobody has come to take over yet");
   control_.send(about_process(dds::RunCommandKind::kLost, options_.run, options_.region, status_.process));
   return ExitCode::kOk;
 }

@@ -1,6 +1,5 @@
 // A process without a region: when a node of the run dies or leaves, it is told to take that region over.
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
+#include "cli/other_role.h"
 #include "cli/run_length.h"
 #include "cli/saved_world.h"
 #include "cli/spawn.h"
@@ -35,6 +35,7 @@ struct SpareArguments {
   RunLength length;
   LoadArguments load;
   SaveArguments save;
+  bool has_launcher = false;  // for the node that it becomes
 };
 
 class Spare {
@@ -86,31 +87,16 @@ class Spare {
   dds::Status status_;
 };
 
-/// With our arguments, as the node of that region.
-std::vector<std::string> words_of_node(const dds::RunCommand& take) {
-  std::vector<std::string> words = own_command_line();
-  words[0] = std::filesystem::read_symlink("/proc/self/exe").string();
-  *std::ranges::find(words, "spare") = "node";
-  if (std::ranges::find(words, "--run") == words.end()) {
-    words.insert(words.end(), {"--run", std::to_string(take.run)});
-  }
-  words.insert(words.end(), {"--take-over", "--region", std::to_string(core::value_of(take.region))});
-  return words;
-}
-
 int run_spare(const SpareArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   load_world(arguments.load, launch);  // or it is refused now
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
   catch_stop_signals();
-  std::optional<dds::RunCommand> take;
-  {
-    Spare spare(launch, arguments.run);
-    take = spare.wait();
-    if (!take) leave(0);  // silently, as nodes do
-  }                       // or the next program would inherit its sockets
+  Spare spare(launch, arguments.run);
+  const std::optional<dds::RunCommand> take = spare.wait();
+  if (!take) leave(0);  // silently, as nodes do, and so it does when it becomes one
   spdlog::info("takes over region {}", core::value_of(take->region));
-  become(words_of_node(*take));
+  become(words_of_successor(own_words(), take->region, take->run));
 }
 
 }  // namespace
@@ -122,6 +108,7 @@ void add_spare(CLI::App& program, Action& action) {
   arguments->files.add_to(*command);
   command->add_option("--run", arguments->run, "the number of the run that is meant; 0: whichever is there");
   command->add_option("--report", arguments->report, "folder for what it records as a node");
+  add_has_launcher(*command, arguments->has_launcher);
   arguments->length.add_to(*command);
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);

@@ -4,7 +4,9 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <linux/close_range.h>
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace aurasim::cli {
@@ -17,6 +19,15 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
+/// In a child, before it becomes the program. A signal that our handler took here would be lost for that.
+void hear_signals_as_usual() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) std::signal(signal, SIG_DFL);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> own_command_line() {
@@ -27,6 +38,7 @@ std::vector<std::string> own_command_line() {
 }
 
 void become(std::vector<std::string> words) {
+  ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   ::execv(words.at(0).c_str(), pointers_to(words).data());
   throw std::runtime_error("cannot start " + words[0]);
 }
@@ -38,12 +50,7 @@ pid_t spawn(std::vector<std::string> words, int output) {
   if (pid < 0) throw std::runtime_error("cannot start a process");
   if (pid == 0) {
     ::setpgid(0, 0);
-    // A signal that our handler took here, before exec, would be lost for the program.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-      struct sigaction before = {};
-      sigaction(signal, nullptr, &before);
-      if (before.sa_handler != SIG_IGN) std::signal(signal, SIG_DFL);
-    }
+    hear_signals_as_usual();
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() != parent) ::_exit(0);  // it died before that
     if (output != STDOUT_FILENO) ::dup2(output, STDOUT_FILENO);
@@ -51,6 +58,22 @@ pid_t spawn(std::vector<std::string> words, int output) {
     ::_exit(127);
   }
   return pid;
+}
+
+void spawn_apart(std::vector<std::string> words) {
+  const std::vector<char*> arguments = pointers_to(words);
+  const pid_t pid = ::fork();
+  if (pid < 0) throw std::runtime_error("cannot start a process");
+  if (pid == 0) {
+    // Its own child is nobody's: we need not wait for its end.
+    if (::fork() != 0) ::_exit(0);
+    ::setsid();
+    hear_signals_as_usual();
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  ::waitpid(pid, nullptr, 0);
 }
 
 }  // namespace aurasim::cli

@@ -14,9 +14,14 @@ namespace aurasim::cli {
 /// std::runtime_error when no process can be started.
 pid_t spawn(std::vector<std::string> words, int output = STDOUT_FILENO);
 
+/// Likewise, but for good: it has a session of its own, and ends neither with us nor with our terminal. Throws
+/// likewise.
+void spawn_apart(std::vector<std::string> words);
+
 /// The words that this process was started with.
 std::vector<std::string> own_command_line();
-/// This process becomes the program `words[0]` with these arguments. Throws std::runtime_error if that fails.
+/// This process becomes the program `words[0]` with these arguments, which has no file or socket of ours but the
+/// standard ones. Throws std::runtime_error if that fails.
 [[noreturn]] void become(std::vector<std::string> words);
 
 }  // namespace aurasim::cli

@@ -84,7 +84,7 @@ struct Dds {
 struct Survival {
   OnDeath on_death = OnDeath::kRecover;
   double checkpoint_s = 1;  ///< simulated, from one state that can be gone back to until the next
-  double patience_s = 20;   ///< so long the others wait for somebody who takes the region over
+  double patience_s = 20;   ///< so long the others wait for somebody who takes the region over, before one of them does
 };
 
 struct Observe {

@@ -1,6 +1,8 @@
 #include "dds/checkpoint_bus.h"
 
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "dds/checkpoint_codec.h"
 #include "dds/typed_endpoints.h"
@@ -11,16 +13,24 @@ struct CheckpointBus::Impl {
   Impl(Participant& participant_in, core::RegionId region_in)
       : participant(participant_in),
         region(region_in),
-        to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup),
-        reader(participant.domain(), {TopicId::kCheckpoint, {partition_to(region), kWorldPartition}, region}, wakeup) {}
+        to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup) {
+    read();
+  }
+
+  void read() {
+    reader.emplace(participant.domain(),
+                   EndpointSpec{TopicId::kCheckpoint, {in_life(partition_to(region), life), kWorldPartition}, region},
+                   wakeup);
+  }
 
   Participant& participant;
   core::RegionId region;
   Wakeup wakeup;
   TypedWriter<wire::Checkpoint> to_all;
+  core::Generation life = 0;
   std::optional<core::RegionId> keeper;
   std::optional<TypedWriter<wire::Checkpoint>> to_keeper;
-  TypedReader<wire::Checkpoint> reader;
+  std::optional<TypedReader<wire::Checkpoint>> reader;
 };
 
 CheckpointBus::CheckpointBus(Participant& participant, core::RegionId region)
@@ -28,11 +38,12 @@ CheckpointBus::CheckpointBus(Participant& participant, core::RegionId region)
 
 CheckpointBus::~CheckpointBus() = default;
 
-void CheckpointBus::use_keeper(core::RegionId keeper) {
-  if (impl_->keeper == keeper) return;
+void CheckpointBus::use_keeper(core::RegionId keeper, core::Generation life) {
+  if (impl_->keeper == keeper && impl_->life == life) return;
   impl_->keeper = keeper;
-  impl_->to_keeper.emplace(impl_->participant.domain(),
-                           EndpointSpec{TopicId::kCheckpoint, {partition_of(impl_->region, keeper)}, impl_->region},
+  if (std::exchange(impl_->life, life) != life) impl_->read();
+  const std::string partition = in_life(partition_of(impl_->region, keeper), life);
+  impl_->to_keeper.emplace(impl_->participant.domain(), EndpointSpec{TopicId::kCheckpoint, {partition}, impl_->region},
                            impl_->wakeup);
 }
 
@@ -50,10 +61,10 @@ std::vector<Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
   impl_->wakeup.clear();
   std::vector<Checkpoint> taken;
-  impl_->reader.take_all({}, taken);
+  impl_->reader->take_all({}, taken);
   return taken;
 }
 
-const WireErrors& CheckpointBus::refused() const { return impl_->reader.refused(); }
+const WireErrors& CheckpointBus::refused() const { return impl_->reader->refused(); }
 
 }  // namespace aurasim::dds

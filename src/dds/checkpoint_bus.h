@@ -19,8 +19,9 @@ class CheckpointBus {
   CheckpointBus(Participant& participant, core::RegionId region);
   ~CheckpointBus();
 
-  /// From now on `keeper` is who keeps our parts.
-  void use_keeper(core::RegionId keeper);
+  /// From now on `keeper` is who keeps our parts. `life`: with which generation the run went on after the last death; a
+  /// process that the others have given up, and that may still be there, gets and gives nothing.
+  void use_keeper(core::RegionId keeper, core::Generation life);
   /// To the keeper, if there is one, or to all, by its kind. Of a source and kind the last one counts, for those, too,
   /// who come later. False when the write failed twice.
   bool send(const Checkpoint& checkpoint);

@@ -19,8 +19,8 @@ using core::RegionId;
 using core::value_of;
 
 const char* name_of(NodeState state) {
-  static constexpr std::array kNames = {"starting", "waiting", "running",    "paused",
-                                        "finished", "failed",  "recovering", "spare"};
+  static constexpr std::array kNames = {"starting", "waiting",    "running", "paused", "finished",
+                                        "failed",   "recovering", "spare",   "cut off"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -42,6 +42,10 @@ struct Received {
 /// A sample that was long on its way makes its sender's clock look late: the fastest tells best. Of the last second, as
 /// clocks may be set.
 constexpr std::size_t kSamplesOfAClock = 10;
+
+std::uint16_t host_of(const Guid& guid) {
+  return static_cast<std::uint16_t>(guid.guidPrefix.value[2] << 8 | guid.guidPrefix.value[3]);
+}
 
 /// Where Fast DDS matched a writer anew, the later match counts.
 bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
@@ -118,6 +122,7 @@ void ControlBus::Impl::note(Status fresh, const Origin& origin) {
   }
   found->seen.status = std::move(fresh);
   found->seen.seen = std::chrono::steady_clock::now();
+  found->seen.host = host_of(origin.writer);
   found->clock_ahead.push_back(origin.clock_ahead);
   if (found->clock_ahead.size() > kSamplesOfAClock) found->clock_ahead.pop_front();
   found->seen.clock_ahead = std::ranges::max(found->clock_ahead);

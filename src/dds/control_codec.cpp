@@ -108,7 +108,7 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   if (!finite) {
     return WireError::kNotFinite;
   }
-  if (in.state() > static_cast<std::uint8_t>(NodeState::kSpare)) {
+  if (in.state() > static_cast<std::uint8_t>(NodeState::kCutOff)) {
     return WireError::kEnum;
   }
   const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&

@@ -22,6 +22,7 @@ enum class NodeState : std::uint8_t {
   kFailed,
   kRecovering,  ///< stands, because a node has died, until all go back to a state that is kept
   kSpare,       ///< has no world yet: takes a region over
+  kCutOff,      ///< stands, and hears too few of the others to go on with them
 };
 const char* name_of(NodeState state);
 
@@ -95,13 +96,14 @@ struct SeenStatus {
   bool lost = false;  ///< its proof of life has ended; false again when it comes back
   bool dead = false;  ///< and it never will: whoever started it has seen it end
   std::chrono::steady_clock::time_point seen;
+  std::uint16_t host = 0;  ///< the same for processes on one host, as Fast DDS makes it from the host's addresses
   /// How far its host's wall clock is ahead of ours, as far as its last statuses tell: never more than that, and less
   /// by the time that the fastest of them has taken.
   std::chrono::nanoseconds clock_ahead{0};
 
   bool has_ended() const { return status.state == NodeState::kFinished || status.state == NodeState::kFailed; }
-  /// Neither lost nor at its end.
-  bool is_live() const { return !lost && !has_ended(); }
+  /// Neither lost nor at its end, nor out of reach of the others' words.
+  bool is_live() const { return !lost && !has_ended() && status.state != NodeState::kCutOff; }
 };
 
 /// Who owns what, as the launcher or a node announces it.

@@ -207,6 +207,7 @@ void Recorder::write_summary(Node& node, const Ending& ending) const {
       {"dead_regions", dead},
       {"sent_bytes", ending.sent_bytes},
       {"checkpoint_bytes", ending.checkpoint_bytes},
+      {"checkpoints_left_out", ending.checkpoints_left_out},
   };
   constexpr std::size_t kMostPairs = 16;
   summary["redos"] = nlohmann::json::array();

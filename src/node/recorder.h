@@ -25,8 +25,9 @@ struct Ending {
   double real_time_factor = 1;
   std::string outcome;
   std::vector<core::RegionId> dead_regions;
-  std::uint64_t sent_bytes = 0;        ///< to neighbours: auras, hand-offs, acknowledgements; without RTPS headers
-  std::uint64_t checkpoint_bytes = 0;  ///< parts of the world, to their keeper
+  std::uint64_t sent_bytes = 0;            ///< to neighbours: auras, hand-offs, acknowledgements; without RTPS headers
+  std::uint64_t checkpoint_bytes = 0;      ///< parts of the world, to their keeper
+  std::uint64_t checkpoints_left_out = 0;  ///< parts for which the way to the keeper was too slow
 };
 
 /// Where the records end before the run does.
@@ -54,6 +55,9 @@ class Recorder {
 
   /// Nothing while all could be written.
   const std::optional<RecordsEnd>& records_end() const { return end_; }
+
+  /// Another process records this region there now.
+  bool is_replaced() const { return hashes_.is_replaced(); }
 
   static std::filesystem::path region_folder(const std::filesystem::path& folder, core::RegionId region);
 

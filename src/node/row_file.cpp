@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace aurasim::node {
@@ -81,6 +82,11 @@ bool RowFile::flush() {
   }
   buffer_.clear();
   return failure_.empty();
+}
+
+bool RowFile::is_replaced() const {
+  struct ::stat status = {};
+  return ::fstat(file_, &status) == 0 && status.st_nlink == 0;
 }
 
 bool overwrite(const std::filesystem::path& file, const std::string& text) {

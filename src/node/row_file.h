@@ -33,6 +33,8 @@ class RowFile {
 
   /// False when a write has failed, now or earlier; then nothing is written any more.
   bool flush();
+  /// Another process has begun a file in its place: nobody will read this one.
+  bool is_replaced() const;
   /// Why it failed, for people; empty while it has not.
   const std::string& failure() const { return failure_; }
 

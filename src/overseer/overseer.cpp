@@ -33,6 +33,7 @@ WorldView::RegionState region_state(const dds::SeenStatus& seen) {
     case dds::NodeState::kRunning:
     case dds::NodeState::kPaused:
     case dds::NodeState::kRecovering:
+    case dds::NodeState::kCutOff:
       return seen.lost ? State::kDead : State::kLive;
     case dds::NodeState::kFailed:
       return State::kDead;

@@ -73,6 +73,35 @@ TEST_F(Fenced, TheMinorityWaitsAndThenStops) {
   EXPECT_THAT(fence.reason(), HasSubstr("regions [0, 1]"));
 }
 
+TEST_F(Fenced, WhereTheDeadComeBackTheMinorityStandsUntilTheOthersAreHeardAgain) {
+  Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
+  lose(0);
+  lose(1);
+  dead_ = {RegionId{0}, RegionId{1}};
+  EXPECT_FALSE(open(fence));
+  EXPECT_TRUE(fence.is_cut_off());
+  pass(5min);
+  EXPECT_FALSE(open(fence));
+  EXPECT_FALSE(fence.closed());
+  hear(0);
+  hear(1);
+  dead_ = {};
+  pass(60ms);
+  EXPECT_TRUE(open(fence));
+  EXPECT_FALSE(fence.is_cut_off());
+}
+
+TEST_F(Fenced, ButNotForEver) {
+  Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
+  lose(0);
+  lose(1);
+  dead_ = {RegionId{0}, RegionId{1}};
+  EXPECT_FALSE(open(fence));
+  pass(11min);
+  EXPECT_FALSE(open(fence));
+  EXPECT_THAT(fence.reason(), HasSubstr("regions [0, 1]"));
+}
+
 TEST_F(Fenced, TheMajorityGoesOnOnceItHasHeardOfTheRest) {
   Fence fence = fence_of(2, 3);
   lose(0);

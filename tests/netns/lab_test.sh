@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Nodes on separate hosts (scripts/netns_lab.sh) against one node in one process: no body lost or doubled, the same bits,
 # with lost datagrams and with a link that is cut. Exit code 77 where there can be no such laboratory. Domains 184, 185.
-#   tests/netns/lab_test.sh short|long     about 20 s; about 3 minutes
+#   tests/netns/lab_test.sh short|long     about 40 s; about 6 minutes
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -53,6 +53,22 @@ cut_longer_than_lease() {
   [[ $(field "$name" ".nodes[$host].steps") -lt 150 ]] || fail "$name: host $host simulated a world of its own"
 }
 
+# Leases of 1 s, a host with a spare. Host HOST is lost to the others for so long that the spare takes its region over; then
+# it is back, as a spare. Nothing is lost, and every state has the bits of the central run.
+#   survives NAME HOST HOW@AT+FOR
+survives() {
+  local name=$1 host=$2 how=${3%%@*} plan=$2@${3#*@} said
+  echo "-- $name"
+  said=$(scripts/netns_lab.sh run $launch --duration "$duration" --report "$reports/$name" --regions 4 \
+    --set dds.domain=185 --set time.sync=deterministic --set "dds.profiles=$PWD/qos/aurasim.xml" \
+    --set survival.checkpoint=0.5 "--$how" "$plan" 2>&1) || { echo "$said"; fail "$name: a node failed, or a body is lost or doubled"; }
+  grep -q "spare: takes over region $host" <<<"$said" || { echo "$said"; fail "$name: the spare did not take region $host over"; }
+  grep -q "region $host: comes back as a spare" <<<"$said" || { echo "$said"; fail "$name: host $host did not come back"; }
+  "$AURASIM" compare "$reports/central" "$reports/$name" || fail "$name: other bits"
+}
+
+fifth_host() { scripts/netns_lab.sh down; scripts/netns_lab.sh up 5; }
+
 case ${1:?short or long} in
   short)
     duration=4
@@ -61,6 +77,10 @@ case ${1:?short or long} in
     same_as_central lossy_and_cut --cut 2@1.5+1.5
     scripts/netns_lab.sh impair
     cut_longer_than_lease 3
+    fifth_host
+    duration=12
+    central $duration
+    survives unplugged 3 cut@1.5+4
     ;;
   long)
     duration=30
@@ -77,6 +97,12 @@ case ${1:?short or long} in
     same_as_central by_peers --discovery peers
     same_as_central by_server --discovery server
     cut_longer_than_lease 0
+    fifth_host
+    duration=40
+    central $duration
+    survives unplugged_region_0 0 cut@2+30
+    survives deaf 1 deaf@2+15
+    survives mute 2 mute@2+15
     ;;
 esac
 echo "passed"

@@ -141,6 +141,14 @@ TEST_F(Records, TheLastWordHasItsRoomKept) {
 }
 
 /// Every write to that file fails, as on a disk that is full from the first byte.
+TEST_F(Records, KnowWhenAnotherProcessHasTakenThemOver) {
+  node::Recorder first(folder(), core::RegionId{0});
+  EXPECT_FALSE(first.is_replaced());
+  const node::Recorder successor(folder(), core::RegionId{0}, 0);
+  EXPECT_TRUE(first.is_replaced());
+  EXPECT_FALSE(successor.is_replaced());
+}
+
 TEST_F(Records, AFileThatCannotBeWrittenIsNamedAtTheStart) {
   std::filesystem::create_directories(folder_ / "region_0");
   std::filesystem::create_symlink("/dev/full", file("steps.csv"));

@@ -1,0 +1,69 @@
+#include "cli/other_role.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "cli/spawn.h"
+
+namespace aurasim::cli {
+namespace {
+
+/// What only a node is told. The second ones have a value, behind them or after '='.
+constexpr std::array<std::string_view, 1> kFlagsOfNodes = {"--take-over"};
+constexpr std::array<std::string_view, 2> kOptionsOfNodes = {"--region", "--start-time-out"};
+
+bool has_value_inside(const std::string& word, std::string_view option) {
+  return word.size() > option.size() && word.starts_with(option) && word[option.size()] == '=';
+}
+
+/// Both commands know the rest.
+std::vector<std::string> without_region(const std::vector<std::string>& words) {
+  std::vector<std::string> rest;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (std::ranges::find(kFlagsOfNodes, word) != kFlagsOfNodes.end()) continue;
+    if (std::ranges::find(kOptionsOfNodes, word) != kOptionsOfNodes.end()) {
+      ++i;
+      continue;
+    }
+    const auto is_inside = [&](std::string_view option) { return has_value_inside(word, option); };
+    if (std::ranges::any_of(kOptionsOfNodes, is_inside)) continue;
+    rest.push_back(word);
+  }
+  return rest;
+}
+
+void name_command(std::vector<std::string>& words, const char* name) {
+  const auto is_role = [](const std::string& word) { return word == "node" || word == "spare"; };
+  *std::ranges::find_if(words, is_role) = name;
+}
+
+}  // namespace
+
+std::vector<std::string> words_of_successor(const std::vector<std::string>& words, core::RegionId region,
+                                            std::uint64_t run) {
+  std::vector<std::string> successor = without_region(words);
+  name_command(successor, "node");
+  const auto names_run = [](const std::string& word) { return word == "--run" || has_value_inside(word, "--run"); };
+  if (std::ranges::none_of(successor, names_run)) {
+    successor.insert(successor.end(), {"--run", std::to_string(run)});
+  }
+  successor.insert(successor.end(), {"--take-over", "--region", std::to_string(core::value_of(region))});
+  return successor;
+}
+
+std::vector<std::string> words_of_spare(const std::vector<std::string>& words) {
+  std::vector<std::string> spare = without_region(words);
+  name_command(spare, "spare");
+  return spare;
+}
+
+std::vector<std::string> own_words() {
+  std::vector<std::string> words = own_command_line();
+  words.at(0) = std::filesystem::read_symlink("/proc/self/exe").string();
+  return words;
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,23 @@
+// A process that goes on in another role: a spare becomes the node of a region, a node that the others do without becomes
+// a spare, and a node's host does the work of another one. Each is the same program with nearly the same words.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace aurasim::cli {
+
+/// `words`: of a node's or a spare's command line, the program first. Those of a node that takes `region` of run `run` over.
+std::vector<std::string> words_of_successor(const std::vector<std::string>& words, core::RegionId region,
+                                            std::uint64_t run);
+
+/// Likewise; those of a spare.
+std::vector<std::string> words_of_spare(const std::vector<std::string>& words);
+
+/// How this process was started, with the program's own path.
+std::vector<std::string> own_words();
+
+}  // namespace aurasim::cli
