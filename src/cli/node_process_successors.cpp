@@ -35,7 +35,8 @@ std::optional<std::string> NodeProcess::death() {
   if (!recovers()) return std::nullopt;
   const core::Generation current = std::max(generation_, restoring_);
   if (restore_ && restore_->generation > current) return "all go back to an earlier state";
-  const bool is_running = restoring_ <= generation_ && node_;
+  // Else it is the one from before the death: whom it has missed is no news.
+  const bool is_running = restoring_ <= generation_ && node_ && life_of_node_ == life_;
   std::vector<core::RegionId> silent;
   if (is_running) silent = node_->protocol().intake().dead_regions();
   for (const auto& [region, seen] : control_.statuses()) {
