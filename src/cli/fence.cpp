@@ -23,6 +23,7 @@ void Fence::begin_anew(bool recovers) {
   settings_.recovers = recovers;
   quorum_ = node::Quorum(settings_.region, settings_.regions);
   standing_ = node::Standing::kGoOn;
+  watches_closely_ = false;
   dead_ = 0;
 }
 
@@ -58,7 +59,7 @@ std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId
 
 /// A neighbour's death lets the node compute at once: so whoever is newly dead is looked at before that.
 void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now) {
-  if (now < next_look_ && dead.size() == dead_) return;
+  if (now < next_look_ && dead.size() == dead_ && !watches_closely_) return;
   next_look_ = now + kLookEvery;
   dead_ = dead.size();
   std::map<core::RegionId, node::PeerSign> signs = senses_.peers();

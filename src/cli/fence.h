@@ -44,6 +44,8 @@ class Fence {
   bool closed() const { return !reason_.empty(); }
   /// `reason`: for people.
   void close(std::string reason) { reason_ = std::move(reason); }
+  /// Somebody has died: what was judged before that does not count any more, and every call judges anew.
+  void watch_closely() { watches_closely_ = true; }
   /// All regions have nodes again. With `recovers` or without, from now on.
   void begin_anew(bool recovers);
   /// Why it is closed, for people.
@@ -58,7 +60,8 @@ class Fence {
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
   Clock::time_point cut_off_since_;  ///< if it is
-  std::size_t dead_ = 0;             ///< neighbours when last looked
+  bool watches_closely_ = false;
+  std::size_t dead_ = 0;  ///< neighbours when last looked
   Clock::time_point next_look_;
   std::string reason_;
 };

@@ -270,7 +270,7 @@ ExitCode NodeProcess::end() {
   const double factor = real_time_factor();
   const bool fenced = fence_.closed();
   if (fenced) spdlog::error("{}", fence_.reason());
-  enter(fenced ? NodeEvent::kFence : NodeEvent::kLast);
+  if (fenced || phase_ != NodePhase::kLingering) enter(fenced ? NodeEvent::kFence : NodeEvent::kLast);
   publish(fence_.reason());
   observers_->while_paused(*node_);
   // Whoever leaves from now on has finished, too: that is no death.

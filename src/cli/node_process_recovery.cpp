@@ -48,6 +48,7 @@ void NodeProcess::recover(const std::string& why) {
 /// What a change of the run had begun is forgotten: whoever wanted it asks again.
 void NodeProcess::begin_to_recover() {
   recovering_since_ = idle_since_ = Clock::now();
+  fence_.watch_closely();
   if (before_change_) {
     launch_ = std::move(before_change_->launch);
     options_.world = std::move(before_change_->world);
@@ -205,6 +206,7 @@ void NodeProcess::take_map_of(const dds::RunCommand& restore) {
 
 void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
   if (stop_requested()) throw SomebodyDied("told to stop");
+  if (fence_.closed()) throw SomebodyDied(fence_.reason());
   if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));
   execute_commands();
   look_for_deaths();

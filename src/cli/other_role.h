@@ -1,5 +1,5 @@
-// A process that goes on in another role: a spare becomes the node of a region, a node that the others do without becomes
-// a spare, and a node's host does the work of another one. Each is the same program with nearly the same words.
+// A process that goes on in another role: a spare becomes the node of a region, a node that the others do without
+// becomes a spare, and a node's host does the work of another one. Each is the same program with nearly the same words.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace aurasim::cli {
 
-/// `words`: of a node's or a spare's command line, the program first. Those of a node that takes `region` of run `run` over.
+/// `words`: of a node's or a spare's command line, the program first. Those of a node that takes `region` of run `run`
+/// over.
 std::vector<std::string> words_of_successor(const std::vector<std::string>& words, core::RegionId region,
                                             std::uint64_t run);
 

@@ -193,7 +193,8 @@ const KeysOf<Survival>& survival_keys() {
                    "simulated time from one state that can be gone back to until the next: longer costs less, and has "
                    "more to be computed again"),
           optional("patience", &Survival::patience_s, number(Range::from_to(0, 1e6), "s"),
-                   "so long the others wait for a spare, or for the launcher; then the host of the next region starts a process "
+                   "so long the others wait for a spare, or for the launcher; then the host of the next region starts "
+                   "a process "
                    "that takes the region over, and where that does not help either, they go on without its bodies"),
       });
   return keys;

@@ -91,6 +91,17 @@ TEST_F(Fenced, WhereTheDeadComeBackTheMinorityStandsUntilTheOthersAreHeardAgain)
   EXPECT_FALSE(fence.is_cut_off());
 }
 
+TEST_F(Fenced, WhatWasJudgedBeforeADeathDoesNotCountAfterIt) {
+  Fence fence = fence_of(1, 3);
+  hear(0);
+  hear(2);
+  EXPECT_TRUE(open(fence));
+  lose(0);  // which no batch that is missing has told yet
+  EXPECT_TRUE(open(fence));
+  fence.watch_closely();
+  EXPECT_FALSE(open(fence));
+}
+
 TEST_F(Fenced, ButNotForEver) {
   Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
   lose(0);

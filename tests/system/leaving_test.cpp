@@ -1,5 +1,5 @@
-// Nodes that were started by hand, as on separate hosts, without a launcher that sees to them: who takes the region of a
-// node over that dies, or that its host asks to leave.
+// Nodes that were started by hand, as on separate hosts, without a launcher that sees to them: who takes the region of
+// a node over that dies, or that its host asks to leave.
 #include <csignal>
 
 #include "system_fixture.h"
