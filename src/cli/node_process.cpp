@@ -294,6 +294,7 @@ ExitCode NodeProcess::end() {
 bool NodeProcess::wait_until_due() {
   const core::Step next = node_->current_step() + 1;
   const auto begin = Clock::now();
+  if (hold_at_) hold_at_ = std::max(*hold_at_, farthest_paused_step());
   if (hold_at_ && node_->current_step() >= *hold_at_) {
     if (phase_ != NodePhase::kPaused) enter(NodeEvent::kHeld);
     publish();
@@ -319,6 +320,17 @@ bool NodeProcess::wait_until_due() {
   note_waiting();
   publish_running();
   return false;
+}
+
+/// Nodes that catch up may be past the state of a pause before they hear of it: then the others come to where they are.
+core::Step NodeProcess::farthest_paused_step() {
+  core::Step farthest = 0;
+  for (const auto& [region, seen] : control_.statuses()) {
+    const dds::Status& status = seen.status;
+    const bool is_paused = status.state == dds::NodeState::kPaused && status.generation == generation_;
+    if (is_paused && seen.is_live()) farthest = std::max(farthest, status.step);
+  }
+  return farthest;
 }
 
 void NodeProcess::compute_step() {

@@ -87,6 +87,7 @@ class NodeProcess {
   void run_until_end();
   ExitCode end();
   bool wait_until_due();
+  core::Step farthest_paused_step();
   std::chrono::nanoseconds time_until(core::Step step) const;
   void note_refusals();
   void note_waiting();

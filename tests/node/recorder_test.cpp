@@ -142,9 +142,9 @@ TEST_F(Records, TheLastWordHasItsRoomKept) {
 
 /// Every write to that file fails, as on a disk that is full from the first byte.
 TEST_F(Records, KnowWhenAnotherProcessHasTakenThemOver) {
-  node::Recorder first(folder(), core::RegionId{0});
+  const Recorder first(folder_, RegionId{0});
   EXPECT_FALSE(first.is_replaced());
-  const node::Recorder successor(folder(), core::RegionId{0}, 0);
+  const Recorder successor(folder_, RegionId{0}, 0);
   EXPECT_TRUE(first.is_replaced());
   EXPECT_FALSE(successor.is_replaced());
 }

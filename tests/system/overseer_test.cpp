@@ -177,6 +177,50 @@ TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   end_run(1);
 }
 
+TEST_F(Overseers, APageLivesThroughADeathAndItsWordStillCounts) {
+  const Words own = set({"time.sync=deterministic", "survival.checkpoint=0.5"});
+  ASSERT_NO_FATAL_FAILURE(start_run(own));
+  Process& overseer = start_overseer(own);
+  Page page(port_of(overseer));
+  ASSERT_TRUE(sees_the_run(page));
+  ASSERT_NO_FATAL_FAILURE(kill_node(*run_, 2));
+  EXPECT_TRUE(page.wait_until([&] { return page.latest["status"].at("state") == "recovering"; }, kGenerous));
+  ASSERT_TRUE(page.wait_until([&] { return page.latest["status"].at("state") == "running"; }, kGenerous));
+  const std::int64_t then = page.world.stamp;
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp > then + 60; }, kGenerous));
+  EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), true);
+  const auto stands = [&] {
+    const Json& status = page.latest["status"];
+    const auto is_there = [&](const Json& node) { return node.at("step") == status.at("step"); };
+    return status.at("state") == "paused" && std::ranges::all_of(status.at("nodes"), is_there) &&
+           page.world.stamp == status.at("step").get<double>() && page.world.by_id().size() >= bodies_of(status);
+  };
+  EXPECT_TRUE(page.wait_until(stands, kGenerous)) << page.latest["status"];
+  EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
+  end_run();
+}
+
+TEST_F(Overseers, ARecordingGoesOnAfterADeath) {
+  const std::string recording = (folder() / "recording").string();
+  run_ = &launch(
+      "run", file_,
+      Words{"--record", recording, "--steps", "360"} + set({"time.sync=deterministic", "survival.checkpoint=0.5"}));
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("run"), 4, 90));
+  ASSERT_NO_FATAL_FAILURE(kill_node(*run_, 1));
+  expect_exit(*run_, 0);
+  Process& replay = start({"replay", recording, "--port", "0"});
+  Page page(port_of(replay));
+  ASSERT_TRUE(page.wait_until([&] { return page.has("hello") && page.has("replay") && page.has("scene"); }))
+      << replay.said();
+  // States that were computed twice are in it twice, as they were seen, and some after the last one that was confirmed.
+  const Json last = page.latest["hello"].at("last");
+  EXPECT_GT(last, 360);
+  page.send(Json{{"type", "replay"}, {"action", "pause"}});
+  page.send(Json{{"type", "replay"}, {"action", "seek"}, {"value", last}});
+  EXPECT_TRUE(page.wait_until([&] { return page.world.stamp >= 360; })) << page.world.stamp << " of " << last;
+  EXPECT_GE(page.world.by_id().size(), static_cast<std::size_t>(report_of("run").count("bodies_alive")));
+}
+
 TEST_F(Overseers, WhatTheyRecordIsShownAgain) {
   const std::string recording = (folder() / "recording").string();
   Process& run = launch("run", file_, {"--record", recording, "--duration", "4"});
