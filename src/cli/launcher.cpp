@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -238,13 +239,12 @@ bool Launcher::can_be_replaced(const Child& child) const {
 
 void Launcher::replace(Child& child) {
   const core::Step step = farthest_step();
-  child.deaths = step > child.died_at ? 1 : child.deaths + 1;
-  child.died_at = std::max(child.died_at, step);
+  const bool at_the_same_place = std::abs(step - child.died_at) <= launch_.checkpoint_steps();
+  child.deaths = at_the_same_place ? child.deaths + 1 : 1;
+  child.died_at = step;
   if (child.deaths > kMostDeaths) {
-    spdlog::error(
-        "the node of region {} has died {} times before the run came beyond state {}: the others go on "
-        "without it in {} s",
-        core::value_of(child.region), child.deaths, child.died_at, launch_.survival.patience_s);
+    spdlog::error("the node of region {} has died {} times in a row near state {}: the others go on without it in {} s",
+                  core::value_of(child.region), child.deaths, child.died_at, launch_.survival.patience_s);
     return;
   }
   child.pid = successor_of(child);

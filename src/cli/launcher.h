@@ -51,7 +51,7 @@ class Launcher {
     bool died = false;                                                ///< ended before the run did
     std::optional<std::chrono::steady_clock::time_point> lost_since;  ///< while others wait for somebody in its place
     pid_t successor = 0;  ///< process that takes its region over when it leaves; 0: it does not
-    /// Deaths in a row of its region's nodes before the run has come further than it was then.
+    /// Deaths in a row of its region's nodes near the same state.
     int deaths = 0;
     core::Step died_at = 0;
   };

@@ -1,6 +1,7 @@
 // Who has died, who is there in its place, and how a node leaves: what the recovery of a run begins with
 // (node_process_recovery.cpp).
 #include <algorithm>
+#include <cstdlib>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -155,7 +156,8 @@ bool NodeProcess::stand_in(const std::vector<std::uint32_t>& vacant) {
   for (const std::uint32_t region : vacant) {
     StandIn& tried = stood_in_[region];
     const core::Step step = node_->current_step();
-    tried = step > tried.at ? StandIn{1, step} : StandIn{tried.times + 1, tried.at};
+    const bool at_the_same_place = std::abs(step - tried.at) <= launch_.checkpoint_steps();
+    tried = {at_the_same_place ? tried.times + 1 : 1, step};
     if (tried.times > kMostStandIns) return false;
     if (!is_next_after(core::RegionId{region})) continue;
     spdlog::warn("nobody has taken region {} over: this host does, beside region {}", region,

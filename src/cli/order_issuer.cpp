@@ -46,11 +46,15 @@ void OrderIssuer::begin_generation() {
   closed_ = false;
   own_shapes_.clear();
   own_kinds_.clear();
-  shapes_ = prototypes_ = statics_ = 0;
+  shapes_ = prototypes_ = statics_ = bodies_ = 0;
   noted_shapes_ = noted_kinds_ = 0;
 }
 
 void OrderIssuer::note(const core::Order& order) {
+  if (const auto* body = std::get_if<core::Spawn>(&order.action)) {
+    const std::uint64_t number = core::value_of(body->id);
+    if (number >= core::kFirstClientBody) bodies_ = std::max(bodies_, number - core::kFirstClientBody);
+  }
   if (const auto* defined = std::get_if<core::DefineShape>(&order.action)) {
     const std::size_t index = launch_.scene.shapes.size() + noted_shapes_++;
     const auto is_it = [index](const OwnShape& known) { return known.index == index; };
@@ -91,7 +95,7 @@ Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, con
 
 Issued OrderIssuer::spawn(const core::Command& command, const core::NewBody& body, node::Node& node) {
   const core::PrototypeId prototype = prototype_id(body, command.request, node);
-  const core::BodyId id{core::kFirstClientBody + node.protocol().last_order() + 1};
+  const core::BodyId id{core::kFirstClientBody + ++bodies_};
   const core::Spawn spawn{id, prototype, sound(body.pose), body.v_WB, body.w_WB};
   return {{}, node.order(spawn, command.request, command.at_step), core::ref_of(id)};
 }

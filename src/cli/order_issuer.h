@@ -53,6 +53,8 @@ class OrderIssuer {
   bool closed_ = false;  ///< until the run has changed: an order that not all have received would be forgotten
   // Orders under way are not in the scene yet: the lead counts ahead.
   std::size_t shapes_ = 0, prototypes_ = 0, statics_ = 0;
+  std::uint64_t bodies_ =
+      0;  ///< whatever else was ordered in between: the same bodies have the same numbers in every run
   struct OwnShape {
     core::ClientShape shape;
     std::uint32_t index = 0;

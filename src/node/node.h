@@ -206,6 +206,7 @@ class Node {
   void heed(const core::Order& order);
   void heed_saved();
   void remember(const core::Order& order);
+  const core::Order* newest_spawn() const;
   core::Step births_known_at_start() const;
   core::ClusterState our_part();
   void note_arrived();

@@ -54,6 +54,7 @@ core::WorldCut Node::orders_now(const core::WorldCut& earlier) const {
 /// Those that have changed the scene, and those for states later than `after`.
 void Node::add_orders(core::WorldCut& part, core::Step after) const {
   part.last_order = protocol_->last_order();
+  const core::Order* const newest = newest_spawn();
   std::size_t shape = first_own_shape_;
   for (const core::Order& order : orders_) {
     if (const auto* defined = std::get_if<core::DefineShape>(&order.action)) {
@@ -61,7 +62,7 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
       if (mesh != nullptr) part.shapes.push_back({*mesh, scene_.shapes[shape].shape});
       ++shape;
     }
-    if (changes_scene(order.action) || order.at_step > after) part.orders.push_back(order);
+    if (changes_scene(order.action) || order.at_step > after || &order == newest) part.orders.push_back(order);
   }
 }
 
@@ -81,6 +82,13 @@ const core::Order* Node::ordered(std::uint64_t request) const {
   return request == 0 || found == orders_.rend() ? nullptr : &*found;
 }
 
+/// The next body's number follows from it.
+const core::Order* Node::newest_spawn() const {
+  const auto spawns = [](const core::Order& order) { return std::holds_alternative<core::Spawn>(order.action); };
+  const auto newest = std::ranges::find_if(orders_.rbegin(), orders_.rend(), spawns);
+  return newest == orders_.rend() ? nullptr : &*newest;
+}
+
 /// For worlds that are saved later.
 void Node::remember(const core::Order& order) {
   if (core::changes_the_run(order.action) || std::holds_alternative<core::Redo>(order.action) ||
@@ -89,8 +97,9 @@ void Node::remember(const core::Order& order) {
   }
   orders_.push_back(order);
   if (orders_.size() <= 2 * orders_kept_) return;
+  const std::uint64_t newest = newest_spawn() ? newest_spawn()->sequence : 0;
   std::erase_if(orders_, [&](const core::Order& old) {
-    return !changes_scene(old.action) && old.at_step < current_step() - physics::kOrderMemory;
+    return !changes_scene(old.action) && old.at_step < current_step() - physics::kOrderMemory && old.sequence != newest;
   });
   orders_kept_ = std::max<std::size_t>(orders_kept_, orders_.size());
 }
