@@ -113,9 +113,10 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     const std::string_view path = path_of(target());
     if (path == "/ws") return upgrade();
     if (method == verb::post && path == "/api/shapes") return receive_mesh();
+    const bool is_session = method == verb::post && path == "/api/session";
+    if (!is_session && method != verb::get && method != verb::head) return refuse(405, "only GET is answered here");
     if (!parser_->is_done()) return refuse(400, "a request of this kind has no body");
-    if (method == verb::post && path == "/api/session") return open_session();
-    if (method != verb::get && method != verb::head) return refuse(405, "only GET is answered here");
+    if (is_session) return open_session();
     const FileRequest request{takes_gzip(header(Field::accept_encoding)), std::string(header(Field::if_none_match))};
     answer(hub_.get(target(), request, standing_), parser_->get().keep_alive());
   }
