@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
 #include "cli/scene_warnings.h"
+#include "cli/web_setup.h"
 #include "config/launch.h"
 #include "config/shipped_files.h"
 
@@ -27,6 +28,7 @@ void add_check(CLI::App& program, Action& action) {
   command->callback([files, &action] {
     action = [files] {
       const config::Launch launch = config::read_launch(files->file, files->overrides);
+      check_tls_of(launch);
       fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
                  files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
                  launch.regions.size(), launch.lookahead(), listening_distance_m(launch));

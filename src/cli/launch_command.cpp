@@ -30,6 +30,7 @@ void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
     spdlog::warn("{}", *warning);
   }
   if (options.headless && options.recording.empty()) return;
+  check_tls_of(launch);
   const auto problem = problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
   if (problem) throw std::runtime_error(*problem);
   if (!options.recording.empty()) check_recording(options.recording);

@@ -25,11 +25,11 @@ int oversee(const OverseerArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   const overseer::WebSettings settings = web_settings(launch, arguments.web);
   overseer::ShapeStore shapes(read_mesh_apart);
-  const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, shapes);
+  const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, arguments.web, shapes);
   dds::Participant participant(dds_settings(launch));
   dds::ControlBus control(participant, {launch.regions.version(), {}, launch.agreement()});
   RunCommandSink sink(launch, participant, control, shapes);
-  overseer::Overseer overseer(launch, participant, control, *web, sink, !settings.token.empty());
+  overseer::Overseer overseer(launch, participant, control, *web, sink);
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();
   leave_after([&overseer] {

@@ -1,7 +1,9 @@
 #include "cli/web_setup.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -9,9 +11,12 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "config/shipped_files.h"
+#include "config/yaml_tree.h"
 #include "overseer/http_rules.h"
+#include "overseer/tls_files.h"
 
 namespace aurasim::cli {
 namespace {
@@ -30,7 +35,26 @@ std::string address_of(const overseer::WebSettings& settings, std::uint16_t port
   const bool everywhere = settings.bind == "0.0.0.0" || settings.bind == "::";
   const bool v6 = settings.bind.find(':') != std::string::npos;
   const std::string host = everywhere ? "127.0.0.1" : v6 ? "[" + settings.bind + "]" : settings.bind;
-  return fmt::format("http://{}:{}/", host, port);
+  return fmt::format("{}://{}:{}/", settings.tls ? "https" : "http", host, port);
+}
+
+/// What this host calls itself, and is called in its own network.
+std::vector<std::string> own_names() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
+  return {name.data(), std::string(name.data()) + ".local"};
+}
+
+/// "FILE:LINE:COLUMN" of a value of overseer.tls; the file alone if it is not in there.
+std::string place_in(const std::filesystem::path& file, const std::string& key) {
+  config::Errors ignored;
+  const std::optional<config::YamlNode> root = config::read_yaml(file, ignored);
+  const config::YamlNode* node = root ? &*root : nullptr;
+  for (const std::string_view step : {std::string_view("overseer"), std::string_view("tls"), std::string_view(key)}) {
+    if (node != nullptr) node = node->find(step);
+  }
+  if (node == nullptr) return file.string();
+  return fmt::format("{}:{}:{}", file.string(), node->place.line, node->place.column);
 }
 
 }  // namespace
@@ -39,24 +63,55 @@ void WebArguments::add_to(CLI::App& command) {
   command.add_option("--port", port, "port of the viewer; 0: any that is free (overseer.port)")
       ->check(CLI::Range(0, 65535));
   command.add_option("--bind", bind, "address that the viewer listens on (overseer.bind)");
-  command.add_option("--token", token,
-                     "what a page must know to change the world; drawn and printed when the viewer "
-                     "listens on more than loopback");
+  command
+      .add_option("--token", token,
+                  "what a page must know to change the world; drawn and printed when the viewer listens on more than "
+                  "loopback")
+      ->envname("AURASIM_TOKEN");
+  command
+      .add_option("--view-token", view_token, "what a page must know to look at the world; drawn and printed likewise")
+      ->envname("AURASIM_VIEW_TOKEN");
+  command.add_flag("--anyone-may-look", anyone_may_look, "no token is needed to look at the world");
+  command
+      .add_option("--name", names,
+                  "name that the viewer is asked for by, beside its addresses, this host's name and those of its "
+                  "certificate")
+      ->allow_extra_args(false);
   command.add_option("--web", pages, "folder of the built page")->check(CLI::ExistingDirectory);
+}
+
+void check_tls_of(const config::Launch& launch) {
+  if (!launch.overseer.tls) return;
+  try {
+    overseer::check_tls(*launch.overseer.tls);
+  } catch (const overseer::BadTls& error) {
+    throw config::BadConfig(
+        {fmt::format("{}: overseer.tls.{}: {}", place_in(launch.file, error.key()), error.key(), error.what())});
+  }
 }
 
 overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments) {
   overseer::WebSettings settings;
   settings.bind = arguments.bind.empty() ? launch.overseer.bind : arguments.bind;
   settings.port = static_cast<std::uint16_t>(arguments.port < 0 ? launch.overseer.port : arguments.port);
+  settings.tls = launch.overseer.tls;
+  check_tls_of(launch);
+  const bool is_reached_by_others = !overseer::is_loopback_address(settings.bind);
+  if (is_reached_by_others) settings.names = own_names();
+  settings.names.insert(settings.names.end(), arguments.names.begin(), arguments.names.end());
+  settings.view_token = arguments.anyone_may_look ? "" : arguments.view_token;
+  if (settings.view_token.empty() && is_reached_by_others && !arguments.anyone_may_look)
+    settings.view_token = overseer::make_token();
   settings.token = arguments.token;
-  if (settings.token.empty() && !overseer::is_loopback_address(settings.bind)) settings.token = overseer::make_token();
+  if (settings.token.empty() && (is_reached_by_others || !settings.view_token.empty()))
+    settings.token = overseer::make_token();
   settings.pages = arguments.pages.empty() ? config::shipped_page() : std::filesystem::path(arguments.pages);
   settings.scenes = scenes_beside(launch.scene_file);
   return settings;
 }
 
-std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, overseer::ShapeStore& shapes) {
+std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, const WebArguments& given,
+                                                     overseer::ShapeStore& shapes) {
   std::unique_ptr<overseer::WebServer> server;
   std::string remark;  // beside the address, since launch shows that below its table for as long as it runs
   try {
@@ -71,8 +126,11 @@ std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings setti
   if (!std::filesystem::is_regular_file(settings.pages / "index.html", missing)) {
     remark += " has no page: scripts/build_web.sh says why";
   }
-  fmt::print("{}{}\n", address_of(settings, server->port()), remark);
-  if (!settings.token.empty()) fmt::print("token: {}\n", settings.token);
+  const std::string address = address_of(settings, server->port());
+  fmt::print("{}{}\n", address, remark);
+  if (!settings.view_token.empty() && given.view_token.empty())
+    fmt::print("to look:    {}#token={}\n", address, settings.view_token);
+  if (!settings.token.empty() && given.token.empty()) fmt::print("to operate: {}#token={}\n", address, settings.token);
   std::fflush(stdout);
   return server;
 }

@@ -58,6 +58,21 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   fields.close();
 }
 
+/// Whether the files are there is asked where they are used: hosts that only have nodes need no key of the viewer.
+void read_overseer(const Field& field, const std::filesystem::path& folder, Overseer& overseer) {
+  if (!field.given()) return;
+  const Fields fields(field);
+  overseer_keys().read_members(fields, overseer);
+  if (const Field f = fields["tls"]; f.given()) {
+    const Fields files(f);
+    const auto certificate = files["certificate"].text(), key = files["key"].text();
+    files.close();
+    if (certificate && key)
+      overseer.tls = Tls{(folder / *certificate).lexically_normal(), (folder / *key).lexically_normal()};
+  }
+  fields.close();
+}
+
 void read_scene_of(const Field& field, const std::vector<Override>& overrides, const LaunchLayout& layout,
                    Launch& launch, Errors& errors) {
   const auto name = field.text();
@@ -101,6 +116,7 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
   apply_preset(fields["physics"], launch);
   launch_keys().read_members(fields, launch);
   read_dds(fields["dds"], launch.file.parent_path(), launch.dds);
+  read_overseer(fields["overseer"], launch.file.parent_path(), launch.overseer);
   if (fields.given()) read_scene_of(fields["scene"], of_scene, {.is_known = true, .layout = layout}, launch, errors);
   fields.close();
   if (!errors.empty()) return;

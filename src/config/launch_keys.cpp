@@ -200,15 +200,27 @@ const KeysOf<Survival>& survival_keys() {
   return keys;
 }
 
+const KeyTable& tls_keys() {
+  static const KeyTable keys{
+      .title = "overseer.tls",
+      .about = "HTTPS, from TLS 1.2 on. The files are needed, and looked at, where the viewer's server runs only.",
+      .keys = {required("certificate", text("a PEM file"),
+                        "with those of its issuers behind it, if there are any; relative to this file"),
+               required("key", text("a PEM file"),
+                        "its private key, without a passphrase, not to be read by everybody; relative to this file")}};
+  return keys;
+}
+
 const KeysOf<Overseer>& overseer_keys() {
   static const KeysOf<Overseer> keys(
       "overseer", "The viewer's server.",
       {
           optional(
               "bind", &Overseer::bind, text("an address"),
-              "address that it listens on; on any other than this machine's own, a token, printed at the start, is "
-              "needed to change the world"),
+              "address that it listens on; on any other than this machine's own, tokens, printed at the start, are "
+              "needed to look at the world and to change it"),
           optional("port", &Overseer::port, integer(0, 65535), "0: any that is free"),
+          optional("tls", map(tls_keys), "HTTPS instead of HTTP").otherwise("plain HTTP"),
       });
   return keys;
 }
@@ -238,7 +250,7 @@ const KeysOf<Launch>& launch_keys() {
           optional("dds", map(dds_keys), "how nodes find each other"),
           optional("survival", &Launch::survival, survival_keys, "what happens when a node dies"),
           optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
-          optional("overseer", &Launch::overseer, overseer_keys, "the viewer's server"),
+          optional("overseer", map(overseer_keys), "the viewer's server"),
       });
   return keys;
 }

@@ -18,5 +18,6 @@ const KeysOf<Impair>& impair_keys();
 const KeysOf<Observe>& observe_keys();
 const KeysOf<Survival>& survival_keys();
 const KeysOf<Overseer>& overseer_keys();
+const KeyTable& tls_keys();
 
 }  // namespace aurasim::config

@@ -91,7 +91,7 @@ using Command = std::variant<Pause, Resume, Reset, StepOn, SetRate, LoadScene, S
 
 /// The word for it on the wire: "pause", "spawn", ...
 const char* name_of(const Command& command);
-/// Whether it needs the token, where there is one.
+/// Whether it takes an operator's token, where there is one.
 bool changes_the_world(const Command& command);
 
 /// One connection of one page; never given out again.

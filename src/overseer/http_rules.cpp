@@ -4,11 +4,13 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <random>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
 
 namespace aurasim::overseer {
 namespace {
@@ -36,14 +38,14 @@ bool is_safe(std::string_view path) {
   return std::none_of(path.begin(), path.end(), [](unsigned char c) { return c < 0x20 || c == '\\' || c == 0x7f; });
 }
 
+}  // namespace
+
 std::string lower(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
 }
-
-}  // namespace
 
 std::string_view path_of(std::string_view target) { return target.substr(0, target.find_first_of("?#")); }
 
@@ -111,11 +113,16 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
-bool is_same_origin(std::string_view origin, std::string_view host) {
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.starts_with(scheme)) return lower(origin.substr(scheme.size())) == lower(host) && !host.empty();
-  }
-  return false;
+bool matches_name(std::string_view name, std::string_view known) {
+  if (!known.starts_with("*.")) return name == lower(known);
+  const std::size_t dot = name.find('.');
+  return dot != std::string_view::npos && dot > 0 && name.substr(dot) == lower(known.substr(1));
+}
+
+bool is_same_origin(std::string_view origin, std::string_view host, bool tls) {
+  if (host.empty()) return false;
+  const std::string wanted = lower(host), found = lower(origin);
+  return found == "https://" + wanted || (!tls && found == "http://" + wanted);
 }
 
 bool is_loopback_name(std::string_view host) {
@@ -134,19 +141,25 @@ std::string_view bearer_token(std::string_view authorization) {
   return authorization.starts_with(kBearer) ? authorization.substr(kBearer.size()) : std::string_view{};
 }
 
-bool equal_in_constant_time(std::string_view a, std::string_view b) {
-  unsigned difference = a.size() == b.size() ? 0 : 1;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const char other = b.empty() ? '\0' : b[i % b.size()];
-    difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(other));
+std::string_view cookie_value(std::string_view cookies, std::string_view name) {
+  while (!cookies.empty()) {
+    std::string_view pair = cookies.substr(0, cookies.find(';'));
+    cookies.remove_prefix(std::min(cookies.size(), pair.size() + 1));
+    pair.remove_prefix(std::min(pair.size(), pair.find_first_not_of(' ')));
+    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) return pair.substr(name.size() + 1);
   }
-  return difference == 0;
+  return {};
+}
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 std::string make_token() {
-  std::random_device device;
+  std::array<unsigned char, 16> bits{};
+  if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) throw std::runtime_error("no random numbers");
   std::string token;
-  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  for (const unsigned char byte : bits) token += fmt::format("{:02x}", byte);
   return token;
 }
 

@@ -49,7 +49,7 @@ WorldView::RegionState region_state(const dds::SeenStatus& seen) {
 }  // namespace
 
 Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
-                   WebServer& web, CommandSink& sink, bool token_needed)
+                   WebServer& web, CommandSink& sink)
     : launch_(launch),
       agreement_(launch.agreement()),
       participant_(participant),
@@ -69,7 +69,6 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
   hello.scene = launch.scene.name;
   hello.step_s = launch.step_s();
   hello.tick_hz = launch.observe.tick_hz;
-  hello.token_needed = token_needed;
   web_.publish(Notice::kHello, hello_message(hello));
   publish_scene();
   web_.publish(Notice::kMap, map_message(launch.regions));

@@ -29,7 +29,7 @@ class Overseer {
  public:
   /// All of these outlive it.
   Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, WebServer& web,
-           CommandSink& sink, bool token_needed);
+           CommandSink& sink);
 
   /// From now on writes down what is published to pages. Throws BadRecording when the file cannot be written.
   void record(const std::filesystem::path& file);

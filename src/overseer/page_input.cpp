@@ -226,10 +226,9 @@ Watch read_watch(const Json& json) {
 }
 
 CommandMessage read_command_message(const Json& json) {
-  only(json, {"type", "request", "token", "command"});
+  only(json, {"type", "request", "command"});
   CommandMessage message;
   message.request = text_of(field(json, "request"), "request", 100);
-  if (json.contains("token") && !json.at("token").is_null()) message.token = text_of(json.at("token"), "token", 200);
   message.command = read_command(field(json, "command"));
   return message;
 }

@@ -30,7 +30,6 @@ struct Watch {
 };
 struct CommandMessage {
   std::string request;
-  std::string token;
   Command command;
 };
 struct ReplayControl {

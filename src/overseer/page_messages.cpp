@@ -74,13 +74,8 @@ Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
 }  // namespace
 
 std::string hello_message(const Hello& hello) {
-  Json json = {{"type", "hello"},
-               {"version", 1},
-               {"mode", hello.replay ? "replay" : "live"},
-               {"scene", hello.scene},
-               {"step_s", hello.step_s},
-               {"tick_hz", hello.tick_hz},
-               {"token_needed", hello.token_needed}};
+  Json json = {{"type", "hello"},      {"version", 1},           {"mode", hello.replay ? "replay" : "live"},
+               {"scene", hello.scene}, {"step_s", hello.step_s}, {"tick_hz", hello.tick_hz}};
   if (hello.replay) {
     json["first"] = hello.first;
     json["last"] = hello.last;

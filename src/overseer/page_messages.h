@@ -20,7 +20,6 @@ struct Hello {
   std::string scene;
   double step_s = 0;
   double tick_hz = 0;
-  bool token_needed = false;
   core::Step first = 0;  ///< place in a replay at which it begins
   core::Step last = 0;
   std::vector<core::Step> resets;  ///< places in it at which the run was begun anew

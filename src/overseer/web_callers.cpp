@@ -18,19 +18,25 @@ std::shared_ptr<WebCaller> oldest_of_the_greediest(const Callers& callers) {
   return greediest == by_address.end() ? nullptr : greediest->second.front();
 }
 
+/// The oldest of the silent, if there are any.
+std::shared_ptr<WebCaller> whom_to_drop(const Callers& callers) {
+  Callers silent;
+  std::copy_if(callers.begin(), callers.end(), std::back_inserter(silent),
+               [](const auto& c) { return c->is_silent(); });
+  return oldest_of_the_greediest(silent.empty() ? callers : silent);
+}
+
 }  // namespace
 
 bool WebCallers::enter(const std::shared_ptr<WebCaller>& caller) {
   forget_the_gone();
-  bool dropped = false;
-  if (callers_.size() >= most_) {
-    const std::shared_ptr<WebCaller> leaving = whom_to_drop();
+  const std::shared_ptr<WebCaller> leaving = whom_to_drop_for(caller->address());
+  if (leaving) {
     std::erase_if(callers_, [&](const auto& known) { return known.lock() == leaving; });
-    if (leaving) leaving->drop();
-    dropped = leaving != nullptr;
+    leaving->drop();
   }
   callers_.push_back(caller);
-  return dropped;
+  return leaving != nullptr;
 }
 
 std::size_t WebCallers::count() {
@@ -42,13 +48,15 @@ void WebCallers::forget_the_gone() {
   std::erase_if(callers_, [](const auto& caller) { return caller.expired(); });
 }
 
-std::shared_ptr<WebCaller> WebCallers::whom_to_drop() const {
-  Callers all, silent;
+/// Nobody: there is room.
+std::shared_ptr<WebCaller> WebCallers::whom_to_drop_for(const std::string& address) const {
+  Callers all, own;
   for (const auto& known : callers_) {
     if (auto caller = known.lock()) all.push_back(std::move(caller));
   }
-  std::copy_if(all.begin(), all.end(), std::back_inserter(silent), [](const auto& c) { return c->is_silent(); });
-  return oldest_of_the_greediest(silent.empty() ? all : silent);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(own), [&](const auto& c) { return c->address() == address; });
+  if (own.size() >= most_of_one_) return whom_to_drop(own);
+  return all.size() >= most_ ? whom_to_drop(all) : nullptr;
 }
 
 }  // namespace aurasim::overseer

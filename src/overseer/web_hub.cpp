@@ -11,6 +11,7 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr std::size_t kMostRequests = 1000;
+constexpr const char* kTokenIsNeeded = "this takes a token: the one for operators";
 
 template <class... Functions>
 struct Overloaded : Functions... {
@@ -82,7 +83,7 @@ void WebHub::handle(PageConnection& page, PageMessage& message) {
                         [&](const Watch& wanted) { watch(page, wanted); },
                         [&](CommandMessage& command) { take_command(page, command); },
                         [&](const ReplayControl& control) {
-                          if (!enqueue(control)) ++refused_;
+                          if (page.standing < Standing::kOperator || !enqueue(control)) ++refused_;
                         }},
              message);
 }
@@ -92,15 +93,21 @@ void WebHub::take_command(PageConnection& page, CommandMessage& message) {
     ++refused_;
     reply(page, {page.id, message.request, false, why, nullptr});
   };
-  if (changes_the_world(message.command) && !knows_token(message.token)) {
-    refuse("the token is missing or wrong");
+  if (changes_the_world(message.command) && page.standing < Standing::kOperator) {
+    refuse(kTokenIsNeeded);
+  } else if (std::holds_alternative<CastRay>(message.command) && !may_cast_a_ray(page)) {
+    refuse("too many rays: try again in a moment");
   } else if (!enqueue(Request{page.id, message.request, std::move(message.command)})) {
     refuse("too many commands at once");
   }
 }
 
-bool WebHub::knows_token(std::string_view token) const {
-  return settings_.token.empty() || equal_in_constant_time(token, settings_.token);
+bool WebHub::may_cast_a_ray(PageConnection& page) {
+  const auto now = RateLimit::Clock::now();
+  if (page.rays.is_spent(now) || rays_.is_spent(now)) return false;
+  page.rays.take(now);
+  rays_.take(now);
+  return true;
 }
 
 bool WebHub::enqueue(PageRequest request) {
@@ -190,28 +197,41 @@ void WebHub::count_sent(const Message& message, std::size_t bytes) {
 }
 
 WebCounters WebHub::counters() const {
-  return {clients_, connections_, frames_sent_, frames_skipped_, bytes_sent_, refused_, dropped_};
+  return {clients_,    connections_, frames_sent_, frames_skipped_,
+          bytes_sent_, refused_,     dropped_,     access_.wrong_tokens()};
 }
 
-std::string WebHub::why_not(std::string_view host, std::string_view origin) const {
-  if (is_loopback_address(settings_.bind) && !is_loopback_name(host))
-    return "this server is for this host only: use 127.0.0.1 or localhost";
-  if (!origin.empty() && !is_same_origin(origin, host)) return "pages of other sites may not ask this server";
-  return {};
+PagePlace WebHub::page_place(const std::string& address) {
+  std::erase_if(page_places_of_, [](const auto& entry) { return entry.second == 0; });
+  const std::size_t most = is_loopback_address(address) ? settings_.most_clients : settings_.most_clients_of_one;
+  return {{page_places_, settings_.most_clients}, {page_places_of_[address], most}};
 }
 
-HttpAnswer WebHub::get(std::string_view target, const FileRequest& request) {
+HttpAnswer WebHub::session(Standing standing) {
+  const char* const may = standing == Standing::kOperator ? "operate"
+                          : standing == Standing::kViewer ? "look"
+                                                          : "nothing";
+  return {.content_type = "application/json", .body = nlohmann::json{{"may", may}}.dump() + "\n"};
+}
+
+HttpAnswer WebHub::get(std::string_view target, const FileRequest& request, Standing standing) {
   const std::string_view path = path_of(target);
-  if (path == "/healthz") return {200, "text/plain; charset=utf-8", "ok\n", {}, {}};
-  if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", metrics(), {}, {}};
+  if (path == "/healthz") return {.body = "ok\n"};
+  if (path == "/api/session") return session(standing);
+  const bool is_about_the_run = path == "/metrics" || path.starts_with("/api/");
+  if (is_about_the_run && standing < Standing::kViewer) {
+    ++refused_;
+    return {.status = 401, .body = "this takes a token\n"};
+  }
+  if (path == "/metrics") return {.content_type = "text/plain; version=0.0.4; charset=utf-8", .body = metrics()};
   if (path == "/api/scenes")
-    return {200, "application/json", nlohmann::json{{"scenes", settings_.scenes}}.dump() + "\n", {}, {}};
+    return {.content_type = "application/json", .body = nlohmann::json{{"scenes", settings_.scenes}}.dump() + "\n"};
   return get_file(target, request);
 }
 
 HttpAnswer WebHub::get_file(std::string_view target, const FileRequest& request) {
   if (const auto file = files_.get(target, request)) {
-    HttpAnswer answer{200, file->content_type, {}, {}, file->etag};
+    HttpAnswer answer{.content_type = file->content_type, .etag = file->etag};
     if (!file->bytes) {
       answer.status = 304;
     } else {
@@ -220,8 +240,9 @@ HttpAnswer WebHub::get_file(std::string_view target, const FileRequest& request)
     }
     return answer;
   }
-  if (path_of(target) == "/") return {200, "text/html; charset=utf-8", page_is_not_built(settings_.pages), {}, {}};
-  return {404, "text/plain; charset=utf-8", "no such page\n", {}, {}};
+  if (path_of(target) == "/")
+    return {.content_type = "text/html; charset=utf-8", .body = page_is_not_built(settings_.pages)};
+  return {.status = 404, .body = "no such page\n"};
 }
 
 std::string WebHub::metrics() const {
@@ -238,6 +259,7 @@ std::string WebHub::metrics() const {
   add("frames_skipped_total", "counter", "Frames merged into later ones for slow pages.", skipped);
   add("bytes_sent_total", "counter", "Bytes of WebSocket messages sent.", bytes_sent_);
   add("refused_total", "counter", "Requests and messages refused.", refused_);
+  add("wrong_tokens_total", "counter", "Requests that showed a wrong token.", access_.wrong_tokens());
   add("dropped_total", "counter", "Pages dropped because they took nothing.", dropped_);
   return text;
 }

@@ -14,13 +14,16 @@
 
 #include "overseer/client_outbox.h"
 #include "overseer/page_files.h"
+#include "overseer/rate_limit.h"
 #include "overseer/shape_store.h"
+#include "overseer/web_access.h"
 #include "overseer/web_callers.h"
 #include "overseer/web_settings.h"
 
 namespace aurasim::overseer {
 
 inline constexpr std::size_t kMostCallers = 256;  // that ask by HTTP, pages not counted
+inline constexpr std::size_t kMostCallersOfOne = 64;
 
 /// A page with a WebSocket, as the hub sees it.
 class PageConnection {
@@ -32,7 +35,9 @@ class PageConnection {
   virtual bool drop_if_stalled(std::chrono::steady_clock::duration limit) = 0;
 
   ClientId id{};
+  Standing standing = Standing::kStranger;
   ClientOutbox outbox;
+  RateLimit rays{20, 10};
   Show show;
   std::optional<core::BodyId> watched;
 };
@@ -40,9 +45,10 @@ class PageConnection {
 struct HttpAnswer {
   unsigned status = 200;
   std::string content_type = "text/plain; charset=utf-8";
-  std::string body;
-  std::string encoding;  ///< of the body; empty: as it is
-  std::string etag;      ///< empty: of something that changes
+  std::string body = {};
+  std::string encoding = {};  ///< of the body; empty: as it is
+  std::string etag = {};      ///< empty: of something that changes
+  std::string cookie = {};    ///< for Set-Cookie
 };
 
 /// One of so many places. Given back when it ends; in any thread.
@@ -72,18 +78,27 @@ class Place {
   std::atomic<std::size_t>* taken_ = nullptr;
 };
 
+/// Of one page. Holds nothing if all are taken.
+struct PagePlace {
+  Place of_all;
+  Place of_address;
+  explicit operator bool() const { return of_all && of_address; }
+};
+
 class WebHub {
  public:
+  /// The port is the one that the server listens on.
   WebHub(const WebSettings& settings, ShapeStore& shapes)
-      : settings_(settings), shapes_(shapes), files_(settings.pages) {}
+      : settings_(settings), shapes_(shapes), access_(settings), files_(settings.pages) {}
 
   // -- for connections
   const WebSettings& settings() const { return settings_; }
   ShapeStore& shapes() { return shapes_; }
+  WebAccess& access() { return access_; }
   const SlotTable& table() const { return table_; }
   /// For a page that is about to join. Asked for before its WebSocket is accepted, or more would join than there are
   /// places for.
-  Place page_place() { return {page_places_, settings_.most_clients}; }
+  PagePlace page_place(const std::string& address);
   /// For a mesh that is about to be sent: it is held in memory until it has been read.
   Place upload_place() { return {upload_places_, settings_.most_uploads}; }
   void join(const std::shared_ptr<PageConnection>& page);
@@ -92,10 +107,9 @@ class WebHub {
   void read(PageConnection& page, std::string_view text);
   void refuse() { ++refused_; }
   /// The answer to GET.
-  HttpAnswer get(std::string_view target, const FileRequest& request);
-  /// Why a request with these headers may not be served; empty: it may.
-  std::string why_not(std::string_view host, std::string_view origin) const;
-  bool knows_token(std::string_view token) const;
+  HttpAnswer get(std::string_view target, const FileRequest& request, Standing standing);
+  /// What somebody may do, as JSON.
+  static HttpAnswer session(Standing standing);
 
   /// A new connection.
   void enter(const std::shared_ptr<WebCaller>& caller);
@@ -125,13 +139,16 @@ class WebHub {
   void publish_watched(PageConnection& page);
   void note_wanted();
   bool enqueue(PageRequest request);
+  bool may_cast_a_ray(PageConnection& page);
   std::string metrics() const;
   HttpAnswer get_file(std::string_view target, const FileRequest& request);
 
   const WebSettings settings_;
   ShapeStore& shapes_;
+  WebAccess access_;
   PageFiles files_;
-  WebCallers callers_{kMostCallers};
+  WebCallers callers_{kMostCallers, kMostCallersOfOne};
+  RateLimit rays_{100, 50};  ///< of all pages: nodes answer them
   SlotTable table_;
   std::array<SharedText, kNotices> notices_;
   std::string metrics_;
@@ -141,6 +158,7 @@ class WebHub {
   std::mutex requests_mutex_;
   std::vector<PageRequest> requests_;
   std::atomic<std::size_t> page_places_{0}, upload_places_{0};
+  std::map<std::string, std::atomic<std::size_t>> page_places_of_;  ///< by address
   std::atomic<bool> auras_wanted_ = false, links_wanted_ = false, contacts_wanted_ = false;
   std::atomic<std::uint64_t> clients_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0}, bytes_sent_{0},
       refused_{0}, dropped_{0};

@@ -1,5 +1,6 @@
 #include "overseer/web_server.h"
 
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -9,8 +10,10 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "overseer/web_connection.h"
+#include "overseer/web_tls.h"
 
 namespace aurasim::overseer {
 
@@ -23,7 +26,11 @@ namespace {
 constexpr std::chrono::milliseconds kLookAfter{500};  // stalled pages
 constexpr std::size_t kReaders = 4;                   // of meshes: one that takes long does not hold up the others
 
-void open(tcp::acceptor& acceptor, const WebSettings& settings) {
+/// This thread gives way where processors are short: whatever pages do, nodes on this host go first.
+constexpr int kNiceness = 10;
+
+tcp::acceptor opened(asio::io_context& io, const WebSettings& settings) {
+  tcp::acceptor acceptor(io);
   Error error;
   const auto check = [&](const char* what) {
     if (!error) return;
@@ -41,24 +48,41 @@ void open(tcp::acceptor& acceptor, const WebSettings& settings) {
   check("listen on");
   acceptor.listen(asio::socket_base::max_listen_connections, error);
   check("listen on");
+  return acceptor;
+}
+
+std::optional<asio::ssl::context> tls_of(const WebSettings& settings) {
+  if (!settings.tls) return std::nullopt;
+  return make_tls_context(*settings.tls);
+}
+
+/// With what is only known now.
+WebSettings completed(WebSettings settings, std::uint16_t port, std::optional<asio::ssl::context>& tls) {
+  settings.port = port;
+  if (!tls) return settings;
+  for (std::string& name : names_of_certificate(*tls)) settings.names.push_back(std::move(name));
+  return settings;
 }
 
 }  // namespace
 
 struct WebServer::Impl {
-  Impl(const WebSettings& settings, ShapeStore& shapes) : hub(settings, shapes), acceptor(io), timer(io), retry(io) {
-    open(acceptor, settings);
-    port = acceptor.local_endpoint().port();
+  Impl(const WebSettings& settings, ShapeStore& shapes)
+      : tls(tls_of(settings)), acceptor(opened(io, settings)), port(acceptor.local_endpoint().port()) {
+    hub.emplace(completed(settings, port, tls), shapes);
     accept();
     look_after();
-    thread = std::thread([this] { io.run(); });
+    thread = std::thread([this] {
+      ::setpriority(PRIO_PROCESS, 0, kNiceness);  // on Linux: of this thread
+      io.run();
+    });
   }
 
   ~Impl() {
     worker.join();
     io.stop();
     thread.join();
-    hub.clear();
+    hub->clear();
   }
 
   void accept() {
@@ -70,7 +94,7 @@ struct WebServer::Impl {
           if (!ended) accept();
         });
       }
-      serve_connection(std::move(socket), hub, worker.get_executor());
+      serve_connection(std::move(socket), *hub, tls ? &*tls : nullptr, worker.get_executor());
       accept();
     });
   }
@@ -79,7 +103,7 @@ struct WebServer::Impl {
     timer.expires_after(kLookAfter);
     timer.async_wait([this](const Error& error) {
       if (error) return;
-      hub.drop_stalled();
+      hub->drop_stalled();
       look_after();
     });
   }
@@ -89,13 +113,14 @@ struct WebServer::Impl {
     asio::post(io, std::move(job));
   }
 
-  WebHub hub;
+  std::optional<WebHub> hub;  ///< outlives all connections, which end with `io`
   asio::thread_pool worker{kReaders};
+  std::optional<asio::ssl::context> tls;
   asio::io_context io{1};
   tcp::acceptor acceptor;
-  asio::steady_timer timer;
-  asio::steady_timer retry;
-  std::uint16_t port = 0;
+  std::uint16_t port;
+  asio::steady_timer timer{io};
+  asio::steady_timer retry{io};
   std::thread thread;
 };
 
@@ -108,30 +133,30 @@ std::uint16_t WebServer::port() const { return impl_->port; }
 
 void WebServer::publish(Notice notice, std::string json) {
   impl_->post([this, notice, text = std::make_shared<const std::string>(std::move(json))] {
-    impl_->hub.publish(notice, text);
+    impl_->hub->publish(notice, text);
   });
 }
 
 void WebServer::show(const WorldFrame& frame) {
-  impl_->post([this, copy = std::make_shared<const WorldFrame>(frame)] { impl_->hub.show(*copy); });
+  impl_->post([this, copy = std::make_shared<const WorldFrame>(frame)] { impl_->hub->show(*copy); });
 }
 
 void WebServer::show_overlays(Bytes overlays) {
-  impl_->post([this, bytes = std::make_shared<const Bytes>(std::move(overlays))] { impl_->hub.show_overlays(bytes); });
+  impl_->post([this, bytes = std::make_shared<const Bytes>(std::move(overlays))] { impl_->hub->show_overlays(bytes); });
 }
 
 void WebServer::set_metrics(std::string text) {
-  impl_->post([this, text = std::move(text)]() mutable { impl_->hub.set_metrics(std::move(text)); });
+  impl_->post([this, text = std::move(text)]() mutable { impl_->hub->set_metrics(std::move(text)); });
 }
 
 void WebServer::answer(const Reply& reply) {
-  impl_->post([this, reply] { impl_->hub.answer(reply); });
+  impl_->post([this, reply] { impl_->hub->answer(reply); });
 }
 
-Show WebServer::wanted() const { return impl_->hub.wanted(); }
+Show WebServer::wanted() const { return impl_->hub->wanted(); }
 
-std::vector<PageRequest> WebServer::take_requests() { return impl_->hub.take_requests(); }
+std::vector<PageRequest> WebServer::take_requests() { return impl_->hub->take_requests(); }
 
-WebCounters WebServer::counters() const { return impl_->hub.counters(); }
+WebCounters WebServer::counters() const { return impl_->hub->counters(); }
 
 }  // namespace aurasim::overseer

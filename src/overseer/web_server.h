@@ -26,7 +26,7 @@ class CannotListen : public std::runtime_error {
 
 class WebServer {
  public:
-  /// Listens from now on. Throws CannotListen. The store outlives the server.
+  /// Listens from now on. Throws CannotListen, BadTls (tls_files.h). The store outlives the server.
   WebServer(const WebSettings& settings, ShapeStore& shapes);
   ~WebServer();
   WebServer(const WebServer&) = delete;

@@ -28,6 +28,17 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.observe.tick_hz, 20);
 }
 
+TEST(LaunchFile, FilesOfTlsAreBesideItAndNotLookedForHere) {
+  const Workspace workspace;
+  EXPECT_FALSE(workspace.launch(kSmallLaunch).overseer.tls);
+  const Launch launch = workspace.launch(std::string(kSmallLaunch) +
+                                         "overseer: {port: 8443, tls: {certificate: tls/c.pem, key: ../k.pem}}\n");
+  EXPECT_EQ(launch.overseer.port, 8443);
+  ASSERT_TRUE(launch.overseer.tls);
+  EXPECT_EQ(launch.overseer.tls->certificate, launch.file.parent_path() / "tls/c.pem");
+  EXPECT_EQ(launch.overseer.tls->key, launch.file.parent_path().parent_path() / "k.pem");
+}
+
 TEST(LaunchFile, TheDefaultsAreThePresetBalanced) {
   const Launch launch = Workspace().launch(kSmallLaunch);
   EXPECT_EQ(launch.physics.solver, preset_named("balanced").solver);

@@ -118,7 +118,7 @@ TEST(PageInput, DeepAndLongTextsDoNoHarm) {
 
 TEST(PageInput, MutationsAreReadOrRefusedAndNeverThrow) {
   const std::string original =
-      R"({"type":"command","request":"r","token":"t","command":{"kind":"spawn","shape":{"kind":"compound","parts":)"
+      R"({"type":"command","request":"r","command":{"kind":"spawn","shape":{"kind":"compound","parts":)"
       R"([{"shape":{"kind":"box","half_extents":[1,2,3]},"p":[0,0,1],"q":[1,0,0,0]}]},"mass_kg":2.5,"p":[0,0,-1e3]}})";
   std::mt19937 random(11);
   std::cout << "seed 11\n";

@@ -20,7 +20,7 @@ class FullHouse : public ::testing::Test {
     callers_.enter(caller);
     return caller;
   }
-  WebCallers callers_{3};
+  WebCallers callers_{3, 3};
 };
 
 TEST_F(FullHouse, NobodyGoesWhileThereIsRoom) {
@@ -46,6 +46,14 @@ TEST_F(FullHouse, WhereAllHaveAskedTheOldestGoes) {
   const auto first = comes("a", false), second = comes("a", false), third = comes("a", false), fourth = comes("a");
   EXPECT_TRUE(first->dropped);
   EXPECT_FALSE(second->dropped || third->dropped || fourth->dropped);
+}
+
+TEST_F(FullHouse, WhoHasAllPlacesOfOneAddressGivesUpOneOfThem) {
+  callers_ = WebCallers(10, 2);
+  const auto other = comes("a"), first = comes("b"), second = comes("b"), third = comes("b");
+  EXPECT_TRUE(first->dropped);
+  EXPECT_FALSE(other->dropped || second->dropped || third->dropped);
+  EXPECT_EQ(callers_.count(), 3U);
 }
 
 TEST_F(FullHouse, WhoHasEndedTakesNoPlace) {

@@ -1,7 +1,9 @@
 // A browser's side of HTTP and WebSocket, with a deadline for everything.
 #pragma once
 
+#include <cctype>
 #include <chrono>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -34,7 +36,20 @@ struct HttpReply {
   std::string body;
   std::string encoding;
   std::string etag;
+  std::map<std::string, std::string> fields = {};  ///< all of its header, names in small letters
 };
+
+inline HttpReply reply_of(const http::response<http::string_body>& answer) {
+  const auto field = [&](http::field name) { return std::string(answer[name]); };
+  HttpReply reply = {answer.result_int(), field(http::field::content_type), answer.body(),
+                     field(http::field::content_encoding), field(http::field::etag)};
+  for (const auto& each : answer) {
+    std::string name(each.name_string());
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    reply.fields[name] = std::string(each.value());
+  }
+  return reply;
+}
 
 /// One request in a connection of its own. `fields` replace those that a browser would send.
 inline HttpReply request(std::uint16_t port, http::verb verb, const std::string& target,
@@ -57,10 +72,7 @@ inline HttpReply request(std::uint16_t port, http::verb verb, const std::string&
     http::async_write(stream, request, [&](beast::error_code, std::size_t) {
       http::async_read(stream, buffer, response, [&](beast::error_code not_read, std::size_t) {
         if (not_read) return;
-        const auto& answer = response.get();
-        const auto field = [&](http::field name) { return std::string(answer[name]); };
-        reply = {answer.result_int(), field(http::field::content_type), answer.body(),
-                 field(http::field::content_encoding), field(http::field::etag)};
+        reply = reply_of(response.get());
       });
     });
   });
@@ -157,11 +169,9 @@ class Page {
   void send(const nlohmann::json& json) { send(json.dump(), false); }
 
   /// Sends a command and waits for its reply; null if none comes.
-  nlohmann::json ask(const nlohmann::json& command, const std::string& token = {}) {
+  nlohmann::json ask(const nlohmann::json& command) {
     const std::string id = "request " + std::to_string(++requests_);
-    nlohmann::json message = {{"type", "command"}, {"request", id}, {"command", command}};
-    if (!token.empty()) message["token"] = token;
-    send(message);
+    send(nlohmann::json{{"type", "command"}, {"request", id}, {"command", command}});
     wait_until([&] { return replies.contains(id); });
     return replies.contains(id) ? replies.at(id) : nlohmann::json();
   }

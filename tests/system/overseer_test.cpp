@@ -136,16 +136,29 @@ TEST_F(Overseers, HostileInputIsRefusedAndTheRunGoesOn) {
   EXPECT_EQ(request(port, verb::get, "/", {{"Host", "evil.example"}}).status, 403U);
   EXPECT_EQ(request(port, verb::get, "/../../../../etc/passwd").status, 404U);
   overseer::testing::raw(port, std::string(70'000, '\xff'));
+  EXPECT_FALSE(Page(port, {{"Authorization", "Bearer guess"}}).open());
   Page page(port);
   ASSERT_TRUE(sees_the_run(page));
   EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), false);
-  EXPECT_EQ(page.ask({{"kind", "pause"}}, "guess").at("ok"), false);
-  page.send(
-      std::string(R"({"type":"command","request":"x","token":"open sesame","command":{"kind":"step","count":1e308}})"));
-  EXPECT_TRUE(page.wait_until([&] { return page.replies.contains("x"); }));
-  EXPECT_EQ(page.ask({{"kind", "pause"}}, "open sesame").at("ok"), true);
+  Page operators(port, {{"Authorization", "Bearer open sesame"}});
+  operators.send(std::string(R"({"type":"command","request":"x","command":{"kind":"step","count":1e308}})"));
+  EXPECT_TRUE(operators.wait_until([&] { return operators.replies.contains("x"); }));
+  EXPECT_EQ(operators.ask({{"kind", "pause"}}).at("ok"), true);
   EXPECT_TRUE(overseer.running() && run_->running());
   end_run();
+}
+
+TEST_F(Overseers, FilesOfTlsThatCannotBeUsedAreNamedWithTheirPlace) {
+  write("key.pem", "no key");
+  const std::string file = write("launch.yaml", "scene: " + launch_file("scenes/two_spheres") +
+                                                    "\nregions: {count: 1}\noverseer:\n  port: 0\n"
+                                                    "  tls: {certificate: nowhere.pem, key: key.pem}\n");
+  for (const char* command : {"overseer", "check", "launch"}) {
+    Process& program = start({command, file});
+    expect_exit(program, 2);
+    EXPECT_THAT(program.err(), HasSubstr("launch.yaml:5:22: overseer.tls.certificate: found")) << command;
+    EXPECT_THAT(program.err(), HasSubstr("nowhere.pem")) << command;
+  }
 }
 
 TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {

@@ -40,6 +40,18 @@ const greet = () => {
   sockets.at(-1).onmessage({ data: '{"type": "hello"}' });
 };
 
+test("AConnectionIsOpenedAnewWhenItIsToldTo", () => {
+  greet();
+  connection.reopen();
+  expect(sockets.length).toBe(2);
+  expect(connection.connected).toBe(false);
+  sockets[0].onclose({}); // of the old one, and no news
+  greet();
+  time.pass(1000);
+  expect(sockets.length).toBe(2);
+  expect(connection.connected).toBe(true);
+});
+
 test("AConnectionThatBreaksIsOpenedAgainWithinTwoSeconds", () => {
   greet();
   sockets[0].onclose({});

@@ -1,6 +1,7 @@
 // An overseer that only pretends: serves the built page and speaks docs/viewer.md for a made-up world of a few regions.
 // For development and for the test of the page alone.
-//   node mock_overseer.mjs [--port 8080] [--bodies 300] [--nodes 4] [--token SECRET] [--replay]
+//   node mock_overseer.mjs [--port 8080] [--bodies 300] [--nodes 4] [--token SECRET] [--view-token SECRET] [--replay]
+import { readFileSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
@@ -10,17 +11,21 @@ import { writeFrame, writeOverlay } from "./frame_writer.mjs";
 import { MockWorld, STEP_S } from "./mock_world.mjs";
 
 const DIST = fileURLToPath(new URL("../../src/overseer/web/dist/", import.meta.url));
+/** What the overseer allows the page to load and to do: the page has to live with that here, too. */
+const POLICY = [.../kContentPolicy =([^;]*(?:"[^"]*"\s*)+);/.exec(readFileSync(new URL("../../src/overseer/web_headers.h", import.meta.url), "utf8"))[1]
+  .matchAll(/"([^"]*)"/g)].map(([, part]) => part).join("");
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 const STEPS_PER_FRAME = 3; // 20 frames a second
 const SCENES = ["corner_stacks", "columns_rain", "falling_piles", "tower"];
 const LAST_REPLAY_STEP = 3600;
 
 export class MockOverseer {
-  constructor({ port = 0, bodies = 300, nodes = 4, token = "", replay = false, dist = DIST } = {}) {
-    Object.assign(this, { port, token, replay, dist });
+  constructor({ port = 0, bodies = 300, nodes = 4, token = "", viewToken = "", replay = false, dist = DIST } = {}) {
+    Object.assign(this, { port, token, viewToken, replay, dist });
     this.late = 0; // collisions that region 1 says were late
     this.world = new MockWorld({ bodies, nodes });
     this.commands = []; // everything that clients sent, for tests
+    this.requests = []; // and every address that they asked for
     this.clients = new Map(); // socket -> {show, watch}
     this.state = "running";
     this.rate = this.speed = 1;
@@ -31,8 +36,8 @@ export class MockOverseer {
   /** @returns {Promise<string>} the address of the page */
   async start() {
     this.http = createServer((request, response) => this.#serve(request, response));
-    this.sockets = new WebSocketServer({ server: this.http, path: "/ws" });
-    this.sockets.on("connection", (socket) => this.#greet(socket));
+    this.sockets = new WebSocketServer({ server: this.http, path: "/ws", verifyClient: ({ req }) => this.#may(req) !== "nothing" });
+    this.sockets.on("connection", (socket, request) => this.#greet(socket, this.#may(request)));
     await new Promise((resolve, reject) => this.http.once("error", reject).listen(this.port, "127.0.0.1", resolve));
     this.port = this.http.address().port;
     this.last_ms = performance.now();
@@ -48,13 +53,33 @@ export class MockOverseer {
     await new Promise((resolve) => this.http.close(resolve));
   }
 
+  /** By its token or its cookie, as docs/viewer.md has it. */
+  #may(request) {
+    const shown = request.headers.authorization?.replace("Bearer ", "");
+    const cookie = /mock=(\w+)/.exec(request.headers.cookie ?? "")?.[1];
+    if (!this.token || shown === this.token || cookie === "operate") return "operate";
+    return !this.viewToken || shown === this.viewToken || cookie === "look" ? "look" : "nothing";
+  }
+
+  #session(request, response) {
+    const shown = request.headers.authorization;
+    const wrong = shown !== undefined && shown !== `Bearer ${this.token}` && shown !== `Bearer ${this.viewToken}`;
+    if (wrong) return response.writeHead(401).end("the token is missing or wrong");
+    const may = this.#may(request);
+    if (request.method === "POST") response.setHeader("Set-Cookie", `mock=${may}; Path=/; HttpOnly; SameSite=Strict`);
+    response.writeHead(200, { "Content-Type": "application/json" }).end(JSON.stringify({ may }));
+  }
+
   async #serve(request, response) {
     const url = new URL(request.url, "http://localhost");
+    response.setHeader("Content-Security-Policy", POLICY);
+    this.requests.push(request.url);
     const json = (code, body) => response.writeHead(code, { "Content-Type": "application/json" }).end(JSON.stringify(body));
     if (url.pathname === "/healthz") return response.end("ok");
+    if (url.pathname === "/api/session") return this.#session(request, response);
     if (url.pathname === "/api/scenes") return json(200, { scenes: SCENES });
     if (url.pathname === "/api/shapes") {
-      if (this.token && request.headers.authorization !== `Bearer ${this.token}`) return json(401, { text: "the token is missing or wrong" });
+      if (this.#may(request) !== "operate") return json(401, { text: "the token is missing or wrong" });
       let bytes = 0;
       for await (const chunk of request) bytes += chunk.length;
       this.commands.push({ kind: "upload", name: url.searchParams.get("name"), bytes });
@@ -69,12 +94,12 @@ export class MockOverseer {
     }
   }
 
-  #greet(socket) {
-    this.clients.set(socket, { show: {}, watch: null });
+  #greet(socket, may) {
+    this.clients.set(socket, { show: {}, watch: null, may });
     socket.on("close", () => this.clients.delete(socket));
     socket.on("message", (data) => this.#receive(socket, JSON.parse(String(data))));
     this.#say(socket, { type: "hello", version: 1, mode: this.replay ? "replay" : "live", scene: this.scene, step_s: STEP_S, tick_hz: 20,
-      token_needed: this.token !== "", ...(this.replay ? { first: 0, last: LAST_REPLAY_STEP, resets: [LAST_REPLAY_STEP / 3] } : {}) });
+      ...(this.replay ? { first: 0, last: LAST_REPLAY_STEP, resets: [LAST_REPLAY_STEP / 3] } : {}) });
     this.#say(socket, this.#sceneMessage());
     this.#say(socket, this.#mapMessage());
     // Others have not had the latest changes yet; whoever comes now has them in the key frame.
@@ -151,7 +176,7 @@ export class MockOverseer {
     if (message.type === "replay") this.#replay(message);
     if (message.type !== "command") return;
     const answer = (ok, text = "", result = {}) => this.#say(socket, { type: "reply", request: message.request, ok, text, result });
-    if (this.token && message.token !== this.token) return answer(false, "the token is missing or wrong");
+    if (client.may !== "operate" && message.command.kind !== "ray") return answer(false, "this takes a token: the one for operators");
     this.commands.push(message.command);
     try {
       const result = this.#obey(message.command);
@@ -248,7 +273,7 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
     return at < 0 ? otherwise : process.argv[at + 1];
   };
   const mock = new MockOverseer({ port: Number(option("port", 8080)), bodies: Number(option("bodies", 300)),
-    nodes: Number(option("nodes", 4)), token: option("token", ""),
+    nodes: Number(option("nodes", 4)), token: option("token", ""), viewToken: option("view-token", ""),
     replay: process.argv.includes("--replay") });
   console.log(await mock.start());
 }

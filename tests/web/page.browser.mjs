@@ -159,7 +159,6 @@ test("AMeshFileIsSentAndDropped", mockOnly, async () => {
   await page.click("text=Hull");
   await page.mouse.click(600, 640);
   assert.deepEqual((await commanded("spawn")).shape, { hash: "0123456789abcdef", as: "hull" });
-  assert.ok(!page.url().includes("secret"), "the token stays in the address");
   noErrors();
 });
 
@@ -241,6 +240,47 @@ test("AfterARestartOfTheOverseerThePageIsBackWithinTwoSeconds", mockOnly, async 
   noErrors();
 });
 
+test("ATokenInTheAddressIsExchangedForACookieThatNoScriptReads", mockOnly, async () => {
+  await open({ token: "secret", viewToken: "other" }, "#token=secret");
+  await haveBodies(BODIES);
+  await page.click("#throw");
+  await commanded("spawn");
+  assert.ok(!page.url().includes("secret"), "it stays in the address");
+  assert.ok(!mock.requests.some((address) => address.includes("secret")), "it was in an address that was asked for");
+  assert.equal(await page.evaluate(() => document.cookie + JSON.stringify({ ...sessionStorage, ...localStorage })), "{}");
+  await page.reload();
+  await haveBodies(BODIES);
+  await page.keyboard.press("x");
+  await commanded("reset");
+  noErrors();
+});
+
+test("WhereLookingTakesATokenThePageAsksForIt", mockOnly, async () => {
+  await open({ token: "secret", viewToken: "look" });
+  await page.fill('dialog input[type="password"]', "wrong");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector('.toast[data-kind="bad"]');
+  assert.equal((await state()).bodies.length, 0);
+  await page.fill('dialog input[type="password"]', "look");
+  await page.keyboard.press("Enter");
+  await haveBodies(BODIES);
+  await page.keyboard.press("x");
+  await page.fill('dialog input[type="password"]', "secret");
+  await page.keyboard.press("Enter");
+  await commanded("reset");
+  noErrors();
+});
+
+test("WhoOnlyWatchesIsAskedForATokenAndNothingChanges", mockOnly, async () => {
+  await open({ token: "secret" });
+  await haveBodies(BODIES);
+  await page.keyboard.press("x");
+  await page.click("dialog >> text=Only watch");
+  await page.waitForTimeout(300);
+  assert.ok(!mock.commands.some((command) => command.kind === "reset"));
+  noErrors();
+});
+
 test("ARefusedCommandIsSaid", mockOnly, async () => {
   await open({ token: "secret" });
   await haveBodies(BODIES);
@@ -305,7 +345,7 @@ test("NothingInTheNodesCardsIsCut", mockOnly, async () => {
     await haveBodies(BODIES);
     await page.waitForSelector(`.node[data-region='${nodes - 1}']`);
     // Letters wider than those of most machines.
-    await page.addStyleTag({ content: "* { letter-spacing: 0.35px; }" });
+    await page.evaluate(() => document.styleSheets[0].insertRule("* { letter-spacing: 0.35px; }"));
     for (const [width, height] of [[1280, 800], [760, 900]]) {
       await page.setViewportSize({ width, height });
       await page.evaluate(() => document.body.classList.remove("bare"));

@@ -1,22 +1,20 @@
 // Commands to the run and their replies. Every command is answered once; who sent it gets a promise, the user a toast.
 
-const TOKEN_KEY = "aurasim.token";
 const REPLY_TIMEOUT_MS = 8000;
 
 export class Commands {
   /**
    * @param {(message: object) => boolean} send
    * @param {(text: string, kind: "ok" | "bad" | "info") => void} toast
+   * @param {import("./session.js").Session} session
    * @param {() => Promise<string | null>} askForToken
+   * @param {() => Promise<boolean>} reconnect  a socket may what the page might when it was opened
    */
-  constructor(send, toast, askForToken) {
-    this.sendMessage = send;
-    this.toast = toast;
-    this.askForToken = askForToken;
+  constructor(send, toast, session, askForToken, reconnect) {
+    Object.assign(this, { sendMessage: send, toast, session, askForToken, reconnect });
     this.waiting = new Map();
     this.sent = 0;
-    this.tokenNeeded = false;
-    this.token = tokenFromAddress() ?? remembered() ?? "";
+    this.entering = null;
   }
 
   /**
@@ -25,19 +23,17 @@ export class Commands {
    * @returns {Promise<{ok: boolean, text: string, result?: any}>} never rejects
    */
   async send(command, options = {}) {
-    if (this.tokenNeeded && !this.token) await this.#getToken();
+    if (command.kind !== "ray" && !(await this.mayOperate())) return { ok: false, text: "only watching" };
     const request = `p${++this.sent}-${Math.random().toString(36).slice(2, 8)}`;
     const reply = await new Promise((resolve) => {
-      const message = { type: "command", request, command };
-      if (this.token) message.token = this.token;
-      if (!this.sendMessage(message)) return resolve({ ok: false, text: "not connected" });
+      if (!this.sendMessage({ type: "command", request, command })) return resolve({ ok: false, text: "not connected" });
       const timer = setTimeout(() => this.reply({ request, ok: false, text: "no answer in time" }), REPLY_TIMEOUT_MS);
       this.waiting.set(request, { resolve, timer });
     });
     const what = options.what ?? command.kind;
     if (!reply.ok) {
       this.toast(`${what}: ${reply.text || "refused"}`, "bad");
-      if (/token/i.test(reply.text ?? "")) this.#forgetToken();
+      if (/token/i.test(reply.text ?? "")) this.session.look();
     } else if (!options.quiet) {
       // Some answers begin with the command's name.
       const text = reply.text?.replace(`${command.kind}: `, "");
@@ -61,14 +57,13 @@ export class Commands {
 
   /** A mesh file becomes a shape that commands can name. @param {File} file */
   async upload(file) {
-    if (this.tokenNeeded && !this.token) await this.#getToken();
-    const headers = this.token ? { Authorization: `Bearer ${this.token}` } : {};
+    if (!(await this.mayOperate())) return null;
     try {
-      const answer = await fetch(`api/shapes?name=${encodeURIComponent(file.name)}`, { method: "POST", headers, body: file });
+      const answer = await fetch(`api/shapes?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
       const text = await answer.text();
       if (!answer.ok) {
         this.toast(`${file.name}: ${explained(text) || answer.statusText}`, "bad");
-        if (answer.status === 401 || answer.status === 403) this.#forgetToken();
+        if (answer.status === 401) this.session.look();
         return null;
       }
       const shape = JSON.parse(text);
@@ -80,24 +75,24 @@ export class Commands {
     }
   }
 
-  async #getToken() {
-    const token = await this.askForToken();
-    if (!token) return;
-    this.token = token;
-    try {
-      sessionStorage.setItem(TOKEN_KEY, token);
-    } catch {
-      // Storage may be switched off: the token then lives as long as the page.
-    }
+  /** In a replay, what all who watch it see. @param {object} message */
+  async replay(message) {
+    if (await this.mayOperate()) this.sendMessage(message);
   }
 
-  #forgetToken() {
-    this.token = "";
-    try {
-      sessionStorage.removeItem(TOKEN_KEY);
-    } catch {
-      // as above
-    }
+  /** Asks the user for a token if need be, once, however many want to know. @returns {Promise<boolean>} */
+  async mayOperate() {
+    if (this.session.may === "operate") return true;
+    this.entering ??= this.#enter().finally(() => { this.entering = null; });
+    return this.entering;
+  }
+
+  async #enter() {
+    const token = await this.askForToken();
+    if (!token) return false;
+    const why = await this.session.enter(token) ?? (this.session.may === "operate" ? null : "this token is for watching only");
+    if (why) this.toast(why, "bad");
+    return why === null && this.reconnect();
   }
 }
 
@@ -108,26 +103,4 @@ function explained(text) {
   } catch {
     return text;
   }
-}
-
-function remembered() {
-  try {
-    return sessionStorage.getItem(TOKEN_KEY);
-  } catch {
-    return null;
-  }
-}
-
-/** `#token=…`; it is taken out of the address bar, so that it is not shown or shared by accident. */
-function tokenFromAddress() {
-  const match = /[#&]token=([^&]+)/.exec(location.hash);
-  if (!match) return null;
-  const token = decodeURIComponent(match[1]);
-  history.replaceState(null, "", location.pathname + location.search);
-  try {
-    sessionStorage.setItem(TOKEN_KEY, token);
-  } catch {
-    // as above
-  }
-  return token;
 }

@@ -57,6 +57,14 @@ export class Connection {
     if (!this.connected && this.socket === null) this.start();
   }
 
+  /** Anew, though nothing broke. */
+  reopen() {
+    const old = this.socket;
+    this.connected = false;
+    this.start();
+    old?.close();
+  }
+
   /** While the page is hidden the overseer says nothing: silence is no sign of death then. */
   rest(resting) {
     this.resting = resting;

@@ -17,8 +17,14 @@ export function toast(text, kind = "info") {
 
 let asking = null;
 
-/** @returns {Promise<string | null>} */
-export function askForToken() {
+const ASKED_TO = {
+  operate: ["Watching is free; changing the run takes the token for operators that the overseer has printed or was started with.", "Only watch"],
+  look: ["This run is shown to those who have a token: the overseer has printed it or was started with it.", "Not now"],
+};
+
+/** @param {"look" | "operate"} what @returns {Promise<string | null>} */
+export function askForToken(what) {
+  const [why, no] = ASKED_TO[what];
   asking ??= new Promise((resolve) => {
     const input = h("input", { type: "password", autocomplete: "off", "aria-label": "Token", placeholder: "Token" });
     const done = (value) => {
@@ -29,9 +35,9 @@ export function askForToken() {
     };
     const form = h("form", { method: "dialog", onsubmit: (event) => { event.preventDefault(); done(input.value.trim() || null); } },
       h("h2", {}, "A token is needed"),
-      h("p", {}, "Watching is free; changing the run takes the token that the overseer was started with."),
+      h("p", {}, why),
       input,
-      h("div.row.end", {}, h("button", { type: "button", onclick: () => done(null) }, "Only watch"),
+      h("div.row.end", {}, h("button", { type: "button", onclick: () => done(null) }, no),
         h("button.primary", { type: "submit" }, "Use it")));
     const dialog = h("dialog.card", { "aria-label": "Token", oncancel: (event) => { event.preventDefault(); done(null); } }, form);
     document.body.append(dialog);

@@ -13,6 +13,7 @@ export function h(tag, props = {}, ...children) {
     if (value === undefined || value === null || value === false) continue;
     if (typeof value === "function") element.addEventListener(key.slice(2), value);
     else if (key === "value" || key === "checked") element[key] = value;
+    else if (key === "style") element.style.cssText = value; // the attribute is what the content policy forbids
     else element.setAttribute(key, value === true ? "" : String(value));
   }
   element.append(...children.filter((child) => child !== null && child !== undefined));

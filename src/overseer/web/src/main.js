@@ -9,6 +9,7 @@ import { NodesPanel, TopBar } from "./panels.js";
 import { Picture } from "./picture.js";
 import { RegionEditor } from "./region_editor.js";
 import { Selection } from "./selection.js";
+import { Session, tokenFromAddress } from "./session.js";
 import { Toolbox, TOOLS } from "./toolbox.js";
 import { Tools } from "./tools.js";
 import { Transport } from "./transport.js";
@@ -32,10 +33,11 @@ const nodes = new NodesPanel();
 const connection = new Connection(new URL("ws", location.href.replace(/^http/, "ws")).href,
   { state: showLink, json: receive, binary: receiveBinary });
 const viewTeller = new ViewTeller((message) => connection.send(message));
-const commands = new Commands((message) => connection.send(message), toast, askForToken);
+const session = new Session();
+const commands = new Commands((message) => connection.send(message), toast, session, () => askForToken("operate"), reconnect);
 const transport = new Transport({
   command: (command, options) => commands.send(command, options),
-  replay: (action, value) => connection.send({ type: "replay", action, ...(value === undefined ? {} : { value }) }),
+  replay: (action, value) => commands.replay({ type: "replay", action, ...(value === undefined ? {} : { value }) }),
 });
 const toolbox = new Toolbox({ onTool: chooseTool, onShow: showOverlay, onThrow: () => tools?.throwBody(), onFile: upload, onRemove: removeSelected }, show);
 const selection = new Selection({ world, toolbox, scene: () => scene, picture: () => picture,
@@ -82,7 +84,8 @@ function onHello(message) {
   nodes.clear();
   if (editor?.open) editor.close();
   selection.choose(null);
-  commands.tokenNeeded = Boolean(message.token_needed);
+  session.look(); // the overseer may be another one than before
+  greeted?.(true);
   transport.setMode(message.mode, message.first, message.last, message.resets, message.step_s);
   toolbox.setMode(message.mode);
   document.body.dataset.mode = message.mode;
@@ -134,6 +137,7 @@ function showLink(state, retryIn_ms) {
   if (state === "closed") {
     commands.dropAll();
     tools?.endDrag();
+    session.look().then(askToLook); // it may have been shut out
     topBar.showLink("closed", `offline, again in ${(retryIn_ms / 1000).toFixed(1)} s`);
   } else {
     topBar.showLink(state === "open" ? "open" : "connecting");
@@ -141,8 +145,52 @@ function showLink(state, retryIn_ms) {
   updateCurtain();
 }
 
+// ---- who may ----
+
+let greeted = null;
+let wontLook = false;
+
+/** @returns {Promise<boolean>} it is connected again */
+function reconnect() {
+  commands.dropAll();
+  return new Promise((resolve) => {
+    greeted = resolve;
+    setTimeout(() => resolve(false), 8000);
+    connection.reopen();
+  });
+}
+
+let asksToLook = null;
+
+/** Until there is a token that is right, or the user has none. */
+function askToLook() {
+  asksToLook ??= (async () => {
+    while (session.may === "nothing" && !wontLook) {
+      const token = await askForToken("look");
+      wontLook = token === null;
+      await enter(token);
+    }
+    updateCurtain();
+  })().finally(() => { asksToLook = null; });
+  return asksToLook;
+}
+
+async function enter(token) {
+  const why = token && await session.enter(token);
+  if (why) toast(why, "bad");
+}
+
+async function begin() {
+  await enter(tokenFromAddress(location, history));
+  await session.look();
+  await askToLook();
+  if (session.may !== "nothing") connection.start();
+}
+
 function updateCurtain() {
-  if (!hello) {
+  if (wontLook && session.may === "nothing") {
+    curtain("A token is needed", "Load the page again to be asked for it.");
+  } else if (!hello) {
     curtain("Looking for the run", linkState === "closed" ? "The overseer does not answer. It is asked again and again." : "Connecting to the overseer…");
   } else if (linkState === "open" && status?.state === "starting" && world.size === 0) {
     curtain("The nodes are starting", "The world appears as soon as all regions are there.");
@@ -270,7 +318,7 @@ document.addEventListener("visibilitychange", () => {
 });
 updateCurtain();
 connection.rest(document.hidden); // a tab that is opened behind another
-connection.start();
+begin();
 
 // For tests and the curious: what the page believes, to be read only.
 window.aurasim = Object.freeze({
