@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
+#include "cli/guard_log.h"
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
 #include "cli/spawn.h"
@@ -323,11 +324,13 @@ std::vector<std::uint32_t> Launcher::running_regions() const {
 
 void Launcher::show() {
   viewer_.look();
+  log_new_refusals(participant_);
   if (options_.headless) return;
   is_seen_ = view_.show(live_table(control_.statuses(), view_.size()) + viewer_.said()) && is_seen_;
 }
 
 ExitCode Launcher::conclude() {
+  log_refusals(participant_);
   const bool recording_broke_off = viewer_.has_ended_early() && !options_.recording.empty();
   ExitCode code = recording_broke_off ? ExitCode::kFailed : ExitCode::kOk;
   for (const Child& child : children_) {

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "cli/guard_log.h"
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
 #include "core/command.h"
@@ -100,6 +101,7 @@ ExitCode NodeProcess::run() {
     const ExitCode code = meet_and_run();
     participant_.flush_delayed();  // whoever leaves silently destroys nothing, and its last words would wait for ever
     log_impairment(participant_);
+    log_refusals(participant_);
     return code;
   } catch (const std::exception& error) {
     if (phase_ != NodePhase::kListening) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "cli/guard_log.h"
 #include "cli/node_process.h"
 #include "node/durations.h"
 
@@ -69,6 +70,7 @@ void NodeProcess::publish(const std::string& text) {
   status_.step = node_ ? node_->current_step() : 0;
   if (checkpoints_) status_.parts = checkpoints_->parts();
   control_.publish_status(status_);
+  log_new_refusals(participant_);
 }
 
 double NodeProcess::real_time_factor() const {

@@ -1,5 +1,6 @@
 #include "dds/domain.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -8,10 +9,10 @@
 
 #include "aurasimPubSubTypes.h"
 #include "dds/guarded_type.h"
-#include "dds/impaired_transport.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
 #include "dds/type_tables.h"
+#include "dds/wire_transport.h"
 
 namespace aurasim::dds {
 
@@ -72,11 +73,15 @@ std::string partition_to(core::RegionId destination) {
   return fmt::format("region/*/to/{}", core::value_of(destination));
 }
 
-Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
+Domain::Domain(const Settings& settings) : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   loopback_only_ = on_loopback_only(qos);
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
-  if (impairment.any()) delay_line_ = impair(qos, impairment, settings.domain, settings.impairment_stream);
+  if (impairment.any()) {
+    delay_line_ =
+        std::make_shared<DelayLine>(impairment, settings.impairment_stream, metatraffic_ports(qos, settings.domain));
+  }
+  install(qos, guard_, delay_line_);
   switch_intraprocess_delivery_off();
   set_type_tables_up();
   participant_.reset(
@@ -87,6 +92,9 @@ Domain::Domain(const Settings& settings) : profiles_(settings.profiles) {
         "there, and are fewer than 100 processes in this domain on this host?",
         settings.domain, settings.profiles.string()));
   }
+  GuidPrefix own;
+  std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
+  guard_->set_own(own);
   register_types();
   liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit);
 }

@@ -20,6 +20,8 @@
 
 namespace aurasim::dds {
 
+class DatagramGuard;  // datagram_guard.h
+
 /// The topics of docs/protocol.md.
 enum class TopicId : std::uint8_t {
   kAura,
@@ -73,6 +75,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   LivelinessAsserter& liveliness() { return *liveliness_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
+  /// What keeps malformed datagrams from Fast DDS.
+  DatagramGuard& guard() const { return *guard_; }
 
  private:
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -85,6 +89,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Directory directory_;
   bool loopback_only_ = false;
   std::shared_ptr<DelayLine> delay_line_;
+  std::shared_ptr<DatagramGuard> guard_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
   struct Leave {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "dds/domain.h"
-#include "dds/impaired_transport.h"
 #include "dds/impairment_properties.h"
+#include "dds/wire_transport.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
@@ -124,7 +124,7 @@ TEST(ImpairedProfiles, AreAllGoodAndStayOnLoopback) {
     const auto transports = domain.participant().get_qos().transport();
     EXPECT_FALSE(transports.use_builtin_transports);
     ASSERT_EQ(transports.user_transports.size(), 1U);
-    const auto impaired = std::dynamic_pointer_cast<ImpairedTransportDescriptor>(transports.user_transports[0]);
+    const auto impaired = std::dynamic_pointer_cast<WireTransportDescriptor>(transports.user_transports[0]);
     ASSERT_NE(impaired, nullptr);
     const auto udp =
         std::dynamic_pointer_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor>(impaired->low_level_descriptor);

@@ -1,5 +1,5 @@
 // The transport alone, without a participant: its datagrams are caught by a plain socket on loopback.
-#include "dds/impaired_transport.h"
+#include "dds/wire_transport.h"
 
 #include <algorithm>
 #include <cstring>
@@ -75,7 +75,7 @@ class Sender {
       : line_(std::make_shared<DelayLine>(impairment, 1, std::move(ports))) {
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList = {"127.0.0.1"};
-    const ImpairedTransportDescriptor descriptor(udp, line_);
+    const WireTransportDescriptor descriptor(udp, std::make_shared<DatagramGuard>(), line_);
     transport_.reset(descriptor.create_transport());
     destination_.kind = LOCATOR_KIND_UDPv4;
     destination_.port = port;
@@ -106,7 +106,7 @@ class Sender {
   Locator_t destination_;
 };
 
-TEST(ImpairedTransport, HoldsDatagramsBackForTheDelay) {
+TEST(ImpairedWire, HoldsDatagramsBackForTheDelay) {
   Catcher catcher;
   Sender sender({.delay_s = 0.03}, catcher.port());
   const auto begin = Clock::now();
@@ -117,7 +117,7 @@ TEST(ImpairedTransport, HoldsDatagramsBackForTheDelay) {
   EXPECT_EQ(sender.counters().queued, 0U);
 }
 
-TEST(ImpairedTransport, KeepsTheOrderUnlessToldOtherwise) {
+TEST(ImpairedWire, KeepsTheOrderUnlessToldOtherwise) {
   for (const bool reorder : {false, true}) {
     Catcher catcher;
     Sender sender({.delay_s = 0.02, .jitter_s = 0.02, .reorder = reorder}, catcher.port());
@@ -128,7 +128,7 @@ TEST(ImpairedTransport, KeepsTheOrderUnlessToldOtherwise) {
   }
 }
 
-TEST(ImpairedTransport, DropsNoMoreThanItSays) {
+TEST(ImpairedWire, DropsNoMoreThanItSays) {
   Catcher catcher;
   Sender sender({.delay_s = 0.001, .loss = 0.3}, catcher.port());
   sender.send_all(1000);
@@ -139,7 +139,7 @@ TEST(ImpairedTransport, DropsNoMoreThanItSays) {
   EXPECT_EQ(catcher.next(50ms), -1);
 }
 
-TEST(ImpairedTransport, SparesDiscoveryUnlessToldOtherwise) {
+TEST(ImpairedWire, SparesDiscoveryUnlessToldOtherwise) {
   for (const bool discovery : {false, true}) {
     Catcher catcher;
     Sender sender({.loss = 1, .discovery = discovery}, catcher.port(), {.servers = {catcher.port()}});
@@ -150,7 +150,7 @@ TEST(ImpairedTransport, SparesDiscoveryUnlessToldOtherwise) {
   }
 }
 
-TEST(ImpairedTransport, SendsWhatWaitsWhenItIsShutDown) {
+TEST(ImpairedWire, SendsWhatWaitsWhenItIsShutDown) {
   Catcher catcher;
   Sender sender({.delay_s = 10}, catcher.port());
   sender.send_all(100);

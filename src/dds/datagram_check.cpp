@@ -1,0 +1,447 @@
+#include "dds/datagram_check.h"
+
+#include <algorithm>
+
+#include "dds/parameter_check.h"
+#include "dds/wire_cursor.h"
+
+namespace aurasim::dds {
+namespace {
+
+using Result = std::optional<Refusal>;
+constexpr Result kFine = std::nullopt;
+
+// RTPS 2.2, table 9.2; DDS Security 1.1, table 19; the last one is eProsima's.
+enum SubmessageId : std::uint8_t {
+  kPad = 0x01,
+  kAckNack = 0x06,
+  kHeartbeat = 0x07,
+  kGap = 0x08,
+  kInfoTimestamp = 0x09,
+  kInfoSource = 0x0c,
+  kInfoReplyIp4 = 0x0d,
+  kInfoDestination = 0x0e,
+  kInfoReply = 0x0f,
+  kNackFrag = 0x12,
+  kHeartbeatFrag = 0x13,
+  kData = 0x15,
+  kDataFrag = 0x16,
+  kSecureBody = 0x30,
+  kSecurePrefix = 0x31,
+  kSecurePostfix = 0x32,
+  kSecureRtpsPrefix = 0x33,
+  kSecureRtpsPostfix = 0x34,
+  kStatistics = 0x80
+};
+
+constexpr std::size_t kStatisticsBytes = 56;
+constexpr std::size_t kCryptoHeaderBytes = 20, kMacBytes = 16, kReceiverMacBytes = 20;
+constexpr std::uint32_t kMostBits = 256;
+constexpr std::uint32_t kLargestFragmentNumber = kLargestSample_B / kSmallestFragment_B;
+constexpr std::size_t kMostLocators = 64;
+
+/// What the built-in writers say.
+enum class Payload : std::uint8_t { kUser, kParticipant, kEndpoint, kLiveliness, kHandshake, kUnknown };
+
+Payload payload_of(std::uint32_t writer) {
+  if (!is_built_in(writer)) return Payload::kUser;
+  switch (writer) {
+    case 0x000100c2:
+    case 0xff0101c2:
+      return Payload::kParticipant;
+    case 0x000002c2:
+    case 0x000003c2:
+    case 0x000004c2:
+    case 0xff0003c2:
+    case 0xff0004c2:
+      return Payload::kEndpoint;
+    case 0x000200c2:
+    case 0xff0200c2:
+      return Payload::kLiveliness;
+    case 0x000201c3:
+    case 0xff0202c3:
+      return Payload::kHandshake;
+    default:
+      return Payload::kUnknown;
+  }
+}
+
+bool is_sequence_number(std::uint64_t number) { return number >= 1 && number <= kLargestSequenceNumber; }
+
+/// What a 16-octet key stands for, in discovery.
+void add_subject(Claim::Kind kind, const ListFindings& list, Findings& findings, const GuidPrefix& destination) {
+  if (!list.subject) return;
+  Claim claim;
+  claim.kind = kind;
+  claim.destination = destination;
+  claim.guid = *list.subject;
+  claim.lease_s = list.lease_s;
+  findings.claims.push_back(claim);
+}
+
+/// One datagram, from the front.
+class Checker {
+ public:
+  Checker(std::span<const std::uint8_t> bytes, Findings& findings) : bytes_(bytes), findings_(findings) {}
+
+  Result check() {
+    findings_.clear();
+    findings_.size = bytes_.size();
+    if (Result refused = check_header()) return refused;
+    std::size_t at = kHeaderBytes;
+    for (std::size_t count = 0; at < bytes_.size(); ++count) {
+      if (count == kMostSubmessages) return Refusal::kSubmessage;
+      if (Result refused = check_next(at)) return refused;
+    }
+    return kFine;
+  }
+
+ private:
+  Result check_header() {
+    if (bytes_.size() < kHeaderBytes || bytes_[0] != 'R' || bytes_[1] != 'T' || bytes_[2] != 'P' || bytes_[3] != 'S' ||
+        bytes_[4] != 2) {
+      return Refusal::kHeader;
+    }
+    std::copy_n(bytes_.begin() + 8, source_.size(), source_.begin());
+    return kFine;
+  }
+
+  /// The submessage at `at`, which is moved behind it.
+  Result check_next(std::size_t& at) {
+    if (bytes_.size() - at < 4) return Refusal::kLength;
+    begin_ = at;
+    const std::uint8_t id = bytes_[at];
+    flags_ = bytes_[at + 1];
+    WireCursor head(bytes_, at + 2, at + 4, (flags_ & 1) != 0);
+    std::size_t length = head.u16();
+    at += 4;
+    last_ = length == 0 && id != kInfoTimestamp && id != kPad;
+    if (last_) length = bytes_.size() - at;
+    if (length > bytes_.size() - at) return Refusal::kLength;
+    const std::size_t end = at + length;
+    if (length % 4 != 0 && end != bytes_.size()) return Refusal::kLength;
+    WireCursor body(bytes_, at, end, (flags_ & 1) != 0);
+    at = end;
+    return check_body(id, body);
+  }
+
+  Result check_body(std::uint8_t id, WireCursor& body) {
+    switch (id) {
+      case kPad:
+        return kFine;
+      case kAckNack:
+        return check_ack_nack(body);
+      case kHeartbeat:
+        return check_heartbeat(body);
+      case kGap:
+        return check_gap(body);
+      case kInfoTimestamp:
+        return (flags_ & 2) != 0 || body.left() >= 8 ? kFine : Refusal::kLength;
+      case kInfoSource:
+        if (body.left() != 20) return Refusal::kLength;
+        body.skip(8);
+        source_ = body.octets<GuidPrefix>();
+        return kFine;
+      case kInfoReplyIp4:
+        return body.left() >= 8 ? kFine : Refusal::kLength;
+      case kInfoReply:
+        return check_locators(body);
+      case kInfoDestination:
+        return check_destination(body);
+      case kNackFrag:
+        return check_nack_frag(body);
+      case kHeartbeatFrag:
+        return check_heartbeat_frag(body);
+      case kData:
+        return check_data(body);
+      case kDataFrag:
+        return check_data_frag(body);
+      case kSecurePrefix:
+      case kSecureRtpsPrefix:
+        return body.left() >= kCryptoHeaderBytes ? kFine : Refusal::kLength;
+      case kSecureBody:
+        return check_secure_body(body);
+      case kSecurePostfix:
+      case kSecureRtpsPostfix:
+        return check_secure_postfix(body);
+      case kStatistics:
+        return check_statistics(body);
+      default:
+        return Refusal::kSubmessage;
+    }
+  }
+
+  /// Fast DDS ends every datagram with these. What counts them takes differences that must not be negative: it never
+  /// sees them.
+  Result check_statistics(const WireCursor& body) {
+    if (last_ || body.left() != kStatisticsBytes || body.at() + body.left() != bytes_.size()) {
+      return Refusal::kStatistics;
+    }
+    findings_.size = begin_;
+    return kFine;
+  }
+
+  Result check_destination(WireCursor& body) {
+    if (body.left() < destination_.size()) return Refusal::kLength;
+    const auto prefix = body.octets<GuidPrefix>();
+    if (prefix != GuidPrefix{}) destination_ = prefix;
+    return kFine;
+  }
+
+  static Result check_locators(WireCursor& body) {
+    const std::uint32_t count = body.u32();
+    return !body.failed() && count <= kMostLocators && count * 24 <= body.left() ? kFine : Refusal::kLength;
+  }
+
+  /// Base, number of bits and the bits.
+  static Result check_bits(WireCursor& body) {
+    const std::uint32_t bits = body.u32();
+    if (body.failed() || bits > kMostBits) return Refusal::kNumberSet;
+    body.skip((bits + 31) / 32 * 4);
+    return body.failed() ? Result(Refusal::kNumberSet) : kFine;
+  }
+
+  Result check_ack_nack(WireCursor& body) {
+    body.skip(8);
+    const std::uint64_t base = body.sequence_number();
+    if (body.failed()) return Refusal::kLength;
+    if (base > kLargestSequenceNumber) return Refusal::kSequenceNumber;
+    if (Result refused = check_bits(body)) return refused;
+    return body.left() >= 4 ? kFine : Refusal::kLength;
+  }
+
+  Result check_nack_frag(WireCursor& body) {
+    body.skip(8);
+    const std::uint64_t sequence = body.sequence_number();
+    const std::uint32_t base = body.u32();
+    if (body.failed()) return Refusal::kLength;
+    if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
+    if (base < 1 || base > kLargestFragmentNumber) return Refusal::kFragment;
+    if (Result refused = check_bits(body)) return refused;
+    return body.left() >= 4 ? kFine : Refusal::kLength;
+  }
+
+  Result check_heartbeat_frag(WireCursor& body) {
+    body.skip(8);
+    const std::uint64_t sequence = body.sequence_number();
+    const std::uint32_t last_fragment = body.u32();
+    body.skip(4);
+    if (body.failed()) return Refusal::kLength;
+    if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
+    return last_fragment <= kLargestFragmentNumber ? kFine : Refusal::kFragment;
+  }
+
+  Claim claim_of(Claim::Kind kind, std::uint32_t writer) const {
+    Claim claim;
+    claim.kind = kind;
+    claim.destination = destination_;
+    claim.guid = {source_, writer};
+    return claim;
+  }
+
+  Result check_heartbeat(WireCursor& body) {
+    const std::uint32_t reader = body.entity();
+    Claim claim = claim_of(Claim::Kind::kHeartbeat, body.entity());
+    claim.reader = reader;
+    claim.first = body.sequence_number();
+    claim.last = body.sequence_number();
+    body.skip(4);
+    if (body.failed()) return Refusal::kLength;
+    // An empty history ends before its begin.
+    if (!is_sequence_number(claim.first) || claim.last > kLargestSequenceNumber || claim.last + 1 < claim.first) {
+      return Refusal::kSequenceNumber;
+    }
+    findings_.claims.push_back(claim);
+    return kFine;
+  }
+
+  Result check_gap(WireCursor& body) {
+    const std::uint32_t reader = body.entity();
+    Claim claim = claim_of(Claim::Kind::kGap, body.entity());
+    claim.reader = reader;
+    claim.first = body.sequence_number();
+    const std::uint64_t base = body.sequence_number();
+    if (body.failed()) return Refusal::kLength;
+    if (!is_sequence_number(claim.first) || !is_sequence_number(base) || base < claim.first) {
+      return Refusal::kSequenceNumber;
+    }
+    claim.last = base - 1;
+    findings_.claims.push_back(claim);
+    WireCursor bits = body;
+    if (Result refused = check_bits(body)) return refused;
+    split_bits(bits, claim, base);
+    return kFine;
+  }
+
+  /// Fast DDS forgets an unfinished sample that a gap's range names, but not one that its bits name: when it comes to
+  /// it, it takes it for whole and ends itself (StatefulReader.cpp, processGapMsg). So all bits are said as ranges.
+  void split_bits(WireCursor bits, Claim claim, std::uint64_t base) {
+    claim.from_bits = true;
+    const std::size_t at = bits.at();
+    const std::uint32_t count = bits.u32();
+    std::uint32_t word = 0;
+    std::optional<std::uint64_t> begin;
+    for (std::uint32_t i = 0; i <= count; ++i) {
+      if (i < count && i % 32 == 0) word = bits.u32();
+      const bool set = i < count && (word >> (31 - i % 32) & 1) != 0;
+      if (set && !begin) begin = base + i;
+      if (!set && begin) {
+        claim.first = *begin;
+        claim.last = base + i - 1;
+        findings_.claims.push_back(claim);
+        begin.reset();
+        if (findings_.hidden_bits.empty() || findings_.hidden_bits.back() != at) findings_.hidden_bits.push_back(at);
+      }
+    }
+  }
+
+  Result check_data(WireCursor& body) {
+    constexpr std::uint8_t kInlineQosFlag = 2, kDataFlag = 4, kKeyFlag = 8;
+    if ((flags_ & kDataFlag) != 0 && (flags_ & kKeyFlag) != 0) return Refusal::kPayload;
+    body.skip(2);
+    const std::uint16_t to_inline_qos = body.u16();
+    body.skip(4);
+    const std::uint32_t writer = body.entity();
+    const std::uint64_t sequence = body.sequence_number();
+    if (body.failed() || to_inline_qos != 16) return Refusal::kLength;
+    if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
+    ListFindings list;
+    if ((flags_ & kInlineQosFlag) != 0) {
+      if (Result refused = check_parameters(body, ListKind::kInlineQos, list, findings_)) return refused;
+    }
+    if ((flags_ & (kDataFlag | kKeyFlag)) != 0 && body.left() == 0) return Refusal::kPayload;
+    if (!is_built_in(writer)) {
+      Claim claim = claim_of(Claim::Kind::kData, writer);
+      claim.first = claim.last = sequence;
+      findings_.claims.push_back(claim);
+    }
+    if ((flags_ & kDataFlag) != 0) return check_payload(writer, body);
+    if (list.gone && payload_of(writer) == Payload::kEndpoint) {
+      add_subject(Claim::Kind::kEndpointGone, list, findings_, destination_);
+    }
+    return kFine;
+  }
+
+  Result check_payload(std::uint32_t writer, WireCursor& body) {
+    const Payload payload = payload_of(writer);
+    if (payload == Payload::kUnknown) return kFine;  // nobody here listens to it
+    if (body.left() < 4) return Refusal::kPayload;
+    body.skip(1);
+    const std::uint8_t encapsulation = body.u8();
+    body.skip(2);
+    constexpr std::uint8_t kListBig = 2, kListLittle = 3;
+    body.set_little((encapsulation & 1) != 0);
+    if (payload == Payload::kUser) return kFine;
+    if (payload == Payload::kLiveliness) return body.left() >= 20 ? kFine : Refusal::kPayload;
+    if (payload == Payload::kHandshake) return check_handshake(body);
+    if (encapsulation != kListBig && encapsulation != kListLittle) return Refusal::kPayload;
+    return check_discovery(payload, body);
+  }
+
+  Result check_discovery(Payload payload, WireCursor& body) {
+    const bool participant = payload == Payload::kParticipant;
+    ListFindings list;
+    if (Result refused =
+            check_parameters(body, participant ? ListKind::kParticipant : ListKind::kEndpoint, list, findings_)) {
+      return refused;
+    }
+    if (!list.subject || list.subject->prefix == GuidPrefix{} || list.subject->entity == 0) return Refusal::kPayload;
+    constexpr std::uint32_t kParticipantEntity = 0x1c1;
+    if (participant && (list.lease_s == 0 || list.subject->entity != kParticipantEntity)) return Refusal::kPayload;
+    add_subject(participant ? Claim::Kind::kParticipant : Claim::Kind::kEndpoint, list, findings_, destination_);
+    return kFine;
+  }
+
+  /// DDS Security 1.1, section 7.4.3: identities, keys, class and tokens.
+  static Result check_handshake(WireCursor& body) {
+    constexpr std::size_t kIdentities = 2 * 24 + 3 * 16, kMostTokens = 16, kLongestClass = 256;
+    if (body.left() < kIdentities) return Refusal::kPayload;
+    body.skip(kIdentities);
+    if (!is_string(body, kLongestClass)) return Refusal::kPayload;
+    const std::uint32_t tokens = body.u32();
+    if (body.failed() || tokens > kMostTokens) return Refusal::kPayload;
+    for (std::uint32_t i = 0; i < tokens; ++i) {
+      if (!is_data_holder(body)) return Refusal::kPayload;
+    }
+    return kFine;
+  }
+
+  Result check_data_frag(WireCursor& body) {
+    constexpr std::uint8_t kInlineQosFlag = 2, kKeyFlag = 4;
+    body.skip(2);
+    const std::uint16_t to_inline_qos = body.u16();
+    const std::uint32_t reader = body.entity();
+    Claim claim = claim_of(Claim::Kind::kFragments, body.entity());
+    claim.reader = reader;
+    claim.first = claim.last = body.sequence_number();
+    claim.first_fragment = body.u32();
+    claim.fragments = body.u16();
+    claim.fragment_B = body.u16();
+    claim.sample_B = body.u32();
+    if (body.failed() || to_inline_qos != 28) return Refusal::kLength;
+    if (!is_sequence_number(claim.first)) return Refusal::kSequenceNumber;
+    if ((flags_ & kKeyFlag) != 0) return Refusal::kPayload;
+    if ((flags_ & kInlineQosFlag) != 0) {
+      ListFindings list;
+      if (Result refused = check_parameters(body, ListKind::kInlineQosOfFragments, list, findings_)) return refused;
+    }
+    claim.payload = body.at();
+    claim.payload_B = body.left();
+    if (!fragments_fit(claim)) return Refusal::kFragment;
+    if (is_built_in(claim.guid.entity)) hide_submessage();
+    findings_.claims.push_back(claim);
+    return kFine;
+  }
+
+  /// Padding of length 0 would have none: what goes on to the end is cut off.
+  void hide_submessage() {
+    if (last_) {
+      findings_.size = begin_;
+    } else {
+      findings_.hidden_submessages.push_back(begin_);
+    }
+  }
+
+  /// Fast DDS keeps its list of missing fragments in the sample, one number at each one's begin: they must be larger
+  /// than that, and begin at multiples of it.
+  static bool fragments_fit(const Claim& claim) {
+    if (claim.sample_B < 1 || claim.sample_B > kLargestSample_B) return false;
+    if (claim.fragment_B < kSmallestFragment_B || claim.fragment_B % 4 != 0) return false;
+    const std::uint32_t all = (claim.sample_B + claim.fragment_B - 1) / claim.fragment_B;
+    if (claim.first_fragment < 1 || claim.first_fragment > all || claim.fragments < 1) return false;
+    if (claim.fragments > all - (claim.first_fragment - 1)) return false;
+    const std::size_t offset = std::size_t{claim.first_fragment - 1} * claim.fragment_B;
+    const std::size_t whole = std::size_t{claim.fragments} * claim.fragment_B;
+    const std::size_t expected = std::min<std::size_t>(whole, claim.sample_B - offset);
+    return claim.payload_B >= expected && claim.payload_B <= expected + 3;
+  }
+
+  /// Length and octets; lengths of DDS Security are big-endian.
+  static Result check_secure_body(WireCursor& body) {
+    body.set_little(false);
+    const std::uint32_t length = body.u32();
+    return !body.failed() && length <= body.left() ? kFine : Refusal::kLength;
+  }
+
+  static Result check_secure_postfix(WireCursor& body) {
+    body.set_little(false);
+    body.skip(kMacBytes);
+    const std::uint32_t receivers = body.u32();
+    return !body.failed() && receivers <= body.left() / kReceiverMacBytes ? kFine : Refusal::kLength;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  Findings& findings_;
+  GuidPrefix source_{}, destination_{};
+  std::size_t begin_ = 0;   ///< of this submessage
+  std::uint8_t flags_ = 0;  ///< of this submessage
+  bool last_ = false;       ///< it goes on to the datagram's end
+};
+
+}  // namespace
+
+std::optional<Refusal> check_datagram(std::span<const std::uint8_t> bytes, Findings& findings) {
+  return Checker(bytes, findings).check();
+}
+
+}  // namespace aurasim::dds

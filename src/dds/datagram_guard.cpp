@@ -1,0 +1,93 @@
+#include "dds/datagram_guard.h"
+
+#include <algorithm>
+
+#include "dds/datagram_check.h"
+#include "dds/made_datagrams.h"
+
+namespace aurasim::dds {
+
+namespace {
+
+constexpr std::size_t kMostAddresses = 256;
+
+}  // namespace
+
+void DatagramGuard::set_own(const GuidPrefix& own) {
+  const std::lock_guard lock(mutex_);
+  own_ = own;
+}
+
+DatagramGuard::Admitted DatagramGuard::admit(std::span<std::uint8_t> bytes, Source source, Time now) {
+  thread_local Findings findings;
+  const std::optional<Refusal> malformed = check_datagram(bytes, findings);
+  Admitted admitted;
+  const std::lock_guard lock(mutex_);
+  std::optional<Refusal> refusal = malformed;
+  if (!refusal && !rates_.take_datagram(source, bytes.size(), now)) refusal = Refusal::kRate;
+  if (!refusal) refusal = judge(findings, bytes, source, now, admitted);
+  if (refusal) {
+    refuse(*refusal, source);
+    return {};
+  }
+  ++passed_;
+  findings.hide(bytes);
+  admitted.size = findings.size;
+  return admitted;
+}
+
+std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<const std::uint8_t> bytes,
+                                            Source source, Time now, Admitted& admitted) {
+  GuidPrefix sender;
+  std::copy_n(bytes.begin() + 8, sender.size(), sender.begin());
+  peers_.hear(sender, now);
+  for (const Claim& claim : findings.claims) {
+    if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
+    if (claim.kind == Claim::Kind::kFragments && is_built_in(claim.guid.entity)) {
+      auto whole = pieces_.add(claim, bytes, now);
+      if (!whole) continue;
+      Findings of_whole;
+      if (const auto refused = check_datagram(*whole, of_whole)) return refused;
+      if (const auto refused = judge(of_whole, *whole, source, now, admitted)) return refused;
+      of_whole.hide(*whole);
+      admitted.before.push_back(std::move(*whole));
+      continue;
+    }
+    if (const auto refused = peers_.judge(claim, source, rates_, now)) return refused;
+    if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));
+  }
+  return std::nullopt;
+}
+
+void DatagramGuard::refuse(Refusal why, Source source) {
+  const auto index = static_cast<std::size_t>(why);
+  ++refused_[index];
+  auto it = addresses_.find(source.address);
+  if (it == addresses_.end()) {
+    if (addresses_.size() >= kMostAddresses) {
+      ++of_others_;
+      return;
+    }
+    it = addresses_.emplace(source.address, GuardReport::Address{source.address, {}}).first;
+    new_addresses_.push_back(source.address);
+  }
+  ++it->second.refused[index];
+}
+
+GuardReport DatagramGuard::report() const {
+  const std::lock_guard lock(mutex_);
+  GuardReport report{passed_, refused_, {}, of_others_};
+  for (const auto& [address, of_address] : addresses_) report.addresses.push_back(of_address);
+  std::ranges::sort(report.addresses, {}, &GuardReport::Address::address);
+  return report;
+}
+
+std::vector<GuardReport::Address> DatagramGuard::take_new_sources() {
+  const std::lock_guard lock(mutex_);
+  std::vector<GuardReport::Address> sources;
+  for (const std::uint32_t address : new_addresses_) sources.push_back(addresses_.at(address));
+  new_addresses_.clear();
+  return sources;
+}
+
+}  // namespace aurasim::dds

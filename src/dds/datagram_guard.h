@@ -1,0 +1,66 @@
+// Stands between the sockets and Fast DDS: lets through what datagram_check.h and peer_book.h allow, and counts the
+// rest. Knows nothing of Fast DDS; wire_transport.h puts it to work.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "dds/datagram_findings.h"
+#include "dds/discovery_pieces.h"
+#include "dds/guard_report.h"
+#include "dds/peer_book.h"
+#include "dds/source_limits.h"
+
+namespace aurasim::dds {
+
+struct GuardLimits {
+  RateLimits rates;
+  PeerLimits peers;
+};
+
+/// Thread-safe.
+class DatagramGuard {
+ public:
+  using Time = TokenBucket::Time;  ///< of any clock that does not go back
+
+  explicit DatagramGuard(const GuardLimits& limits = {}) : rates_(limits.rates), peers_(limits.peers) {}
+
+  /// What is for others alone says nothing about what Fast DDS here has seen.
+  void set_own(const GuidPrefix& own);
+
+  struct Admitted {
+    /// Datagrams that Fast DDS is to see first: discovery that came in pieces, and what is better said otherwise.
+    std::vector<std::vector<std::uint8_t>> before;
+    std::size_t size = 0;  ///< of the datagram's begin, that Fast DDS may see; 0: nothing
+  };
+  /// Changes `bytes`: what Fast DDS must not act on becomes padding.
+  Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
+
+  GuardReport report() const;
+  /// Sources of which something was refused for the first time since the last call.
+  std::vector<GuardReport::Address> take_new_sources();
+
+ private:
+  std::optional<Refusal> judge(const Findings& findings, std::span<const std::uint8_t> bytes, Source source, Time now,
+                               Admitted& admitted);
+  void refuse(Refusal why, Source source);
+
+  mutable std::mutex mutex_;
+  std::optional<GuidPrefix> own_;
+  SourceLimits rates_;
+  PeerBook peers_;
+  DiscoveryPieces pieces_;
+  GuardReport::Counts refused_{};
+  std::uint64_t passed_ = 0;
+  std::unordered_map<std::uint32_t, GuardReport::Address> addresses_;
+  std::uint64_t of_others_ = 0;  ///< refused, of addresses beyond those that are told apart
+  std::vector<std::uint32_t> new_addresses_;
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,14 @@
+#include "dds/guarding.h"
+
+#include "dds/datagram_guard.h"
+#include "dds/domain.h"
+
+namespace aurasim::dds {
+
+GuardReport guarded(Participant& participant) { return participant.domain().guard().report(); }
+
+std::vector<GuardReport::Address> take_new_refusals(Participant& participant) {
+  return participant.domain().guard().take_new_sources();
+}
+
+}  // namespace aurasim::dds

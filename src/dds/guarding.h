@@ -1,0 +1,15 @@
+// What a participant's guard (datagram_guard.h) has kept from Fast DDS. Any thread.
+#pragma once
+
+#include <vector>
+
+#include "dds/guard_report.h"
+#include "dds/participant.h"
+
+namespace aurasim::dds {
+
+GuardReport guarded(Participant& participant);
+/// Addresses of which something was refused for the first time since the last call.
+std::vector<GuardReport::Address> take_new_refusals(Participant& participant);
+
+}  // namespace aurasim::dds

@@ -1,0 +1,82 @@
+// What is remembered of the participants that have announced themselves: whether what a datagram claims goes on from
+// what came before. Of others Fast DDS takes nothing but announcements. Pure; time is passed in.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "dds/datagram_findings.h"
+#include "dds/source_limits.h"
+
+namespace aurasim::dds {
+
+struct PeerLimits {
+  std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
+  std::size_t endpoints_of_a_participant = 4096;
+  std::uint64_t longest_jump = std::uint64_t{1} << 28;  ///< at 60 steps a second: 51 days
+  std::uint64_t longest_gap = std::uint64_t{1} << 18;
+  std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
+  std::size_t unfinished_B = std::size_t{512} << 20, unfinished_of_a_participant_B = std::size_t{256} << 20;
+};
+
+class PeerBook {
+ public:
+  using Time = TokenBucket::Time;
+
+  explicit PeerBook(const PeerLimits& limits) : limits_(limits) {}
+
+  /// A participant has said something, whatever it is.
+  void hear(const GuidPrefix& participant, Time now);
+  std::optional<Refusal> judge(const Claim& claim, Source source, SourceLimits& rates, Time now);
+
+  std::size_t participants() const { return peers_.size(); }
+  std::size_t unfinished_B() const { return unfinished_B_; }
+
+ private:
+  struct Sample {
+    std::uint32_t sample_B = 0, fragment_B = 0;
+    std::uint32_t missing = 0;  ///< fragments; 0: whole
+    std::vector<bool> here;     ///< by fragment; none once it is whole
+    std::uint32_t reader = 0;   ///< that it is for; 0: all
+  };
+  struct Endpoint {
+    bool announced = false;
+    std::map<std::uint32_t, std::uint64_t> first;  ///< by reader (0: all): the highest that a heartbeat has begun with
+    std::map<std::uint64_t, Sample> samples;
+  };
+  struct Peer {
+    std::uint32_t address = 0;
+    Time heard{0}, lease{0};
+    std::size_t unfinished_B = 0;
+    std::unordered_map<std::uint32_t, Endpoint> endpoints;
+  };
+  struct PrefixHash {
+    std::size_t operator()(const GuidPrefix& prefix) const;
+  };
+  using Peers = std::unordered_map<GuidPrefix, Peer, PrefixHash>;
+
+  std::optional<Refusal> take_participant(const Claim& claim, Source source, Time now);
+  std::optional<Refusal> take_endpoint(Peer& peer, const Claim& claim);
+  static std::optional<Refusal> take_data(const Endpoint& writer, const Claim& claim);
+  std::optional<Refusal> take_heartbeat(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
+                                        SourceLimits& rates, Time now);
+  std::optional<Refusal> take_gap(Peer& peer, Endpoint& writer, const Claim& claim, Source source, SourceLimits& rates,
+                                  Time now);
+  std::optional<Refusal> take_fragments(Peer& peer, Endpoint& writer, const Claim& claim);
+  Endpoint* endpoint_of(Peer& peer, std::uint32_t entity);
+  void forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from, std::uint64_t to);
+  void forget(Peer& peer, const Sample& sample);
+  void forget_the_silent(Time now);
+  void erase(Peers::iterator peer);
+
+  PeerLimits limits_;
+  Peers peers_;
+  std::unordered_map<std::uint32_t, std::size_t> peers_of_address_;
+  std::size_t unfinished_B_ = 0;
+};
+
+}  // namespace aurasim::dds

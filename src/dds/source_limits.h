@@ -1,0 +1,70 @@
+// How much one source may send. Pure; time is passed in.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+
+#include "dds/token_bucket.h"
+
+namespace aurasim::dds {
+
+/// Where a datagram comes from: an IPv4 address, and the port of one participant's socket.
+struct Source {
+  std::uint32_t address = 0;  ///< 127.0.0.1 is 0x7f000001
+  std::uint16_t port = 0;
+};
+
+/// Far above what a healthy node sends: 60 steps a second to some dozen neighbours, and now and then tens of MB at
+/// once.
+struct RateLimits {
+  double datagrams_per_s = 50'000, datagrams_burst = 100'000;  ///< of one socket
+  double bytes_per_s = 250e6, bytes_burst = 500e6;             ///< of one socket
+  double address_datagrams_per_s = 400'000, address_datagrams_burst = 400'000;
+  // Numbers that are left out; each one costs Fast DDS a few ns with the reader's lock held, and one in a gap memory.
+  double jumps_per_s = 1U << 23, jumps_burst = 1U << 30;  ///< of heartbeats, of one address
+  double gaps_per_s = 1U << 12, gaps_burst = 1U << 19;    ///< of gaps, of one address
+};
+
+class SourceLimits {
+ public:
+  using Time = TokenBucket::Time;
+
+  explicit SourceLimits(const RateLimits& limits) : limits_(limits) {}
+
+  /// False: too much.
+  bool take_datagram(Source source, std::size_t bytes, Time now);
+  bool take_jump(std::uint32_t address, double numbers, Time now) {
+    return address_of(address, now).jumps.take(numbers, now);
+  }
+  bool take_gap(std::uint32_t address, double numbers, Time now) {
+    return address_of(address, now).gaps.take(numbers, now);
+  }
+
+  /// More are not told apart: those that were silent longest are forgotten, and begin anew.
+  static constexpr std::size_t kMostSockets = 4096, kMostAddresses = 1024;
+
+ private:
+  struct Socket {
+    TokenBucket datagrams, bytes;
+  };
+  struct Address {
+    TokenBucket datagrams, jumps, gaps;
+  };
+
+  /// Keeps those that were seen since the last time that half of them had come.
+  template <class Key, class Value>
+  struct Recent {
+    std::unordered_map<Key, Value> young, old;
+    template <class Make>
+    Value& find(const Key& key, std::size_t most, Make make);
+  };
+
+  Address& address_of(std::uint32_t address, Time now);
+
+  RateLimits limits_;
+  Recent<std::uint64_t, Socket> sockets_;
+  Recent<std::uint32_t, Address> addresses_;
+};
+
+}  // namespace aurasim::dds

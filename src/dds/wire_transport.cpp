@@ -1,0 +1,112 @@
+#include "dds/wire_transport.h"
+
+#include <fastdds/rtps/common/LocatorsIterator.hpp>
+#include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "dds/settings.h"
+
+namespace aurasim::dds {
+
+using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::rtps::TransportDescriptorInterface;
+using eprosima::fastdds::rtps::TransportReceiverInterface;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::Locator_t;
+using eprosima::fastrtps::rtps::LocatorsIterator;
+using eprosima::fastrtps::rtps::octet;
+using eprosima::fastrtps::rtps::SenderResource;
+
+namespace {
+
+Source source_of(const Locator_t& remote) {
+  const octet* address = IPLocator::getIPv4(remote);
+  Source source;
+  for (int i = 0; i < 4; ++i) source.address = source.address << 8 | address[i];
+  source.port = static_cast<std::uint16_t>(remote.port);
+  return source;
+}
+
+}  // namespace
+
+MetatrafficPorts metatraffic_ports(const DomainParticipantQos& qos, std::uint32_t domain) {
+  const auto& port = qos.wire_protocol().port;
+  const std::uint32_t first = port.portBase + port.domainIDGain * domain;
+  MetatrafficPorts ports;
+  ports.first_unicast = first + port.offsetd1;
+  ports.stride = port.participantIDGain;
+  ports.end = first + port.domainIDGain;
+  for (const auto& server : qos.wire_protocol().builtin.discovery_config.m_DiscoveryServers) {
+    for (const Locator_t& locator : server.metatrafficUnicastLocatorList) ports.servers.push_back(locator.port);
+  }
+  return ports;
+}
+
+WireTransportDescriptor::WireTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below,
+                                                 std::shared_ptr<DatagramGuard> the_guard,
+                                                 std::shared_ptr<DelayLine> the_line)
+    : ChainingTransportDescriptor(below), guard(std::move(the_guard)), line(std::move(the_line)) {
+  const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(below);
+  white_listed = udp != nullptr && !udp->interfaceWhiteList.empty();
+}
+
+eprosima::fastdds::rtps::TransportInterface* WireTransportDescriptor::create_transport() const {
+  return new WireTransport(*this);  // NOLINT: Fast DDS takes it
+}
+
+WireTransport::WireTransport(const WireTransportDescriptor& descriptor)
+    : ChainingTransport(descriptor), descriptor_(descriptor) {}
+
+WireTransport::~WireTransport() = default;
+
+bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
+                         LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
+  if (descriptor_.line == nullptr) return socket->send(bytes, size, begin, end, time_out);
+  SenderResource* none = nullptr;
+  const bool first = first_socket_.compare_exchange_strong(none, socket) || none == socket;
+  bool sent = true;
+  for (; *begin != *end; ++*begin) {
+    const Locator_t& destination = **begin;
+    if (!IsLocatorSupported(destination)) continue;
+    // Fast DDS offers every datagram to every socket, and those after the first keep unicast to themselves.
+    if (!first && !descriptor_.white_listed && !IPLocator::isMulticast(destination)) continue;
+    sent &= descriptor_.line->send(*socket, bytes, size, destination);
+  }
+  return sent;
+}
+
+void WireTransport::receive(TransportReceiverInterface* receiver, const octet* bytes, std::uint32_t size,
+                            const Locator_t& local, const Locator_t& remote) {
+  // The bytes are a buffer of the socket's thread, made for what it receives.
+  const std::span datagram(const_cast<octet*>(bytes), size);  // NOLINT
+  const auto admitted =
+      descriptor_.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
+  for (const auto& made : admitted.before) {
+    receiver->OnDataReceived(made.data(), static_cast<std::uint32_t>(made.size()), local, remote);
+  }
+  if (admitted.size > 0) {
+    receiver->OnDataReceived(bytes, static_cast<std::uint32_t>(admitted.size), local, remote);
+  }
+}
+
+void WireTransport::shutdown() {
+  if (descriptor_.line != nullptr) descriptor_.line->stop();
+  low_level_transport_->shutdown();
+}
+
+void install(DomainParticipantQos& qos, const std::shared_ptr<DatagramGuard>& guard,
+             const std::shared_ptr<DelayLine>& line) {
+  auto& transports = qos.transport().user_transports;
+  if (transports.empty()) transports.push_back(std::make_shared<UDPv4TransportDescriptor>());
+  qos.transport().use_builtin_transports = false;  // they would bypass it
+  for (auto& transport : transports) {
+    if (line != nullptr && std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport) == nullptr) {
+      throw DdsError("the network can be impaired (aurasim.impair.*, dds.impair) only where all transports are UDPv4");
+    }
+    transport = std::make_shared<WireTransportDescriptor>(transport, guard, line);
+  }
+}
+
+}  // namespace aurasim::dds

@@ -1,0 +1,258 @@
+// What takes a memory to refuse. Time is passed in.
+#include "dds/datagram_guard.h"
+
+#include <gtest/gtest.h>
+
+#include "datagram_samples.h"
+#include "dds/datagram_check.h"
+
+namespace aurasim::dds {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;  // NOLINT: samples
+using testing::datagram;
+
+constexpr Source kSource{0x7f000001, 40'000};
+
+GuidPrefix prefix_of(std::uint32_t number) {
+  GuidPrefix prefix = kPrefix;
+  for (int i = 0; i < 4; ++i) prefix[i] = static_cast<std::uint8_t>(number >> 8 * i);
+  return prefix;
+}
+
+class Guard : public ::testing::Test {
+ protected:
+  bool passes(Bytes bytes, Source source = kSource) { return guard_.admit(bytes, source, now_).size > 0; }
+  bool passes(const Octets& submessage) { return passes(datagram({submessage})); }
+  void meet() {
+    ASSERT_TRUE(passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
+    ASSERT_TRUE(passes(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())));
+  }
+  std::uint64_t refused(Refusal why) const { return guard_.report().refused[static_cast<std::size_t>(why)]; }
+
+  DatagramGuard guard_;
+  DatagramGuard::Time now_ = 1h;
+};
+
+TEST_F(Guard, CountsByReasonAndAddress) {
+  EXPECT_TRUE(passes(heartbeat(1, 1)));
+  EXPECT_FALSE(passes(Bytes{1, 2, 3}));
+  EXPECT_FALSE(passes(Bytes{1, 2, 3}, {0x0a000007, 1}));
+  EXPECT_FALSE(passes(heartbeat(0, 1)));
+  const GuardReport report = guard_.report();
+  EXPECT_EQ(report.passed, 1U);
+  EXPECT_EQ(report.total(), 3U);
+  EXPECT_EQ(text_of(report.refused), "2 header, 1 sequence number");
+  ASSERT_EQ(report.addresses.size(), 2U);
+  EXPECT_EQ(text_of_address(report.addresses[0].address), "10.0.0.7");
+  EXPECT_EQ(text_of(report.addresses[1].refused), "1 header, 1 sequence number");
+  EXPECT_EQ(guard_.take_new_sources().size(), 2U);
+  EXPECT_FALSE(passes(Bytes{}));
+  EXPECT_TRUE(guard_.take_new_sources().empty());
+}
+
+/// Fast DDS counts from the last number that it has told of to the first of a heartbeat, with the reader's lock held.
+TEST_F(Guard, RefusesHeartbeatsThatLeaveOutBillions) {
+  meet();
+  EXPECT_TRUE(passes(heartbeat(1'000'000, 1'000'100)));  // who comes late
+  EXPECT_TRUE(passes(heartbeat(1'000'050, 1'000'200)));
+  EXPECT_FALSE(passes(heartbeat(1'000'000'000, 1'000'000'001)));
+  EXPECT_FALSE(passes(heartbeat(kLargestSequenceNumber, kLargestSequenceNumber)));
+  EXPECT_EQ(refused(Refusal::kJump), 2U);
+  for (int i = 2; i < 20; ++i) passes(heartbeat(std::uint64_t{250'000'000} * i, std::uint64_t{250'000'000} * i));
+  EXPECT_GT(refused(Refusal::kJump), 12U);               // nor in many steps
+  EXPECT_TRUE(passes(heartbeat(1'000'100, 1'000'300)));  // the true one goes on
+}
+
+TEST_F(Guard, RefusesGapsThatLeaveOutTooMany) {
+  meet();
+  EXPECT_TRUE(passes(gap(1, 200'000)));
+  EXPECT_FALSE(passes(gap(1, 2'000'000'000)));
+  int passed = 0;
+  for (int i = 0; i < 100; ++i) passed += passes(gap(200'000 * (i + 2), 200'000 * (i + 3))) ? 1 : 0;
+  EXPECT_LT(passed, 5);
+  EXPECT_TRUE(passes(gap(10, 12)));
+}
+
+TEST_F(Guard, TakesFragmentsOnlyLikeTheFirst) {
+  meet();
+  EXPECT_TRUE(passes(fragment({})));
+  EXPECT_FALSE(passes(fragment({.first = 2, .sample_B = 100'000})));
+  EXPECT_FALSE(passes(fragment({.first = 2, .fragment_B = 512, .payload_B = 512})));
+  EXPECT_EQ(refused(Refusal::kFragment), 2U);
+  EXPECT_TRUE(passes(fragment({.first = 2})));
+}
+
+/// Fast DDS's reader knows nothing of a heartbeat for another one.
+TEST_F(Guard, IsNotMadeToForgetByWhatIsForAnotherReader) {
+  meet();
+  EXPECT_TRUE(passes(fragment({.sequence = 5})));
+  EXPECT_TRUE(passes(heartbeat(200'000'000, 200'000'000)));  // for kReader; the fragment is for all
+  EXPECT_FALSE(passes(fragment({.sequence = 5, .first = 2, .sample_B = 100'000})));
+  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(6).sequence(6).u32(1);
+  EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));
+  EXPECT_TRUE(passes(fragment({.sequence = 5, .first = 2, .sample_B = 100'000})));
+}
+
+TEST_F(Guard, BoundsWhatIsUnfinished) {
+  meet();
+  const auto begin_of = [](std::uint64_t sequence) { return fragment({.sequence = sequence, .sample_B = 60U << 20}); };
+  int passed = 0;
+  for (std::uint64_t i = 1; i <= 100; ++i) passed += passes(begin_of(i)) ? 1 : 0;
+  EXPECT_EQ(passed, 4);  // 256 MB of one participant
+  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(5).sequence(200).u32(1);
+  EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));  // that they have been given up makes room
+  EXPECT_TRUE(passes(begin_of(201)));
+}
+
+TEST_F(Guard, LetsAnyNumberOfSamplesThroughThatBecomeWhole) {
+  meet();
+  for (std::uint64_t sequence = 1; sequence <= 5'000; ++sequence) {
+    for (std::uint32_t i = 1; i <= 3; ++i) {
+      ASSERT_TRUE(passes(fragment({.sequence = sequence, .first = i, .payload_B = i < 3 ? 1024U : 952U})));
+    }
+    ASSERT_TRUE(passes(fragment({.sequence = sequence})));  // once more, as on a bad network
+    now_ += 1ms;
+  }
+}
+
+TEST_F(Guard, BoundsParticipants) {
+  const auto announce = [&](std::uint32_t number, Source source) {
+    return passes(datagram({data(kParticipantWriter, 1, participant(prefix_of(number)).bytes())}), source);
+  };
+  int passed = 0;
+  for (std::uint32_t i = 0; i < 5'000; ++i) passed += announce(i, kSource) ? 1 : 0;
+  EXPECT_EQ(passed, 256);
+  EXPECT_TRUE(announce(0, kSource));               // who is known stays
+  EXPECT_TRUE(announce(10'000, {0x0a000001, 7}));  // elsewhere there is room
+  now_ += 30s;
+  EXPECT_TRUE(announce(10'001, kSource));  // they have been silent
+}
+
+TEST_F(Guard, BoundsEndpoints) {
+  meet();
+  int passed = 0;
+  for (std::uint32_t i = 0; i < 6'000; ++i) {
+    passed += passes(data(kEndpointWriter, 1, endpoint(kPrefix, 0x1000'0003 + (i << 8)).bytes())) ? 1 : 0;
+  }
+  EXPECT_EQ(passed, 4095);
+}
+
+TEST_F(Guard, BoundsRates) {
+  const Bytes good = datagram({heartbeat(1, 1)});
+  int passed = 0;
+  for (int i = 0; i < 300'000; ++i) passed += passes(good) ? 1 : 0;
+  EXPECT_EQ(passed, 100'000);
+  EXPECT_TRUE(passes(good, {kSource.address, 7}));
+  now_ += 1s;
+  EXPECT_TRUE(passes(good));
+}
+
+/// 60 steps a second: a batch of 80 kB to each neighbour, and once a minute a hand-off of 20 MB.
+TEST_F(Guard, HoldsUpNoHealthyNode) {
+  meet();
+  std::uint64_t sequence = 0;
+  for (int step = 0; step < 3'600; ++step, now_ += 16'666us) {
+    const std::uint32_t size = step == 1'800 ? 20U << 20 : 80'000;
+    const std::uint32_t fragments = (size + 1403) / 1404;
+    ++sequence;
+    for (std::uint32_t i = 1; i <= fragments; ++i) {
+      const std::size_t payload = i < fragments ? 1404 : size - (fragments - 1) * 1404;
+      ASSERT_TRUE(passes(fragment({kWriter, sequence, i, 1, 1404, size, payload}))) << step;
+    }
+    ASSERT_TRUE(passes(heartbeat(std::max<std::uint64_t>(1, sequence - 1), sequence)));
+  }
+}
+
+TEST_F(Guard, TakesNothingFromWhatIsForOthers) {
+  meet();
+  guard_.set_own(prefix_of(77));
+  const Octets elsewhere = submessage(0x0e, 0, Octets().raw({9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9}));
+  const Octets gone = submessage(0x15, 2,
+                                 Octets()
+                                     .u16(0)
+                                     .u16(16)
+                                     .entity(0)
+                                     .entity(kEndpointWriter)
+                                     .sequence(2)
+                                     .parameter(0x70, Octets().guid(kPrefix, kWriter))
+                                     .parameter(0x71, Octets().raw({0, 0, 0, 3}))
+                                     .sentinel());
+  EXPECT_TRUE(passes(heartbeat(200'000'000, 200'000'000)));
+  EXPECT_TRUE(passes(datagram({elsewhere, gone})));
+  EXPECT_TRUE(passes(heartbeat(400'000'000, 400'000'000)));  // from where it was, not from 0
+}
+
+/// Fast DDS 2.9.1 takes an unfinished sample that is given up by a bit for a whole one, and ends itself.
+TEST_F(Guard, SaysAsRangesWhatAGapSaysByBits) {
+  meet();
+  Bytes bytes = datagram({submessage(
+      0x08, 0,
+      Octets().entity(kReader).entity(kWriter).sequence(10).sequence(12).u32(40).u32(0x4000'0003).u32(0x8100'0000))});
+  const auto admitted = guard_.admit(bytes, kSource, now_);
+  Findings findings;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
+  for (const Bytes& made : admitted.before) {
+    EXPECT_EQ(check_datagram(made, findings), std::nullopt);
+    ASSERT_EQ(findings.claims.size(), 1U);
+    EXPECT_EQ(findings.claims[0].guid, (WireGuid{kPrefix, kWriter}));
+    ranges.emplace_back(findings.claims[0].first, findings.claims[0].last);
+  }
+  using Range = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(ranges, (std::vector<Range>{{13, 13}, {42, 44}, {51, 51}}));
+  EXPECT_EQ(check_datagram(bytes, findings), std::nullopt);
+  ASSERT_EQ(findings.claims.size(), 1U);  // the range is left
+  EXPECT_EQ(findings.claims[0].first, 10U);
+  EXPECT_EQ(findings.claims[0].last, 11U);
+}
+
+TEST_F(Guard, RefusesASampleOfWhichPartsAreHere) {
+  meet();
+  const Octets whole = data(kWriter, 1, {0, 1, 0, 0, 1, 2, 3, 4});
+  EXPECT_TRUE(passes(fragment({})));
+  EXPECT_FALSE(passes(whole));
+  EXPECT_TRUE(passes(fragment({.first = 2})));
+  EXPECT_TRUE(passes(fragment({.first = 3, .payload_B = 952})));
+  EXPECT_TRUE(passes(whole));  // Fast DDS knows that it has it
+}
+
+/// In pieces nobody could check it.
+TEST_F(Guard, PutsDiscoveryTogetherBeforeItIsChecked) {
+  const auto in_pieces = [](const Bytes& payload) {
+    std::vector<Bytes> pieces;
+    for (std::size_t at = 0; at < payload.size(); at += 1024) {
+      const std::size_t size = std::min<std::size_t>(1024, payload.size() - at);
+      const Bytes part(payload.begin() + static_cast<std::ptrdiff_t>(at),
+                       payload.begin() + static_cast<std::ptrdiff_t>(at + size));
+      pieces.push_back(datagram({fragment({kEndpointWriter, 1, static_cast<std::uint32_t>(at / 1024 + 1), 1, 1024,
+                                           static_cast<std::uint32_t>(payload.size()), size},
+                                          part),
+                                 heartbeat(1, 1, kEndpointWriter)}));
+    }
+    return pieces;
+  };
+  ASSERT_TRUE(passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
+  const Octets type = Octets().parameter(0x72, Octets().zeros(2800));
+  auto pieces = in_pieces(endpoint(kPrefix, kWriter, type).bytes());
+  ASSERT_EQ(pieces.size(), 3U);
+  std::vector<Bytes> whole;
+  for (Bytes& piece : pieces) {
+    const auto admitted = guard_.admit(piece, kSource, now_);
+    EXPECT_EQ(piece[kHeaderBytes], 0x01) << "the piece itself is padding";
+    whole.insert(whole.end(), admitted.before.begin(), admitted.before.end());
+  }
+  ASSERT_EQ(whole.size(), 1U);
+  Findings findings;
+  EXPECT_EQ(check_datagram(whole[0], findings), std::nullopt);
+  ASSERT_EQ(findings.claims.size(), 1U);
+  EXPECT_EQ(findings.claims[0].kind, Claim::Kind::kEndpoint);
+  EXPECT_TRUE(findings.hidden_parameters.empty());  // is hidden
+  const Octets endless = Octets().parameter(0x29, Octets().u32(~0U).zeros(2800));
+  auto bad = in_pieces(endpoint(kPrefix, kWriter, endless).bytes());
+  for (Bytes& piece : bad) EXPECT_TRUE(guard_.admit(piece, kSource, now_).before.empty());
+  EXPECT_EQ(refused(Refusal::kParameter), 1U);
+}
+
+}  // namespace
+}  // namespace aurasim::dds

@@ -1,0 +1,76 @@
+// All endpoints that a node of a run has, on one participant, and something to say on each.
+#pragma once
+
+#include "control_samples.h"
+#include "dds/checkpoint_bus.h"
+#include "dds/command_bus.h"
+#include "dds/overlay_bus.h"
+#include "dds/replica_bus.h"
+#include "dds/scene_additions_bus.h"
+#include "replica_messages.h"
+#include "transport_fixture.h"
+
+namespace aurasim::dds::testing {
+
+struct RunEndpoints {
+  RunEndpoints(std::uint32_t domain, std::uint32_t region, std::initializer_list<std::uint32_t> neighbours)
+      : peer(domain, region, neighbours),
+        control(peer.participant, {.region = peer.region()}),
+        replicas(peer.participant, peer.region()),
+        replica_reader(peer.participant, observed()),
+        server(peer.participant, peer.region(), kMapVersion),
+        client(peer.participant),
+        checkpoints(peer.participant, peer.region()),
+        additions(peer.participant, peer.region()),
+        additions_reader(peer.participant),
+        aura_watch(peer.participant, observed()) {
+    checkpoints.use_keeper(regions(neighbours).front());
+  }
+
+  static ObserverSettings observed() { return {kMapVersion, 16, 100}; }
+
+  /// A bit of everything. Now and then something that comes in fragments.
+  void say(core::Step step) {
+    peer.send_batch(step, step % 20 == 0 ? 3000 : 5);
+    Status status = status_of(static_cast<std::uint32_t>(core::value_of(peer.region())));
+    status.step = step;
+    control.publish_status(status);
+    replicas.send(replica_of(step % 30 == 0 ? 2000 : 8, peer.region()));
+    if (step % 50 == 0) {
+      control.publish_map(map_of(kMapVersion));
+      checkpoints.send({peer.region(), Checkpoint::Kind::kToKeep, 1, step, std::string(200'000, 'x')});
+      core::CommandReply reply;
+      reply.source = peer.region();
+      reply.request = static_cast<std::uint64_t>(step) + 1;
+      reply.text = "seen";
+      server.reply(reply);
+      control.send(command_of(RunCommandKind::kRate));
+    }
+  }
+
+  void listen() {
+    peer.transport.take(peer.inbox);
+    peer.inbox = {};
+    control.take_commands();
+    control.statuses();
+    replica_reader.take();
+    server.take();
+    client.take();
+    checkpoints.take();
+    additions_reader.take();
+    aura_watch.take();
+  }
+
+  Peer peer;
+  ControlBus control;
+  ReplicaWriter replicas;
+  ReplicaReader replica_reader;
+  CommandServerEndpoint server;
+  CommandClientEndpoint client;
+  CheckpointBus checkpoints;
+  SceneAdditionsWriter additions;
+  SceneAdditionsReader additions_reader;
+  AuraWatch aura_watch;
+};
+
+}  // namespace aurasim::dds::testing
