@@ -86,6 +86,10 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
                                                                      : Clock::duration(kPatienceAfterIt));
       delivery.at_step = reply.at_step;
       delivery.object = reply.object;
+      if (delivery.is_save && paused_in() >= reply.at_step) {  // of a state that is kept: the others hear so from us
+        under_way.command.at_step = reply.at_step;
+        under_way.again = Clock::now();
+      }
       return;
     case core::Outcome::kDone:
       delivery.done = true;
@@ -100,6 +104,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
       under_way.deadline = {};
       return;
     case core::Outcome::kSeen:
+      if (std::ranges::find(under_way.answered, reply.source) != under_way.answered.end()) return;  // told again
       under_way.answered.push_back(reply.source);
       delivery.at_step = std::max(delivery.at_step, reply.at_step);
       if (delivery.is_save) delivery.files.push_back(reply.text);
@@ -110,6 +115,16 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
       delivery.distance_m = reply.distance_m;
       return;
   }
+}
+
+/// The state in which all nodes stand; nothing: they do not.
+std::optional<core::Step> CommandClient::paused_in() {
+  std::optional<core::Step> step;
+  for (const dds::Status* node : live_nodes()) {
+    if (node->state != dds::NodeState::kPaused) return std::nullopt;
+    step = std::max(step.value_or(node->step), node->step);
+  }
+  return step;
 }
 
 bool CommandClient::all_have_answered(UnderWay& under_way) {
@@ -149,6 +164,10 @@ bool CommandClient::has_ended(UnderWay& under_way) {
   if (delivery.is_save && delivery.text.empty() && all_have_answered(under_way)) {
     delivery.done = true;
     delivery.text = fmt::format("saved state {}", delivery.at_step);
+    const std::optional<core::Step> paused = paused_in();
+    if (paused > delivery.at_step) {
+      delivery.text += fmt::format(", the newest that is certain while the run is paused in {}", *paused);
+    }
     return true;
   }
   if (under_way.accepted && under_way.has_time && !delivery.done) {
@@ -158,12 +177,10 @@ bool CommandClient::has_ended(UnderWay& under_way) {
   }
   if (is_on_its_way(under_way)) under_way.deadline = std::max(under_way.deadline, Clock::now() + kPatienceAfterIt);
   if (Clock::now() < under_way.deadline) {
-    const auto live = live_nodes();
-    const bool paused = !live.empty() && std::ranges::all_of(live, [](const dds::Status* node) {
-      return node->state == dds::NodeState::kPaused;
-    });
+    const std::optional<core::Step> paused = paused_in();
     if (!under_way.accepted || under_way.changes_the_run || !paused) return false;  // nodes also stand to change
-    delivery.done = true;
+    if (delivery.is_save && *paused >= delivery.at_step) return false;              // what is kept is being written
+    delivery.done = !delivery.is_save;
     delivery.text = fmt::format("the run is paused; takes effect in step {}", delivery.at_step);
     return true;
   }

@@ -21,6 +21,12 @@ constexpr auto kStatusAge = 300ms;  ///< by then every node has said which meshe
 /// What a node keeps of clients' meshes.
 constexpr dds::MeshCacheLimits kMeshes{1024, std::size_t{256} << 20U};
 
+/// Null: it defines no shape by a mesh.
+const core::MeshRef* mesh_defined_by(const core::Order& order) {
+  const auto* const defined = std::get_if<core::DefineShape>(&order.action);
+  return defined == nullptr ? nullptr : std::get_if<core::MeshRef>(&defined->shape);
+}
+
 }  // namespace
 
 CommandServer::CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region,
@@ -31,6 +37,7 @@ CommandServer::CommandServer(const config::Launch& launch, dds::Participant& par
       endpoint_(participant, region, launch.regions.version()),
       issuer_(launch),
       mesh_reader_(participant, kMeshes),
+      participant_(participant),
       additions_writer_(participant, region) {}
 
 void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
@@ -40,6 +47,7 @@ void CommandServer::begin_generation(node::Node& node, core::Generation generati
 }
 
 void CommandServer::take_over(node::Node& node, core::Generation generation) {
+  change_at_.reset();
   additions_ = {generation, {}};
   issuer_.begin_generation();
   mesh_reader_.meshes().release_all();
@@ -53,14 +61,15 @@ void CommandServer::take_over(node::Node& node, core::Generation generation) {
 void CommandServer::change_map(core::Generation generation, core::Step step) {
   endpoint_.use_map(launch_.regions.version());
   additions_.generation = generation;
+  change_at_.reset();
   reply_all_done(step);
-  if (leads_) additions_writer_.send(additions_);
+  if (leads_) send_additions();
   issuer_.reopen();
 }
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
   // Who leads from now on tells observers what a saved world has brought.
-  if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) additions_writer_.send(additions_);
+  if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) send_additions();
   dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
   for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});
@@ -69,6 +78,8 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
     if (mesh != nullptr) meshes.retain(mesh->hash);
     if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
       answer(one.command, *ray, node);
+    } else if (comes_after_the_pause(one.command, node, run)) {
+      save_kept(one.command, std::get<core::Save>(one.command.ask), node, run);
     } else if (!run.leads) {
       endpoint_.forget(one.command.request);  // who leads next may have to obey it
     } else if (const auto* rate = std::get_if<core::SetRate>(&one.command.ask)) {
@@ -135,6 +146,54 @@ void CommandServer::refuse(std::uint64_t request, std::string why) {
   endpoint_.reply(std::move(reply));
 }
 
+/// A world that would be saved, or be certain to be right, only when the run goes on.
+bool CommandServer::comes_after_the_pause(const core::Command& command, const node::Node& node,
+                                          const RunView& run) const {
+  if (!run.holds_at || !std::holds_alternative<core::Save>(command.ask) || command.at_step > *run.holds_at) {
+    return false;
+  }
+  const core::Step until_certain = node.current_step() - node.confirmed_step();
+  return std::max(command.at_step, node.protocol().earliest_effect()) + until_certain > *run.holds_at;
+}
+
+/// While nothing is computed, what can be saved is what is kept anyhow. The lead says in which state, and who has asked
+/// tells that to the others, by asking again. Whoever does not stand yet hears of it later.
+void CommandServer::save_kept(const core::Command& command, const core::Save& ask, const node::Node& node,
+                              const RunView& run) {
+  const char* const problem = problem_with_save_name(ask.file);
+  const bool is_for_us = problem == nullptr && (run.leads || command.at_step > 0);
+  if (node.current_step() < *run.holds_at || (!run.leads && !is_for_us)) return endpoint_.forget(command.request);
+  if (problem != nullptr) return refuse(command.request, problem);
+  const std::optional<core::Step> step = command.at_step > 0 ? command.at_step : node.newest_kept();
+  if (!step || !node.kept_part(*step)) {
+    if (!run.leads) return endpoint_.forget(command.request);
+    return refuse(command.request,
+                  fmt::format("the run is paused in state {}, and no earlier state {} kept that is certain to be right",
+                              node.current_step(), step ? fmt::format("{} is", *step) : std::string("is")));
+  }
+  kept_saves_.push_back({command.request, *step, ask.file});
+  if (!run.leads) return;
+  core::CommandReply reply;
+  reply.request = command.request;
+  reply.outcome = core::Outcome::kAccepted;
+  reply.at_step = *step;
+  endpoint_.reply(std::move(reply));
+}
+
+void CommandServer::go_back_to(const core::Command& back, core::Step step) {
+  core::CommandReply reply;
+  reply.request = back.request;
+  reply.outcome = core::Outcome::kAccepted;
+  reply.at_step = step;
+  endpoint_.reply(std::move(reply));
+  due_[back.request] = {step, std::nullopt};
+}
+
+void CommandServer::load_instead(core::Command back, std::string file, node::Node& node, const RunView& run) {
+  back.ask = core::Load{std::move(file)};
+  decide(back, node, run);
+}
+
 /// Before all nodes stop for it: can it be loaded?
 std::string CommandServer::problem_with_world(const core::Ask& ask) const {
   const auto* const load = std::get_if<core::Load>(&ask);
@@ -148,6 +207,10 @@ std::string CommandServer::problem_with_world(const core::Ask& ask) const {
 }
 
 void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  if (const auto* load = std::get_if<core::Load>(&command.ask); load != nullptr && load->file.empty()) {
+    wanted_back_ = command;
+    return;
+  }
   if (std::string why = problem_with_world(command.ask); !why.empty()) return refuse(command.request, std::move(why));
   if (const core::Order* const known = node.ordered(command.request)) return tell_again(*known, node);
   Issued issued = issuer_.issue(
@@ -162,6 +225,7 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   const core::Action& action = issued.order->action;
   const bool all_reply = std::holds_alternative<core::Save>(action);
   if (all_reply || core::changes_the_run(action)) not_kept_.push_back(command.request);
+  if (core::changes_the_run(action)) change_at_ = issued.order->at_step;
   if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
   due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : reply.at_step,
@@ -200,7 +264,32 @@ void CommandServer::publish_additions(const node::StepReport& report) {
     if (node::changes_scene(order.action)) additions_.orders.push_back(order);
     issuer_.note(order);
   }
-  if (additions_.orders.size() > before && leads_) additions_writer_.send(additions_);
+  if (additions_.orders.size() > before && leads_) send_additions();
+}
+
+/// Who brought a mesh may be gone when somebody comes who wants to see it.
+void CommandServer::send_additions() {
+  for (const core::Order& order : additions_.orders) {
+    const core::MeshRef* const ref = mesh_defined_by(order);
+    const core::TriangleMesh* const mesh = ref == nullptr ? nullptr : mesh_reader_.mesh(ref->hash);
+    if (mesh == nullptr || meshes_told_.contains(ref->hash)) continue;
+    if (!mesh_writer_) mesh_writer_.emplace(participant_);
+    if (mesh_writer_->tell_again(ref->hash, *mesh)) meshes_told_.insert(ref->hash);
+  }
+  additions_writer_.send(additions_);
+}
+
+void CommandServer::bring(const std::vector<core::SavedMesh>& meshes) {
+  for (const core::SavedMesh& saved : meshes) mesh_reader_.meshes().add_spare(saved.hash, saved.mesh);
+}
+
+void CommandServer::add_meshes(core::WorldCut& part) {
+  std::set<std::uint64_t> added;
+  for (const core::Order& order : part.orders) {
+    const core::MeshRef* const ref = mesh_defined_by(order);
+    const core::TriangleMesh* const mesh = ref == nullptr ? nullptr : mesh_reader_.mesh(ref->hash);
+    if (mesh != nullptr && added.insert(ref->hash).second) part.meshes.push_back({ref->hash, *mesh});
+  }
 }
 
 void CommandServer::reply_saved(const PartWriter::Written& written) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,8 +27,16 @@ namespace aurasim::cli {
 struct RunView {
   bool leads = false;
   RunFacts facts;
+  std::optional<core::Step> holds_at;  ///< a pause: once this state is computed, no other is
   /// Nodes that are alive and have not said that they have this mesh.
   std::function<std::vector<core::RegionId>(std::uint64_t hash)> lacking;
+};
+
+/// A world that is to be saved in a state that has been computed.
+struct KeptSave {
+  std::uint64_t request = 0;
+  core::Step step = 0;
+  std::string file;
 };
 
 class CommandServer {
@@ -41,6 +50,10 @@ class CommandServer {
   void change_map(core::Generation generation, core::Step step);
   /// Serves what has come. Call it between steps.
   void serve(node::Node& node, const RunView& run);
+  /// Meshes of a saved world that the run goes on from.
+  void bring(const std::vector<core::SavedMesh>& meshes);
+  /// Gives a part of the world the meshes that its orders name, as far as they are here.
+  void add_meshes(core::WorldCut& part);
   /// This region's part of a saved world is written, or is not.
   void reply_saved(const PartWriter::Written& written);
   /// Replies to clients what has taken effect.
@@ -55,6 +68,16 @@ class CommandServer {
   std::vector<std::uint64_t> meshes() { return mesh_reader_.meshes().hashes(); }
   /// The rate that somebody has asked for since the last call; only on the lead.
   std::optional<double> take_wanted_rate() { return std::exchange(wanted_rate_, std::nullopt); }
+  /// Asked for in a pause since the last call.
+  std::vector<KeptSave> take_kept_saves() { return std::exchange(kept_saves_, {}); }
+  /// On the lead: the state after which the run is to change as a whole.
+  std::optional<core::Step> change_at() const { return change_at_; }
+  /// On the lead: somebody has asked to go back to an earlier state, whichever is kept.
+  std::optional<core::Command> take_wanted_back() { return std::exchange(wanted_back_, std::nullopt); }
+  /// The answer to that: all go back to that state, or to the saved world of that name, or cannot.
+  void go_back_to(const core::Command& back, core::Step step);
+  void load_instead(core::Command back, std::string file, node::Node& node, const RunView& run);
+  void refuse(std::uint64_t request, std::string why);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -73,10 +96,12 @@ class CommandServer {
   void reply_all_done(core::Step step);
   void take_over(node::Node& node, core::Generation generation);
   void tell_again(const core::Order& order, const node::Node& node);
-  void refuse(std::uint64_t request, std::string why);
+  bool comes_after_the_pause(const core::Command& command, const node::Node& node, const RunView& run) const;
+  void save_kept(const core::Command& command, const core::Save& ask, const node::Node& node, const RunView& run);
   bool is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run);
   void wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run);
   void publish_additions(const node::StepReport& report);
+  void send_additions();
   std::string problem_with_world(const core::Ask& ask) const;
   std::optional<core::Shape> make_mesh(const core::MeshRef& mesh);
 
@@ -86,13 +111,19 @@ class CommandServer {
   dds::CommandServerEndpoint endpoint_;
   OrderIssuer issuer_;
   dds::MeshReader mesh_reader_;
+  dds::Participant& participant_;
   dds::SceneAdditionsWriter additions_writer_;
+  std::optional<dds::MeshWriter> mesh_writer_;  ///< once there is something to tell
+  std::set<std::uint64_t> meshes_told_;
   dds::SceneAdditions additions_;
   bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;
   std::map<std::uint64_t, Due> due_;     ///< requests to report as done at their step
   std::vector<std::uint64_t> not_kept_;  ///< requests of orders about the run as a whole
   std::optional<double> wanted_rate_;
+  std::optional<core::Command> wanted_back_;
+  std::optional<core::Step> change_at_;
+  std::vector<KeptSave> kept_saves_;
 };
 
 }  // namespace aurasim::cli

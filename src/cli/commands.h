@@ -35,6 +35,7 @@ void add_pareto(CLI::App& experiment, Action& action);
 void add_scalability(CLI::App& experiment, Action& action);
 void add_bandwidth(CLI::App& experiment, Action& action);
 void add_scenes(CLI::App& experiment, Action& action);
+void add_endurance(CLI::App& experiment, Action& action);
 void add_speed(CLI::App& experiment, Action& action);
 void add_speed_errors(CLI::App& experiment, Action& action);
 

@@ -136,6 +136,7 @@ void add_experiment(CLI::App& program, Action& action) {
   add_scalability(*command, action);
   add_bandwidth(*command, action);
   add_scenes(*command, action);
+  add_endurance(*command, action);
   add_speed(*command, action);
   add_speed_errors(*command, action);
 }

@@ -86,8 +86,8 @@ std::vector<std::string> Launcher::words_for(const char* command) const {
                {"--set", "physics.threads=" + std::to_string(threads_of(launch_, launch_.regions.size()))});
   if (!options_.load.file.empty()) words.insert(words.end(), {"--load", options_.load.file});
   if (options_.load.other_build) words.emplace_back("--other-build");
-  words.insert(words.end(),
-               {"--saves", options_.save.folder, "--save-every", fmt::format("{}", options_.save.every_s)});
+  words.insert(words.end(), {"--saves", options_.save.folder, "--save-every", fmt::format("{}", options_.save.every_s),
+                             "--save-keep", std::to_string(options_.save.keep)});
   if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
   if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
   return words;

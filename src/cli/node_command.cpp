@@ -62,6 +62,7 @@ int run_node(const NodeArguments& arguments) {
   options.world = load_world(arguments.load, launch);
   options.saves = arguments.save.folder;
   options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
+  options.save_keep = arguments.save.keep;
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;

@@ -59,7 +59,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       participant_(dds_settings(launch, options.region)),
       control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run}),
       fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),
-      saves_(options.saves, options.region),
+      saves_(options.saves, options.region, options.save_keep),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
   status_.region = options.region;
   status_.run = options.run;
@@ -172,6 +172,7 @@ void NodeProcess::enter(NodeEvent event) {
 std::unique_ptr<node::Node> NodeProcess::make_node() {
   node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
   setup.hash_states = options_.report.has_value();
+  if (options_.world) command_server_->bring(options_.world->meshes);
   return std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
 }
 
@@ -204,6 +205,7 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   refusals_noted_ = 0;
   frame_times_.clear();
   checkpoint_ = recorded_ = secured_ = 0;
+  saved_last_ = std::min(saved_last_, node_->current_step());
   if (launch_.regions.size() > 1) checkpoints_->use_keeper(keeper(), life_);
   observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);

@@ -38,6 +38,7 @@ struct NodeOptions {
   std::shared_ptr<const core::WorldCut> world;  ///< saved: the run goes on from it, and comes back to it when reset
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
+  std::size_t save_keep = 3;                    ///< of those that nobody has asked for
   bool takes_over = false;                      ///< a run that goes on: its node of this region has died
   bool has_launcher = false;                    ///< who starts another process when a node dies, and ends them all
 };
@@ -97,6 +98,10 @@ class NodeProcess {
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
   void save_parts();
   void save_regularly();
+  void save_what_is_kept();
+  void compute_until_change();
+  void step_back(const RunView& run);
+  void send_back(dds::RunCommand restore, const core::Command& back);
   cut::SavedWorld as_saved(core::WorldCut part) const;
   void plan_checkpoint();
   void keep_checkpoints();

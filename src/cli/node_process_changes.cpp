@@ -145,8 +145,14 @@ void NodeProcess::serve_clients() {
     }
     return lacking;
   };
+  run.holds_at = hold_at_;
   command_server_->serve(*node_, run);
-  if (run.leads) save_regularly();
+  save_what_is_kept();
+  if (run.leads) {
+    save_regularly();
+    compute_until_change();
+    step_back(run);
+  }
   status_.meshes = command_server_->meshes();
   if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
 }
@@ -161,6 +167,23 @@ void NodeProcess::change_rate(double rate) {
   command.at_step = node_->current_step() + 1 + static_cast<core::Step>(steps);
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
   command.rate = rate;
+  command.request = control_.send(command);
+  execute(command);
+}
+
+/// A change of the run comes after a state, which has to be certain. In a pause all compute up to there, and stand
+/// again in the first state of what is new.
+void NodeProcess::compute_until_change() {
+  const std::optional<core::Step> change = command_server_->change_at();
+  if (!change || !hold_at_ || node_->current_step() < *hold_at_) return;
+  const core::Step until_certain = node_->current_step() - node_->confirmed_step();
+  dds::RunCommand command;
+  command.kind = dds::RunCommandKind::kStep;
+  command.generation = generation_;
+  command.run = options_.run;
+  command.count = std::max<core::Step>(1, *change + until_certain - *hold_at_);
+  command.at_step = *hold_at_ + command.count;
+  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
   command.request = control_.send(command);
   execute(command);
 }
@@ -182,10 +205,12 @@ void NodeProcess::change_if_due() {
   if (!change_) return;
   const core::Order order = *std::exchange(change_, std::nullopt);
   before_change_ = BeforeChange{launch_, options_.world};
+  const bool stands = hold_at_.has_value();
   if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
   if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
   if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
   before_change_.reset();
+  if (stands) hold_at_ = node_->current_step();
 }
 
 /// Bodies of the old scene are forgotten; the regions stay.

@@ -1,5 +1,7 @@
 // What a node keeps of the world while it runs: parts that somebody has asked for, as files, and those that it can go
 // back to when a node dies.
+#include <chrono>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -7,8 +9,14 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/node_process.h"
+#include "cli/step_back.h"
 
 namespace aurasim::cli {
+namespace {
+
+constexpr std::chrono::nanoseconds kNoticeOfStepBack{600'000'000};  // that long all take to get there
+
+}  // namespace
 
 /// Written beside the run. Every node says to whoever has asked for it that it has.
 void NodeProcess::save_parts() {
@@ -17,12 +25,24 @@ void NodeProcess::save_parts() {
     if (recovers() && step % launch_.checkpoint_steps() == 0) {
       checkpoints_->add(as_saved(part), step + launch_.lookahead());
     }
-    saves_.write(std::move(part), launch_);
+    if (!saves_.expects(step)) continue;
+    command_server_->add_meshes(part);
+    saves_.write(std::move(part), launch_, start_->request);
   }
   keep_checkpoints();
   for (const PartWriter::Written& written : saves_.take_written()) {
     if (!written.error.empty()) spdlog::error("state {} was not saved: {}", written.step, written.error);
     if (written.request != 0) command_server_->reply_saved(written);
+  }
+}
+
+/// In a pause.
+void NodeProcess::save_what_is_kept() {
+  for (const KeptSave& save : command_server_->take_kept_saves()) {
+    std::optional<core::WorldCut> part = node_->kept_part(save.step);
+    if (!part) continue;
+    command_server_->add_meshes(*part);
+    saves_.write(std::move(*part), launch_, start_->request, save.request, save.file);
   }
 }
 
@@ -61,8 +81,39 @@ void NodeProcess::save_regularly() {
   node_->order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
+/// Somebody wants to see once more what was: all go back to the newest state, half as far back as states are kept or
+/// farther, that all have in memory or that the lead finds in its folder.
+void NodeProcess::step_back(const RunView& run) {
+  const std::optional<core::Command> back = command_server_->take_wanted_back();
+  if (!back) return;
+  const core::Step latest = node_->current_step() - (launch_.checkpoint_steps() + 1) / 2;
+  status_.parts = checkpoints_->parts();
+  std::map<core::RegionId, dds::SeenStatus> nodes = control_.statuses();
+  nodes[options_.region].status = status_;
+  const std::optional<dds::RunCommand> restore =
+      recovers() ? plan_step_back(nodes, launch_.regions.size(), latest) : std::nullopt;
+  const SavedState saved = newest_saved_until(options_.saves, launch_, latest);
+  if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
+  if (saved.step >= 0) return command_server_->load_instead(*back, saved.name, *node_, run);
+  command_server_->refuse(back->request, fmt::format("no state until {} is kept", latest));
+}
+
+/// As after a death, but nobody has died: the new generation begins now, and stands if this one did.
+void NodeProcess::send_back(dds::RunCommand restore, const core::Command& back) {
+  restore.run = options_.run;
+  restore.region = options_.region;
+  restore.epoch_ns = node::wall_clock_ns() + kNoticeOfStepBack.count();
+  restore.rate = pacer_.rate();
+  if (hold_at_) hold_at_ = restore.at_step;
+  command_server_->go_back_to(back, restore.at_step);
+  publish_map(restore.generation, restore.at_step);
+  restore.request = control_.send(restore);
+  restore_ = restore;
+  repeat_commands(restore);
+}
+
 cut::SavedWorld NodeProcess::as_saved(core::WorldCut part) const {
-  return {identity_of(launch_), core::value_of(options_.region), static_cast<std::uint32_t>(launch_.regions.size()),
+  return {identity_of(launch_), core::value_of(options_.region), static_cast<std::uint32_t>(launch_.regions.size()), 0,
           std::move(part)};
 }
 

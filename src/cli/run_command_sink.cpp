@@ -157,6 +157,7 @@ core::Ask RunCommandSink::ask_for(const overseer::Command& command) {
   if (const auto* c = std::get_if<overseer::LoadScene>(&command)) return core::ChangeScene{c->name};
   if (const auto* c = std::get_if<overseer::SaveWorld>(&command)) return core::Save{c->name};
   if (const auto* c = std::get_if<overseer::LoadWorld>(&command)) return core::Load{c->name};
+  if (std::holds_alternative<overseer::StepBack>(command)) return core::Load{};
   if (const auto* c = std::get_if<overseer::CastRay>(&command)) return core::Ray{c->from, c->to, c->regions};
   throw BadAsk("not supported by this run");
 }

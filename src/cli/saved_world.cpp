@@ -17,7 +17,17 @@
 namespace aurasim::cli {
 namespace {
 
-constexpr std::size_t kRegularSaves = 3;
+/// Its name, of a whole world or of a part of it.
+std::string world_of(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.substr(0, name.find(".part-"));
+}
+
+/// The same on all nodes that save a world together.
+std::uint64_t save_number(std::uint64_t life, std::uint64_t request, core::Step step) {
+  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
+  return ((life * kOdd ^ request) * kOdd ^ static_cast<std::uint64_t>(step)) * kOdd;
+}
 
 }  // namespace
 
@@ -38,10 +48,10 @@ void LoadArguments::add_to(CLI::App& command) {
 
 void SaveArguments::add_to(CLI::App& command) {
   command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds");
-  command
-      .add_option("--save-every", every_s,
-                  "save the world so often, in simulated seconds; the newest three stay. 0: only when asked to")
+  command.add_option("--save-every", every_s, "save the world so often, in simulated seconds. 0: only when asked to")
       ->check(CLI::Range(0.0, 1e9));
+  command.add_option("--save-keep", keep, "with --save-every: so many of them stay, the newest")
+      ->check(CLI::Range(1, 1'000'000));
 }
 
 std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch) {
@@ -81,15 +91,43 @@ std::string newest_saved_world(const std::filesystem::path& folder) {
   return newest.second;
 }
 
-void PartWriter::write(core::WorldCut part, const config::Launch& launch) {
-  const auto order =
-      std::ranges::find_if(expected_, [&](const core::Order& wanted) { return wanted.at_step == part.step; });
+SavedState newest_saved_until(const std::filesystem::path& folder, const config::Launch& launch, core::Step latest) {
+  SavedState newest;
+  const std::uint64_t wanted = launch.world_identity();
+  std::error_code no_folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, no_folder)) {
+    const std::string name = world_of(entry.path());
+    if (problem_with_save_name(name) != nullptr || !entry.is_regular_file() || entry.path().extension() == ".new") {
+      continue;
+    }
+    try {
+      const cut::SavedWorld header = cut::read_header(entry.path());
+      const core::Step step = header.cut.step;
+      if (header.identity.world == wanted && step <= latest && step > newest.step) newest = {step, name};
+    } catch (const cut::BadCut&) {
+      continue;  // whatever else lies there
+    }
+  }
+  return newest;
+}
+
+bool PartWriter::expects(core::Step step) const {
+  return std::ranges::find(expected_, step, &core::Order::at_step) != expected_.end();
+}
+
+void PartWriter::write(core::WorldCut part, const config::Launch& launch, std::uint64_t life) {
+  const auto order = std::ranges::find(expected_, part.step, &core::Order::at_step);
   if (order == expected_.end()) return;
-  const std::filesystem::path name = folder_ / std::get<core::Save>(order->action).file;
-  const std::uint64_t request = order->request;
+  const core::Order wanted = *order;
   expected_.erase(order);
+  write(std::move(part), launch, life, wanted.request, std::get<core::Save>(wanted.action).file);
+}
+
+void PartWriter::write(core::WorldCut part, const config::Launch& launch, std::uint64_t life, std::uint64_t request,
+                       const std::string& file_name) {
+  const std::filesystem::path name = folder_ / file_name;
   cut::SavedWorld world{identity_of(launch), core::value_of(region_), static_cast<std::uint32_t>(launch.regions.size()),
-                        std::move(part)};
+                        save_number(life, request, part.step), std::move(part)};
   writing_.push_back(std::async(std::launch::async, [folder = folder_, name, request, world = std::move(world)] {
     Written written{request, world.cut.step, {}, {}};
     try {
@@ -119,8 +157,9 @@ std::vector<PartWriter::Written> PartWriter::take_written() {
 /// Of those that nobody has asked for.
 void PartWriter::forget_old_ones(const Written& written) {
   if (written.request != 0 || !written.error.empty()) return;
+  std::erase(regular_, written.file);  // the run has gone back, and come there again
   regular_.push_back(written.file);
-  if (regular_.size() <= kRegularSaves) return;
+  if (regular_.size() <= keep_) return;
   std::error_code ignored;
   std::filesystem::remove(regular_.front(), ignored);
   regular_.pop_front();

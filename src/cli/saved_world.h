@@ -33,7 +33,8 @@ struct LoadArguments {
 /// Where and how often nodes save their parts, as the command line says it.
 struct SaveArguments {
   std::string folder = "saves";
-  double every_s = 0;  ///< simulated; 0: when somebody asks for it
+  double every_s = 0;    ///< simulated; 0: when somebody asks for it
+  std::size_t keep = 3;  ///< of those that nobody has asked for
 
   void add_to(CLI::App& command);
 };
@@ -48,15 +49,31 @@ const char* problem_with_save_name(const std::string& name);
 /// there is none.
 std::string newest_saved_world(const std::filesystem::path& folder);
 
+/// A world that lies in a folder of saved worlds.
+struct SavedState {
+  core::Step step = -1;  ///< -1: there is none
+  std::string name;
+};
+
+/// The newest one of this launch that is not later than state `latest`, by what the headers of its files say.
+SavedState newest_saved_until(const std::filesystem::path& folder, const config::Launch& launch, core::Step latest);
+
 /// Writes the parts of one region, beside the run.
 class PartWriter {
  public:
-  PartWriter(std::filesystem::path folder, core::RegionId region) : folder_(std::move(folder)), region_(region) {}
+  /// `keep`: so many worlds that nobody has asked for stay.
+  PartWriter(std::filesystem::path folder, core::RegionId region, std::size_t keep)
+      : folder_(std::move(folder)), region_(region), keep_(keep) {}
 
   /// An order to save, in the state that it names.
   void expect(const core::Order& order) { expected_.push_back(order); }
-  /// A part that is complete.
-  void write(core::WorldCut part, const config::Launch& launch);
+  bool expects(core::Step step) const;
+  /// A part that is complete. `life`: a number that all nodes of the run have, and those of no other; another one when
+  /// it has begun anew.
+  void write(core::WorldCut part, const config::Launch& launch, std::uint64_t life);
+  /// Likewise; of a save that is no order.
+  void write(core::WorldCut part, const config::Launch& launch, std::uint64_t life, std::uint64_t request,
+             const std::string& file);
 
   struct Written {
     std::uint64_t request = 0;
@@ -72,6 +89,7 @@ class PartWriter {
 
   std::filesystem::path folder_;
   core::RegionId region_;
+  std::size_t keep_;
   std::vector<core::Order> expected_;
   std::vector<std::future<Written>> writing_;
   std::deque<std::string> regular_;  ///< files that nobody has asked for

@@ -44,7 +44,8 @@ experiment::ScenesPlan plan_of(const ScenesArguments& arguments) {
   experiment::ScenesPlan plan = arguments.plan;
   read_seeds(arguments.seeds, plan.first, plan.last);
   plan.rules.sync = *experiment::sync_named(arguments.sync);
-  plan.rules.bad_network = arguments.network == "bad";
+  plan.rules.bad_network = arguments.network != "good";
+  plan.rules.partitions = arguments.network == "cut";
   plan.rules.setup_of = [](const config::Launch& launch, core::RegionId region) {
     return node_setup(launch, region, 0);
   };
@@ -105,8 +106,9 @@ void add_rules(CLI::App& command, const std::shared_ptr<ScenesArguments>& a) {
   command
       .add_option(
           "--network", a->network,
-          "good: a tenth of a step of delay; bad: loss, delay, jitter, duplicates, messages that overtake others")
-      ->check(CLI::IsMember({"good", "bad"}));
+          "good: a tenth of a step of delay; bad: loss, delay, jitter, duplicates, messages that overtake others; cut: "
+          "that, and nothing passes between some of the nodes and the others, three times for up to two seconds")
+      ->check(CLI::IsMember({"good", "bad", "cut"}));
   auto* save = command.add_option("--save-at", a->plan.rules.save_at,
                                   "save the world in this state, and go on from the file as well");
   command.add_option("--load-on", a->plan.rules.load_on, "numbers of nodes, with --save-at")

@@ -116,6 +116,7 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
   if (a.what == "rate") return core::SetRate{a.rate};
   if (a.what == "scene") return core::ChangeScene{a.scene};
   if (a.what == "load") return core::Load{a.save_file};
+  if (a.what == "back") return core::Load{};
   if (a.what == "save") return core::Save{std::filesystem::path(a.save_file).filename().string()};
   if (a.what == "ray") return core::Ray{vector(a.from), vector(a.to), {}};
   core::Repartition regions;
@@ -350,6 +351,7 @@ void add_send(CLI::App& program, Action& action) {
        [](CLI::App& c, SendArguments& a) {
          c.add_option("WORLD", a.save_file, "in the nodes' --saves folder")->required();
        }},
+      {"back", "go back to the newest earlier state that is kept", none},
       {"ray", "what is first on the way from a point to another?", ray_options}};
   for (const auto& [name, text, options] : kinds) {
     CLI::App* command = send_app->add_subcommand(name, text);

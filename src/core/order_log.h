@@ -27,6 +27,7 @@ class OrderLog {
   std::uint64_t last() const { return last_; }
   /// Received or announced since the last take_news(), in sequence.
   std::vector<Order> take_news();
+  std::span<const Order> news() const { return news_; }
   /// What the next batch has to publish, given out once.
   std::vector<Order> take_to_publish();
 

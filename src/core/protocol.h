@@ -111,6 +111,8 @@ class Protocol {
   /// on the one node that takes orders.
   const Order& announce(Order order) { return orders_.announce(std::move(order)); }
   std::uint64_t last_order() const { return orders_.last(); }
+  /// Orders that receive() has not given out yet.
+  std::span<const Order> orders_to_come() const { return orders_.news(); }
   /// The earliest state in which an order announced now can take effect: all nodes know of it, and of the body
   /// that it brings or the kick that it gives, before.
   Step earliest_effect() const;

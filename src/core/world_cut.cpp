@@ -39,6 +39,12 @@ void append(std::vector<SavedShape>& to, const std::vector<SavedShape>& from) {
   }
 }
 
+void append(std::vector<SavedMesh>& to, std::vector<SavedMesh> from) {
+  for (SavedMesh& mesh : from) {
+    if (std::ranges::find(to, mesh.hash, &SavedMesh::hash) == to.end()) to.push_back(std::move(mesh));
+  }
+}
+
 void refuse_twins(const WorldCut& cut) {
   std::vector<BodyId> ids;
   for (const BodyRecord& body : cut.bodies.bodies) ids.push_back(body.id);
@@ -65,6 +71,7 @@ WorldCut merge(std::vector<WorldCut> parts) {
     std::ranges::move(part->under_way, std::back_inserter(whole.under_way));
     append(whole.orders, part->orders);
     append(whole.shapes, part->shapes);
+    append(whole.meshes, std::move(part->meshes));
     whole.last_order = std::max(whole.last_order, part->last_order);
   }
   std::ranges::sort(whole.bodies.bodies, {}, &BodyRecord::id);

@@ -22,6 +22,12 @@ struct SavedShape {
   Shape shape;
 };
 
+/// A client's mesh as it came: for those who look on.
+struct SavedMesh {
+  std::uint64_t hash = 0;
+  TriangleMesh mesh;
+};
+
 struct WorldCut {
   Step step = 0;
   Step births_known = 0;  ///< bodies born up to this state are among `bodies`, or are no more
@@ -32,6 +38,7 @@ struct WorldCut {
   std::vector<Order> orders;
   std::uint64_t last_order = 0;  ///< the sequence number of the newest, also of what has been left out
   std::vector<SavedShape> shapes;
+  std::vector<SavedMesh> meshes;
 };
 
 /// The whole from the parts of all regions. Throws std::invalid_argument when they are not of one state, or when two of

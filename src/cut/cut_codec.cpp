@@ -18,14 +18,16 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kMagic[] = "AURACUT1";  // the last is the number of the format
+constexpr char kMagic[] = "AURACUT2";  // the last is the number of the format
 constexpr std::size_t kMagicBytes = 8, kFormatAt = 7;
 constexpr int kLevel = 3;
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some ten million contact points
+constexpr std::size_t kMostGrowth = 200;                   // times; equal piles come to 50
+constexpr std::size_t kMostOfHeader = 64 << 10;
 constexpr std::size_t kOrdersAtOnce = 1000;
 
 /// What follows the header, each with its length.
-enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShapes };
+enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShape, kMesh };
 
 void put_number(std::string& out, std::uint32_t number) {
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(number >> (8 * i) & 0xff));
@@ -83,12 +85,13 @@ std::string compressed(const std::string& bytes) {
   return out;
 }
 
-/// However large it says that it is, memory is taken only for what comes.
-std::string decompressed(std::string_view bytes) {
+/// However large it says that it is, memory is taken only for what comes. Not more than is `enough`.
+std::string decompressed(std::string_view bytes, std::size_t enough = kMostBytes + 1) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, 27);
   std::string out, chunk(ZSTD_DStreamOutSize(), '\0');
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  const std::size_t most = std::min(kMostBytes, (1 << 20) + kMostGrowth * bytes.size());
   std::size_t left = 1;
   while (left != 0) {
     ZSTD_outBuffer to{chunk.data(), chunk.size(), 0};
@@ -96,7 +99,8 @@ std::string decompressed(std::string_view bytes) {
     if (ZSTD_isError(left) != 0) throw BadCut(fmt::format("damaged: {}", ZSTD_getErrorName(left)));
     if (left != 0 && to.pos == 0 && in.pos == in.size) throw BadCut("cut short");
     out.append(chunk.data(), to.pos);
-    if (out.size() > kMostBytes) throw BadCut("larger than any world");
+    if (out.size() >= enough) return out;
+    if (out.size() > most) throw BadCut("damaged: it becomes larger than any world of its size");
   }
   if (in.pos != in.size) throw BadCut("damaged: something follows its end");
   return out;
@@ -112,13 +116,23 @@ json header_of(const SavedWorld& world) {
           {"world", id.world},
           {"part", world.part},
           {"parts", world.parts},
+          {"save", world.save},
           {"step", world.cut.step},
           {"births_known", world.cut.births_known},
           {"last_order", world.cut.last_order},
           {"bodies", core::body_count(world.cut)}};
 }
 
+/// A number of another kind would be made into one of this kind.
+std::uint64_t whole(const json& header, const char* key,
+                    std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
+  const json& number = header.at(key);
+  if (number.is_number_unsigned() && number.get<std::uint64_t>() <= most) return number.get<std::uint64_t>();
+  throw BadCut(fmt::format("damaged: its header: {} is no whole number from 0 to {}", key, most));
+}
+
 SavedWorld from_header(std::string_view text) {
+  constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 52, kMostRegions = 1 << 20;
   SavedWorld world;
   try {
     const json header = json::parse(text);
@@ -128,19 +142,18 @@ SavedWorld from_header(std::string_view text) {
     header.at("launch").get_to(id.launch);
     header.at("scene").get_to(id.scene);
     header.at("physics").get_to(id.physics);
-    header.at("world").get_to(id.world);
-    header.at("part").get_to(world.part);
-    header.at("parts").get_to(world.parts);
-    header.at("step").get_to(world.cut.step);
-    header.at("births_known").get_to(world.cut.births_known);
-    header.at("last_order").get_to(world.cut.last_order);
+    id.world = whole(header, "world");
+    world.parts = static_cast<std::uint32_t>(whole(header, "parts", kMostRegions));
+    world.part = static_cast<std::uint32_t>(whole(header, "part", kMostRegions));
+    world.save = whole(header, "save");
+    world.cut.step = static_cast<core::Step>(whole(header, "step", kMostSteps));
+    world.cut.births_known = static_cast<core::Step>(whole(header, "births_known", kMostSteps));
+    world.cut.last_order = whole(header, "last_order");
   } catch (const json::exception& error) {
     throw BadCut(fmt::format("damaged: its header: {}", error.what()));
   }
-  constexpr core::Step kMostSteps = core::Step{1} << 52;
-  const auto is_step = [](core::Step step) { return step >= 0 && step <= kMostSteps; };
-  if (world.parts == 0 || world.part >= world.parts || !is_step(world.cut.step) || !is_step(world.cut.births_known)) {
-    throw BadCut("damaged: its header has numbers that make no sense");
+  if (world.part >= world.parts) {
+    throw BadCut(fmt::format("damaged: its header: there is no part {} of {}", world.part, world.parts));
   }
   return world;
 }
@@ -174,9 +187,14 @@ void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::World
       cut.orders.insert(cut.orders.end(), batch.orders.begin(), batch.orders.end());
       return;
     }
-    case Piece::kShapes:
-      cut.shapes = decode_shapes(bytes);
+    case Piece::kShape:
+      cut.shapes.push_back(decode_shape(bytes));
       return;
+    case Piece::kMesh: {
+      dds::NamedMesh named = sound(wire.mesh(octets(bytes)), "a mesh");
+      cut.meshes.push_back({named.hash, std::move(named.mesh)});
+      return;
+    }
     case Piece::kEnd:
       return;
   }
@@ -201,19 +219,35 @@ std::string encode(const SavedWorld& world) {
     batch.orders.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
     put(bytes, Piece::kOrders, wire.of(batch));
   }
-  if (!cut.shapes.empty()) put(bytes, Piece::kShapes, encode_shapes(cut.shapes));
+  for (const core::SavedShape& shape : cut.shapes) put(bytes, Piece::kShape, encode_shape(shape));
+  for (const core::SavedMesh& mesh : cut.meshes)
+    put(bytes, Piece::kMesh, wire.of(dds::NamedMesh{mesh.hash, mesh.mesh}));
   bytes.push_back(static_cast<char>(Piece::kEnd));
   return std::string(kMagic, kMagicBytes) + compressed(bytes);
 }
 
-SavedWorld decode(const std::string& bytes) {
+namespace {
+
+/// What comes after it.
+std::string_view after_magic(const std::string& bytes) {
   if (bytes.size() < kMagicBytes || std::memcmp(bytes.data(), kMagic, kFormatAt) != 0) {
     throw BadCut("this is no saved world");
   }
   if (bytes[kFormatAt] != kMagic[kFormatAt]) {
     throw BadCut(fmt::format("in format {}, and this program reads format {}", bytes[kFormatAt], kMagic[kFormatAt]));
   }
-  const std::string inside = decompressed(std::string_view(bytes).substr(kMagicBytes));
+  return std::string_view(bytes).substr(kMagicBytes);
+}
+
+}  // namespace
+
+SavedWorld decode_header(const std::string& bytes) {
+  const std::string inside = decompressed(after_magic(bytes), kMostOfHeader);
+  return from_header(Reader(inside).bytes());
+}
+
+SavedWorld decode(const std::string& bytes) {
+  const std::string inside = decompressed(after_magic(bytes));
   Reader reader(inside);
   SavedWorld world = from_header(reader.bytes());
   dds::WireBytes wire;

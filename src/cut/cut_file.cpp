@@ -78,6 +78,14 @@ SavedWorld read_cut(const fs::path& file) {
   }
 }
 
+SavedWorld read_header(const fs::path& file) {
+  try {
+    return decode_header(text_of(file));
+  } catch (const BadCut& bad) {
+    throw BadCut(fmt::format("{}: {}", file.string(), bad.what()));
+  }
+}
+
 SavedWorld merge_cuts(const std::vector<fs::path>& files) {
   if (files.empty()) throw BadCut("there are no parts");
   SavedWorld whole;
@@ -89,6 +97,10 @@ SavedWorld merge_cuts(const std::vector<fs::path>& files) {
     if (!is_first && (part.parts != whole.parts || !same(part.identity, whole.identity))) {
       throw BadCut(fmt::format("{} and {} are not of one world", files.front().string(), file.string()));
     }
+    if (!is_first && (part.save != whole.save || part.cut.step != whole.cut.step)) {
+      throw BadCut(fmt::format("{} (state {}) and {} (state {}) were not saved together", files.front().string(),
+                               whole.cut.step, file.string(), part.cut.step));
+    }
     if (!parts.insert(part.part).second) {
       throw BadCut(fmt::format("{}: part {} is there twice", file.string(), part.part));
     }
@@ -96,7 +108,10 @@ SavedWorld merge_cuts(const std::vector<fs::path>& files) {
     if (is_first) whole = std::move(part);
   }
   if (parts.size() != whole.parts) {
-    throw BadCut(fmt::format("{}: {} of {} parts are there", files.front().string(), parts.size(), whole.parts));
+    std::uint32_t missing = 0;
+    while (parts.contains(missing)) ++missing;
+    throw BadCut(fmt::format("{}: {} of {} parts are there; part {} is missing", files.front().string(), parts.size(),
+                             whole.parts, missing));
   }
   try {
     whole.cut = core::merge(std::move(cuts));

@@ -26,6 +26,7 @@ struct Identity {
 struct SavedWorld {
   Identity identity;
   std::uint32_t part = 0, parts = 1;  ///< 1: the whole
+  std::uint64_t save = 0;             ///< the same for all parts that were saved together, and for no others
   core::WorldCut cut;
 };
 
@@ -44,6 +45,9 @@ void write_cut(const std::filesystem::path& file, const SavedWorld& world);
 /// Throws BadCut.
 SavedWorld read_cut(const std::filesystem::path& file);
 
+/// What it says of itself, without its bodies and all else: neither whole nor sound for sure. Throws BadCut.
+SavedWorld read_header(const std::filesystem::path& file);
+
 /// One world of the parts in these files. Throws BadCut if some are missing, or are not of one world.
 SavedWorld merge_cuts(const std::vector<std::filesystem::path>& files);
 
@@ -61,5 +65,6 @@ std::string check_identity(const std::filesystem::path& file, const Identity& fo
 /// The bytes of a file, and a world from them: for files, and for tests of what is no file.
 std::string encode(const SavedWorld& world);
 SavedWorld decode(const std::string& bytes);
+SavedWorld decode_header(const std::string& bytes);
 
 }  // namespace aurasim::cut

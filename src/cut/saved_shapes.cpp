@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kLongestShape = std::size_t{64} << 20U;  // text: twice the largest mesh
+
 json to_json(const std::vector<core::Vec3>& points) {
   json all = json::array();
   for (const core::Vec3& p : points) all.insert(all.end(), {p.x(), p.y(), p.z()});
@@ -59,11 +61,17 @@ struct ToJson {
 
 core::TriangleMesh triangles_of(const json& shape) {
   core::TriangleMesh mesh{points_of(shape.at("points")), {}};
-  const auto all = shape.at("triangles").get<std::vector<std::uint32_t>>();
-  const bool fit = !all.empty() && all.size() % 3 == 0 && all.size() <= 3 * core::limits::kMostTriangles &&
-                   std::ranges::all_of(all, [&](std::uint32_t i) { return i < mesh.points.size(); });
+  const json& all = shape.at("triangles");
+  const auto is_index = [&](const json& i) {
+    return i.is_number_unsigned() && i.get<std::uint64_t>() < mesh.points.size();
+  };
+  const bool fit = all.is_array() && !all.empty() && all.size() % 3 == 0 &&
+                   all.size() <= 3 * core::limits::kMostTriangles && std::ranges::all_of(all, is_index);
   if (!fit) throw BadCut("damaged: a shape's triangles");
-  for (std::size_t i = 0; i < all.size(); i += 3) mesh.triangles.push_back({all[i], all[i + 1], all[i + 2]});
+  const auto corners = all.get<std::vector<std::uint32_t>>();
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  }
   return mesh;
 }
 
@@ -92,30 +100,25 @@ core::Shape shape_of(const json& shape) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_shapes(const std::vector<core::SavedShape>& shapes) {
-  json all = json::array();
-  for (const core::SavedShape& saved : shapes) {
-    json shape = std::visit(ToJson{}, saved.shape);
-    shape["mesh"] = saved.mesh.hash;
-    shape["use"] = static_cast<int>(saved.mesh.use);
-    all.push_back(std::move(shape));
-  }
-  return json::to_cbor(all);
+std::string encode_shape(const core::SavedShape& saved) {
+  json shape = std::visit(ToJson{}, saved.shape);
+  shape["mesh"] = saved.mesh.hash;
+  shape["use"] = static_cast<int>(saved.mesh.use);
+  return shape.dump();
 }
 
-std::vector<core::SavedShape> decode_shapes(std::string_view bytes) {
-  std::vector<core::SavedShape> shapes;
+core::SavedShape decode_shape(std::string_view text) {
+  if (text.size() > kLongestShape) throw BadCut("damaged: a shape is too large");
   try {
-    for (const json& saved : json::from_cbor(bytes.begin(), bytes.end())) {
-      const int use = saved.at("use").get<int>();
-      if (use < 0 || use > static_cast<int>(core::MeshUse::kTriangles)) throw BadCut("damaged: a shape's use");
-      const core::MeshRef mesh{saved.at("mesh").get<std::uint64_t>(), static_cast<core::MeshUse>(use)};
-      shapes.push_back({mesh, shape_of(saved)});
-    }
+    const json saved = json::parse(text);
+    const json &hash = saved.at("mesh"), &use = saved.at("use");
+    const bool fit = hash.is_number_unsigned() && use.is_number_unsigned() &&
+                     use.get<std::uint64_t>() <= static_cast<std::uint64_t>(core::MeshUse::kTriangles);
+    if (!fit) throw BadCut("damaged: which mesh a shape is of");
+    return {{hash.get<std::uint64_t>(), static_cast<core::MeshUse>(use.get<int>())}, shape_of(saved)};
   } catch (const json::exception& error) {
-    throw BadCut(fmt::format("damaged: its shapes: {}", error.what()));
+    throw BadCut(fmt::format("damaged: a shape: {}", error.what()));
   }
-  return shapes;
 }
 
 }  // namespace aurasim::cut

@@ -1,16 +1,16 @@
-// Shapes that clients' meshes have become, as CBOR: what a scene file says of its own need not be saved.
+// A shape that a client's mesh has become, as JSON with every bit of its numbers: what a scene file says of its own
+// need not be saved.
 #pragma once
 
-#include <cstdint>
+#include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/world_cut.h"
 
 namespace aurasim::cut {
 
-std::vector<std::uint8_t> encode_shapes(const std::vector<core::SavedShape>& shapes);
+std::string encode_shape(const core::SavedShape& shape);
 /// Throws BadCut.
-std::vector<core::SavedShape> decode_shapes(std::string_view bytes);
+core::SavedShape decode_shape(std::string_view text);
 
 }  // namespace aurasim::cut

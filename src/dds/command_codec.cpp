@@ -267,6 +267,7 @@ void encode(const NamedMesh& mesh, wire::MeshShape& out) {
   out = wire::MeshShape();
   out.hash(mesh.hash);
   out.version(kProtocolVersion);
+  out.stamp(mesh.is_told_again ? 1 : 0);
   fill_wide<3>(out.points(), mesh.mesh.points, [](const Vec3& p, double* to) { put_vector(p, to); });
   for (const auto& triangle : mesh.mesh.triangles) {
     out.triangles().insert(out.triangles().end(), triangle.begin(), triangle.end());
@@ -283,6 +284,7 @@ Decoded<NamedMesh> decode(const wire::MeshShape& in, const Expected&) {
   if (!all_below(in.triangles(), static_cast<std::uint32_t>(in.points().size() / 3))) return WireError::kRange;
   NamedMesh named;
   named.hash = in.hash();
+  named.is_told_again = in.stamp() != 0;
   for (std::size_t i = 0; i < in.points().size() / 3; ++i) named.mesh.points.push_back(vector_at(in.points(), i));
   for (std::size_t i = 0; i < in.triangles().size(); i += 3) {
     named.mesh.triangles.push_back({in.triangles()[i], in.triangles()[i + 1], in.triangles()[i + 2]});

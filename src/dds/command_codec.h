@@ -18,6 +18,7 @@ namespace aurasim::dds {
 struct NamedMesh {
   std::uint64_t hash = 0;
   core::TriangleMesh mesh;
+  bool is_told_again = false;  ///< by a node: no command that needs it is under way
 };
 
 void encode(const core::Command& command, std::uint64_t sender, std::uint64_t map_version, wire::Command& out);

@@ -24,6 +24,13 @@ bool MeshCache::add(std::uint64_t hash, core::TriangleMesh mesh) {
   return true;
 }
 
+bool MeshCache::add_spare(std::uint64_t hash, core::TriangleMesh mesh) {
+  if (entries_.contains(hash)) return true;
+  const bool added = add(hash, std::move(mesh));
+  release(hash);
+  return added;
+}
+
 bool MeshCache::make_room(std::size_t bytes) {
   if (bytes > limits_.bytes) return false;
   while (entries_.size() >= limits_.meshes || bytes_ > limits_.bytes - bytes) {

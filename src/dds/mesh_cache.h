@@ -22,6 +22,8 @@ class MeshCache {
 
   /// False if there is no room for it beside those that are still needed.
   bool add(std::uint64_t hash, core::TriangleMesh mesh);
+  /// Likewise; of one that nobody is about to ask for.
+  bool add_spare(std::uint64_t hash, core::TriangleMesh mesh);
   /// Null if there is none, or none any more. Valid until the next add().
   const core::TriangleMesh* find(std::uint64_t hash) const;
   /// Its shape has been made; it may be given up. Until it is asked for again:

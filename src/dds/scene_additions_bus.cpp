@@ -51,6 +51,21 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
   return newest;
 }
 
+struct MeshWriter::Impl {
+  explicit Impl(Participant& participant) : writer(participant.domain(), in_world(TopicId::kShape), wakeup) {}
+
+  Wakeup wakeup;
+  TypedWriter<wire::MeshShape> writer;
+};
+
+MeshWriter::MeshWriter(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+
+MeshWriter::~MeshWriter() = default;
+
+bool MeshWriter::tell_again(std::uint64_t hash, const core::TriangleMesh& mesh) {
+  return impl_->writer.send(NamedMesh{hash, mesh, true}) != WriteResult::kFailed;
+}
+
 struct MeshReader::Impl {
   Impl(Participant& participant, const MeshCacheLimits& limits)
       : reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
@@ -68,7 +83,9 @@ MeshReader::~MeshReader() = default;
 
 MeshCache& MeshReader::meshes() {
   impl_->reader.take_each({}, [&](NamedMesh&& named) {
-    if (!impl_->meshes.add(named.hash, std::move(named.mesh))) ++impl_->without_room;
+    const bool added = named.is_told_again ? impl_->meshes.add_spare(named.hash, std::move(named.mesh))
+                                           : impl_->meshes.add(named.hash, std::move(named.mesh));
+    if (!added) ++impl_->without_room;
   });
   return impl_->meshes;
 }

@@ -46,6 +46,20 @@ class SceneAdditionsReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Tells meshes of clients that may be gone, for those who come late. Used by one thread. The participant must outlive
+/// it.
+class MeshWriter {
+ public:
+  explicit MeshWriter(Participant& participant);
+  ~MeshWriter();
+  /// As long as this process lives. False: topic shape takes no more.
+  bool tell_again(std::uint64_t hash, const core::TriangleMesh& mesh);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Meshes that clients have brought. Used by one thread. The participant must outlive it.
 class MeshReader {
  public:

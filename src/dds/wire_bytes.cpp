@@ -37,9 +37,11 @@ struct WireBytes::Samples {
   wire::AuraBatch aura;
   wire::Migration migration;
   wire::MigrationAck ack;
+  wire::MeshShape mesh;
   wire::AuraBatchPubSubType aura_type;
   wire::MigrationPubSubType migration_type;
   wire::MigrationAckPubSubType ack_type;
+  wire::MeshShapePubSubType mesh_type;
 };
 
 WireBytes::WireBytes() {
@@ -63,6 +65,11 @@ std::vector<std::uint8_t> WireBytes::of(const core::HandOffAck& ack, std::uint64
   return serialized(samples_->ack_type, samples_->ack);
 }
 
+std::vector<std::uint8_t> WireBytes::of(const NamedMesh& mesh) {
+  encode(mesh, samples_->mesh);
+  return serialized(samples_->mesh_type, samples_->mesh);
+}
+
 Decoded<core::AuraBatch> WireBytes::aura(std::span<const std::uint8_t> bytes, const Expected& expected) {
   if (!deserialize(samples_->aura_type, bytes, samples_->aura)) return WireError::kMalformed;
   return decode(samples_->aura, expected);
@@ -71,6 +78,11 @@ Decoded<core::AuraBatch> WireBytes::aura(std::span<const std::uint8_t> bytes, co
 Decoded<core::HandOff> WireBytes::hand_off(std::span<const std::uint8_t> bytes, const Expected& expected) {
   if (!deserialize(samples_->migration_type, bytes, samples_->migration)) return WireError::kMalformed;
   return decode(samples_->migration, expected);
+}
+
+Decoded<NamedMesh> WireBytes::mesh(std::span<const std::uint8_t> bytes) {
+  if (!deserialize(samples_->mesh_type, bytes, samples_->mesh)) return WireError::kMalformed;
+  return decode(samples_->mesh, {});
 }
 
 }  // namespace aurasim::dds

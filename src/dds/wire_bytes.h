@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dds/codec.h"
+#include "dds/command_codec.h"
 
 namespace aurasim::dds {
 
@@ -21,9 +22,11 @@ class WireBytes {
   std::vector<std::uint8_t> of(const core::AuraBatch& batch);
   std::vector<std::uint8_t> of(const core::HandOff& hand_off);
   std::vector<std::uint8_t> of(const core::HandOffAck& ack, std::uint64_t map_version);
+  std::vector<std::uint8_t> of(const NamedMesh& mesh);
 
   Decoded<core::AuraBatch> aura(std::span<const std::uint8_t> bytes, const Expected& expected);
   Decoded<core::HandOff> hand_off(std::span<const std::uint8_t> bytes, const Expected& expected);
+  Decoded<NamedMesh> mesh(std::span<const std::uint8_t> bytes);
 
  private:
   struct Samples;

@@ -44,6 +44,9 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
       network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
   [[maybe_unused]] static const bool kept = keep_freed_memory();
+  for (const BrokenLink& link : rules.broken_links) {
+    network_.faults().cut(link.a, link.b, link.from_s, link.until_s);
+  }
   if (rules.bandwidth_B_s) post_.emplace(network_, map_.size(), *rules.bandwidth_B_s);
   node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {

@@ -19,6 +19,12 @@ namespace aurasim::experiment {
 /// All regions of a trial listen to each other: there are at most four.
 inline constexpr double kEverywhere_m = 1e9;
 
+/// Nothing passes between two regions from one time to another, counted as the run's states are.
+struct BrokenLink {
+  core::RegionId a{}, b{};
+  double from_s = 0, until_s = 0;
+};
+
 struct ClusterRules {
   core::AuraRules aura;
   core::SyncMode sync = core::SyncMode::kBounded;
@@ -27,6 +33,7 @@ struct ClusterRules {
   bool hash_states = false;
   node::PhaseClock clock = node::PhaseClock::kWall;
   transport::Faults network;
+  std::vector<BrokenLink> broken_links;
   /// Messages are coded as for DDS (experiment/wire_post.h), and each node's link takes so many bytes a second.
   std::optional<double> bandwidth_B_s;
   double shortest_frame_s = 0;

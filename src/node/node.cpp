@@ -172,11 +172,9 @@ const StepReport& Node::step() {
   note_arrived();
   compute_step();
   save_if_due();
-  if (setup_.protocol.aura.redo) {
-    if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
-    forget_cuts();
-    order_redo();
-  }
+  if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
+  forget_cuts();
+  if (setup_.protocol.aura.redo) order_redo();
   hold(report_);
   return report_;
 }

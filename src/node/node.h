@@ -33,6 +33,7 @@ struct Cut {
   std::vector<std::uint64_t> next_injection;
   core::RankClaimer claimer;
   CollisionCounts collisions;
+  bool is_whole = false;  ///< all that joins has come
 };
 
 struct NodeSetup {
@@ -158,6 +159,11 @@ class Node {
   void save(core::Step step);
   /// The parts that are complete: nothing can come to question them any more, and all that was under way is here.
   std::vector<core::WorldCut> take_saved();
+  /// The newest state that it has kept by itself, and that is certain: nothing can come to question it any more, and
+  /// all that was under way is here. The same on all nodes that stand in the same state, but for alarms under way.
+  std::optional<core::Step> newest_kept() const;
+  /// Its part of the world in such a state, as save() would have it; nothing: it is not kept, or not certain.
+  std::optional<core::WorldCut> kept_part(core::Step step) const;
   /// What this node knows by now that a world saved in an earlier state does not: a part of it without bodies, with all
   /// orders.
   core::WorldCut orders_now(const core::WorldCut& earlier) const;
@@ -212,6 +218,7 @@ class Node {
   void note_arrived();
   void save_if_due();
   core::WorldCut part_of_world(Cut cut) const;
+  bool is_certain(const Cut& cut) const;
   void add_orders(core::WorldCut& part, core::Step after) const;
   void announce_spawns(core::Step birth);
   void apply(const core::Changes& changes);

@@ -7,6 +7,15 @@
 #include "node/scene_additions.h"
 
 namespace aurasim::node {
+namespace {
+
+/// What a saved world has to know of; what changes the run as a whole it has not to.
+bool is_kept(const core::Action& action) {
+  return !core::changes_the_run(action) && !std::holds_alternative<core::Redo>(action) &&
+         !std::holds_alternative<core::Save>(action);
+}
+
+}  // namespace
 
 void Node::save(core::Step step) {
   if (step > current_step()) saving_.push_back({step, {}, false, false});
@@ -14,10 +23,12 @@ void Node::save(core::Step step) {
 
 /// Before the clusters for the next state are taken in: those that left before a state that is saved are among them.
 void Node::note_arrived() {
-  for (Saving& saving : saving_) {
-    const core::Step wanted = saving.step + setup_.protocol.aura.lookahead;
-    saving.is_whole = saving.cut && current_step() + 1 >= wanted && protocol_->missing(wanted).empty();
-  }
+  const auto has_all = [&](core::Step step) {
+    const core::Step wanted = step + setup_.protocol.aura.lookahead;
+    return current_step() + 1 >= wanted && protocol_->missing(wanted).empty();
+  };
+  for (Saving& saving : saving_) saving.is_whole = saving.cut && has_all(saving.step);
+  for (Cut& cut : cuts_) cut.is_whole = cut.is_whole || has_all(cut.step);
 }
 
 void Node::save_if_due() {
@@ -51,7 +62,8 @@ core::WorldCut Node::orders_now(const core::WorldCut& earlier) const {
   return part;
 }
 
-/// Those that have changed the scene, and those for states later than `after`.
+/// Those that have changed the scene, and those for states later than `after`. What a mesh becomes is known once its
+/// order has been given out.
 void Node::add_orders(core::WorldCut& part, core::Step after) const {
   part.last_order = protocol_->last_order();
   const core::Order* const newest = newest_spawn();
@@ -64,6 +76,24 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
     }
     if (changes_scene(order.action) || order.at_step > after || &order == newest) part.orders.push_back(order);
   }
+  for (const core::Order& order : protocol_->orders_to_come()) {
+    if (is_kept(order.action)) part.orders.push_back(order);
+  }
+}
+
+bool Node::is_certain(const Cut& cut) const { return cut.is_whole && cut.step <= confirmed_step(); }
+
+std::optional<core::Step> Node::newest_kept() const {
+  for (auto cut = cuts_.rbegin(); cut != cuts_.rend(); ++cut) {
+    if (is_certain(*cut)) return cut->step;
+  }
+  return std::nullopt;
+}
+
+std::optional<core::WorldCut> Node::kept_part(core::Step step) const {
+  const auto cut = std::ranges::find(cuts_, step, &Cut::step);
+  if (cut == cuts_.end() || !is_certain(*cut)) return std::nullopt;
+  return part_of_world(*cut);
 }
 
 std::vector<core::WorldCut> Node::take_saved() {
@@ -91,10 +121,7 @@ const core::Order* Node::newest_spawn() const {
 
 /// For worlds that are saved later.
 void Node::remember(const core::Order& order) {
-  if (core::changes_the_run(order.action) || std::holds_alternative<core::Redo>(order.action) ||
-      std::holds_alternative<core::Save>(order.action)) {
-    return;
-  }
+  if (!is_kept(order.action)) return;
   orders_.push_back(order);
   if (orders_.size() <= 2 * orders_kept_) return;
   const std::uint64_t newest = newest_spawn() ? newest_spawn()->sequence : 0;

@@ -37,6 +37,8 @@ struct SaveWorld {
 struct LoadWorld {
   std::string name;
 };
+/// To the newest earlier state that is kept.
+struct StepBack {};
 /// A new region map, one rectangle per node. That they tile the plane is for the sink to check.
 struct SetRegions {
   std::vector<core::Rectangle> boxes;
@@ -87,7 +89,7 @@ struct CastRay {
 };
 
 using Command = std::variant<Pause, Resume, Reset, StepOn, SetRate, LoadScene, SetRegions, Spawn, PlaceStatic, Remove,
-                             Impulse, SetVelocity, CastRay, SaveWorld, LoadWorld>;
+                             Impulse, SetVelocity, CastRay, SaveWorld, LoadWorld, StepBack>;
 
 /// The word for it on the wire: "pause", "spawn", ...
 const char* name_of(const Command& command);

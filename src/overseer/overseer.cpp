@@ -24,6 +24,7 @@ constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kLookPeriod = 20ms;
 constexpr auto kOverlayPeriod = 200ms;
+constexpr auto kGrowPeriod = 2s;        // while a mesh is missing
 constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
 
 /// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
@@ -110,10 +111,15 @@ void Overseer::publish_scene() {
 
 std::string Overseer::scene_text() const { return scene_message(scene_, published_generation_, removed_statics_); }
 
-/// What clients have added to the scene, once the run shows that generation.
+/// What clients have added to the scene, once the run shows that generation; again when a mesh has come later.
 void Overseer::grow() {
-  if (std::optional<dds::SceneAdditions> newest = additions_reader_.take()) additions_ = std::move(newest);
+  if (std::optional<dds::SceneAdditions> newest = additions_reader_.take()) {
+    additions_ = std::move(newest);
+    additions_are_shown_ = false;
+  }
   if (!additions_ || additions_->generation != published_generation_) return;
+  const bool has_all = has_all_meshes();
+  if (additions_are_shown_ && !has_all) return;
   const auto mesh = [this](const core::MeshRef& ref) -> std::optional<core::Shape> {
     const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
     return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
@@ -124,8 +130,17 @@ void Overseer::grow() {
     node::extend(scene_, order.action, mesh);
     if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) removed_statics_.insert(removed->id);
   }
-  additions_.reset();
+  additions_are_shown_ = true;
+  if (has_all) additions_.reset();
   publish_scene();
+}
+
+bool Overseer::has_all_meshes() {
+  return std::ranges::all_of(additions_->orders, [this](const core::Order& order) {
+    const auto* const defined = std::get_if<core::DefineShape>(&order.action);
+    const auto* const ref = defined == nullptr ? nullptr : std::get_if<core::MeshRef>(&defined->shape);
+    return ref == nullptr || meshes_.mesh(ref->hash) != nullptr;
+  });
 }
 
 double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }

@@ -44,6 +44,7 @@ class Overseer {
   void publish_scene();
   std::string scene_text() const;
   void grow();
+  bool has_all_meshes();
   void write_down(ChunkKind kind, const std::string& text);
   void write_down(const WorldFrame& frame);
   template <class Job>
@@ -72,7 +73,8 @@ class Overseer {
   dds::MeshReader meshes_;
   core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
-  std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown
+  std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
+  bool additions_are_shown_ = false;              ///< with balls where meshes are missing
   OverlayView overlays_;
   ViewSettings view_settings_;
   std::optional<WorldView> view_;

@@ -42,6 +42,8 @@ LoadScene read_scene(const Json& json) { return {file_name_in(json, "scene")}; }
 SaveWorld read_save(const Json& json) { return {file_name_in(json, "saved world")}; }
 LoadWorld read_load(const Json& json) { return {file_name_in(json, "saved world")}; }
 
+StepBack read_back(const Json&) { return {}; }
+
 core::Rectangle read_box(const Json& json) {
   if (!json.is_array() || json.size() != 4) throw BadField("a box is not [x0, y0, x1, y1]");
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -168,6 +170,7 @@ const std::vector<Reading>& readings() {
       {"ray", {"from", "to"}, as_command<read_ray>},
       {"save", {"name"}, as_command<read_save>},
       {"load", {"name"}, as_command<read_load>},
+      {"back", {}, as_command<read_back>},
   };
   return kReadings;
 }

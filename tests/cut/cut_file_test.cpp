@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 #include <zstd.h>
 
@@ -51,6 +52,7 @@ SavedWorld world_of(std::size_t bodies) {
   world.cut.shapes = {{{1, core::MeshUse::kHull}, hull},
                       {{~0ULL, core::MeshUse::kTriangles}, mesh},
                       {{3, core::MeshUse::kDecomposition}, compound}};
+  world.cut.meshes = {{1, mesh}, {3, mesh}};
   return world;
 }
 
@@ -83,6 +85,12 @@ void expect_same(const SavedWorld& a, const SavedWorld& b) {
   for (std::size_t i = 0; i < a.cut.shapes.size(); ++i) {
     EXPECT_EQ(a.cut.shapes[i].mesh.hash, b.cut.shapes[i].mesh.hash);
     EXPECT_EQ(a.cut.shapes[i].shape.index(), b.cut.shapes[i].shape.index());
+  }
+  ASSERT_EQ(a.cut.meshes.size(), b.cut.meshes.size());
+  for (std::size_t i = 0; i < a.cut.meshes.size(); ++i) {
+    EXPECT_EQ(a.cut.meshes[i].hash, b.cut.meshes[i].hash);
+    EXPECT_EQ(a.cut.meshes[i].mesh.points, b.cut.meshes[i].mesh.points);
+    EXPECT_EQ(a.cut.meshes[i].mesh.triangles, b.cut.meshes[i].mesh.triangles);
   }
 }
 
@@ -133,7 +141,7 @@ TEST_F(CutFile, IsWholeOrThePartsBesideIt) {
   const fs::path file = folder_ / "w.cut";
   EXPECT_THAT(refusal_of([&] { read_world(file); }), HasSubstr("no such file"));
   write_cut(part_file(file, 0, 2), one);
-  EXPECT_THAT(refusal_of([&] { read_world(file); }), HasSubstr("1 of 2 parts are there"));
+  EXPECT_THAT(refusal_of([&] { read_world(file); }), HasSubstr("1 of 2 parts are there; part 1 is missing"));
   write_cut(part_file(file, 1, 2), two);
   const SavedWorld whole = read_world(file);
   EXPECT_EQ(whole.parts, 1U);
@@ -145,7 +153,11 @@ TEST_F(CutFile, IsWholeOrThePartsBesideIt) {
 
   two.cut.step = 121;
   write_cut(part_file(file, 1, 2), two);
-  EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not of one world"));
+  EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not saved together"));
+  two.cut.step = 120;
+  two.save = 7;  // the same state, but of another run
+  write_cut(part_file(file, 1, 2), two);
+  EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not saved together"));
   two.identity.world = 1;
   write_cut(part_file(file, 1, 2), two);
   EXPECT_THAT(refusal_of([&] { merge_cuts(parts_of(file)); }), HasSubstr("not of one world"));
@@ -187,20 +199,34 @@ TEST_F(CutFile, OneWrongByteIsRefused) {
     EXPECT_EQ(encode(decode(damaged)), bytes) << i;
   }
   EXPECT_LT(unnoticed, 5);
-  EXPECT_THAT(refusal_of(std::string("AURACUT2").append(bytes.substr(8))), HasSubstr("format 2"));
+  EXPECT_THAT(refusal_of(std::string("AURACUT1").append(bytes.substr(8))),
+              HasSubstr("format 1, and this program reads format 2"));
   EXPECT_THAT(refusal_of(std::string("PNG ....")), HasSubstr("no saved world"));
+}
+
+std::string unpacked(const std::string& bytes) {
+  std::string inside(1 << 20, '\0');
+  inside.resize(ZSTD_decompress(inside.data(), inside.size(), bytes.data() + 8, bytes.size() - 8));
+  return inside;
+}
+
+std::string packed(const std::string& inside) {
+  std::string out(ZSTD_compressBound(inside.size()), '\0');
+  out.resize(ZSTD_compress(out.data(), out.size(), inside.data(), inside.size(), 1));
+  return std::string("AURACUT2").append(out);
+}
+
+/// Four bytes of its length, and a text.
+std::string counted(const std::string& text) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<char>(text.size() >> (8 * i) & 0xff));
+  return bytes + text;
 }
 
 /// What has a sound checksum and makes no sense all the same.
 TEST_F(CutFile, AnyBytesInsideAreRefusedOrSound) {
   const std::string bytes = encode(world_of(4));
-  std::string inside(1 << 20, '\0');
-  inside.resize(ZSTD_decompress(inside.data(), inside.size(), bytes.data() + 8, bytes.size() - 8));
-  const auto packed = [](const std::string& raw) {
-    std::string out(ZSTD_compressBound(raw.size()), '\0');
-    out.resize(ZSTD_compress(out.data(), out.size(), raw.data(), raw.size(), 1));
-    return std::string("AURACUT1").append(out);
-  };
+  const std::string inside = unpacked(bytes);
   ASSERT_EQ(refusal_of(packed(inside)), "");
   std::mt19937_64 random(2);
   int refused = 0;
@@ -227,6 +253,80 @@ TEST_F(CutFile, AnyBytesInsideAreRefusedOrSound) {
   }
   EXPECT_GT(refused, 2000);
   EXPECT_LT(refused, 20'000);
+}
+
+/// Of any kind where another is expected, in a frame whose checksum is right.
+TEST_F(CutFile, AnyHeaderIsRefusedOrSound) {
+  const std::string inside = unpacked(encode(world_of(2)));
+  std::uint32_t length = 0;
+  std::memcpy(&length, inside.data(), 4);
+  const nlohmann::json header = nlohmann::json::parse(inside.substr(4, length));
+  const std::string rest = inside.substr(4 + length);
+  const auto refusal = [&](const std::string& text) { return refusal_of(packed(counted(text) + rest)); };
+  const auto is_whole = [](const nlohmann::json& value) { return value.is_number_unsigned(); };
+  ASSERT_EQ(refusal(header.dump()), "");
+  const std::vector<nlohmann::json> others = {
+      nullptr, true, -1, 1e300, "x", nlohmann::json::array(), {{"a", 1}}, std::uint64_t{0xffff'ffff'ffff'ffff}};
+  for (const auto& [key, value] : header.items()) {
+    nlohmann::json without = header;
+    without.erase(key);
+    EXPECT_EQ(refusal(without.dump()).empty(), key == "bodies") << key;
+    for (const nlohmann::json& other : others) {
+      nlohmann::json changed = header;
+      changed[key] = other;
+      const std::string why = refusal(changed.dump());
+      if (why.empty()) {
+        EXPECT_TRUE(key == "bodies" || !header[key].is_number() || is_whole(other)) << key << ": " << other;
+      } else {
+        EXPECT_THAT(why, HasSubstr("header"));
+      }
+    }
+  }
+  std::mt19937_64 random(3);
+  int refused = 0;
+  for (int round = 0; round < 5'000; ++round) {
+    std::string text = header.dump();
+    for (std::uint64_t n = 1 + random() % 3; n > 0; --n) {
+      const std::size_t at = random() % text.size();
+      text.replace(at, random() % 6, std::string(random() % 3, "0123456789\"{}[]:,-.eE\0xf"[random() % 24]));
+      if (text.empty()) text = "1";
+    }
+    refused += !refusal(text).empty();
+  }
+  EXPECT_GT(refused, 2'500);
+}
+
+/// No stack is deep enough for what is read by functions that call themselves.
+TEST_F(CutFile, WhatIsNestedWithoutEndIsRefused) {
+  std::mt19937_64 random(4);
+  std::string deep;  // that does not compress, or it would be refused for that
+  for (int i = 0; i < 200'000; ++i) deep += random() % 2 == 0 ? "[" : "{\"a\":";
+  EXPECT_THAT(refusal_of(packed(counted(deep))), HasSubstr("header"));
+  std::string inside = unpacked(encode(SavedWorld{}));
+  inside.back() = 4;  // a shape instead of the end
+  EXPECT_THAT(refusal_of(packed(inside + counted(deep))), HasSubstr("a shape"));
+}
+
+/// Frames by hand: blocks of 128 KiB of one byte each, which take four.
+TEST_F(CutFile, WhatBecomesTooLargeIsRefusedBeforeItDoes) {
+  const std::string magic = "AURACUT2\x28\xb5\x2f\xfd";
+  const std::string block("\x02\x00\x10\x00", 4);
+  std::string bomb = magic + std::string("\x00\x50", 2);
+  for (int i = 0; i < 80'000; ++i) bomb += block;
+  EXPECT_THAT(refusal_of(bomb), HasSubstr("larger than any world")) << "10 GB of 320 kB";
+  std::string claim = magic + std::string("\xc0\x50", 2);  // with the size of its content, in eight bytes
+  for (int i = 0; i < 8; ++i) claim.push_back(static_cast<char>((std::uint64_t{100} << 30) >> (8 * i) & 0xff));
+  claim += block;
+  EXPECT_THAT(refusal_of(claim), HasSubstr("cut short")) << "says 100 GB, and is a few bytes";
+}
+
+TEST_F(CutFile, AHeaderIsReadAlone) {
+  const SavedWorld world = world_of(300);
+  std::string bytes = encode(world);
+  EXPECT_EQ(decode_header(bytes).cut.step, 120);
+  EXPECT_EQ(decode_header(bytes).identity.world, 0xfeedU);
+  EXPECT_TRUE(decode_header(bytes).cut.bodies.bodies.empty());
+  EXPECT_THROW(decode_header("AURACUT2"), BadCut);
 }
 
 TEST_F(CutFile, AFullDiskLeavesNoFile) {

@@ -43,6 +43,7 @@ TEST(PageInput, EveryKindOfCommandIsRead) {
   EXPECT_EQ(sound<LoadScene>(R"({"kind":"scene","name":"tower"})").name, "tower");
   EXPECT_EQ(sound<SaveWorld>(R"({"kind":"save","name":"a.cut"})").name, "a.cut");
   EXPECT_EQ(sound<LoadWorld>(R"({"kind":"load","name":"a.cut"})").name, "a.cut");
+  sound<StepBack>(R"({"kind":"back"})");
   const auto regions = sound<SetRegions>(R"({"kind":"regions","boxes":[[null,null,0,null],[0,null,null,null]]})");
   EXPECT_EQ(regions.boxes[0].x1, 0);
   EXPECT_EQ(regions.boxes[1].y0, -std::numeric_limits<double>::infinity());
@@ -76,6 +77,7 @@ TEST(PageInput, WhatIsWrongIsSaid) {
   EXPECT_THAT(refused(R"({"kind":"scene","name":"../x"})"), HasSubstr("name"));
   EXPECT_THAT(refused(R"({"kind":"save","name":"../x"})"), HasSubstr("name"));
   EXPECT_THAT(refused(R"({"kind":"load"})"), HasSubstr("name"));
+  EXPECT_THAT(refused(R"({"kind":"back","name":"../x"})"), HasSubstr("name"));
   EXPECT_THAT(refused(R"({"kind":"regions","boxes":[[1,0,0,1]]})"), HasSubstr("inside out"));
   EXPECT_THAT(refused(R"({"kind":"regions","boxes":[]})"), HasSubstr("boxes"));
   EXPECT_THAT(refused(R"({"kind":"spawn","p":[0,0,0]})"), HasSubstr("either prototype or shape"));

@@ -144,6 +144,111 @@ TEST_F(SavedWorlds, ARunGoesBackToOneWithoutEnding) {
   EXPECT_EQ(hashes("run"), wanted);
 }
 
+/// Of which nothing can be computed any more that would make the present state certain.
+TEST_F(SavedWorlds, OfAPausedRunAreTheNewestStateThatIsCertain) {
+  Process& run =
+      launch("run", launch_file("demo"),
+             Words{"--steps", "300", "--saves", saves()} + overrides_of("") + set({"survival.on_death=stop"}));
+  expect_reaches(report_of("run"), 4, 100);
+  const Words at = overrides_of("") + set({"survival.on_death=stop"}) + in_own_domain();
+  expect_exit(start(Words{"send", "pause", launch_file("demo")} + at), 0);
+  Process& save = start(Words{"send", "save", launch_file("demo"), file()} + at);
+  expect_exit(save, 0);
+  const nlohmann::json said = nlohmann::json::parse(save.out());
+  const auto step = said.value("step", std::int64_t{0});
+  EXPECT_GE(step, 60);
+  Process& step_on = start(Words{"send", "step", launch_file("demo")} + at);
+  expect_exit(step_on, 0);
+  EXPECT_THAT(step_on.out(), ::testing::HasSubstr("done")) << "it is paused still";
+  expect_exit(start(Words{"send", "resume", launch_file("demo")} + at), 0);
+  expect_exit(run, 0);
+  Hashes wanted = hashes("run");
+  wanted.erase(wanted.begin(), wanted.find(step));
+  Process& again =
+      launch("again", launch_file("demo"),
+             Words{"--steps", "300", "--load", file()} + overrides_of("{layout: columns, count: 2, width: 20}") +
+                 set({"time.pace=none", "survival.on_death=stop"}));
+  expect_exit(again, 0);
+  EXPECT_EQ(hashes("again"), wanted);
+}
+
+/// All compute as far as it takes for the change, and stand again in its first state.
+TEST_F(SavedWorlds, AreLoadedInAPauseToo) {
+  Process& run = launch("run", launch_file("demo"),
+                        Words{"--steps", "300", "--saves", saves(), "--save-every", "1"} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 170);
+  const Words at = overrides_of("") + in_own_domain();
+  expect_exit(start(Words{"send", "pause", launch_file("demo")} + at), 0);
+  const std::int64_t step = *saved_states().begin();
+  const std::string world = "state-" + std::to_string(step) + ".cut";
+  expect_exit(start(Words{"send", "load", launch_file("demo"), world} + at), 0);
+  Process& top = start(Words{"top", launch_file("demo"), "--duration", "1"} + at);
+  expect_exit(top, 0);
+  EXPECT_THAT(top.out(), ::testing::HasSubstr("paused"));
+  expect_exit(start(Words{"send", "resume", launch_file("demo")} + at), 0);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("run"));
+  EXPECT_EQ(hashes("run").begin()->first, step);
+}
+
+/// From memory: nothing has been saved.
+TEST_F(SavedWorlds, NobodyNeedsOneToStepBackInTime) {
+  Process& whole = launch("never_stopped", launch_file("demo"),
+                          Words{"--steps", "400"} + overrides_of("") + set({"regions.count=1", "time.pace=none"}));
+  Process& run = launch("run", launch_file("demo"), Words{"--steps", "400", "--saves", saves()} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 270);
+  const Words at = overrides_of("") + in_own_domain();
+  expect_exit(start(Words{"send", "pause", launch_file("demo")} + at), 0);
+  std::int64_t before = 1000;
+  for (int i = 0; i < 2; ++i) {
+    Process& back = start(Words{"send", "back", launch_file("demo")} + at);
+    expect_exit(back, 0);
+    const auto step = nlohmann::json::parse(back.out(), nullptr, false).value("step", std::int64_t{-1});
+    EXPECT_GT(step, 0);
+    EXPECT_LT(step, before);
+    before = step;
+  }
+  EXPECT_FALSE(std::filesystem::exists(saves()));
+  expect_exit(start(Words{"send", "resume", launch_file("demo")} + at), 0);
+  expect_exit(run, 0);
+  expect_exit(whole, 0);
+  expect_all_bodies_accounted_for(report_of("run"));
+  EXPECT_EQ(hashes("run"), hashes("never_stopped"));
+}
+
+/// The body collides as it did, and who looks on gets the mesh, though nobody who brought it is there.
+TEST_F(SavedWorlds, HoldTheMeshesOfClients) {
+  Process& run = launch("run", launch_file("demo"),
+                        Words{"--steps", std::to_string(kSteps), "--saves", saves()} + overrides_of(""));
+  expect_reaches(report_of("run"), 4, 1);
+  const Words at = overrides_of("") + in_own_domain();
+  Process& spawn = start(Words{"send", "spawn", launch_file("demo"), "--p", "1", "1", "6", "--mesh",
+                               AURASIM_SOURCE_DIR "/tests/config/meshes/wedge.obj"} +
+                         at);
+  expect_exit(spawn, 0);
+  const auto born = nlohmann::json::parse(spawn.out()).value("step", std::int64_t{0});
+  Process& late = start(Words{"echo", "shape", launch_file("demo"), "--count", "1", "--duration", "20", "--json"} + at);
+  expect_exit(late, 0);
+  const nlohmann::json mesh = nlohmann::json::parse(late.out());
+  expect_reaches(report_of("run"), 4, born + 30);
+  expect_exit(start(Words{"send", "save", launch_file("demo"), file()} + at), 0);
+  expect_exit(run, 0);
+  Process& again = launch("again", launch_file("demo"),
+                          Words{"--steps", std::to_string(kSteps), "--load", file()} +
+                              overrides_of("{layout: columns, count: 2, width: 20}"));
+  const Words at_again = overrides_of("{layout: columns, count: 2, width: 20}") + in_own_domain();
+  Process& told =
+      start(Words{"echo", "shape", launch_file("demo"), "--count", "1", "--duration", "20", "--json"} + at_again);
+  expect_exit(told, 0);
+  EXPECT_EQ(nlohmann::json::parse(told.out()).at("hash"), mesh.at("hash"));
+  EXPECT_EQ(nlohmann::json::parse(told.out()).at("points"), mesh.at("points"));
+  expect_exit(again, 0);
+  const Hashes found = hashes("again");
+  Hashes wanted = hashes("run");
+  wanted.erase(wanted.begin(), wanted.find(found.begin()->first));
+  EXPECT_EQ(found, wanted);
+}
+
 TEST_F(SavedWorlds, OfAnotherWorldAreRefusedBeforeAnythingIsStarted) {
   run_and_save("run");
   const auto load_by = [&](const std::string& scene, const Words& overrides) {

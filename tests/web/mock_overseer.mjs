@@ -211,7 +211,7 @@ export class MockOverseer {
       case "rate": this.rate = command.value > 0 && command.value <= 10 ? command.value : fail("rate: above 0, at most 10"); return;
       case "reset": this.world.reset(); return this.#restart();
       case "save": return;
-      case "load": this.world.reset(); return this.#restart();
+      case "load": case "back": this.world.reset(); return this.#restart();
       case "scene": this.scene = SCENES.includes(command.name) ? command.name : fail("no such scene"); this.world.reset(); return this.#restart();
       case "regions": this.world.setRegions(command.boxes); return this.#sayAll(this.#mapMessage());
       case "spawn": return { body: this.world.add({ ...command, prototype: this.#prototypeOf(command) }).id };

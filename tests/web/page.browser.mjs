@@ -125,6 +125,27 @@ test("PauseStepResumeAndSpeedAreSent", mockOnly, async () => {
   noErrors();
 });
 
+test("AMomentIsKeptAndTheWorldGoesBackToItOrToAnEarlierState", mockOnly, async () => {
+  await open();
+  await haveBodies(BODIES);
+  await until(() => window.aurasim.lastStamp > 60);
+  await page.waitForSelector('button[aria-label="Back to the moment kept last (n)"][disabled]');
+  await page.keyboard.press("m");
+  const { name } = await commanded("save");
+  assert.match(name, /^[\w.-]+$/, "a name, and no path");
+  await page.waitForSelector('button[aria-label="Back to the moment kept last (n)"]:not([disabled])');
+  await page.keyboard.press("n");
+  assert.equal((await commanded("load")).name, name);
+  await page.keyboard.press(",");
+  assert.deepEqual(await commanded("back"), { kind: "back" });
+  await page.click('button[aria-label="To an earlier state (,)"]');
+  for (const deadline = Date.now() + 15000; mock.commands.filter((c) => c.kind === "back").length < 2;) {
+    assert.ok(Date.now() < deadline, "the button does nothing");
+    await page.waitForTimeout(30);
+  }
+  noErrors();
+});
+
 test("AThrownBodyLeavesTheCamera", mockOnly, async () => {
   await open();
   await haveBodies(BODIES);

@@ -17,7 +17,9 @@ double thread_time_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-core::WorldCut through_a_file(core::WorldCut cut) { return cut::decode(cut::encode({{}, 0, 1, std::move(cut)})).cut; }
+core::WorldCut through_a_file(core::WorldCut cut) {
+  return cut::decode(cut::encode({{}, 0, 1, 0, std::move(cut)})).cut;
+}
 
 void Saver::begin(VirtualCluster& cluster) const {
   for (std::size_t r = 0; r < cluster.size(); ++r) cluster.node(r).save(step_);

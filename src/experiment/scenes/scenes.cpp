@@ -82,12 +82,16 @@ SeedRow row_of(std::uint64_t seed, const WorldOutcome& o) {
   return row;
 }
 
+const char* network_of(const TrialRules& rules) {
+  return rules.partitions ? "cut" : rules.bad_network ? "bad" : "good";
+}
+
 std::string shown_rules(const ScenesPlan& plan) {
   nlohmann::json rules = {{"experiment", "scenes"},
                           {"precision", physics::RegionWorld::precision()},
                           {"steps", plan.rules.steps},
                           {"sync", name_of(plan.rules.sync)},
-                          {"network", plan.rules.bad_network ? "bad" : "good"},
+                          {"network", network_of(plan.rules)},
                           {"overrides", plan.rules.overrides}};
   if (plan.rules.save_at) rules.update({{"save_at", *plan.rules.save_at}, {"load_on", plan.rules.load_on}});
   if (plan.rules.deaths > 0) rules["deaths"] = plan.rules.deaths;
@@ -166,7 +170,7 @@ void write_readme(const Shrunk& shrunk, const TrialRules& rules, std::uint64_t s
                                   : fmt::format("{} late or missed collisions without a flag", o.unflagged);
   std::string command =
       fmt::format("aurasim experiment scenes --case . --network-seed {} --steps {} --sync {} --network {}", seed,
-                  shrunk.steps, name_of(rules.sync), rules.bad_network ? "bad" : "good");
+                  shrunk.steps, name_of(rules.sync), network_of(rules));
   if (rules.save_at) {
     command += fmt::format(" --save-at {} --load-on {}", *rules.save_at, fmt::join(rules.load_on, ","));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <random>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -33,6 +34,25 @@ void set_network(ClusterRules& rules, bool bad, std::uint64_t seed) {
   rules.network.resend_after_s = 0.02;
   rules.network.duplicate = 0.05;
   rules.network.keep_order = seed % 2 == 0;
+}
+
+/// Each time some of the nodes on one side, and all others on the other.
+void add_partitions(ClusterRules& rules, std::size_t regions, core::Step steps, std::uint64_t seed) {
+  constexpr int kPartitions = 3;
+  constexpr double kLongest_s = 2;
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random](double to) { return to * static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int i = 0; i < kPartitions; ++i) {
+    const double from_s = uniform(static_cast<double>(steps) * rules.aura.step_s),
+                 until_s = from_s + uniform(kLongest_s);
+    const std::uint64_t side = 1 + random() % ((std::uint64_t{1} << regions) - 2);  // neither none nor all
+    for (std::uint32_t a = 0; a < regions; ++a) {
+      for (std::uint32_t b = a + 1; b < regions; ++b) {
+        if ((side >> a & 1) == (side >> b & 1)) continue;
+        rules.broken_links.push_back({core::RegionId{a}, core::RegionId{b}, from_s, until_s});
+      }
+    }
+  }
 }
 
 void count_faults(const VirtualCluster& cluster, WorldOutcome& outcome) {
@@ -85,6 +105,8 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   cluster_rules.bandwidth_B_s = std::numeric_limits<double>::infinity();  // coded as for DDS, but not held up
   cluster_rules.shuffle_ranks_steps = interference.shuffle_ranks_steps;
   set_network(cluster_rules, rules.bad_network, seed);
+  ClusterRules loaded_rules = cluster_rules;  // on other regions
+  if (rules.partitions) add_partitions(cluster_rules, launch.regions.size(), rules.steps, seed);
   const int lookahead = launch.lookahead();
   std::optional<VirtualCluster> regions;
   std::optional<Saver> saver;
@@ -104,13 +126,14 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   outcome.regions_s = many->cpu_s;
   outcome.redos = many->redos;
   outcome.computed_again = many->again;
-  if (saver && !compare_loaded(launch, cluster_rules, saver->take(regions->size()), many->hash, interference.requests,
+  if (saver && !compare_loaded(launch, loaded_rules, saver->take(regions->size()), many->hash, interference.requests,
                                rules, stop, outcome)) {
     return false;
   }
-  cluster_rules.aura.redo = false;
-  cluster_rules.bandwidth_B_s.reset();
-  VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), cluster_rules);
+  ClusterRules single_rules = std::move(loaded_rules);
+  single_rules.aura.redo = false;
+  single_rules.bandwidth_B_s.reset();
+  VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), single_rules);
   const auto one = play(single, interference.requests, rules.steps, launch.lookahead(), stop);
   if (!one) return false;
   outcome.unflagged_on_one = single.node(0).collision_watch().unflagged();

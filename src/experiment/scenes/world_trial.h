@@ -19,6 +19,7 @@ struct TrialRules {
   core::Step steps = 400;
   core::SyncMode sync = core::SyncMode::kDeterministic;
   bool bad_network = false;  ///< loss, delay, jitter, duplicates; every other seed has messages overtake each other
+  bool partitions = false;   ///< and three times some of the nodes are cut off from the others for up to two seconds
   std::vector<std::string> overrides;  ///< as --set
   std::optional<core::Step> save_at;   ///< the world is saved in this state, and goes on from there on
   std::vector<int> load_on;            ///< so many nodes each time, which have to have the same bits, too

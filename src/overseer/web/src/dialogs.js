@@ -50,7 +50,7 @@ export function askForToken(what) {
 const HELP = [
   ["Look", [["drag", "turn"], ["right drag, shift drag", "move"], ["wheel, pinch", "nearer, farther"],
     ["W A S D Q E", "walk"], ["F", "show everything"], ["C", "orbit or fly"], ["H", "hide the panels"]]],
-  ["Time", [["space", "pause, go on"], [".", "one step"], ["[  ]", "slower, faster"], ["X", "reset"],
+  ["Time", [["space", "pause, go on"], [".", "one step"], [",", "to an earlier state"], ["[  ]", "slower, faster"], ["X", "reset"],
     ["M", "keep this moment"], ["N", "back to it"]]],
   ["Bodies", [["click", "select"], ["1 2 3 4", "select, push, drag, place"], ["T", "throw from the camera"],
     ["Del", "remove what is selected"], ["Esc", "let go"]]],

@@ -24,6 +24,7 @@ const ICONS = {
   play: "M8 5.5v13l10.5-6.5z",
   pause: "M7 5h3.6v14H7zM13.4 5H17v14h-3.6z",
   step: "M6 5.5v13l8.5-6.5zM16 5h2.6v14H16z",
+  before: "M18 5.5v13l-8.5-6.500zM8 5H5.400v14H8z",
   reset: "M12 5a7 7 0 1 1-6.6 4.7l1.9.7A5 5 0 1 0 12 7v3L7.5 6 12 2z",
   keep: "M6 2h12v20l-6-5-6 5z",
   back: "M12 6v12l-8.5-6zM20 6v12l-8.500-6z",

@@ -284,7 +284,7 @@ if (window.matchMedia("(max-width: 860px)").matches) togglePanels();
 const tool = (name) => () => hello?.mode !== "replay" && toolbox.setTool(name);
 const ifLive = (f) => () => isLive() && f();
 listenToKeys({
-  " ": () => transport.toggle(), ".": () => transport.step(1), "[": () => transport.faster(1 / 1.5), "]": () => transport.faster(1.5),
+  " ": () => transport.toggle(), ".": () => transport.step(1), ",": () => transport.stepBack(), "[": () => transport.faster(1 / 1.5), "]": () => transport.faster(1.5),
   m: () => transport.keep(), n: () => transport.goBack(),
   x: ifLive(() => commands.send({ kind: "reset" })), t: ifLive(() => tools?.throwBody()), f: () => picture?.frameAll(), c: toggleFlying,
   delete: ifLive(removeSelected), backspace: ifLive(removeSelected), h: togglePanels, "?": toggleHelp, r: drawRegions,

@@ -42,6 +42,7 @@ export class Transport {
     this.rateText = h("button.rate", { type: "button", title: "Back to real time", onclick: () => this.setRate(1) });
     this.element.replaceChildren(
       this.play,
+      iconButton("before", "To an earlier state (,)", () => this.stepBack()),
       iconButton("step", "One step (.)", () => this.step(1)),
       iconButton("reset", "Reset (x)", () => this.out.command({ kind: "reset" })),
       iconButton("keep", "Keep this moment (m)", () => this.keep()),
@@ -102,6 +103,12 @@ export class Transport {
     if (this.mode !== "live" || this.kept.length === 0) return;
     const reply = await this.out.command({ kind: "load", name: this.kept.at(-1) }, { what: "back" });
     if (reply.ok && this.kept.length > 1) this.kept.pop();
+  }
+
+  /** To the newest earlier state that the nodes keep; once more, to the one before that. */
+  stepBack() {
+    if (this.mode === "live") return void this.out.command({ kind: "back" }, { what: "earlier" });
+    this.out.replay("seek", Math.max(this.first, this.at - Math.round(1 / this.step_s)));
   }
 
   faster(factor) {
