@@ -93,6 +93,8 @@ class CommandServer {
   std::map<std::uint64_t, Due> due_;     ///< requests to report as done at their step
   std::vector<std::uint64_t> not_kept_;  ///< requests of orders about the run as a whole
   std::optional<double> wanted_rate_;
+  core::Step decided_at_ = -1;
+  std::size_t decided_ = 0;  ///< commands in that state
 };
 
 }  // namespace aurasim::cli

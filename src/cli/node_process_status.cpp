@@ -61,6 +61,7 @@ void NodeProcess::publish(const std::string& text) {
   const dds::NodeState state = state_of(phase_).value();
   if (state == status_.state && now - last_published_ < kStatusPeriod) return;
   last_published_ = now;
+  note_strangers();
   status_.state = state;
   status_.text = text;
   const bool stands = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
