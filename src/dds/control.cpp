@@ -82,6 +82,7 @@ struct ControlBus::Impl {
   bool shows_no_life(const Received& one) const;
   bool remember(std::uint64_t request, const Guid& sender);
   bool is_of(std::uint64_t process, const Origin& origin) const;
+  bool is_of(RegionId region, const Origin& origin) const;
   void look();
   void choose_publisher(RegionId region, const std::vector<Received>& of_region);
   bool is_of_the_run(const Status& status, const Guid& writer) const;
@@ -242,10 +243,18 @@ bool ControlBus::Impl::is_of(std::uint64_t process, const Origin& origin) const 
   });
 }
 
+/// Is it a node of that region, or about to be one? Of two, one may not yet be known to have died.
+bool ControlBus::Impl::is_of(RegionId region, const Origin& origin) const {
+  const auto known = received.find(region);
+  return known != received.end() && std::ranges::any_of(known->second, [&](const Received& one) {
+           return is_of_the_run(one) && one.writer.guidPrefix == origin.writer.guidPrefix;
+         });
+}
+
 /// Empty: none. What operators say, and launchers, anybody may say.
 std::string ControlBus::Impl::problem_with(const RunCommand& asked, const Origin& origin) const {
   const Speakers& speakers = participant.domain().speakers();
-  const bool is_first_node = speakers.may_speak(origin.writer, RegionId{0});
+  const bool is_first_node = speakers.may_speak(origin.writer, RegionId{0}) || is_of(RegionId{0}, origin);
   const bool is_node = speakers.is_node(origin.writer);
   const bool is_of_its_region = speakers.may_speak(origin.writer, asked.region);
   switch (asked.kind) {
