@@ -17,9 +17,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
-constexpr auto kStatusAge = 300ms;  ///< by then every node has said which meshes it has, since the command came
+constexpr auto kStatusAge = 300ms;          ///< by then every node has said which meshes it has, since the command came
+constexpr std::size_t kMostInAState = 300;  ///< commands that become orders
+constexpr std::size_t kTextWeighs = 20;
 /// What a node keeps of clients' meshes.
-constexpr dds::MeshCacheLimits kMeshes{1024, std::size_t{256} << 20U};
+constexpr dds::MeshCacheLimits kMeshes{512, std::size_t{128} << 20U, 128, std::size_t{32} << 20U};
 
 /// Null: it defines no shape by a mesh.
 const core::MeshRef* mesh_defined_by(const core::Order& order) {
@@ -134,8 +136,9 @@ void CommandServer::wait_for_mesh(Asked asked, const core::MeshRef& mesh, const 
   }
   refuse(asked.command.request,
          fmt::format("after {} s the nodes of regions [{}] have not got the mesh; was it sent to /api/shapes? A node "
-                     "keeps {} meshes and {} MiB",
-                     kPatienceForMesh.count(), fmt::join(lacking, ", "), kMeshes.meshes, kMeshes.bytes >> 20U));
+                     "keeps {} meshes and {} MiB of one client",
+                     kPatienceForMesh.count(), fmt::join(lacking, ", "), kMeshes.meshes_of_source,
+                     kMeshes.bytes_of_source >> 20U));
 }
 
 void CommandServer::refuse(std::uint64_t request, std::string why) {
@@ -207,6 +210,14 @@ std::string CommandServer::problem_with_world(const core::Ask& ask) const {
 }
 
 void CommandServer::decide(const core::Command& command, node::Node& node, const RunView& run) {
+  // One batch takes all orders of a state, and a batch that is too long is refused as a whole.
+  if (std::exchange(decided_at_, node.current_step()) != node.current_step()) decided_ = 0;
+  const bool has_text = std::holds_alternative<core::Save>(command.ask);
+  decided_ += has_text ? kTextWeighs : 1;
+  if (decided_ > kMostInAState) {
+    return refuse(command.request,
+                  fmt::format("too many commands in state {}: ask again in the next", node.current_step()));
+  }
   if (const auto* load = std::get_if<core::Load>(&command.ask); load != nullptr && load->file.empty()) {
     wanted_back_ = command;
     return;

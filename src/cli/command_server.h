@@ -124,6 +124,8 @@ class CommandServer {
   std::optional<core::Command> wanted_back_;
   std::optional<core::Step> change_at_;
   std::vector<KeptSave> kept_saves_;
+  core::Step decided_at_ = -1;
+  std::size_t decided_ = 0;  ///< commands in that state
 };
 
 }  // namespace aurasim::cli

@@ -34,7 +34,10 @@ Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
     : launch_(launch),
       options_(options),
       participant_(dds_settings(launch)),
-      control_(participant_, {launch.regions.version(), {}, launch.agreement(), run_}) {}
+      control_(
+          participant_,
+          {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {
+}
 
 Launcher::~Launcher() {
   signal_all(SIGKILL);

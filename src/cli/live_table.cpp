@@ -82,6 +82,14 @@ std::string folded(const std::string& note, std::size_t terminal) {
 std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal) {
   std::string lines;
   for (const auto& [region, seen] : statuses) {
+    std::string whose;
+    for (const auto& [source, count] : seen.status.refused) {
+      whose += fmt::format("{} {} of {}", whose.empty() ? "" : ",", count,
+                           source == dds::kNoRegion ? "no node" : fmt::format("region {}", core::value_of(source)));
+    }
+    if (!whose.empty()) {
+      lines += folded(fmt::format("region {} has refused messages:{}", core::value_of(region), whose), terminal);
+    }
     if (seen.status.text.empty()) continue;
     lines += folded(fmt::format("region {}: {}", core::value_of(region), seen.status.text), terminal);
   }

@@ -57,7 +57,8 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
     : launch_(launch),
       options_(options),
       participant_(dds_settings(launch, options.region)),
-      control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run}),
+      control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
+                              static_cast<std::uint32_t>(launch.regions.size())}),
       fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),
       saves_(options.saves, options.region, options.save_keep),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
@@ -359,6 +360,7 @@ void NodeProcess::compute_step() {
   record(node_->confirmed());
   wait_ms_ = 0;
   computed_at_ = Clock::now();
+  run_control_limits_.note(report.step, computed_at_);
   waiting_since_.reset();
   waiting_.clear();
   note(report, frame_ms);

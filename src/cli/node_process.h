@@ -18,6 +18,7 @@
 #include "cli/fence.h"
 #include "cli/node_phase.h"
 #include "cli/replica_publisher.h"
+#include "cli/run_control_limits.h"
 #include "cli/saved_world.h"
 #include "config/launch.h"
 #include "dds/control.h"
@@ -91,6 +92,7 @@ class NodeProcess {
   core::Step farthest_paused_step();
   std::chrono::nanoseconds time_until(core::Step step) const;
   void note_refusals();
+  void note_strangers();
   void note_waiting();
   void note_faults(const node::StepReport& report);
   void compute_step();
@@ -143,6 +145,7 @@ class NodeProcess {
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
+  bool can_be_meant(const dds::RunCommand& command);
   void reset_if_due();
   void change_if_due();
   void change_scene(const std::string& name);
@@ -198,6 +201,7 @@ class NodeProcess {
   std::optional<core::Step> hold_at_;  ///< paused once this state has been computed
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
+  RunControlLimits run_control_limits_;
   std::optional<dds::RunCommand> start_;
   core::Generation waits_to_start_ = 0;  ///< the generation that a start command has to name
   std::optional<core::Order> change_;    ///< of the run as a whole, due now

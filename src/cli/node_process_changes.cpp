@@ -57,19 +57,21 @@ std::vector<node::Resident> take_census(const node::RepartitionSettings& setting
 void NodeProcess::execute(const dds::RunCommand& command) {
   using Kind = dds::RunCommandKind;
   if (command.kind == Kind::kStart) {
-    if (!start_ && command.generation == waits_to_start_) start_ = with_clock_of(core::RegionId{0}, command);
+    const bool is_awaited = !start_ && command.generation == waits_to_start_;
+    if (is_awaited && can_be_meant(command)) start_ = with_clock_of(core::RegionId{0}, command);
     return;
   }
-  if (command.kind == Kind::kLost) {
-    if (command.process == status_.process) fence_.close("the others hold this process for dead");
-    return control_.hold_for_dead(command.process);
+  if (command.kind == Kind::kLost) return control_.hear_of_death(command);
+  if (command.kind == Kind::kRestore) {
+    if (can_be_meant(command)) hear_of_restore(command);
+    return;
   }
-  if (command.kind == Kind::kRestore) return hear_of_restore(command);
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
   if (command.generation > generation_ && restore_ && command.generation == restore_->generation) {
     early_.push_back(command);
   }
   if (command.generation != generation_ || !node_) return;  // for a run that is over
+  if (!can_be_meant(command)) return;
   switch (command.kind) {
     case Kind::kStart:
     case Kind::kLost:
@@ -104,6 +106,13 @@ void NodeProcess::execute(const dds::RunCommand& command) {
       status_.rate = command.rate;
       break;
   }
+}
+
+bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
+  const std::string why = run_control_limits_.problem_with(command, std::max({generation_, restoring_, status_.era}),
+                                                           node::wall_clock_ns());
+  if (!why.empty()) control_.refuse(command, why);
+  return why.empty();
 }
 
 void NodeProcess::reset_if_due() {

@@ -63,6 +63,7 @@ void NodeProcess::publish(const std::string& text) {
   const dds::NodeState state = is_cut_off ? dds::NodeState::kCutOff : state_of(phase_).value();
   if (state == status_.state && now - last_published_ < kStatusPeriod) return;
   last_published_ = now;
+  note_strangers();
   status_.state = state;
   status_.text = text;
   const bool stands = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;

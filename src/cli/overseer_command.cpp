@@ -27,7 +27,9 @@ int oversee(const OverseerArguments& arguments) {
   overseer::ShapeStore shapes(read_mesh_apart);
   const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, arguments.web, shapes);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {launch.regions.version(), {}, launch.agreement()});
+  dds::ControlBus control(participant, {.map_version = launch.regions.version(),
+                                        .agreement = launch.agreement(),
+                                        .region_count = static_cast<std::uint32_t>(launch.regions.size())});
   RunCommandSink sink(launch, participant, control, shapes);
   overseer::Overseer overseer(launch, participant, control, *web, sink);
   if (!arguments.recording.empty()) overseer.record(arguments.recording);

@@ -218,7 +218,8 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
 int send(const SendArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {.agreement = launch.agreement()});
+  dds::ControlBus control(participant, {.agreement = launch.agreement(),
+                                        .region_count = static_cast<std::uint32_t>(launch.regions.size())});
   RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
     fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));

@@ -42,7 +42,10 @@ class Spare {
  public:
   Spare(const config::Launch& launch, std::uint64_t run)
       : participant_(dds_settings(launch)),
-        control_(participant_, {.region = dds::kNoRegion, .agreement = launch.agreement(), .run = run_if_known(run)}) {
+        control_(participant_, {.region = dds::kNoRegion,
+                                .agreement = launch.agreement(),
+                                .run = run_if_known(run),
+                                .region_count = static_cast<std::uint32_t>(launch.regions.size())}) {
     status_.region = dds::kNoRegion;
     status_.state = dds::NodeState::kSpare;
     status_.agreement = launch.agreement();

@@ -17,7 +17,8 @@ using Clock = std::chrono::steady_clock;
 int watch(const FileArguments& files, double seconds) {
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   dds::Participant participant(dds_settings(launch));
-  dds::ControlBus control(participant, {.agreement = launch.agreement()});
+  dds::ControlBus control(participant, {.agreement = launch.agreement(),
+                                        .region_count = static_cast<std::uint32_t>(launch.regions.size())});
   TerminalView view;
   catch_stop_signals();
   const auto begin = Clock::now();

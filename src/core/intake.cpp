@@ -7,6 +7,11 @@
 namespace aurasim::core {
 namespace {
 
+/// Of what a neighbour has said last: what it says comes in order, so what is missing between will never come.
+constexpr Step kMostStatesAhead = 4096;
+/// Of the messages of one kind that are for later: a run begins its next generation within seconds.
+constexpr std::ptrdiff_t kMostForLater = 10'000;
+
 /// Moves the messages that are for later, for another generation or another redo, to the front and cuts the rest off.
 template <class Message, class Take>
 void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Take take) {
@@ -19,7 +24,7 @@ void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Ta
       take(message);
     }
   }
-  messages.erase(kept, messages.end());
+  messages.erase(std::min(kept, messages.begin() + std::min(std::ssize(messages), kMostForLater)), messages.end());
 }
 
 /// What each neighbour gives out, one after the other.
@@ -82,9 +87,15 @@ void Intake::listen_to(RegionId region, Step begin) {
 
 void Intake::accept(Inbox& inbox) {
   take_all(inbox.auras, settings_, [this](AuraBatch& batch) {
-    if (is_early(batch)) return early_.auras.push_back(std::move(batch));
+    if (is_early(batch)) {
+      if (std::ssize(early_.auras) < kMostForLater) early_.auras.push_back(std::move(batch));
+      return;
+    }
     if (!belongs(batch, batch.map_version)) return;
     Neighbour& neighbour = *find(batch.source);
+    if (batch.stamp > neighbour.received() + kMostStatesAhead) {
+      return accept(Refusal{batch.source, batch.generation, batch.stamp, MessageKind::kAura, "far ahead", batch.redo});
+    }
     if (!neighbour.accept(std::move(batch))) ++counters_.copies;
   });
   take_all(inbox.hand_offs, settings_, [this](HandOff& hand_off) { accept(hand_off); });
@@ -100,8 +111,15 @@ void Intake::accept(Inbox& inbox) {
 
 void Intake::accept(HandOff& hand_off) {
   if (hand_off.destination != vicinity_.self) return;
-  if (is_early(hand_off)) return early_.hand_offs.push_back(std::move(hand_off));
+  if (is_early(hand_off)) {
+    if (std::ssize(early_.hand_offs) < kMostForLater) early_.hand_offs.push_back(std::move(hand_off));
+    return;
+  }
   if (!belongs(hand_off, hand_off.map_version)) return;
+  if (hand_off.stamp > find(hand_off.source)->received() + kMostStatesAhead) {
+    return accept(Refusal{hand_off.source, hand_off.generation, hand_off.stamp, MessageKind::kHandOff, "far ahead",
+                          hand_off.redo});
+  }
   if (arrivals_.first_copy(hand_off.source, hand_off.sequence)) {
     waiting_.push_back(std::move(hand_off));
     return;

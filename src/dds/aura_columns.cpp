@@ -5,6 +5,7 @@
 
 #include "aurasim.h"
 #include "core/aura_precision.h"
+#include "dds/bearable.h"
 #include "dds/columns.h"
 #include "dds/packed_rotation.h"
 
@@ -110,6 +111,7 @@ MaybeError check_column_shapes(const wire::AuraBatch& in) {
 }
 
 MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expected) {
+  using namespace bearable;
   if (!all_finite(in.p_WB()) || !all_finite(in.v_WB()) || !all_finite(in.w_WB()) || !all_finite(in.speed_m_s())) {
     return WireError::kNotFinite;
   }
@@ -120,7 +122,13 @@ MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expect
     return WireError::kRotation;
   }
   const auto rows = static_cast<std::uint32_t>(in.id().size());
-  const bool in_range = none_negative(in.speed_m_s()) && all_body_ids(in.id()) &&
+  const auto not_later = [&](std::int64_t stamp) { return stamp <= in.stamp(); };
+  const auto soon = [&](std::int64_t birth) { return birth - kMostStatesToBirth <= in.stamp(); };
+  const bool in_range = none_negative(in.speed_m_s()) && all_body_ids(in.id()) && all_within(in.p_WB(), kFarthest_m) &&
+                        all_within(in.v_WB(), kFastest_m_s) && all_within(in.w_WB(), kFastestSpin_rad_s) &&
+                        all_within(in.speed_m_s(), kFastestReach_m_s) && all_below(in.epoch(), kMostEpochs) &&
+                        std::ranges::all_of(in.elsewhere_stamp(), not_later) &&
+                        std::ranges::all_of(in.unborn_birth(), soon) &&
                         all_below(in.prototype(), expected.prototype_count) && all_below(in.elsewhere_row(), rows) &&
                         all_below(in.elsewhere_host(), expected.region_count) && none_negative(in.elsewhere_stamp()) &&
                         all_below(in.unborn_row(), rows) && none_negative(in.unborn_birth());

@@ -1,6 +1,7 @@
 #include "dds/check_columns.h"
 
 #include "aurasim.h"
+#include "dds/bearable.h"
 #include "dds/columns.h"
 
 namespace aurasim::dds {
@@ -13,6 +14,14 @@ using core::value_of;
 namespace {
 
 constexpr std::size_t kMotionNumbers = 13;
+
+/// Of finite numbers: p, q, v, w.
+bool is_bearable(const double* motion) {
+  using namespace bearable;
+  const Eigen::Map<const core::Vec3> p_WB(motion), v_WB(motion + 7), w_WB(motion + 10);
+  return p_WB.cwiseAbs().maxCoeff() <= kFarthest_m && v_WB.cwiseAbs().maxCoeff() <= kFastest_m_s &&
+         w_WB.cwiseAbs().maxCoeff() <= kFastestSpin_rad_s;
+}
 
 }  // namespace
 
@@ -54,6 +63,7 @@ std::optional<WireError> check_checks(const wire::AuraBatch& in, const Expected&
     const double* q = &in.past_motion()[i * kMotionNumbers + 3];
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(std::abs(norm - 1) <= kRotationTolerance)) return WireError::kRotation;
+    if (!is_bearable(&in.past_motion()[i * kMotionNumbers])) return WireError::kRange;
   }
   const auto before_now = [&](std::int64_t stamp) { return stamp >= 0 && stamp < in.stamp(); };
   bool in_range = all_body_ids(in.alarm_b()) && all_body_ids(in.past_id()) &&

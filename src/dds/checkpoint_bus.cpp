@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "dds/checkpoint_codec.h"
 #include "dds/typed_endpoints.h"
 
@@ -61,7 +63,14 @@ std::vector<Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
   impl_->wakeup.clear();
   std::vector<Checkpoint> taken;
-  impl_->reader->take_all({}, taken);
+  const Speakers& speakers = impl_->participant.domain().speakers();
+  impl_->reader->take_each({}, [&](Checkpoint&& part, const Origin& origin) {
+    // In a recovery, whoever keeps another's part gives it.
+    const bool may_say = part.kind == Checkpoint::Kind::kGoBack ? speakers.is_node(origin.writer)
+                                                                : speakers.may_speak(origin.writer, part.source);
+    if (may_say) return taken.push_back(std::move(part));
+    impl_->reader->refuse_from(origin, fmt::format("a part of region {}", core::value_of(part.source)));
+  });
   return taken;
 }
 

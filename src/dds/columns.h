@@ -63,6 +63,12 @@ inline bool all_finite(const std::vector<float>& column) {
   return bad == 0;
 }
 
+/// |x| <= bound. Not for NaN.
+template <class Number>
+bool all_within(const std::vector<Number>& column, double bound) {
+  return std::ranges::all_of(column, [bound](Number x) { return std::abs(static_cast<double>(x)) <= bound; });
+}
+
 template <class Number>
 bool none_negative(const std::vector<Number>& column) {
   return std::ranges::all_of(column, [](Number x) { return x >= 0; });

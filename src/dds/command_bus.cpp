@@ -7,10 +7,15 @@
 #include <utility>
 
 #include "dds/random_id.h"
+#include "dds/rate_limit.h"
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 namespace {
+
+/// Of one client, rays or all the rest: more than any page sends.
+constexpr double kCommandsASecond = 500;
+constexpr double kCommandsAtOnce = 1000;
 
 /// Of requests that a node remembers: more than all clients together have under way.
 constexpr std::size_t kRemembered = 1U << 16U;
@@ -62,6 +67,8 @@ struct CommandServerEndpoint::Impl {
   TypedReader<wire::Command> commands;
   TypedWriter<wire::CommandReply> replies;
   Requests requests;
+  std::uint64_t too_many = 0;
+  RateLimit<ProcessPrefix> rays{kCommandsASecond, kCommandsAtOnce}, others{kCommandsASecond, kCommandsAtOnce};
 };
 
 CommandServerEndpoint::CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version)
@@ -75,7 +82,13 @@ std::vector<core::Command> CommandServerEndpoint::take() {
   std::vector<core::Command> commands;
   Expected expected;
   expected.map_version = impl_->map_version;
-  const auto take_new = [&](core::Command&& command) {
+  const auto now = std::chrono::steady_clock::now();
+  const auto take_new = [&](core::Command&& command, const Origin& origin) {
+    auto& limit = std::holds_alternative<core::Ray>(command.ask) ? impl_->rays : impl_->others;
+    if (!limit.allows(origin.writer.guidPrefix, now)) {  // who asks again may be heard
+      ++impl_->too_many;
+      return;
+    }
     if (impl_->requests.add(command.request)) {
       commands.push_back(std::move(command));
     } else if (const auto known = impl_->requests.last_reply(command.request)) {
@@ -101,6 +114,8 @@ void CommandServerEndpoint::reply(core::CommandReply reply) {
 }
 
 void CommandServerEndpoint::forget(std::uint64_t request) { impl_->requests.forget(request); }
+
+std::uint64_t CommandServerEndpoint::too_many() const { return impl_->too_many; }
 
 const WireErrors& CommandServerEndpoint::refused() const { return impl_->commands.refused(); }
 

@@ -29,6 +29,8 @@ class CommandServerEndpoint {
   void forget(std::uint64_t request);
 
   const WireErrors& refused() const;
+  /// Commands that were dropped, since their client sent more than 500 a second for long.
+  std::uint64_t too_many() const;
 
  private:
   struct Impl;

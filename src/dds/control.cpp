@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <csignal>
 #include <deque>
 #include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +15,7 @@
 #include "dds/control_codec.h"
 #include "dds/endpoints.h"
 #include "dds/random_id.h"
+#include "dds/rate_limit.h"
 
 namespace aurasim::dds {
 
@@ -47,6 +51,21 @@ std::uint16_t host_of(const Guid& guid) {
   return static_cast<std::uint16_t>(guid.guidPrefix.value[2] << 8 | guid.guidPrefix.value[3]);
 }
 
+/// Of what is kept of others, whoever they are.
+constexpr std::size_t kMostOfARegion = 64;   ///< processes that say that they are its node
+constexpr std::size_t kMostOfNoRegion = 64;  ///< and of all regions that the run has not
+constexpr std::size_t kMostMaps = 256;
+constexpr std::size_t kMostRequests = 1U << 16U;
+constexpr std::size_t kMostClaims = 1024;
+/// Statuses come ten times a second.
+constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
+
+/// A process that only waits does nobody harm: a successor does, and a second launch of the same file by mistake.
+bool acts(const Status& status) {
+  return status.state == NodeState::kRunning || status.state == NodeState::kPaused ||
+         status.state == NodeState::kRecovering;
+}
+
 /// Where Fast DDS matched a writer anew, the later match counts.
 bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
@@ -60,9 +79,18 @@ struct ControlBus::Impl {
 
   void take_statuses();
   void note(Status status, const Origin& origin);
+  std::string problem_with(const Status& status, const Origin& origin) const;
+  std::string problem_with(const RunCommand& command, const Origin& origin) const;
+  bool is_region(RegionId region) const { return region != kNoRegion && value_of(region) < settings.region_count; }
+  bool has_room_for(RegionId region) const;
+  bool shows_no_life(const Received& one) const;
+  bool remember(std::uint64_t request, const Guid& sender);
+  bool is_of(std::uint64_t process, const Origin& origin) const;
+  bool is_of(RegionId region, const Origin& origin) const;
   void look();
   void choose_publisher(RegionId region, const std::vector<Received>& of_region);
-  bool is_of_the_run(const Received& one) const;
+  bool is_of_the_run(const Status& status, const Guid& writer) const;
+  bool is_of_the_run(const Received& one) const { return is_of_the_run(one.seen.status, one.writer); }
 
   Participant& participant;
   ControlSettings settings;
@@ -81,9 +109,13 @@ struct ControlBus::Impl {
   std::map<RegionId, std::vector<Received>> received;  ///< in order of the first sample
   std::map<RegionId, Guid> publishers;
   std::map<RegionId, SeenStatus> statuses;
+  std::map<std::pair<std::uint64_t, Guid>, WorldMap> announced;  ///< by version and writer
   std::map<std::uint64_t, WorldMap> maps;
-  std::set<std::uint64_t> dead;      ///< processes that have ended
-  std::set<std::uint64_t> requests;  ///< seen or sent
+  std::set<std::uint64_t> dead;                ///< processes that have ended
+  std::set<std::uint64_t> claimed;             ///< others say so
+  std::map<std::uint64_t, Guid> requests;      ///< seen or sent, and by whom
+  std::deque<std::uint64_t> request_sequence;  ///< oldest first
+  RateLimit<Guid> against_statuses{1, 1};
   WireErrors refused;
 };
 
@@ -108,13 +140,46 @@ void ControlBus::Impl::take_statuses() {
     auto decoded = decode(status, {});
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       refused.add(*error);
+      status_reader.refuse_from(origin, *error);
     } else {
       note(std::move(std::get<Status>(decoded)), origin);
     }
   }
 }
 
+/// Empty: none.
+std::string ControlBus::Impl::problem_with(const Status& fresh, const Origin& origin) const {
+  const std::uint32_t number = value_of(fresh.region);
+  if (!participant.domain().speakers().is_at_home(origin.writer, fresh.region)) {
+    return fmt::format("it speaks of region {} where others do", number);
+  }
+  const auto known = statuses.find(fresh.region);
+  const bool has_node =
+      known != statuses.end() && known->second.is_live() && publishers.at(fresh.region) != origin.writer;
+  const bool says_so = has_node && acts(fresh) && is_of_the_run(fresh, origin.writer);
+  return says_so ? fmt::format("region {} has another node", number) : std::string();
+}
+
+bool ControlBus::Impl::has_room_for(RegionId region) const {
+  if (is_region(region) || region == kNoRegion) {
+    const auto known = received.find(region);
+    return known == received.end() || known->second.size() < kMostOfARegion;
+  }
+  std::size_t others = 0;
+  for (const auto& [other, of_region] : received) others += is_region(other) ? 0 : of_region.size();
+  return others < kMostOfNoRegion;
+}
+
 void ControlBus::Impl::note(Status fresh, const Origin& origin) {
+  if (const std::string problem = problem_with(fresh, origin); !problem.empty()) {
+    refused.add(WireError::kSource);
+    // A node that was started anew before the old one is known to be dead says so for some seconds.
+    if (against_statuses.allows(origin.writer, std::chrono::steady_clock::now())) {
+      status_reader.refuse_from(origin, problem);
+    }
+    return;
+  }
+  if (!has_room_for(fresh.region)) return;
   std::vector<Received>& of_region = received[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
   if (found == of_region.end()) {
@@ -133,10 +198,11 @@ void ControlBus::Impl::look() {
   const std::vector<RemoteWriter> writers = status_reader.watch().writers();
   for (auto& [region, of_region] : received) {
     for (Received& one : of_region) {
+      if (claimed.contains(one.seen.status.process) && shows_no_life(one)) dead.insert(one.seen.status.process);
       one.seen.dead = dead.contains(one.seen.status.process);
       one.seen.lost = one.seen.dead || is_lost(writers, one.writer);
     }
-    if (region != kNoRegion) choose_publisher(region, of_region);
+    if (is_region(region)) choose_publisher(region, of_region);
     std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers[region]; });
   }
 }
@@ -153,13 +219,67 @@ void ControlBus::Impl::choose_publisher(RegionId region, const std::vector<Recei
   if (chosen == nullptr) return;
   publishers[region] = chosen->writer;
   statuses[region] = chosen->seen;
+  participant.domain().speakers().set(region, chosen->writer.guidPrefix);
 }
 
-bool ControlBus::Impl::is_of_the_run(const Received& one) const {
-  const Status& s = one.seen.status;
+/// On this host its process is looked for; elsewhere, who lives says something.
+bool ControlBus::Impl::shows_no_life(const Received& one) const {
+  if (!participant.stays_on_this_host()) return std::chrono::steady_clock::now() > one.seen.seen + kShowsNoLife;
+  const auto pid = static_cast<::pid_t>(one.seen.status.pid);
+  return pid <= 0 || (::kill(pid, 0) != 0 && errno == ESRCH);
+}
+
+bool ControlBus::Impl::remember(std::uint64_t request, const Guid& sender) {
+  if (!requests.try_emplace(request, sender).second) return false;
+  request_sequence.push_back(request);
+  if (request_sequence.size() > kMostRequests) {
+    requests.erase(request_sequence.front());
+    request_sequence.pop_front();
+  }
+  return true;
+}
+
+/// Does this process itself speak?
+bool ControlBus::Impl::is_of(std::uint64_t process, const Origin& origin) const {
+  return std::ranges::any_of(received, [&](const auto& entry) {
+    return std::ranges::any_of(entry.second, [&](const Received& one) {
+      return one.seen.status.process == process && one.writer.guidPrefix == origin.writer.guidPrefix;
+    });
+  });
+}
+
+/// Is it a node of that region, or about to be one? Of two, one may not yet be known to have died.
+bool ControlBus::Impl::is_of(RegionId region, const Origin& origin) const {
+  const auto known = received.find(region);
+  return known != received.end() && std::ranges::any_of(known->second, [&](const Received& one) {
+           return is_of_the_run(one) && one.writer.guidPrefix == origin.writer.guidPrefix;
+         });
+}
+
+/// Empty: none. What operators say, and launchers, anybody may say.
+std::string ControlBus::Impl::problem_with(const RunCommand& asked, const Origin& origin) const {
+  const Speakers& speakers = participant.domain().speakers();
+  const bool is_first_node = speakers.may_speak(origin.writer, RegionId{0}) || is_of(RegionId{0}, origin);
+  const bool is_node = speakers.is_node(origin.writer);
+  const bool is_of_its_region = speakers.may_speak(origin.writer, asked.region);
+  switch (asked.kind) {
+    case RunCommandKind::kStart:
+      return is_first_node ? "" : "only the node of region 0 starts a run";
+    case RunCommandKind::kRate:
+      return is_node ? "" : "only a node of the run sets its rate";
+    case RunCommandKind::kRestore:
+      return is_node && is_of_its_region ? "" : "only the node of a region says where all go back to";
+    default:
+      return {};
+  }
+}
+
+bool ControlBus::Impl::is_of_the_run(const Status& s, const Guid& writer) const {
+  if (!is_region(s.region) && s.region != kNoRegion) return false;
+  if (participant.domain().speakers().shuns(writer.guidPrefix)) return false;
   if (settings.agreement && s.agreement != *settings.agreement) return false;
   if (settings.run && s.run != *settings.run) return false;
-  return settings.region != s.region || one.writer == status_writer->guid();
+  return settings.region != s.region || writer == status_writer->guid();
 }
 
 ControlBus::ControlBus(Participant& participant, const ControlSettings& settings)
@@ -196,6 +316,18 @@ std::vector<SeenStatus> ControlBus::strangers() {
 
 void ControlBus::hold_for_dead(std::uint64_t process) { impl_->dead.insert(process); }
 
+void ControlBus::hear_of_death(const RunCommand& lost) {
+  if (lost.is_of_itself) return hold_for_dead(lost.process);
+  for (const auto& [region, of_region] : impl_->received) {
+    const auto meant =
+        std::ranges::find(of_region, lost.process, [](const Received& one) { return one.seen.status.process; });
+    if (meant == of_region.end()) continue;
+    if (impl_->participant.stays_on_this_host() && !impl_->shows_no_life(*meant))
+      return refuse(lost, "its process lives");
+    if (impl_->claimed.size() < kMostClaims) impl_->claimed.insert(lost.process);
+  }
+}
+
 std::vector<Status> ControlBus::spares() {
   statuses();
   std::vector<Status> spares;
@@ -215,14 +347,26 @@ void ControlBus::use_map(std::uint64_t map_version) { impl_->settings.map_versio
 
 const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
   impl_->participant.progress();
-  while (impl_->map_reader.take(&impl_->map)) {
+  Origin origin;
+  while (impl_->map_reader.take(&impl_->map, &origin)) {
     auto decoded = decode(impl_->map, {});
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);
+      impl_->map_reader.refuse_from(origin, *error);
       continue;
     }
     auto& map = std::get<WorldMap>(decoded);
-    impl_->maps.insert_or_assign(map.map_version, std::move(map));
+    const std::pair by{map.map_version, origin.writer};
+    if (impl_->announced.size() < kMostMaps || impl_->announced.contains(by) ||
+        impl_->participant.domain().speakers().is_node(origin.writer)) {
+      impl_->announced.insert_or_assign(by, std::move(map));
+    }
+  }
+  impl_->maps.clear();
+  for (const auto& [by, map] : impl_->announced) {
+    const bool is_ours = impl_->settings.agreement && map.agreement == *impl_->settings.agreement;
+    if (is_ours && !impl_->participant.domain().speakers().is_node(by.second)) continue;
+    impl_->maps.insert_or_assign(by.first, map);
   }
   return impl_->maps;
 }
@@ -232,7 +376,7 @@ std::uint64_t ControlBus::send(RunCommand command) {
   if (command.request == 0) {
     command.request = draw_id();
   }
-  impl_->requests.insert(command.request);
+  impl_->remember(command.request, impl_->command_writer.guid());
   encode(command, impl_->sender, impl_->command);
   if (impl_->command_writer.write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
@@ -243,23 +387,38 @@ std::uint64_t ControlBus::send(RunCommand command) {
 std::vector<RunCommand> ControlBus::take_commands() {
   impl_->participant.progress();
   std::vector<RunCommand> commands;
+  bool any = false;
   Expected expected;
   expected.map_version = impl_->settings.map_version;
   Origin origin;
   while (impl_->command_reader.take(&impl_->command, &origin)) {
+    if (!std::exchange(any, true)) statuses();  // who may say what
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);
+      impl_->command_reader.refuse_from(origin, *error);
       continue;
     }
     auto& command = std::get<RunCommand>(decoded);
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
-    command.clock_ahead = origin.clock_ahead;
-    if (impl_->requests.insert(command.request).second) {
-      commands.push_back(command);
+    if (const std::string problem = impl_->problem_with(command, origin); !problem.empty()) {
+      impl_->refused.add(WireError::kSource);
+      impl_->command_reader.refuse_from(origin, fmt::format("{}: {}", name_of(command.kind), problem));
+      continue;
     }
+    command.clock_ahead = origin.clock_ahead;
+    command.is_of_itself = impl_->is_of(command.process, origin);
+    command.is_of_a_node = impl_->participant.domain().speakers().is_node(origin.writer);
+    if (impl_->remember(command.request, origin.writer)) commands.push_back(command);
   }
   return commands;
+}
+
+void ControlBus::refuse(const RunCommand& command, const std::string& why) {
+  const auto sender = impl_->requests.find(command.request);
+  if (sender == impl_->requests.end()) return;
+  impl_->refused.add(WireError::kRange);
+  impl_->command_reader.refuse_from({sender->second}, fmt::format("{}: {}", name_of(command.kind), why));
 }
 
 void ControlBus::wait(std::chrono::nanoseconds time_out) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dds/control_messages.h"
@@ -24,6 +25,8 @@ struct ControlSettings {
   std::optional<std::uint64_t> agreement = {};
   /// Likewise; commands that name another run are refused, too.
   std::optional<std::uint64_t> run = {};
+  /// Of the run. Whoever says that it is the node of another region is a stranger.
+  std::uint32_t region_count = 1U << 20;
 };
 
 /// Used by one thread. The participant must outlive it.
@@ -42,20 +45,26 @@ class ControlBus {
 
   /// Those that wait for a region of this run (kNoRegion).
   std::vector<Status> spares();
-  /// This process is no more, whatever DDS still believes.
+  /// This process is no more, whatever DDS still believes: who says so has seen it end.
   void hold_for_dead(std::uint64_t process);
+  /// Somebody says so: believed once the process shows no life, and at once if it says so itself.
+  void hear_of_death(const RunCommand& lost);
 
   bool publish_map(const WorldMap& map);
   /// Commands for another map than this one are refused from now on.
   void use_map(std::uint64_t map_version);
-  /// Every map seen so far, by map_version.
+  /// Every map seen so far, by map_version. With an agreement, those of this run are those that its nodes have
+  /// published, as soon as any of them is known.
   const std::map<std::uint64_t, WorldMap>& maps();
 
   /// Returns the request id. Late joiners get it too, as long as the sender lives. Throws DdsError when the write
   /// failed twice.
   std::uint64_t send(RunCommand command);
-  /// Commands of others that were not returned before, in order of arrival; each request id once.
+  /// Commands of others that were not returned before, in order of arrival; each request id once. What only a node may
+  /// say is refused of anybody else.
   std::vector<RunCommand> take_commands();
+  /// It cannot be meant: counted against who has sent it.
+  void refuse(const RunCommand& command, const std::string& why);
 
   /// Returns when something arrived or a node's proof of life changed, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);

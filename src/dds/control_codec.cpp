@@ -17,6 +17,9 @@ namespace {
 
 using MaybeError = std::optional<WireError>;
 
+/// Regions, parts, meshes: more than any run has.
+constexpr std::size_t kMostOfAll = 4096;
+
 bool finite_and_not_negative(std::initializer_list<double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x) && x >= 0; });
 }
@@ -128,7 +131,8 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
     return error;
   }
   const std::size_t listens = in.listens_to().size();
-  if (std::max({in.dead().size(), in.refused_source().size(), listens, in.part_region().size()}) > kMaxRows) {
+  if (std::max({in.dead().size(), in.refused_source().size(), listens, in.part_region().size(), in.meshes().size()}) >
+      kMostOfAll) {
     return WireError::kTooLarge;
   }
   if (in.refused_source().size() != in.refused_count().size() || in.listens_since().size() != listens ||
@@ -143,7 +147,7 @@ MaybeError check_command(const wire::RunControl& in) {
     return WireError::kEnum;
   }
   const std::size_t members = in.member_process().size();
-  if (members > kMaxRows) {
+  if (members > kMostOfAll) {
     return WireError::kTooLarge;
   }
   if (!same_rows(members, {{in.member_holder().size()}, {in.member_survives().size()}})) {
@@ -240,7 +244,7 @@ Decoded<WorldMap> decode(const wire::RegionMap& in, const Expected& expected) {
     return *error;
   }
   const std::size_t regions = in.x0().size();
-  if (regions > kMaxRows) {
+  if (regions > kMostOfAll) {
     return WireError::kTooLarge;
   }
   if (!same_rows(regions, {{in.y0().size()}, {in.x1().size()}, {in.y1().size()}})) {

@@ -87,13 +87,21 @@ constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
   return {};  // a lost acknowledgement is asked for again
 }
 
-/// Takes all samples of a reader into `inbox`; what decode refuses is counted, by topic and by link.
+/// Takes all samples of a reader into `inbox`; what decode refuses is counted, by topic and by link. What is not said
+/// by the region's node is nobody's word: nobody is held for dead for it.
 template <class WireMessage, class Message>
-void drain(Reader& reader, WireMessage& sample, const Expected& expected, std::vector<Message>& inbox,
-           TopicCounters& counters, std::uint64_t& refused, std::vector<core::Refusal>& refusals) {
-  while (reader.take(&sample)) {
+void drain(Reader& reader, WireMessage& sample, const Expected& expected, const std::optional<ProcessPrefix>& node,
+           std::vector<Message>& inbox, TopicCounters& counters, std::uint64_t& refused,
+           std::vector<core::Refusal>& refusals) {
+  Origin origin;
+  while (reader.take(&sample, &origin)) {
     ++counters.received;
     counters.received_bytes += bytes_of(sample);
+    if (node && origin.writer.guidPrefix != *node) {
+      counters.refused.add(WireError::kSource);
+      reader.refuse_from(origin, fmt::format("it is not the node of region {}", value_of(*expected.source)));
+      continue;
+    }
     auto decoded = decode(sample, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       counters.refused.add(*error);
@@ -139,6 +147,8 @@ struct DdsTransport::Impl {
   Impl(Participant& participant, const TransportSettings& settings);
 
   Link* find(RegionId region);
+  /// The process that is the node of the link's region; as long as nobody has said which, who was here first.
+  std::optional<ProcessPrefix> node_of(const Link& link) const;
   Link& link_to(RegionId region);
   void wait_for(const std::vector<RegionId>& listeners);
   /// Which of the link's endpoints have no counterpart yet.
@@ -177,6 +187,12 @@ Link* DdsTransport::Impl::find(RegionId region) {
   return found == links.end() ? nullptr : found->get();
 }
 
+std::optional<ProcessPrefix> DdsTransport::Impl::node_of(const Link& link) const {
+  if (const auto node = participant.domain().speakers().of(link.region)) return node;
+  const RemoteWriter first = link.aura_reader.watch().latest();
+  return first.order == 0 ? std::nullopt : std::optional(first.guid.guidPrefix);
+}
+
 /// Bodies may ask for regions that were no neighbours at first.
 Link& DdsTransport::Impl::link_to(RegionId region) {
   if (Link* link = find(region)) return *link;
@@ -201,16 +217,17 @@ void DdsTransport::Impl::wait_for(const std::vector<RegionId>& listeners) {
 
 std::vector<std::string> DdsTransport::Impl::unmatched(const Link& link) const {
   std::vector<std::string> missing;
+  const std::optional<ProcessPrefix> node = node_of(link);
   const auto need = [&](bool there, const char* name) {
     if (!there) {
       missing.emplace_back(name);
     }
   };
-  need(link.aura_reader.watch().any_matched(), "its aura writer");
+  need(link.aura_reader.watch().any_matched(node), "its aura writer");
   need(aura_writer.reaches(link.region), "its aura reader");
-  need(link.migration_reader.watch().any_matched(), "its migration writer");
+  need(link.migration_reader.watch().any_matched(node), "its migration writer");
   need(link.migration_writer.reaches(link.region), "its migration reader");
-  need(link.ack_reader.watch().any_matched(), "its migration_ack writer");
+  need(link.ack_reader.watch().any_matched(node), "its migration_ack writer");
   need(link.ack_writer.reaches(link.region), "its migration_ack reader");
   return missing;
 }
@@ -233,7 +250,7 @@ std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<Regi
 
 void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) {
   for (const auto& link : links) {
-    const RemoteWriter writer = link->aura_reader.watch().latest();
+    const RemoteWriter writer = link->aura_reader.watch().latest(node_of(*link));
     if (link->match == 0) {
       link->match = writer.order;
     }
@@ -263,6 +280,7 @@ void DdsTransport::Impl::send_hand_off(const core::HandOff& hand_off) {
     return;
   }
   encode(hand_off, migration);
+  link->migration_writer.forget_acknowledged();
   count_sent(counters.migration, link->migration_writer.write(&migration), bytes_of(migration));
 }
 
@@ -273,6 +291,7 @@ void DdsTransport::Impl::send_ack(const core::HandOffAck& message) {
     return;
   }
   encode(message, settings.map_version, ack);
+  link->ack_writer.forget_acknowledged();
   count_sent(counters.migration_ack, link->ack_writer.write(&ack), bytes_of(ack));
 }
 
@@ -309,8 +328,9 @@ void DdsTransport::take(core::Inbox& inbox) {
   for (const auto& link : impl_->links) {
     Expected expected = impl_->expected;
     expected.source = link->region;
+    const std::optional<ProcessPrefix> node = impl_->node_of(*link);
     const auto take_all = [&](Reader& reader, auto& sample, auto& messages, TopicCounters& topic) {
-      drain(reader, sample, expected, messages, topic, link->refused, inbox.refusals);
+      drain(reader, sample, expected, node, messages, topic, link->refused, inbox.refusals);
     };
     take_all(link->aura_reader, impl_->aura, inbox.auras, counters.aura);
     take_all(link->migration_reader, impl_->migration, inbox.hand_offs, counters.migration);

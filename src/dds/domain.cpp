@@ -95,6 +95,7 @@ Domain::Domain(const Settings& settings) : profiles_(settings.profiles), guard_(
   GuidPrefix own;
   std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
   guard_->set_own(own);
+  speakers_.set_self(participant_->guid().guidPrefix);
   register_types();
   liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit);
 }
@@ -149,6 +150,12 @@ eprosima::fastdds::dds::Topic& Domain::topic(TopicId id) {
 
 void Domain::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                     eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) {
+  using Info = eprosima::fastrtps::rtps::WriterDiscoveryInfo;
+  if (info.status == Info::REMOVED_WRITER) {
+    directory_.remove(info.info.guid());
+    return speakers_.remove(info.info.guid());
+  }
+  speakers_.add(info.info.guid(), info.info.m_qos.m_partition.names());
   const auto& data = info.info.m_qos.m_userData;
   if (const auto region = region_in({data.begin(), data.end()}); region >= 0) {
     directory_.add(info.info.guid(), static_cast<core::RegionId>(region));
@@ -157,6 +164,9 @@ void Domain::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
 
 void Domain::on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                      eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) {
+  if (info.status == eprosima::fastrtps::rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+    return directory_.remove(info.info.guid());
+  }
   const auto& data = info.info.m_qos.m_userData;
   if (const auto region = region_in({data.begin(), data.end()}); region >= 0) {
     directory_.add(info.info.guid(), static_cast<core::RegionId>(region));

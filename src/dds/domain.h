@@ -16,6 +16,7 @@
 #include "dds/liveliness_asserter.h"
 #include "dds/profiles.h"
 #include "dds/settings.h"
+#include "dds/speakers.h"
 #include "dds/watch.h"
 
 namespace aurasim::dds {
@@ -68,6 +69,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   eprosima::fastdds::dds::Topic& topic(TopicId id);
   Profiles& profiles() { return profiles_; }
   Directory& directory() { return directory_; }
+  Speakers& speakers() { return speakers_; }
   /// After which peers forget a silent participant.
   std::chrono::nanoseconds lease() const;
   /// Nothing leaves this host.
@@ -87,6 +89,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
 
   Profiles profiles_;
   Directory directory_;
+  Speakers speakers_;
   bool loopback_only_ = false;
   std::shared_ptr<DelayLine> delay_line_;
   std::shared_ptr<DatagramGuard> guard_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -79,13 +81,32 @@ bool Writer::all_acknowledged() { return writer_->wait_for_acknowledgments({0, 0
 
 std::size_t Writer::forget_acknowledged() {
   std::size_t forgotten = 0;
-  if (all_acknowledged()) writer_->clear_history(&forgotten);
+  if (all_acknowledged()) {
+    writer_->clear_history(&forgotten);
+    unread_ = 0;
+  } else if (const auto& history = writer_->get_qos().history();
+             ++unread_ == history.depth && history.kind == eprosima::fastdds::dds::KEEP_LAST_HISTORY_QOS) {
+    say_who_does_not_read();
+  }
   return forgotten;
+}
+
+/// Fast DDS 2.9 does not tell which reader it waits for.
+void Writer::say_who_does_not_read() {
+  std::set<std::string> strangers;
+  for (const Guid& reader : watch_.readers()) {
+    if (!domain_.speakers().is_node(reader)) strangers.insert(text_of(reader.guidPrefix));
+  }
+  domain_.speakers().say(fmt::format(
+      "somebody listens to {} and has acknowledged nothing of {} samples: older ones are dropped. Readers of "
+      "processes that are no nodes: [{}]",
+      writer_->get_topic()->get_name(), unread_, fmt::join(strangers, ", ")));
 }
 
 bool Writer::reaches(core::RegionId region) const {
   return std::ranges::any_of(watch_.readers(), [&](const Guid& reader) {
-    return domain_.directory().region_of(reader) == std::int64_t{core::value_of(region)};
+    return domain_.directory().region_of(reader) == std::int64_t{core::value_of(region)} &&
+           domain_.speakers().may_speak(reader, region);
   });
 }
 
@@ -133,13 +154,26 @@ bool Reader::take(void* sample, Origin* origin) {
   SampleInfo info;
   while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
+    const Guid writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+    if (domain_.speakers().shuns(writer.guidPrefix)) continue;
     if (origin != nullptr) {
-      origin->writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+      origin->writer = writer;
       origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - info.reception_timestamp.to_ns());
     }
     return true;
   }
   return false;
+}
+
+void Reader::refuse_from(const Origin& origin, WireError error) {
+  const bool is_no_message = error == WireError::kMalformed || error == WireError::kLength ||
+                             error == WireError::kTooLarge || error == WireError::kEnum;
+  if (!is_no_message) return;
+  refuse_from(origin, fmt::format("it sends what cannot be ({})", name_of(error)));
+}
+
+void Reader::refuse_from(const Origin& origin, const std::string& what) {
+  domain_.speakers().refuse(origin.writer, fmt::format("{}: {}", reader_->get_topicdescription()->get_name(), what));
 }
 
 std::vector<std::string> Reader::partitions() const { return subscriber_->get_qos().partition().names(); }

@@ -14,6 +14,7 @@
 #include "core/ids.h"
 #include "dds/domain.h"
 #include "dds/watch.h"
+#include "dds/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -41,7 +42,8 @@ class Writer {
 
   /// `sample` is the generated type of the topic.
   WriteResult write(void* sample);
-  /// Forgets all samples if every reader has them all; returns how many there were. For volatile writers of which only
+  /// Forgets all samples if every reader has them all; returns how many there were. A reader that acknowledges nothing
+  /// for as many calls as the history is deep is named in the log. For volatile writers of which only
   /// the caller's thread writes. Fast DDS 2.9 forgets them by itself, except those that a reader was still to
   /// acknowledge when another one was matched: these stay for ever, and each heartbeat then lists what is missing after
   /// them, one by one.
@@ -58,8 +60,11 @@ class Writer {
   const Guid& guid() const { return writer_->guid(); }
 
  private:
+  void say_who_does_not_read();
+
   Domain& domain_;
   WriterWatch watch_;
+  std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };
@@ -81,6 +86,12 @@ class Reader {
 
   /// Takes the next sample that carries data into `sample` (the generated type). False when there is none.
   bool take(void* sample, Origin* origin = nullptr);
+
+  /// It is counted against who has sent it, if it is no message of ours at all: other versions, runs and maps, and what
+  /// somebody has typed, are nobody's fault.
+  void refuse_from(const Origin& origin, WireError error);
+  /// Likewise: it is not its to say.
+  void refuse_from(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }
   /// As the QoS says.

@@ -1,6 +1,10 @@
+#include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "aurasim.h"
+#include "dds/bearable.h"
 #include "dds/codec.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
@@ -114,6 +118,22 @@ bool known_objects(const wire::Migration& in, const Expected& expected) {
   return true;
 }
 
+/// A world could have them.
+bool are_bearable(const wire::Migration& in) {
+  using namespace bearable;
+  constexpr std::array kWholeColumns = {26, 27, 37, 38, 39, 40};  // of a contact: read as int
+  constexpr double kMostInt = std::numeric_limits<std::int32_t>::max();
+  for (std::size_t row = 0; row < in.points().size(); row += core::kContactPointDoubles) {
+    for (const int column : kWholeColumns) {
+      if (std::abs(in.points()[row + static_cast<std::size_t>(column)]) > kMostInt) return false;
+    }
+  }
+  return all_within(in.body_p_WB(), kFarthest_m) && all_within(in.body_v_WB(), kFastest_m_s) &&
+         all_within(in.body_w_WB(), kFastestSpin_rad_s) &&
+         all_within(in.body_deactivation_time(), kLargestOfAContact) && all_within(in.points(), kLargestOfAContact) &&
+         all_within(in.joint_values(), kLargestOfAContact) && all_below(in.body_epoch(), kMostEpochs);
+}
+
 MaybeError check_values(const wire::Migration& in, const Expected& expected) {
   if (!all_finite(in.body_p_WB()) || !all_finite(in.body_R_WB()) || !all_finite(in.body_v_WB()) ||
       !all_finite(in.body_w_WB()) || !all_finite(in.body_deactivation_time()) || !all_finite(in.points()) ||
@@ -128,7 +148,7 @@ MaybeError check_values(const wire::Migration& in, const Expected& expected) {
   if (!rotation_matrices(in.body_R_WB())) {
     return WireError::kRotation;
   }
-  const bool in_range = in.stamp() >= 0 && in.sequence_number() >= 1 && !in.body_id().empty() &&
+  const bool in_range = in.stamp() >= 0 && in.sequence_number() >= 1 && !in.body_id().empty() && are_bearable(in) &&
                         strictly_ascending(in.body_id()) && all_body_ids(in.body_id()) &&
                         all_below(in.body_prototype(), expected.prototype_count) && none_negative(in.body_birth()) &&
                         none_negative(in.body_deactivation_time()) &&

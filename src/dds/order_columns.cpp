@@ -7,6 +7,7 @@
 #include <string>
 
 #include "aurasim.h"
+#include "dds/bearable.h"
 #include "dds/columns.h"
 
 namespace aurasim::dds {
@@ -174,6 +175,8 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
   if (!about_a_mesh && row.subject > kMostSubjects) return {};
   if (kind == 8) return regions_of(n);
   if (!finite) return {};
+  constexpr std::uint8_t kRedo = 10;  // says states and ids
+  if (kind != kRedo && !all_within(row.numbers, bearable::kLargestOfAnOrder)) return {};
   switch (kind) {
     case 0:
       return shape_of(row, n);

@@ -21,6 +21,10 @@ std::optional<Participant::ImpairmentReport> Participant::impairment() const {
   return ImpairmentReport{line->impairment(), line->counters()};
 }
 
+std::uint64_t Participant::refused_of_strangers() const { return domain_->speakers().refused(); }
+
+std::vector<std::string> Participant::take_said() { return domain_->speakers().take_said(); }
+
 void Participant::flush_delayed() {
   if (DelayLine* line = domain_->delay_line()) line->flush();
 }

@@ -2,8 +2,11 @@
 // folder borrows it and must be destroyed before it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "dds/settings.h"
 
@@ -37,6 +40,11 @@ class Participant {
   };
   /// Nothing where nothing is impaired. Any thread.
   std::optional<ImpairmentReport> impairment() const;
+  /// Samples that were refused of processes that are no nodes of the run. Any thread.
+  std::uint64_t refused_of_strangers() const;
+  /// For the log: who is refused what, since the last call. Any thread.
+  std::vector<std::string> take_said();
+
   /// Sends what impairment still holds back. For a process that ends without destroying this. Any thread.
   void flush_delayed();
 

@@ -1,5 +1,9 @@
 #include "dds/replica_bus.h"
 
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "dds/observing.h"
 #include "dds/typed_endpoints.h"
 
@@ -54,8 +58,15 @@ std::vector<core::Replica> ReplicaReader::take() {
   impl_->participant.progress();
   impl_->wakeup.clear();
   std::vector<core::Replica> replicas;
-  impl_->deltas.take_all(impl_->expected, replicas);
-  impl_->keys.take_all(impl_->expected, replicas);
+  const Speakers& speakers = impl_->participant.domain().speakers();
+  for (TypedReader<wire::Replica>* reader : {&impl_->deltas, &impl_->keys}) {
+    reader->take_each(impl_->expected, [&](core::Replica&& replica, const Origin& origin) {
+      const bool may_say =
+          speakers.may_speak(origin.writer, replica.source) && speakers.is_at_home(origin.writer, replica.source);
+      if (may_say) return replicas.push_back(std::move(replica));
+      reader->refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(replica.source)));
+    });
+  }
   impl_->received += replicas.size();
   return replicas;
 }

@@ -1,5 +1,7 @@
 #include "dds/scene_additions_bus.h"
 
+#include <functional>
+#include <string>
 #include <utility>
 
 #include "dds/typed_endpoints.h"
@@ -29,8 +31,10 @@ void SceneAdditionsWriter::send(const SceneAdditions& additions) {
 }
 
 struct SceneAdditionsReader::Impl {
-  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
+  explicit Impl(Participant& participant_in)
+      : participant(participant_in), reader(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
 
+  Participant& participant;
   Wakeup wakeup;
   TypedReader<wire::AuraBatch> reader;
 };
@@ -45,8 +49,12 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
     return !newest ||
            std::pair(batch.generation, batch.orders.size()) >= std::pair(newest->generation, newest->orders.size());
   };
-  impl_->reader.take_each({}, [&](core::AuraBatch&& batch) {
-    if (is_newer(batch)) newest = SceneAdditions{batch.generation, std::move(batch.orders)};
+  impl_->reader.take_each({}, [&](core::AuraBatch&& batch, const Origin& origin) {
+    if (!impl_->participant.domain().speakers().may_speak(origin.writer, batch.source)) {
+      impl_->reader.refuse_from(origin, "orders that are not its own");
+    } else if (is_newer(batch)) {
+      newest = SceneAdditions{batch.generation, std::move(batch.orders)};
+    }
   });
   return newest;
 }
@@ -82,9 +90,10 @@ MeshReader::MeshReader(Participant& participant, const MeshCacheLimits& limits)
 MeshReader::~MeshReader() = default;
 
 MeshCache& MeshReader::meshes() {
-  impl_->reader.take_each({}, [&](NamedMesh&& named) {
-    const bool added = named.is_told_again ? impl_->meshes.add_spare(named.hash, std::move(named.mesh))
-                                           : impl_->meshes.add(named.hash, std::move(named.mesh));
+  impl_->reader.take_each({}, [&](NamedMesh&& named, const Origin& origin) {
+    const std::uint64_t source = std::hash<std::string>()(text_of(origin.writer.guidPrefix));
+    const bool added = named.is_told_again ? impl_->meshes.add_spare(named.hash, std::move(named.mesh), source)
+                                           : impl_->meshes.add(named.hash, std::move(named.mesh), source);
     if (!added) ++impl_->without_room;
   });
   return impl_->meshes;

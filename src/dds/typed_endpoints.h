@@ -1,6 +1,7 @@
 // Writers and readers of one kind of message each: coded on the way out, checked on the way in.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,14 +40,19 @@ class TypedReader : public Reader {
 
   using Reader::Reader;
 
-  /// Calls `visit(message)` for each that has come, and `refuse(sample, error)` for each that is none.
+  /// Calls `visit(message)`, or `visit(message, origin)`, for each that has come, and `refuse(sample, error)` for each
+  /// that is none.
   template <class Visit, class Refuse>
   void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse) {
-    while (take(&sample_)) {
+    Origin origin;
+    while (take(&sample_, &origin)) {
       auto decoded = decode(sample_, expected);
       if (const auto* error = std::get_if<WireError>(&decoded)) {
         refused_.add(*error);
+        refuse_from(origin, *error);
         refuse(std::as_const(sample_), *error);
+      } else if constexpr (std::is_invocable_v<Visit, Message&&, const Origin&>) {
+        visit(std::move(std::get<Message>(decoded)), std::as_const(origin));
       } else {
         visit(std::move(std::get<Message>(decoded)));
       }

@@ -68,14 +68,22 @@ std::vector<RemoteWriter> ReaderWatch::writers() const {
   return result;
 }
 
-RemoteWriter ReaderWatch::latest() const {
+RemoteWriter ReaderWatch::latest(const std::optional<ProcessPrefix>& node) const {
   const std::lock_guard lock(mutex_);
-  return writers_.empty() ? RemoteWriter{} : judged(writers_.back());
+  if (writers_.empty()) return {};
+  const auto is_here = [this](const RemoteWriter& writer) { return !judged(writer).lost; };
+  const auto first = std::ranges::find_if(writers_, is_here);
+  const ProcessPrefix process = node ? *node : (first == writers_.end() ? writers_.back() : *first).guid.guidPrefix;
+  const auto last = std::find_if(writers_.rbegin(), writers_.rend(),
+                                 [&](const RemoteWriter& writer) { return writer.guid.guidPrefix == process; });
+  return last == writers_.rend() ? RemoteWriter{} : judged(*last);
 }
 
-bool ReaderWatch::any_matched() const {
+bool ReaderWatch::any_matched(const std::optional<ProcessPrefix>& node) const {
   const std::lock_guard lock(mutex_);
-  return std::ranges::any_of(writers_, &RemoteWriter::matched);
+  return std::ranges::any_of(writers_, [&](const RemoteWriter& writer) {
+    return writer.matched && (!node || writer.guid.guidPrefix == *node);
+  });
 }
 
 RemoteWriter ReaderWatch::judged(RemoteWriter writer) const {
@@ -127,6 +135,11 @@ std::vector<Guid> WriterWatch::readers() const {
 void Directory::add(const Guid& endpoint, core::RegionId region) {
   const std::lock_guard lock(mutex_);
   regions_.insert_or_assign(endpoint, region);
+}
+
+void Directory::remove(const Guid& endpoint) {
+  const std::lock_guard lock(mutex_);
+  regions_.erase(endpoint);
 }
 
 std::int64_t Directory::region_of(const Guid& endpoint) const {

@@ -19,6 +19,8 @@
 namespace aurasim::dds {
 
 using Guid = eprosima::fastrtps::rtps::GUID_t;
+/// A process: the same in all its endpoints.
+using ProcessPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
 /// One match of a reader with a writer. A writer that is matched anew is a new entry.
 struct RemoteWriter {
@@ -52,9 +54,11 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
 
   /// Writers in order of match; those that are gone are kept.
   std::vector<RemoteWriter> writers() const;
-  /// The writer matched last; order 0 when there never was one.
-  RemoteWriter latest() const;
-  bool any_matched() const;
+  /// Of process `node`, the writer matched last. Nobody knows which process that is: of whichever has a writer here,
+  /// the first that is not lost, or the last of all. Order 0 when there never was one.
+  RemoteWriter latest(const std::optional<ProcessPrefix>& node = {}) const;
+  /// Is one matched, of this process if one is named?
+  bool any_matched(const std::optional<ProcessPrefix>& node = {}) const;
 
  private:
   RemoteWriter* find_matched(const Guid& guid);
@@ -92,6 +96,7 @@ class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
 class Directory {
  public:
   void add(const Guid& endpoint, core::RegionId region);
+  void remove(const Guid& endpoint);
   /// The region, or -1 for an endpoint of no region (observers, tools).
   std::int64_t region_of(const Guid& endpoint) const;
 

@@ -18,6 +18,21 @@ std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
   return sum;
 }
 
+/// Whatever a hand-off names is in the scene by the time that it takes effect. If not, its source computes another
+/// world.
+bool is_of_the_scene(const core::ClusterState& cluster, const core::Scene& scene) {
+  const auto is_known = [&](core::ObjectRef object) {
+    return object >= 0 || -(object + 1) < static_cast<core::ObjectRef>(scene.statics.size());
+  };
+  return std::ranges::all_of(
+             cluster.bodies,
+             [&](const auto& body) { return core::value_of(body.prototype) < scene.prototypes.size(); }) &&
+         std::ranges::all_of(cluster.joints,
+                             [&](const auto& joint) { return core::value_of(joint.id) < scene.joints.size(); }) &&
+         std::ranges::all_of(cluster.manifolds,
+                             [&](const auto& m) { return is_known(m.object0) && is_known(m.object1); });
+}
+
 }  // namespace
 
 Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map,
@@ -204,6 +219,13 @@ void Node::apply(const core::Changes& changes) {
   report_.let_go.insert(report_.let_go.end(), changes.let_go.begin(), changes.let_go.end());
   std::uint32_t nth = 0;
   for (const core::Adoption& adoption : changes.adoptions) {
+    if (!is_of_the_scene(adoption.cluster, scene_)) {
+      core::Inbox news;
+      news.refusals.push_back({adoption.source, setup_.protocol.generation, adoption.stamp, core::MessageKind::kHandOff,
+                               "unknown prototype, static or joint", setup_.protocol.redo});
+      protocol_->accept(news);
+      continue;
+    }
     for (Cut& cut : cuts_) {
       if (adoption.stamp <= cut.step) cut.joining.push_back(adoption);
     }

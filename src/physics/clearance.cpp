@@ -120,7 +120,8 @@ class Query : public core::ClearanceQuery {
   double bounding_radius(core::PrototypeId prototype) const override { return of(prototype).radius; }
 
   core::BodyTraits traits(core::PrototypeId prototype) const override {
-    const core::Prototype& kind = scene_.prototypes.at(core::value_of(prototype));
+    if (core::value_of(prototype) >= scene_.prototypes.size()) return {};
+    const core::Prototype& kind = scene_.prototypes[core::value_of(prototype)];
     return {kind.mass_kg, scene_.materials.at(kind.material).restitution};
   }
 
@@ -133,8 +134,11 @@ class Query : public core::ClearanceQuery {
     return apart > limit_m ? apart : distance(a, X_A, b, X_B, spheres_apart);
   }
 
-  /// Made when first asked for: a scene may get more prototypes.
+  /// Made when first asked for: a scene may get more prototypes. One that it has not is a point: no sound neighbour
+  /// speaks of it.
   const ConvexParts& of(core::PrototypeId prototype) const {
+    static const ConvexParts kPoint{};
+    if (core::value_of(prototype) >= scene_.prototypes.size()) return kPoint;
     while (prototypes_.size() <= core::value_of(prototype)) {
       const core::Shape& shape = scene_.shapes.at(scene_.prototypes.at(prototypes_.size()).shape).shape;
       prototypes_.push_back({std::visit(MakeParts{}, shape), core::bounding_radius(shape)});

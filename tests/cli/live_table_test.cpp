@@ -57,6 +57,12 @@ TEST_F(LiveTable, NamesWhoListensToWhomSinceWhenAndWhy) {
   EXPECT_EQ(listening_lines(statuses_), "region 1 listens to 0, 7 (since state 120, by 3)\n");
 }
 
+TEST_F(LiveTable, NamesWhoseMessagesAreRefused) {
+  have_regions(1);
+  statuses_[core::RegionId{0}].status.refused = {{core::RegionId{2}, 3}, {dds::kNoRegion, 170}};
+  EXPECT_THAT(lines({}).back(), HasSubstr("region 0 has refused messages: 3 of region 2, 170 of no node"));
+}
+
 TEST_F(LiveTable, EightyColumnsKeepWhatMattersMost) {
   have_regions(9);
   const std::string head = lines({80, 24}).front();

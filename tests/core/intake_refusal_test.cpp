@@ -62,6 +62,28 @@ TEST_F(RefusedMessage, OfTheNextGenerationWaitsForIt) {
   EXPECT_THAT(intake->dead_regions(), ElementsAre(region(1)));
 }
 
+/// Nothing between has come, and nothing will: the transport delivers in order.
+TEST_F(RefusedMessage, IsABatchOrAHandOffFromFarAhead) {
+  receive_until(1, 4);
+  receive(batch(1, 4 + 4096));
+  EXPECT_THAT(intake->dead_regions(), IsEmpty());
+  receive(batch(1, 4 + 4097));
+  EXPECT_THAT(intake->dead_regions(), ElementsAre(region(1)));
+  receive(hand_off(2, 0, 1'000'000, {record_of(7, 1)}), 1);
+  EXPECT_THAT(intake->dead_regions(), ElementsAre(region(1), region(2)));
+  EXPECT_EQ(intake->refusals().back().why, "far ahead");
+}
+
+TEST_F(RefusedMessage, OfLaterGenerationsOnlySoManyWait) {
+  for (int i = 0; i < 10'100; ++i) {
+    AuraBatch later = ours(batch(1, i));
+    ++later.generation;
+    inbox.auras.push_back(later);
+  }
+  intake->accept(inbox);
+  EXPECT_EQ(inbox.auras.size(), 10'000u);
+}
+
 TEST_F(RefusedMessage, InFreeRunningToo) {
   listen(SyncMode::kFreeRunning, 2);
   refuse(1, 5);

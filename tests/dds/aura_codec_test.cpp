@@ -211,6 +211,7 @@ TEST(AuraCodec, AReusedTargetKeepsNothingOfTheLastMessage) {
 TEST(AuraCodec, OrdersThatAreNotSoundAreRefused) {
   const std::vector<std::function<void(wire::AuraBatch&)>> spoilers = {
       [](wire::AuraBatch& b) { b.order_kind()[0] = 11; },
+      [](wire::AuraBatch& b) { b.order_numbers()[0] = 1e300; },
       [](wire::AuraBatch& b) { b.order_numbers()[0] = kNan; },
       [](wire::AuraBatch& b) { b.order_numbers()[0] = -1; },
       [](wire::AuraBatch& b) { b.order_number_count()[2] = 1'000'000; },
@@ -253,6 +254,20 @@ const Spoilt kSpoilt[] = {
     {"SourceNotInTheMap", [](Wire& w) { w.source(4); }, WireError::kRange},
     {"TooManyRows", [](Wire& w) { w.id().resize(kMaxRows + 1); }, WireError::kTooLarge},
     {"TooManyDeletes", [](Wire& w) { w.deleted().resize(kMaxRows + 1); }, WireError::kTooLarge},
+    {"SpeedThatNoWorldBears", [](Wire& w) { w.v_WB()[0] = 1e30F; }, WireError::kRange},
+    {"SpinThatNoWorldBears", [](Wire& w) { w.w_WB()[4] = -1e30F; }, WireError::kRange},
+    {"ReachOutOfAnyWorld", [](Wire& w) { w.top_radius_m(1e300); }, WireError::kRange},
+    {"TopSpeedOutOfAnyWorld", [](Wire& w) { w.top_speed_m_s(1e300); }, WireError::kRange},
+    {"OwnSpeedOutOfAnyWorld", [](Wire& w) { w.speed_m_s()[0] = 1e30F; }, WireError::kRange},
+    {"EpochFarAhead", [](Wire& w) { w.epoch()[0] = 0xffff'ffffU; }, WireError::kRange},
+    {"ClaimedEpochFarAhead", [](Wire& w) { w.claim_epoch()[0] = 0xffff'ffffU; }, WireError::kRange},
+    {"StateOfTheFuture", [](Wire& w) { w.elsewhere_stamp()[0] = w.stamp() + 1; }, WireError::kRange},
+    {"BirthFarAhead",
+     [](Wire& w) {
+       w.unborn_row().push_back(0);
+       w.unborn_birth().push_back(w.stamp() + 1'000'000);
+     },
+     WireError::kRange},
     {"IdShort", [](Wire& w) { w.id().pop_back(); }, WireError::kLength},
     {"EpochShort", [](Wire& w) { w.epoch().pop_back(); }, WireError::kLength},
     {"HostLong", [](Wire& w) { w.elsewhere_host().push_back(0); }, WireError::kLength},

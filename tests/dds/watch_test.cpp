@@ -82,6 +82,21 @@ TEST_F(Watched, TheEndOfAnOldWriterIsNotTheEndOfTheNewOne) {
   EXPECT_TRUE(watch_.writers()[0].lost);
 }
 
+TEST_F(Watched, AStrangersWriterIsNotTheNodes) {
+  match(writer(1));
+  live(writer(1), 1);
+  match(writer(2));
+  live(writer(2), 1);
+  EXPECT_EQ(watch_.latest().guid, writer(1)) << "who was here first";
+  EXPECT_EQ(watch_.latest(writer(2).guidPrefix).guid, writer(2));
+  EXPECT_EQ(watch_.latest(writer(3).guidPrefix).order, 0U);
+  EXPECT_TRUE(watch_.any_matched(writer(2).guidPrefix));
+  EXPECT_FALSE(watch_.any_matched(writer(3).guidPrefix));
+  match(writer(1), -1);
+  EXPECT_EQ(watch_.latest().guid, writer(2));
+  EXPECT_TRUE(watch_.latest(writer(1).guidPrefix).lost);
+}
+
 TEST_F(Watched, AWriterThatIsMatchedAnewIsAnotherMatch) {
   match(writer(1));
   match(writer(1), -1);

@@ -1,0 +1,140 @@
+#include "dds/speakers.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace aurasim::dds {
+namespace {
+
+/// What is kept of others, whatever they do: of writers that are gone, of processes, of words for the log.
+constexpr std::size_t kMostGone = 4096;
+constexpr std::size_t kMostProcesses = 4096;
+constexpr std::size_t kMostWords = 64;
+
+constexpr std::string_view kRegionPartition = "region/";
+
+/// Of "region/3" and "region/3/to/1": 3. Of anything else, wild cards too: -1.
+std::int64_t region_of_partition(std::string_view partition) {
+  if (!partition.starts_with(kRegionPartition)) return -1;
+  partition.remove_prefix(kRegionPartition.size());
+  std::uint32_t region = 0;
+  const char* const last = partition.data() + partition.size();
+  const auto [end, error] = std::from_chars(partition.data(), last, region);
+  const bool is_region =
+      error == std::errc{} && (end == last || *end == '/') && partition.find_first_of("*?[") == std::string_view::npos;
+  return is_region ? std::int64_t{region} : -1;
+}
+
+}  // namespace
+
+std::string text_of(const ProcessPrefix& process) {
+  return fmt::format("{:02x}", fmt::join(std::begin(process.value), std::end(process.value), "."));
+}
+
+void Speakers::set_self(const ProcessPrefix& self) {
+  const std::lock_guard lock(mutex_);
+  self_ = self;
+}
+
+void Speakers::add(const Guid& writer, const std::vector<std::string>& partitions) {
+  std::int64_t home = partitions.empty() ? -1 : region_of_partition(partitions.front());
+  for (const std::string& partition : partitions) {
+    if (region_of_partition(partition) != home) home = -1;
+  }
+  const std::lock_guard lock(mutex_);
+  homes_.insert_or_assign(writer, home);
+}
+
+void Speakers::remove(const Guid& writer) {
+  const std::lock_guard lock(mutex_);
+  gone_.push_back(writer);
+  if (gone_.size() <= kMostGone) return;
+  homes_.erase(gone_.front());
+  gone_.pop_front();
+}
+
+void Speakers::set(core::RegionId region, const ProcessPrefix& process) {
+  const std::lock_guard lock(mutex_);
+  nodes_.insert_or_assign(region, process);
+  shunned_.erase(process);
+}
+
+std::optional<ProcessPrefix> Speakers::of(core::RegionId region) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = nodes_.find(region);
+  return found == nodes_.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool Speakers::is_at_home(const Guid& writer, core::RegionId region) const {
+  const std::lock_guard lock(mutex_);
+  const auto home = homes_.find(writer);
+  return writer.guidPrefix == self_ || home == homes_.end() || home->second == std::int64_t{core::value_of(region)};
+}
+
+bool Speakers::may_speak(const Guid& endpoint, core::RegionId region) const {
+  const std::lock_guard lock(mutex_);
+  const auto node = nodes_.find(region);
+  return endpoint.guidPrefix == self_ || node == nodes_.end() || node->second == endpoint.guidPrefix;
+}
+
+bool Speakers::is_node(const Guid& endpoint) const {
+  const std::lock_guard lock(mutex_);
+  const bool knows_others = std::ranges::any_of(nodes_, [this](const auto& node) { return node.second != self_; });
+  return !knows_others || is_node_locked(endpoint.guidPrefix);
+}
+
+bool Speakers::is_node_locked(const ProcessPrefix& process) const {
+  return process == self_ || std::ranges::any_of(nodes_, [&](const auto& node) { return node.second == process; });
+}
+
+void Speakers::refuse(const Guid& writer, const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  if (is_node_locked(writer.guidPrefix)) return;  // that is counted, and ends, elsewhere
+  ++refused_;
+  if (refused_of_.size() >= kMostProcesses && !refused_of_.contains(writer.guidPrefix)) return;
+  const std::uint64_t count = ++refused_of_[writer.guidPrefix];
+  if (count == 1) say_locked(fmt::format("process {} is refused: {}", text_of(writer.guidPrefix), what));
+  if (count != kPatience) return;
+  shun_locked(writer.guidPrefix, fmt::format("it has been refused {} times, lastly: {}", count, what));
+}
+
+void Speakers::shun(const ProcessPrefix& process, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (!is_node_locked(process)) shun_locked(process, why);
+}
+
+void Speakers::shun_locked(const ProcessPrefix& process, const std::string& why) {
+  if (shunned_.size() >= kMostProcesses || !shunned_.insert(process).second) return;
+  say_locked(fmt::format("process {} is not listened to any more: {}", text_of(process), why));
+}
+
+bool Speakers::shuns(const ProcessPrefix& process) const {
+  const std::lock_guard lock(mutex_);
+  return shunned_.contains(process);
+}
+
+std::uint64_t Speakers::refused() const {
+  const std::lock_guard lock(mutex_);
+  return refused_;
+}
+
+void Speakers::say(std::string text) {
+  const std::lock_guard lock(mutex_);
+  say_locked(std::move(text));
+}
+
+void Speakers::say_locked(std::string text) {
+  if (said_.size() < kMostWords) said_.push_back(std::move(text));
+}
+
+std::vector<std::string> Speakers::take_said() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(said_, {});
+}
+
+}  // namespace aurasim::dds

@@ -1,0 +1,223 @@
+// Processes that speak in the name of others, over DDS: what they say does nothing to those whose name they use.
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "aurasim.h"
+#include "control_samples.h"
+#include "dds/codec.h"
+#include "dds/control_codec.h"
+#include "dds/random_id.h"
+#include "dds/typed_endpoints.h"
+#include "transport_fixture.h"
+
+namespace aurasim::dds {
+namespace {
+
+using core::RegionId;
+using testing::batch_of;
+using testing::command_of;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using testing::hand_off_of;
+using ::testing::HasSubstr;
+using testing::holds_in_time;
+using ::testing::IsEmpty;
+using testing::Peer;
+using testing::status_of;
+using testing::take_until;
+using namespace std::chrono_literals;
+
+/// Nodes 0 and 1, that listen to each other, and somebody.
+class AStranger : public ::testing::Test {
+ protected:
+  AStranger() {
+    publish(zero_bus_, 0);
+    publish(one_bus_, 1);
+    std::jthread other([this] { one_.transport.wait_until_matched(testing::kDeadline); });
+    zero_.transport.wait_until_matched(testing::kDeadline);
+    EXPECT_TRUE(holds_in_time([&] { return zero_bus_.statuses().size() == 2; }));
+  }
+
+  static ControlSettings settings(std::uint32_t region) {
+    ControlSettings settings;
+    settings.region = RegionId{region};
+    settings.agreement = 88;
+    settings.run = 11;
+    settings.region_count = 2;
+    return settings;
+  }
+  static Status of_this_host(std::uint32_t region) {
+    Status status = status_of(region);
+    status.pid = static_cast<std::uint32_t>(::getpid());
+    status.process = 100 + region;
+    return status;
+  }
+  static void publish(ControlBus& bus, std::uint32_t region) { bus.publish_status(of_this_host(region)); }
+
+  template <class Wire>
+  std::unique_ptr<TypedWriter<Wire>> writer(TopicId topic, const std::string& partition,
+                                            std::optional<RegionId> region = {}) {
+    auto writer =
+        std::make_unique<TypedWriter<Wire>>(stranger_.domain(), EndpointSpec{topic, {partition}, region}, wakeup_);
+    EXPECT_TRUE(holds_in_time([&] { return writer->reader_count() > 0; })) << name_of(topic);
+    return writer;
+  }
+  static core::AuraBatch forged_batch() {
+    core::AuraBatch batch = batch_of(2, RegionId{1});
+    batch.stamp = 3;
+    return batch;
+  }
+  std::string said() {
+    for (std::string& text : zero_.participant.take_said()) said_ += text + "\n";
+    return said_;
+  }
+
+  Peer zero_{own_domain(), 0, {1}};
+  Peer one_{own_domain(), 1, {0}};
+  ControlBus zero_bus_{zero_.participant, settings(0)};
+  ControlBus one_bus_{one_.participant, settings(1)};
+  Participant stranger_{testing::settings_for(own_domain())};
+  Wakeup wakeup_;
+  std::string said_;
+};
+
+TEST_F(AStranger, WithAnAuraWriterIsNotTheEndOfARegion) {
+  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, partition_of(RegionId{1}), RegionId{1});
+  auras->send(forged_batch());
+  one_.send_batch(5);
+  ASSERT_TRUE(take_until(zero_, [&] { return zero_.transport.counters().aura.received == 2; }));
+  ASSERT_EQ(zero_.inbox.auras.size(), 1U);
+  EXPECT_EQ(zero_.inbox.auras[0].stamp, 5);
+  EXPECT_THAT(zero_.inbox.peers, IsEmpty());
+  EXPECT_THAT(zero_.inbox.refusals, IsEmpty());
+  EXPECT_EQ(zero_.participant.refused_of_strangers(), 1U);
+  EXPECT_THAT(said(), HasSubstr("aura: it is not the node of region 1"));
+}
+
+TEST_F(AStranger, HandsNothingOverAndEndsNobodyByWhatCannotBe) {
+  const auto hand_offs =
+      writer<wire::Migration>(TopicId::kMigration, partition_of(RegionId{1}, RegionId{0}), RegionId{1});
+  core::HandOff forged = hand_off_of(2);
+  hand_offs->send(forged);
+  forged.cluster.bodies[0].v_WB.x() = 1e308;
+  hand_offs->send(forged);
+  ASSERT_TRUE(take_until(zero_, [&] { return zero_.transport.counters().migration.received == 2; }));
+  EXPECT_THAT(zero_.inbox.hand_offs, IsEmpty());
+  EXPECT_THAT(zero_.inbox.refusals, IsEmpty()) << "the region that it names would be held for dead";
+  EXPECT_EQ(zero_.participant.refused_of_strangers(), 2U);
+}
+
+TEST_F(AStranger, IsNotListenedToAnyMoreAfterAHundredLies) {
+  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, partition_of(RegionId{1}), RegionId{1});
+  for (int i = 0; i < 150; ++i) auras->send(forged_batch());
+  EXPECT_TRUE(take_until(zero_, [&] { return said().find("not listened to any more") != std::string::npos; }));
+  one_.send_batch(5);
+  ASSERT_TRUE(take_until(zero_, [&] { return !zero_.inbox.auras.empty(); }));
+  EXPECT_EQ(zero_.participant.refused_of_strangers(), 100U);
+}
+
+/// Its last 4096 samples wait for it, and nobody else does.
+TEST_F(AStranger, ThatReadsNothingHoldsNobodyUp) {
+  auto qos = stranger_.domain().profiles().reader(
+      *stranger_.domain().participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT),
+      "aura_reader");
+  eprosima::fastdds::dds::SubscriberQos of_region_1;
+  of_region_1.partition().push_back("region/1");
+  qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_instances = qos.resource_limits().allocated_samples = 1;
+  ASSERT_NE(stranger_.domain()
+                .participant()
+                .create_subscriber(of_region_1)
+                ->create_datareader(&stranger_.domain().topic(TopicId::kAura), qos),
+            nullptr);
+  std::this_thread::sleep_for(500ms);
+  const auto begin = std::chrono::steady_clock::now();
+  constexpr std::size_t kSteps = 6000;
+  for (std::size_t step = 0; step < kSteps; ++step) {
+    one_.send_batch(static_cast<core::Step>(step), 1);
+    zero_.transport.take(zero_.inbox);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, testing::kDeadline);
+  ASSERT_TRUE(take_until(zero_, [&] { return zero_.inbox.auras.size() == kSteps; }));
+  EXPECT_EQ(one_.transport.counters().aura.send_failed, 0U);
+  EXPECT_THAT(one_.participant.take_said(), Contains(HasSubstr("listens to aura and has acknowledged nothing")));
+}
+
+TEST_F(AStranger, SpeaksOfNoRegionThatTheRunHasNot) {
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{9}), RegionId{9});
+  statuses->send(of_this_host(9));
+  ASSERT_TRUE(holds_in_time([&] { return zero_bus_.strangers().size() == 1; }));
+  EXPECT_EQ(zero_bus_.statuses().size(), 2U);
+}
+
+TEST_F(AStranger, IsNotTheNodeOfARegionThatHasOne) {
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{1}), RegionId{1});
+  Status forged = of_this_host(1);
+  forged.process = 666;
+  statuses->send(forged);
+  ASSERT_TRUE(holds_in_time([&] {
+    zero_bus_.statuses();
+    return zero_.participant.refused_of_strangers() == 1;
+  }));
+  EXPECT_EQ(zero_bus_.statuses().at(RegionId{1}).status.process, 101U);
+  EXPECT_THAT(said(), HasSubstr("region 1 has another node"));
+}
+
+TEST_F(AStranger, SpeaksOfNoRegionBesideItsPartition) {
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{1}), RegionId{1});
+  statuses->send(of_this_host(0));
+  ASSERT_TRUE(holds_in_time([&] {
+    zero_bus_.statuses();
+    return zero_.participant.refused_of_strangers() == 1;
+  }));
+  EXPECT_THAT(said(), HasSubstr("speaks of region 0 where others do"));
+}
+
+TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
+  const auto runs = writer<wire::RunControl>(TopicId::kRunControl, kWorldPartition);
+  RunCommand command;
+  command.run = 11;
+  using Kind = RunCommandKind;
+  for (const Kind kind : {Kind::kStart, Kind::kRate, Kind::kRestore, Kind::kPause}) {
+    command.kind = kind;
+    command.request = draw_id();
+    runs->send(command, std::uint64_t{7});
+  }
+  std::vector<RunCommandKind> taken;
+  ASSERT_TRUE(holds_in_time([&] {
+    for (const RunCommand& one : zero_bus_.take_commands()) taken.push_back(one.kind);
+    return !taken.empty();
+  }));
+  EXPECT_THAT(taken, ElementsAre(Kind::kPause));
+  EXPECT_EQ(zero_.participant.refused_of_strangers(), 3U);
+}
+
+TEST_F(AStranger, DoesNotKillByItsWord) {
+  RunCommand lost = command_of(RunCommandKind::kLost);
+  lost.process = 101;
+  zero_bus_.hear_of_death(lost);
+  EXPECT_FALSE(zero_bus_.statuses().at(RegionId{1}).lost) << "its process is there";
+  lost.is_of_itself = true;
+  zero_bus_.hear_of_death(lost);
+  EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
+}
+
+TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
+  Status gone = of_this_host(1);
+  gone.pid = 0x7fff'ffffU;  // above any that Linux gives
+  ASSERT_TRUE(one_bus_.publish_status(gone));
+  ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
+  RunCommand lost = command_of(RunCommandKind::kLost);
+  lost.process = 101;
+  zero_bus_.hear_of_death(lost);
+  EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
+}
+
+}  // namespace
+}  // namespace aurasim::dds
