@@ -16,6 +16,8 @@ packages=(
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
   # saved worlds
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libzstd-dev
+  # keys and certificates
+  libssl-dev
   # HTTP and WebSocket of the overseer, its page
   libboost1.74-dev esbuild
 )

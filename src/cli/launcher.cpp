@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
 #include "cli/spawn.h"
@@ -31,7 +32,8 @@ constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process
 Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(dds_settings(launch)),
+      participant_(
+          with_keys(dds_settings(launch), launch, member_for(launch, options.keys.as, {security::Role::kOperator}))),
       control_(participant_, {launch.regions.version(), {}, launch.agreement(), run_}) {}
 
 Launcher::~Launcher() {

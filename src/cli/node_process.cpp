@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
 #include "core/command.h"
@@ -55,7 +56,8 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(dds_settings(launch, options.region)),
+      participant_(
+          with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region))),
       control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run}),
       fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),
       saves_(options.saves, options.region),

@@ -39,6 +39,7 @@ struct NodeOptions {
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
   bool takes_over = false;                      ///< a run that goes on: its node of this region has died
+  std::string as;                               ///< name of its key, in a run with keys; empty: the region's own
 };
 
 /// Between a region and those that have to hear of it.

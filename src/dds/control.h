@@ -24,6 +24,8 @@ struct ControlSettings {
   std::optional<std::uint64_t> agreement = {};
   /// Likewise; commands that name another run are refused, too.
   std::optional<std::uint64_t> run = {};
+  /// Neither sends nor takes commands, and publishes no map: in a run with keys a viewer may not.
+  bool only_watches = false;
 };
 
 /// Used by one thread. The participant must outlive it.

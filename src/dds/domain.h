@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "dds/delay_line.h"
 #include "dds/liveliness_asserter.h"
 #include "dds/profiles.h"
+#include "dds/security_log.h"
 #include "dds/settings.h"
 #include "dds/watch.h"
 
@@ -75,6 +77,10 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   DelayLine* delay_line() const { return delay_line_.get(); }
 
  private:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* participant,
+                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -84,6 +90,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Profiles profiles_;
   Directory directory_;
   bool loopback_only_ = false;
+  std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
