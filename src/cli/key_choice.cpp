@@ -76,8 +76,7 @@ std::optional<security::Member> member_for_node(const config::Launch& launch, co
 dds::Settings with_keys(dds::Settings settings, const config::Launch& launch,
                         const std::optional<security::Member>& member) {
   if (!member) return settings;
-  settings.keys =
-      with_bad_keys_told([&] { return security::KeyStore(launch.dds.security).files_of(member->name); });
+  settings.keys = with_bad_keys_told([&] { return security::KeyStore(launch.dds.security).files_of(member->name); });
   settings.tell_refusal = [](const std::string& what) { spdlog::warn("{}", what); };
   return settings;
 }

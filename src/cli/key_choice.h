@@ -1,5 +1,5 @@
-// Which key of a run's keys (launch key dds.security) a process uses. Everything that is wrong is a BadConfig, which ends
-// it with exit code 2; in an open run nobody has a key.
+// Which key of a run's keys (launch key dds.security) a process uses. Everything that is wrong is a BadConfig, which
+// ends it with exit code 2; in an open run nobody has a key.
 #pragma once
 
 #include <optional>

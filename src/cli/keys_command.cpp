@@ -46,15 +46,16 @@ std::uint32_t number_in(std::string_view text, const std::string& whole) {
   std::uint32_t number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && rest == text.data() + text.size() && number < kMostRegions) return number;
-  throw security::BadKeys(
-      fmt::format("REGIONS: found '{}', allowed: a number such as 3, or two such as 0-3, below {}", whole, kMostRegions));
+  throw security::BadKeys(fmt::format("REGIONS: found '{}', allowed: a number such as 3, or two such as 0-3, below {}",
+                                      whole, kMostRegions));
 }
 
 /// "3", or "0-3".
 std::pair<std::uint32_t, std::uint32_t> range_in(const std::string& text) {
   const std::size_t dash = text.find('-');
   const std::uint32_t first = number_in(std::string_view(text).substr(0, dash), text);
-  const std::uint32_t last = dash == std::string::npos ? first : number_in(std::string_view(text).substr(dash + 1), text);
+  const std::uint32_t last =
+      dash == std::string::npos ? first : number_in(std::string_view(text).substr(dash + 1), text);
   if (first <= last) return {first, last};
   return {last, first};
 }
@@ -86,9 +87,10 @@ void pack(const KeysArguments& a) {
     ::unlink(file.c_str());
     throw security::BadKeys(fmt::format("{}: tar has failed", file));
   }
-  fmt::print("{}: bring it to its host by a way that nobody else can read, unpack it (mkdir -m 700 keys && tar -xpf {} "
-             "-C keys), and name that folder in dds.security\n",
-             file, std::filesystem::path(file).filename().string());
+  fmt::print(
+      "{}: bring it to its host by a way that nobody else can read, unpack it (mkdir -m 700 keys && tar -xpf {} "
+      "-C keys), and name that folder in dds.security\n",
+      file, std::filesystem::path(file).filename().string());
 }
 
 void revoke(const KeysArguments& a) {

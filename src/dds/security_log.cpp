@@ -19,6 +19,7 @@ using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 namespace {
 
 constexpr const char* kOurs = "SECURITY_AURASIM";
+constexpr const char* kReasons = "SECURITY_AUTHENTICATION";
 constexpr const char* kRefused = "refused ";
 
 // What strangers can make us say and remember.
@@ -29,14 +30,20 @@ constexpr auto kWindow = std::chrono::seconds(10);
 constexpr std::uint64_t kMostInWindow = 30;
 constexpr std::size_t kLongestClaim = 128;
 
+/// Warnings but for those of kReasons are of no use: dozens a second while two participants meet.
+bool is_about_security(const std::string& category, const std::string& message) {
+  return category.starts_with("SECURITY") || (category == "RTPS_EDP" && message.starts_with("Security manager"));
+}
+
 /// Fast DDS's log, but for what it says of security.
 class Listener final : public LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
-    if (category.starts_with("SECURITY")) {
+    const bool is_error = entry.kind == Log::Kind::Error;
+    if (category == kOurs || category == kReasons || (is_error && is_about_security(category, entry.message))) {
       SecurityLog::instance().hear(entry.message, category);
-    } else if (entry.kind == Log::Kind::Error) {
+    } else if (is_error) {
       others_.Consume(entry);
     }
   }
@@ -71,9 +78,12 @@ std::string address_in(const ParticipantDiscoveryInfo& info) {
   return locators.empty() ? "nowhere" : text_of(locators.at(0));
 }
 
-/// Up to where Fast DDS names its source file.
+/// Without the place in Fast DDS's sources.
 std::string without_place(std::string message) {
-  if (const std::size_t place = message.find(" (/"); place != std::string::npos) message.resize(place);
+  for (std::size_t place = 0; (place = message.find(" (./src")) != std::string::npos;) {
+    const std::size_t end = message.find(')', place);
+    message.erase(place, end == std::string::npos ? end : end + 1 - place);
+  }
   while (!message.empty() && (message.back() == '\n' || message.back() == '.')) message.pop_back();
   return message;
 }
@@ -99,10 +109,12 @@ SecurityLog::Hearing::Hearing(Tell tell) {
 }
 
 SecurityLog::Hearing::~Hearing() {
-  Log::Flush();
   SecurityLog& log = instance();
-  const std::lock_guard lock(log.mutex_);
-  log.tells_.erase(number_);
+  {
+    const std::lock_guard lock(log.mutex_);
+    log.tells_.erase(number_);
+  }
+  Log::Flush();  // whoever is being told has been told
 }
 
 void SecurityLog::note(const ParticipantDiscoveryInfo& info) {
@@ -122,44 +134,53 @@ void SecurityLog::refused(const GUID_t& participant) {
 }
 
 void SecurityLog::hear(const std::string& message, const std::string& category) {
-  const std::lock_guard lock(mutex_);
-  if (category == kOurs) {
-    const std::string reason = std::exchange(reason_, {});
-    say(fmt::format("{}{}", with_names(message), reason.empty() ? "" : ": " + reason));
-  } else if (category == "SECURITY_AUTHENTICATION") {
-    reason_ = without_place(message);
-  } else {
-    say(with_names(without_place(message)));
+  std::vector<std::string> texts;
+  std::map<int, Tell> tells;
+  {
+    const std::lock_guard lock(mutex_);
+    if (category == kOurs) {
+      const std::string reason = std::exchange(reason_, {});
+      texts = worth_saying(fmt::format("{}{}", with_names(message), reason.empty() ? "" : ": " + reason));
+    } else if (category == kReasons) {
+      reason_ = without_place(message);
+    } else {
+      texts = worth_saying(with_names(without_place(message)));
+    }
+    tells = tells_;
+  }
+  for (const std::string& text : texts) {  // a terminal that stands still must not hold DDS's threads up
+    for (const auto& [number, tell] : tells) {
+      if (tell) tell(text);
+    }
   }
 }
 
 std::string SecurityLog::with_names(std::string message) const {
-  for (const auto& [prefix, name] : names_) {
-    const std::size_t begin = message.find(prefix);
-    if (begin != std::string::npos) message.replace(begin, prefix.size(), fmt::format("[{}] {}", name, prefix));
-  }
+  // A number is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the participant, then what of it is meant.
+  constexpr std::size_t kPrefix = 12 * 3 - 1;
+  const std::size_t bar = message.find('|');
+  if (bar == std::string::npos || bar < kPrefix) return message;
+  const auto name = names_.find(message.substr(bar - kPrefix, kPrefix));
+  if (name != names_.end()) message.insert(bar - kPrefix, fmt::format("[{}] ", name->second));
   return message;
 }
 
-void SecurityLog::say(const std::string& text) {
+std::vector<std::string> SecurityLog::worth_saying(const std::string& text) {
   const Clock::time_point now = Clock::now();
-  if (const auto said = said_.find(text); said != said_.end() && now < said->second + kSayAgain) return;
+  if (const auto said = said_.find(text); said != said_.end() && now < said->second + kSayAgain) return {};
   if (now > window_begin_ + kWindow) {
     window_begin_ = now;
     in_window_ = 0;
   }
   if (++in_window_ > kMostInWindow) {
     ++unsaid_;
-    return;
+    return {};
   }
   if (said_.size() >= kMostSaid) said_.clear();
   said_[text] = now;
   const std::uint64_t unsaid = std::exchange(unsaid_, 0);
-  for (const auto& [number, tell] : tells_) {
-    if (!tell) continue;
-    if (unsaid > 0) tell(fmt::format("{} more refusals were not listed", unsaid));
-    tell(text);
-  }
+  if (unsaid == 0) return {text};
+  return {fmt::format("{} more refusals were not listed", unsaid), text};
 }
 
 }  // namespace aurasim::dds

@@ -46,7 +46,8 @@ class SecurityLog {
   using Clock = std::chrono::steady_clock;
 
   SecurityLog();
-  void say(const std::string& text);
+  /// `text`, unless it has just been said, or there is too much to say.
+  std::vector<std::string> worth_saying(const std::string& text);
   std::string with_names(std::string message) const;
 
   mutable std::mutex mutex_;

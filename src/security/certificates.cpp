@@ -234,8 +234,7 @@ std::string make_revocations(const KeyPair& authority, const std::vector<std::st
             "write the revocations");
     (void)revoked.release();  // the list's now
   }
-  require(X509_CRL_sort(list.get()) == 1 &&
-              X509_CRL_sign(list.get(), key_in(authority.key).get(), EVP_sha256()) > 0,
+  require(X509_CRL_sort(list.get()) == 1 && X509_CRL_sign(list.get(), key_in(authority.key).get(), EVP_sha256()) > 0,
           "sign the revocations");
   const Bio out = memory();
   require(PEM_write_bio_X509_CRL(out.get(), list.get()) == 1, "write the revocations");

@@ -63,8 +63,9 @@ void check_is_private(const std::filesystem::path& file) {
   struct stat status = {};
   if (::stat(file.c_str(), &status) != 0) fail(file, "read it");
   if ((status.st_mode & 077) == 0) return;
-  throw BadKeys(fmt::format("{}: found mode {:04o}, allowed: 0600, or others on this host could read the key (chmod 600)",
-                            file.string(), status.st_mode & 07777U));
+  throw BadKeys(
+      fmt::format("{}: found mode {:04o}, allowed: 0600, or others on this host could read the key (chmod 600)",
+                  file.string(), status.st_mode & 07777U));
 }
 
 }  // namespace aurasim::security

@@ -11,8 +11,8 @@
 #include <fmt/ranges.h>
 #include <sys/stat.h>
 
-#include "security/governance.h"
 #include "security/files.h"
+#include "security/governance.h"
 
 namespace aurasim::security {
 namespace {
@@ -91,9 +91,10 @@ void check_date(const std::filesystem::path& file, const Validity& valid) {
                               date(valid.from), date(at)));
   }
   if (at > valid.until) {
-    throw BadKeys(fmt::format("{}: expired: valid until {}, and this host's clock says {}; `aurasim keys rotate` makes "
-                              "new ones",
-                              file.string(), date(valid.until), date(at)));
+    throw BadKeys(
+        fmt::format("{}: expired: valid until {}, and this host's clock says {}; `aurasim keys rotate` makes "
+                    "new ones",
+                    file.string(), date(valid.until), date(at)));
   }
 }
 
@@ -124,9 +125,10 @@ KeyStore KeyStore::create(const std::filesystem::path& folder, Days authorities_
 KeyStore::KeyStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (std::filesystem::is_regular_file(folder_ / "identity_ca.pem", error)) return;
-  throw BadKeys(fmt::format("{}: found no keys (no identity_ca.pem), allowed: a folder made by `aurasim keys init`, or "
-                            "what `aurasim keys pack` has packed of it, unpacked",
-                            folder_.string()));
+  throw BadKeys(
+      fmt::format("{}: found no keys (no identity_ca.pem), allowed: a folder made by `aurasim keys init`, or "
+                  "what `aurasim keys pack` has packed of it, unpacked",
+                  folder_.string()));
 }
 
 std::filesystem::path KeyStore::folder_of(const std::string& name) const { return folder_ / "names" / name; }
@@ -135,9 +137,10 @@ KeyPair KeyStore::authority(const char* which) const {
   const std::filesystem::path key = folder_ / "private" / fmt::format("{}.key.pem", which);
   std::error_code error;
   if (!std::filesystem::exists(key, error)) {
-    throw BadKeys(fmt::format("{}: is not there: this is what a host has been given of a store; keys are made where the "
-                              "store is",
-                              key.string()));
+    throw BadKeys(
+        fmt::format("{}: is not there: this is what a host has been given of a store; keys are made where the "
+                    "store is",
+                    key.string()));
   }
   check_is_private(key);
   return {read_key_file(key), read_key_file(folder_ / fmt::format("{}.pem", which))};
@@ -148,13 +151,14 @@ void KeyStore::add(const Member& member, Days valid) { add(member, from_now(vali
 void KeyStore::add(const Member& member, const Validity& valid) {
   check_name(member.name);
   if ((member.role == Role::kRegion) != region_in(member.name).has_value()) {
-    throw BadKeys(fmt::format("found the name '{}' for a {}, allowed: region-N for the node of a region, and for nobody "
-                              "else",
-                              member.name, name_of(member.role)));
+    throw BadKeys(
+        fmt::format("found the name '{}' for a {}, allowed: region-N for the node of a region, and for nobody "
+                    "else",
+                    member.name, name_of(member.role)));
   }
   if (std::filesystem::exists(folder_of(member.name))) {
-    throw BadKeys(fmt::format("{}: is there already; `aurasim keys rotate` makes it new keys",
-                              folder_of(member.name).string()));
+    throw BadKeys(
+        fmt::format("{}: is there already; `aurasim keys rotate` makes it new keys", folder_of(member.name).string()));
   }
   write_member(member, valid);
 }
@@ -169,8 +173,8 @@ void KeyStore::write_member(const Member& member, const Validity& valid) {
       sign(authority(kPermissions), permissions_document(subject, both, grants_of(member.role, member.region)));
   // Before it can be used: or it could not be revoked.
   write_key_file(folder_ / kIssued,
-                 fmt::format("{}{} {} {}\n", read_key_file(folder_ / kIssued), read_certificate(pair.certificate).serial,
-                             member.name, name_of(member.role)),
+                 fmt::format("{}{} {} {}\n", read_key_file(folder_ / kIssued),
+                             read_certificate(pair.certificate).serial, member.name, name_of(member.role)),
                  Secrecy::kPublic);
   const std::filesystem::path folder = folder_of(member.name);
   if (!std::filesystem::exists(folder)) make_key_folder(folder);
@@ -199,9 +203,8 @@ void KeyStore::revoke(const std::string& name) {
   const std::vector<std::string> fresh = serials_of(name);
   if (fresh.empty()) throw BadKeys(fmt::format("{}: has no certificate of '{}'", (folder_ / kIssued).string(), name));
   const KeyPair identity = authority(kIdentity);
-  std::vector<std::string> serials = about(folder_ / kRevocations, [&](const std::string& list) {
-    return read_revocations(list, identity.certificate);
-  });
+  std::vector<std::string> serials = about(
+      folder_ / kRevocations, [&](const std::string& list) { return read_revocations(list, identity.certificate); });
   for (const std::string& serial : fresh) {
     if (std::ranges::find(serials, serial) == serials.end()) serials.push_back(serial);
   }
@@ -252,8 +255,8 @@ KeyFiles KeyStore::files_of(const std::string& name) const {
     throw BadKeys(
         fmt::format("{}: found no key of '{}', there are: {}", folder_.string(), name, fmt::join(names(), ", ")));
   }
-  KeyFiles files{folder_ / "identity_ca.pem",    own / "certificate.pem",  own / "key.pem",
-                 folder_ / kRevocations,         folder_ / "permissions_ca.pem", folder_ / kGovernance,
+  KeyFiles files{folder_ / "identity_ca.pem", own / "certificate.pem",        own / "key.pem",
+                 folder_ / kRevocations,      folder_ / "permissions_ca.pem", folder_ / kGovernance,
                  own / "permissions.p7s"};
   check_is_private(files.key);
   const std::string identity = read_key_file(files.identity_ca);
@@ -301,8 +304,8 @@ std::vector<MemberState> KeyStore::check() const {
 std::vector<std::filesystem::path> KeyStore::files_for_host(const std::string& name) const {
   files_of(name);  // or they would be refused there
   const std::filesystem::path own = std::filesystem::path("names") / name;
-  return {"identity_ca.pem",       "permissions_ca.pem", kGovernance,        kRevocations,
-          own / "certificate.pem", own / "key.pem",      own / "permissions.p7s"};
+  return {"identity_ca.pem", "permissions_ca.pem",   kGovernance, kRevocations, own / "certificate.pem",
+          own / "key.pem",   own / "permissions.p7s"};
 }
 
 }  // namespace aurasim::security

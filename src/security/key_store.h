@@ -10,8 +10,8 @@
 //       issued.txt              every certificate so far: serial number, name, role
 //       private/                the private keys of the two authorities: they stay where the store was made
 //
-// A host gets all but the last two, and of names/ only its own: what `keys pack` puts into one file. That is a folder of
-// keys, too, from which nobody can be added.
+// A host gets all but the last two, and of names/ only its own: what `keys pack` puts into one file. That is a folder
+// of keys, too, from which nobody can be added.
 #pragma once
 
 #include <chrono>
@@ -62,7 +62,8 @@ class KeyStore {
   void add(const Member& member, const Validity& valid);
   /// New keys for a name; what it had is good until it ends.
   void rotate(const std::string& name, Days valid);
-  /// All certificates that NAME was ever given. Others believe them until they have the new crl.pem and are started again.
+  /// All certificates that NAME was ever given. Others believe them until they have the new crl.pem and are started
+  /// again.
   void revoke(const std::string& name);
 
   /// In order of their names.

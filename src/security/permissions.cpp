@@ -57,9 +57,14 @@ Grants grants_of_node(const std::string& region) {
 }
 
 std::vector<Grant> what_viewers_see() {
-  return {{"node_status", {kEveryRegion}}, {"region_map", {kWorld}},        {"replica", {kEveryRegion}},
-          {"replica_key", {kEveryRegion}}, {"cluster_graph", {kEveryRegion}}, {"aura", {kEveryRegion}},
-          {"orders", {kWorld}},            {"shape", {kWorld}}};
+  return {{"node_status", {kEveryRegion}},
+          {"region_map", {kWorld}},
+          {"replica", {kEveryRegion}},
+          {"replica_key", {kEveryRegion}},
+          {"cluster_graph", {kEveryRegion}},
+          {"aura", {kEveryRegion}},
+          {"orders", {kWorld}},
+          {"shape", {kWorld}}};
 }
 
 Grants grants_of_operator() {
@@ -73,21 +78,22 @@ Grants grants_of_operator() {
 
 Grants grants_of_recorder() {
   Grants grants;
-  for (const char* topic : {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica",
-                            "replica_key", "command", "command_reply", "shape", "orders", "cluster_graph",
-                            "checkpoint"}) {
+  for (const char* topic :
+       {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key",
+        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint"}) {
     grants.subscribes.push_back({topic, {"*"}});
   }
   return grants;
 }
 
-std::string date(Seconds at) {
+std::string xml_date(Seconds at) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(at)));
 }
 
 std::string rule(const Grant& grant, const char* direction) {
   std::string partitions;
-  for (const std::string& partition : grant.partitions) partitions += fmt::format("<partition>{}</partition>", partition);
+  for (const std::string& partition : grant.partitions)
+    partitions += fmt::format("<partition>{}</partition>", partition);
   return fmt::format(
       "<allow_rule><domains><id_range><min>0</min><max>232</max></id_range></domains><{0}><topics><topic>{1}</topic>"
       "</topics><partitions>{2}</partitions></{0}></allow_rule>\n",
@@ -131,7 +137,7 @@ std::string permissions_document(const Subject& subject, const Validity& valid, 
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<dds><permissions><grant name=\"{}\"><subject_name>{}</subject_name>"
       "<validity><not_before>{}</not_before><not_after>{}</not_after></validity>\n",
-      subject.name, subject.text(), date(valid.from - kTimeZones), date(valid.until + kTimeZones));
+      subject.name, subject.text(), xml_date(valid.from - kTimeZones), xml_date(valid.until + kTimeZones));
   for (const Grant& grant : grants.publishes) text += rule(grant, "publish");
   for (const Grant& grant : grants.subscribes) text += rule(grant, "subscribe");
   return text + "<default>DENY</default></grant></permissions></dds>\n";

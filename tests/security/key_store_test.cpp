@@ -87,7 +87,8 @@ TEST_F(Keys, WithAFileMissingAreRefusedByItsName) {
 }
 
 TEST_F(Keys, OfNobodyWhoIsThereAreRefusedWithThoseWhoAre) {
-  EXPECT_THAT(refusal([&] { store().files_of("region-3"); }), AllOf(HasSubstr("region-3"), HasSubstr("there are: region-2")));
+  EXPECT_THAT(refusal([&] { store().files_of("region-3"); }),
+              AllOf(HasSubstr("region-3"), HasSubstr("there are: region-2")));
 }
 
 TEST_F(Keys, ThatHaveEndedAreRefused) {

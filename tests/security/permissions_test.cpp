@@ -24,8 +24,8 @@ TEST(ANode, SpeaksForItsRegionOnly) {
   for (const char* partition : {"region/2", "region/2/since/5"}) {
     EXPECT_TRUE(may_say(Role::kRegion, 2, "aura", partition)) << partition;
   }
-  for (const char* partition : {"region/1", "region/20", "region/*", "*", "region/?", "region/1/since/5", "region/[2]",
-                                "world", ""}) {
+  for (const char* partition :
+       {"region/1", "region/20", "region/*", "*", "region/?", "region/1/since/5", "region/[2]", "world", ""}) {
     EXPECT_FALSE(may_say(Role::kRegion, 2, "aura", partition)) << partition;
   }
   for (const char* topic : {"node_status", "replica", "replica_key", "cluster_graph"}) {
