@@ -116,6 +116,10 @@ class Attackers : public ::testing::Test {
 
   security::KeyStore& store() { return scratch_.store; }
   KeyFiles keys_of(const std::string& name) { return store().files_of(name); }
+  std::unique_ptr<Peer> peer_without_scruples(const std::string& name) {
+    const security::ForgedPermissions forged(*store().find(name));
+    return std::make_unique<Peer>(keys_of(name));
+  }
   /// As long as an attacker would have needed, and longer: whoever may is through.
   void expect_that_the_honest_get_through(Node& node) {
     Peer operator_(keys_of("desk"));
@@ -196,11 +200,10 @@ TEST_F(Attackers, WhoAreRevokedAreRefused) {
 
 TEST_F(Attackers, WithTheKeysOfAViewerSayNothingAndReadNoHandOffs) {
   Node node(keys_of("region-2"));
-  security::ForgedPermissions forged(scratch_, "hall");
-  Peer viewer(forged.files);
-  Writer& command = viewer.says(TopicId::kCommand, "world");
-  Writer& control = viewer.says(TopicId::kRunControl, "world");
-  Reader& hand_offs = viewer.reads(TopicId::kMigration, "region/2/to/1");
+  const std::unique_ptr<Peer> viewer = peer_without_scruples("hall");
+  Writer& command = viewer->says(TopicId::kCommand, "world");
+  Writer& control = viewer->says(TopicId::kRunControl, "world");
+  Reader& hand_offs = viewer->reads(TopicId::kMigration, "region/2/to/1");
   expect_that_the_honest_get_through(node);
   EXPECT_EQ(command.reader_count(), 0U);
   EXPECT_EQ(control.reader_count(), 0U);
@@ -213,10 +216,9 @@ TEST_F(Attackers, WithTheKeysOfAViewerSayNothingAndReadNoHandOffs) {
 
 TEST_F(Attackers, OfRegion1DoNotSpeakAsRegion2) {
   Node node(keys_of("region-2"));
-  security::ForgedPermissions forged(scratch_, "region-1");
-  Peer neighbour(forged.files);
-  Writer& as_itself = neighbour.says(TopicId::kAura, "region/1");
-  Writer& as_another = neighbour.says(TopicId::kAura, "region/2");
+  const std::unique_ptr<Peer> neighbour = peer_without_scruples("region-1");
+  Writer& as_itself = neighbour->says(TopicId::kAura, "region/1");
+  Writer& as_another = neighbour->says(TopicId::kAura, "region/2");
   EXPECT_TRUE(wait_until([&] { return as_itself.reader_count() == 1; }));
   std::this_thread::sleep_for(kLongEnough);
   EXPECT_EQ(as_another.reader_count(), 0U);
