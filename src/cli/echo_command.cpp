@@ -59,8 +59,8 @@ void check_permission(const std::string& topic, const std::string& partition,
   if (!member) return;
   const security::Grants grants = security::grants_of(member->role, member->region);
   if (security::is_granted(grants.subscribes, topic, partition)) return;
-  throw config::BadConfig({fmt::format("{}, a {}, may not read {} in partition {}; a recorder may (--as)", member->name,
-                                       name_of(member->role), topic, partition)});
+  throw config::BadConfig({fmt::format("{} of role {} may not read {} in partition {}; a recorder may (--as)",
+                                       member->name, name_of(member->role), topic, partition)});
 }
 
 /// 0 when as many as asked for have come, or when no number was asked for.

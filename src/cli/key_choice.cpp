@@ -48,13 +48,13 @@ std::optional<security::Member> member_for(const config::Launch& launch, const s
     const security::KeyStore store(launch.dds.security);
     if (as.empty()) {
       if (auto member = store.first_with(roles)) return member;
-      throw security::BadKeys(fmt::format("{}: found no key for this, allowed: that of a {}; --as names one",
+      throw security::BadKeys(fmt::format("{}: found no key for this, allowed: one of these roles: {}",
                                           store.folder().string(), list_of(roles)));
     }
     const security::Member member = member_named(store, as);
     if (std::ranges::find(roles, member.role) != roles.end()) return member;
     throw security::BadKeys(
-        fmt::format("--as: found {}, a {}, allowed for this: a {}", as, name_of(member.role), list_of(roles)));
+        fmt::format("--as: found {} of role {}, allowed for this: {}", as, name_of(member.role), list_of(roles)));
   });
 }
 
@@ -68,7 +68,7 @@ std::optional<security::Member> member_for_node(const config::Launch& launch, co
     if (!member) member = store.first_with({security::Role::kSpare});
     if (!member) member = member_named(store, own);  // says who is there
     if (member->role == security::Role::kSpare || member->name == own) return member;
-    throw security::BadKeys(fmt::format("--as: found {}, a {}, allowed for the node of region {}: {}, or a spare",
+    throw security::BadKeys(fmt::format("--as: found {} of role {}, allowed for the node of region {}: {}, or a spare",
                                         member->name, name_of(member->role), core::value_of(region), own));
   });
 }

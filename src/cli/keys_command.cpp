@@ -75,9 +75,9 @@ void add(const KeysArguments& a) { KeyStore(a.folder).add({a.name, *security::ro
 
 /// By tar, which any host can unpack. The file is the owner's alone, like the key in it.
 void pack(const KeysArguments& a) {
-  const std::string file = a.file.empty() ? a.name + ".tar" : a.file;
+  const std::string file = a.file.empty() ? a.names.front() + ".tar" : a.file;
   std::vector<std::string> words = {"/bin/tar", "--create", "--owner=0", "--group=0", "--directory=" + a.folder};
-  for (const auto& path : KeyStore(a.folder).files_for_host(a.name)) words.push_back(path.string());
+  for (const auto& path : KeyStore(a.folder).files_for_host(a.names)) words.push_back(path.string());
   const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (out < 0) throw security::BadKeys(fmt::format("{}: cannot create it: is it there already?", file));
   int status = -1;
@@ -182,9 +182,9 @@ void add_keys(CLI::App& program, Action& action) {
       ->check(CLI::IsMember({"spare", "viewer", "operator", "recorder"}));
   add_days(*one, a);
 
-  CLI::App* packed = command("pack", "put what a host needs to be NAME into one file", "keys region-2", pack);
-  packed->add_option("NAME", a->name, "whose key")->required();
-  packed->add_option("--to", a->file, "the file; default: NAME.tar");
+  CLI::App* packed = command("pack", "put what a host needs into one file", "keys region-2 spare-1", pack);
+  packed->add_option("NAME", a->names, "whose keys")->required();
+  packed->add_option("--to", a->file, "the file; default: that of the first name, NAME.tar");
 
   command("revoke", "let nobody believe NAME any more", "keys region-2", revoke)
       ->add_option("NAME", a->name, "whose keys")

@@ -301,11 +301,15 @@ std::vector<MemberState> KeyStore::check() const {
   return states;
 }
 
-std::vector<std::filesystem::path> KeyStore::files_for_host(const std::string& name) const {
-  files_of(name);  // or they would be refused there
-  const std::filesystem::path own = std::filesystem::path("names") / name;
-  return {"identity_ca.pem", "permissions_ca.pem",   kGovernance, kRevocations, own / "certificate.pem",
-          own / "key.pem",   own / "permissions.p7s"};
+std::vector<std::filesystem::path> KeyStore::files_for_host(const std::vector<std::string>& names) const {
+  std::vector<std::filesystem::path> files = {"identity_ca.pem", "permissions_ca.pem", kGovernance, kRevocations};
+  for (const std::string& name : names) {
+    files_of(name);  // or they would be refused there
+    for (const char* file : {"certificate.pem", "key.pem", "permissions.p7s"}) {
+      files.push_back(std::filesystem::path("names") / name / file);
+    }
+  }
+  return files;
 }
 
 }  // namespace aurasim::security

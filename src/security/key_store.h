@@ -75,8 +75,8 @@ class KeyStore {
   KeyFiles files_of(const std::string& name) const;
   /// Of every name.
   std::vector<MemberState> check() const;
-  /// Relative to the folder: what a host needs of it to be NAME.
-  std::vector<std::filesystem::path> files_for_host(const std::string& name) const;
+  /// Relative to the folder: what a host needs of it to be these names.
+  std::vector<std::filesystem::path> files_for_host(const std::vector<std::string>& names) const;
 
   const std::filesystem::path& folder() const { return folder_; }
 

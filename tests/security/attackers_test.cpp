@@ -126,7 +126,8 @@ class Attackers : public ::testing::Test {
     operator_.says(TopicId::kCommand, "world");
     Peer neighbour(keys_of("region-1"));
     neighbour.reads(TopicId::kMigration, "region/2/to/1");
-    EXPECT_TRUE(wait_until([&] { return node.commands->watch().any_matched() && node.hand_offs->reader_count() == 1; }));
+    EXPECT_TRUE(
+        wait_until([&] { return node.commands->watch().any_matched() && node.hand_offs->reader_count() == 1; }));
     std::this_thread::sleep_for(kLongEnough);
     EXPECT_EQ(node.commands->watch().writers().size(), 1U) << "nobody but the operator";
     EXPECT_EQ(node.hand_offs->reader_count(), 1U) << "nobody but region 1";

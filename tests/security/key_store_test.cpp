@@ -158,7 +158,7 @@ TEST_F(Keys, HaveNamesThatSayNoMoreThanTheirRole) {
 }
 
 TEST_F(Keys, ForAHostAreWithoutThoseOfTheAuthorities) {
-  const auto files = store().files_for_host("region-2");
+  const auto files = store().files_for_host({"region-2"});
   const fs::path host = scratch_.parent() / "host";
   for (const fs::path& name : files) {
     EXPECT_THAT(name.string(), Not(HasSubstr("private")));

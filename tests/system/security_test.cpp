@@ -65,8 +65,9 @@ TEST_F(Security, EverybodyDoesWhatTheirKeysAreFor) {
   EXPECT_THAT(top.out(), HasSubstr("running")) << top.said();
   Process& replica = start(Words{"echo", "replica_key", demo, "--count", "1", "--duration", "20"} + with_keys());
   expect_exit(replica, 0);
-  expect_refusal(Words{"echo", "migration", demo, "--count", "1", "--as", "hall"} + with_keys(), "may not read migration");
-  expect_refusal(Words{"send", "stop", demo, "--as", "hall"} + with_keys(), "allowed for this: a operator");
+  expect_refusal(Words{"echo", "migration", demo, "--count", "1", "--as", "hall"} + with_keys(),
+                 "may not read migration");
+  expect_refusal(Words{"send", "stop", demo, "--as", "hall"} + with_keys(), "allowed for this: operator");
   Process& stranger = start(Words{"top", demo, "--duration", "3"} + in_own_domain());
   expect_exit(stranger, 1);
   EXPECT_THAT(stranger.err(), HasSubstr("no node of"));
