@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Includes go one way:
-#   core <- physics, transport, config <- dds, node <- cut, overseer, experiment <- cli
+#   core, security <- physics, transport, config <- dds, node <- cut, overseer, experiment <- cli
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
 # Within a folder there is no circle: x.h and x.cpp are one unit, and no unit includes one that includes it, directly
 # or through others. (Not yet in config.)
@@ -14,13 +14,14 @@ mapfile -t files < <(find . -mindepth 1 \( -name '*.h' -o -name '*.cpp' \) -prin
 awk '
   BEGIN {
     allow("core", "core")
+    allow("security", "security")
     allow("physics", "core physics")
     allow("transport", "core transport")
     allow("config", "core config")
-    allow("dds", "core transport config dds")
+    allow("dds", "core security transport config dds")
     allow("node", "core physics transport node")
-    allow("cut", "core dds cut")
-    below = "core physics transport config dds node cut"
+    allow("cut", "core security dds cut")
+    below = "core security physics transport config dds node cut"
     allow("overseer", below " overseer")
     allow("experiment", below " experiment")
     allow("cli", below " overseer experiment cli")
@@ -29,6 +30,7 @@ awk '
     wrap("dds", "fastdds fastrtps fastcdr")
     wrap("config", "yaml-cpp assimp")
     wrap("cli", "CLI")
+    wrap("security", "openssl")
     wrap("overseer", "boost")
 
   }

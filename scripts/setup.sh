@@ -16,8 +16,10 @@ packages=(
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
   # saved worlds
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libzstd-dev
-  # HTTP and WebSocket of the overseer, plain and over TLS, its page
-  libboost1.74-dev libssl-dev esbuild
+  # keys and certificates, TLS of the overseer
+  libssl-dev
+  # HTTP and WebSocket of the overseer, its page
+  libboost1.74-dev esbuild
 )
 packages_of_tests=(
   # second builds in seconds, the format check, the Debian package

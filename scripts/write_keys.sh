@@ -6,15 +6,15 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 program=${1:-build/release/aurasim}
-"$program" keys --schema launch >docs/aurasim-launch.schema.json
-"$program" keys --schema scene >docs/aurasim-scene.schema.json
+"$program" schema --json launch >docs/aurasim-launch.schema.json
+"$program" schema --json scene >docs/aurasim-scene.schema.json
 
 page=docs/scenes.md
 written=$(mktemp)
 trap 'rm -f "$written"' EXIT
 {
   sed '/^<!-- keys:/q' "$page"
-  "$program" keys --markdown
+  "$program" schema --markdown
   sed -n '/^<!-- end of the keys/,$p' "$page"
 } >"$written"
 cat "$written" >"$page"

@@ -13,6 +13,7 @@ namespace aurasim::cli {
 using Action = std::function<int()>;
 
 void add_check(CLI::App& program, Action& action);
+void add_schema(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_node(CLI::App& program, Action& action);
 void add_spare(CLI::App& program, Action& action);
@@ -49,6 +50,13 @@ void add_has_launcher(CLI::App& command, bool& has_launcher);
 struct FileArguments {
   std::string file;
   std::vector<std::string> overrides;
+
+  void add_to(CLI::App& command);
+};
+
+/// As whom it joins a run with keys.
+struct KeyArguments {
+  std::string as;  ///< empty: the first key of the right role
 
   void add_to(CLI::App& command);
 };

@@ -7,6 +7,7 @@
 #include <fnmatch.h>
 
 #include "cli/commands.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/silence.h"
@@ -22,8 +23,9 @@ using Clock = std::chrono::steady_clock;
 
 struct EchoArguments {
   FileArguments files;
+  KeyArguments keys;
   std::string topic;
-  std::string partition = "*";
+  std::string partition;  ///< empty: all of them
   std::uint64_t count = 0;
   double duration_s = 0;
   bool json = false;
@@ -51,13 +53,29 @@ void check_partition(const EchoArguments& arguments, const config::Launch& launc
                    arguments.topic, partitions.front(), partitions.size() > 1 ? " to " + partitions.back() : "")});
 }
 
+/// DDS would only say that the reader cannot be created.
+void check_permission(const std::string& topic, const std::string& partition,
+                      const std::optional<security::Member>& member) {
+  if (!member) return;
+  const security::Grants grants = security::grants_of(member->role, member->region);
+  if (security::is_granted(grants.subscribes, topic, partition)) return;
+  throw config::BadConfig({fmt::format("{} of role {} may not read {} in partition {}; a recorder may (--as)",
+                                       member->name, name_of(member->role), topic, partition)});
+}
+
 /// 0 when as many as asked for have come, or when no number was asked for.
 int echo(const EchoArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  check_partition(arguments, launch);
-  dds::Participant participant(dds_settings(launch));
-  dds::TopicEcho topic(participant, arguments.topic, arguments.partition);
-  dds::ControlBus control(participant, {});
+  if (!arguments.partition.empty()) check_partition(arguments, launch);
+  const std::string partition =
+      arguments.partition.empty() ? dds::every_partition_of_topic(arguments.topic) : arguments.partition;
+  using security::Role;
+  const auto member = member_for(launch, arguments.keys.as,
+                                 {Role::kRecorder, Role::kViewer, Role::kOperator, Role::kSpare, Role::kRegion});
+  check_permission(arguments.topic, partition, member);
+  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
+  dds::TopicEcho topic(participant, arguments.topic, partition);
+  dds::ControlBus control(participant, {.only_watches = true});
   catch_stop_signals();
   const auto begin = Clock::now();
   const auto end = begin + std::chrono::duration<double>(arguments.duration_s);
@@ -86,6 +104,7 @@ void add_echo(CLI::App& program, Action& action) {
   const auto arguments = std::make_shared<EchoArguments>();
   command->add_option("TOPIC", arguments->topic, "its name")->required()->check(CLI::IsMember(dds::topic_names()));
   arguments->files.add_to(*command);
+  arguments->keys.add_to(*command);
   command->add_option("--partition", arguments->partition, "such as region/3, region/*, world; default: all");
   command->add_option("--count", arguments->count, "stop after so many samples");
   command->add_option("--duration", arguments->duration_s, "stop after so many seconds; 0: on Ctrl-C");

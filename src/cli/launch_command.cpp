@@ -7,9 +7,11 @@
 
 #include "cli/commands.h"
 #include "cli/host_room.h"
+#include "cli/key_choice.h"
 #include "cli/launcher.h"
 #include "cli/leave.h"
 #include "cli/run_length.h"
+#include "cli/throw_away_keys.h"
 #include "cli/web_setup.h"
 
 namespace aurasim::cli {
@@ -19,6 +21,7 @@ struct LaunchArguments {
   LaunchOptions options;
   RunLength length;
   std::string report;
+  bool secure = false;
 };
 
 /// What cannot work is refused before anything is started; what may be slow is said.
@@ -36,14 +39,41 @@ void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
   if (!options.recording.empty()) check_recording(options.recording);
 }
 
+/// Keys for this run alone, if they are asked for; the processes that it starts hear of them like of any other key.
+std::unique_ptr<ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
+  if (!arguments.secure) return nullptr;
+  const FileArguments& files = arguments.options.files;
+  const config::Launch launch = config::read_launch(files.file, files.overrides);
+  if (!launch.dds.security.empty()) {
+    throw config::BadConfig({"--secure: found dds.security as well, allowed: one of them"});
+  }
+  auto keys = std::make_unique<ThrowAwayKeys>(launch.regions.size());
+  const std::string folder = "dds.security=" + keys->folder().string();
+  spdlog::info("a run with keys; others on this host join it with --set {}", folder);
+  arguments.options.files.overrides.push_back(folder);
+  return keys;
+}
+
+/// Or its processes would say so, one by one, in the middle of the start.
+void look_at_keys(const config::Launch& launch) {
+  for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
+    with_keys({}, launch, member_for_node(launch, "", core::RegionId{r}));
+  }
+}
+
 int run_launch(LaunchArguments arguments) {
+  std::unique_ptr<ThrowAwayKeys> throw_away = keys_for(arguments);
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
+  look_at_keys(launch);
   look_at_host(launch, arguments.options);
   const auto world = load_world(arguments.options.load, launch);  // or it is refused before anything is started
   arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
-  leave_after([&launcher] { return launcher.run(); });
+  leave_after([&launcher, &throw_away] {
+    const auto until_then = std::move(throw_away);  // nothing outside is destroyed
+    return launcher.run();
+  });
 }
 
 }  // namespace
@@ -52,6 +82,9 @@ void add_launch(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("launch", "run every region of a launch file on this host");
   const auto arguments = std::make_shared<LaunchArguments>();
   arguments->options.files.add_to(*command);
+  arguments->options.keys.add_to(*command);
+  command->add_flag("--secure", arguments->secure,
+                    "with keys made for this run, on this host: nobody else can join, and what is said is encrypted");
   arguments->length.add_to(*command);
   command->add_flag("--headless", arguments->options.headless, "no table, no viewer");
   command->add_option("--record", arguments->options.recording, "file for what the viewer sees; starts it in any case");

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "cli/guard_log.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
 #include "cli/spawn.h"
@@ -33,7 +34,8 @@ constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process
 Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(dds_settings(launch)),
+      participant_(
+          with_keys(dds_settings(launch), launch, member_for(launch, options.keys.as, {security::Role::kOperator}))),
       control_(
           participant_,
           {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {

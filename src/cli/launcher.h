@@ -23,6 +23,7 @@ namespace aurasim::cli {
 
 struct LaunchOptions {
   FileArguments files;
+  KeyArguments keys;
   std::optional<core::Step> steps;
   std::optional<std::filesystem::path> report;
   bool headless = false;

@@ -23,6 +23,7 @@ namespace {
 
 struct NodeArguments {
   FileArguments files;
+  KeyArguments keys;
   std::uint32_t region = 0;
   std::uint64_t run = 0;
   RunLength length;
@@ -58,6 +59,7 @@ int run_node(const NodeArguments& arguments) {
   NodeOptions options;
   options.region = core::RegionId{arguments.region};
   options.run = arguments.run;
+  options.as = arguments.keys.as;
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
   options.world = load_world(arguments.load, launch);
   options.saves = arguments.save.folder;
@@ -88,6 +90,7 @@ void add_node(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("node", "run one region");
   const auto arguments = std::make_shared<NodeArguments>();
   arguments->files.add_to(*command);
+  arguments->keys.add_to(*command);
   command->add_option("--region", arguments->region, "which region of the map")->required();
   command->add_option("--run", arguments->run,
                       "a number for this run, the same for all its nodes: they ignore every other run's");

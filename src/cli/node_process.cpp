@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/guard_log.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/stop_signal.h"
 #include "core/command.h"
@@ -56,7 +57,8 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(dds_settings(launch, options.region)),
+      participant_(
+          with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region))),
       control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                               static_cast<std::uint32_t>(launch.regions.size())}),
       fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),

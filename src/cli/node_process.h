@@ -42,6 +42,7 @@ struct NodeOptions {
   std::size_t save_keep = 3;                    ///< of those that nobody has asked for
   bool takes_over = false;                      ///< a run that goes on: its node of this region has died
   bool has_launcher = false;                    ///< who starts another process when a node dies, and ends them all
+  std::string as;                               ///< name of its key, in a run with keys; empty: the region's own
 };
 
 /// Between a region and those that have to hear of it.

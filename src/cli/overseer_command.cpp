@@ -1,9 +1,13 @@
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/mesh_process.h"
@@ -17,8 +21,22 @@ namespace {
 
 struct OverseerArguments {
   FileArguments files;
+  KeyArguments keys;
   WebArguments web;
   std::string recording;
+};
+
+/// Of an overseer whose key does not let it ask for anything.
+class RefusingSink final : public overseer::CommandSink {
+ public:
+  void submit(overseer::Request request) override {
+    replies_.push_back({request.client, request.id, false,
+                        "this viewer has the key of a viewer: it sees, and asks for nothing", nullptr});
+  }
+  std::vector<overseer::Reply> take_replies() override { return std::exchange(replies_, {}); }
+
+ private:
+  std::vector<overseer::Reply> replies_;
 };
 
 int oversee(const OverseerArguments& arguments) {
@@ -26,12 +44,17 @@ int oversee(const OverseerArguments& arguments) {
   const overseer::WebSettings settings = web_settings(launch, arguments.web);
   overseer::ShapeStore shapes(read_mesh_apart);
   const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, arguments.web, shapes);
-  dds::Participant participant(dds_settings(launch));
+  using security::Role;
+  const auto member = member_for(launch, arguments.keys.as, {Role::kOperator, Role::kViewer});
+  const bool only_watches = member && member->role == Role::kViewer;
+  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.map_version = launch.regions.version(),
                                         .agreement = launch.agreement(),
-                                        .region_count = static_cast<std::uint32_t>(launch.regions.size())});
-  RunCommandSink sink(launch, participant, control, shapes);
-  overseer::Overseer overseer(launch, participant, control, *web, sink);
+                                        .region_count = static_cast<std::uint32_t>(launch.regions.size()),
+                                        .only_watches = only_watches});
+  std::unique_ptr<overseer::CommandSink> sink = std::make_unique<RefusingSink>();
+  if (!only_watches) sink = std::make_unique<RunCommandSink>(launch, participant, control, shapes);
+  overseer::Overseer overseer(launch, participant, control, *web, *sink);
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();
   leave_after([&overseer] {
@@ -46,6 +69,7 @@ void add_overseer(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("overseer", "serve the viewer of a run; start and stop it as you like");
   const auto arguments = std::make_shared<OverseerArguments>();
   arguments->files.add_to(*command);
+  arguments->keys.add_to(*command);
   arguments->web.add_to(*command);
   command->add_option("--record", arguments->recording, "write down what pages see; `aurasim replay` shows it again");
   command->footer("Example:\n  aurasim overseer demo --port 8081");

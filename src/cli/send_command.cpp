@@ -11,6 +11,7 @@
 #include "cli/command_client.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/run_steering.h"
@@ -36,6 +37,7 @@ const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
 
 struct SendArguments {
   FileArguments files;
+  KeyArguments keys;
   std::string what;
   std::int64_t count = 1;
   core::Step at_step = 0;
@@ -217,7 +219,8 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
 
 int send(const SendArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  dds::Participant participant(dds_settings(launch));
+  const auto member = member_for(launch, arguments.keys.as, {security::Role::kOperator});
+  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.agreement = launch.agreement(),
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size())});
   RunSteering steering(launch, control);
@@ -357,6 +360,7 @@ void add_send(CLI::App& program, Action& action) {
   for (const auto& [name, text, options] : kinds) {
     CLI::App* command = send_app->add_subcommand(name, text);
     arguments->files.add_to(*command);
+    arguments->keys.add_to(*command);
     options(*command, *arguments);
     command->add_option("--at", arguments->at_step, "not before this state");
     command->footer(example_of(name));

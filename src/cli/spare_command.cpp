@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/other_role.h"
@@ -30,6 +31,7 @@ constexpr auto kRound = 50ms;
 
 struct SpareArguments {
   FileArguments files;
+  KeyArguments keys;
   std::uint64_t run = 0;
   std::string report;
   RunLength length;
@@ -40,8 +42,8 @@ struct SpareArguments {
 
 class Spare {
  public:
-  Spare(const config::Launch& launch, std::uint64_t run)
-      : participant_(dds_settings(launch)),
+  Spare(const config::Launch& launch, const std::string& as, std::uint64_t run)
+      : participant_(with_keys(dds_settings(launch), launch, member_for(launch, as, {security::Role::kSpare}))),
         control_(participant_, {.region = dds::kNoRegion,
                                 .agreement = launch.agreement(),
                                 .run = run_if_known(run),
@@ -95,7 +97,7 @@ int run_spare(const SpareArguments& arguments) {
   load_world(arguments.load, launch);  // or it is refused now
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
   catch_stop_signals();
-  Spare spare(launch, arguments.run);
+  Spare spare(launch, arguments.keys.as, arguments.run);
   const std::optional<dds::RunCommand> take = spare.wait();
   if (!take) leave(0);  // silently, as nodes do, and so it does when it becomes one
   spdlog::info("takes over region {}", core::value_of(take->region));
@@ -109,6 +111,7 @@ void add_spare(CLI::App& program, Action& action) {
       program.add_subcommand("spare", "wait for a run, and take over a region whose node dies or leaves");
   const auto arguments = std::make_shared<SpareArguments>();
   arguments->files.add_to(*command);
+  arguments->keys.add_to(*command);
   command->add_option("--run", arguments->run, "the number of the run that is meant; 0: whichever is there");
   command->add_option("--report", arguments->report, "folder for what it records as a node");
   add_has_launcher(*command, arguments->has_launcher);

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/live_table.h"
@@ -14,11 +15,15 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-int watch(const FileArguments& files, double seconds) {
+int watch(const FileArguments& files, const KeyArguments& keys, double seconds) {
   const config::Launch launch = config::read_launch(files.file, files.overrides);
-  dds::Participant participant(dds_settings(launch));
+  using security::Role;
+  const auto member =
+      member_for(launch, keys.as, {Role::kViewer, Role::kOperator, Role::kRecorder, Role::kSpare, Role::kRegion});
+  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.agreement = launch.agreement(),
-                                        .region_count = static_cast<std::uint32_t>(launch.regions.size())});
+                                        .region_count = static_cast<std::uint32_t>(launch.regions.size()),
+                                        .only_watches = true});
   TerminalView view;
   catch_stop_signals();
   const auto begin = Clock::now();
@@ -40,11 +45,14 @@ int watch(const FileArguments& files, double seconds) {
 void add_top(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("top", "watch the nodes of a run");
   const auto files = std::make_shared<FileArguments>();
+  const auto keys = std::make_shared<KeyArguments>();
   const auto seconds = std::make_shared<double>(0);
   files->add_to(*command);
+  keys->add_to(*command);
   command->add_option("--duration", *seconds, "stop after so many seconds; 0: on Ctrl-C");
   command->footer("Example:\n  aurasim top demo");
-  command->callback([files, seconds, &action] { action = [files, seconds] { return watch(*files, *seconds); }; });
+  command->callback(
+      [files, keys, seconds, &action] { action = [files, keys, seconds] { return watch(*files, *keys, *seconds); }; });
 }
 
 }  // namespace aurasim::cli

@@ -52,6 +52,13 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
       f.refuse(fmt::format("an XML file ({} is none)", dds.profiles.string()));
     }
   }
+  if (const Field f = fields["security"]; f.given()) {
+    if (const auto name = f.text()) dds.security = (folder / *name).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_directory(dds.security, error)) {
+      f.refuse(fmt::format("a folder of keys ({} is none)", dds.security.string()));
+    }
+  }
   if (dds.discovery != Discovery::kMulticast && dds.peers.empty() && !fields.has("peers")) {
     field.complain("needs peers, allowed: peers: [ADDRESS, ...] with discovery: peers or server");
   }

@@ -165,6 +165,11 @@ const KeysOf<Dds>& dds_keys() {
           optional("peers", &Dds::peers, list(1, 256, text("an address")),
                    "ADDRESS or ADDRESS:PORT; required with discovery: peers and server")
               .otherwise("none"),
+          optional(
+              "security", text("a folder"),
+              "keys made by `aurasim keys`, relative to this file: only who has one joins the run, and what is said "
+              "is encrypted")
+              .otherwise("none: an open run, which whoever reaches the network can join"),
           optional("impair", &Dds::impair, impair_keys, "a worse network than there is"),
       });
   return keys;

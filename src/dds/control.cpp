@@ -98,10 +98,10 @@ struct ControlBus::Impl {
   Wakeup wakeup;
   std::optional<Writer> status_writer;
   Reader status_reader;
-  Writer map_writer;
+  std::optional<Writer> map_writer;
   Reader map_reader;
-  Writer command_writer;
-  Reader command_reader;
+  std::optional<Writer> command_writer;
+  std::optional<Reader> command_reader;
   wire::NodeStatus status;  // reused for every sample
   wire::RegionMap map;
   wire::RunControl command;
@@ -123,14 +123,16 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
     : participant(participant_in),
       settings(settings_in),
       status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, wakeup),
-      map_writer(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
-      map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
-      command_writer(participant.domain(), in_world(TopicId::kRunControl), wakeup),
-      command_reader(participant.domain(), in_world(TopicId::kRunControl), wakeup) {
+      map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup) {
+  if (!settings.only_watches) {
+    command_writer.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+    command_reader.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+  }
   if (settings.region) {
     status_writer.emplace(participant.domain(),
                           EndpointSpec{TopicId::kNodeStatus, {partition_of(*settings.region)}, settings.region},
                           wakeup);
+    map_writer.emplace(participant.domain(), in_world(TopicId::kRegionMap), wakeup);
   }
 }
 
@@ -338,9 +340,10 @@ std::vector<Status> ControlBus::spares() {
 }
 
 bool ControlBus::publish_map(const WorldMap& map) {
+  if (!impl_->map_writer) throw std::logic_error("publish_map: this process is no node");
   impl_->participant.progress();
   encode(map, impl_->map);
-  return impl_->map_writer.write(&impl_->map) != WriteResult::kFailed;
+  return impl_->map_writer->write(&impl_->map) != WriteResult::kFailed;
 }
 
 void ControlBus::use_map(std::uint64_t map_version) { impl_->settings.map_version = map_version; }
@@ -372,13 +375,14 @@ const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
 }
 
 std::uint64_t ControlBus::send(RunCommand command) {
+  if (!impl_->command_writer) throw std::logic_error("send: this process only watches");
   impl_->participant.progress();
   if (command.request == 0) {
     command.request = draw_id();
   }
   impl_->remember(command.request, impl_->command_writer.guid());
   encode(command, impl_->sender, impl_->command);
-  if (impl_->command_writer.write(&impl_->command) == WriteResult::kFailed) {
+  if (impl_->command_writer->write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
   }
   return command.request;
@@ -387,11 +391,12 @@ std::uint64_t ControlBus::send(RunCommand command) {
 std::vector<RunCommand> ControlBus::take_commands() {
   impl_->participant.progress();
   std::vector<RunCommand> commands;
+  if (!impl_->command_reader) return commands;
   bool any = false;
   Expected expected;
   expected.map_version = impl_->settings.map_version;
   Origin origin;
-  while (impl_->command_reader.take(&impl_->command, &origin)) {
+  while (impl_->command_reader->take(&impl_->command, &origin)) {
     if (!std::exchange(any, true)) statuses();  // who may say what
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
@@ -427,7 +432,9 @@ void ControlBus::wait(std::chrono::nanoseconds time_out) {
   impl_->participant.progress();
 }
 
-std::size_t ControlBus::listeners() const { return impl_->command_writer.foreign_reader_count(); }
+std::size_t ControlBus::listeners() const {
+  return impl_->command_writer ? impl_->command_writer->foreign_reader_count() : 0;
+}
 
 const WireErrors& ControlBus::refused() const { return impl_->refused; }
 

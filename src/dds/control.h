@@ -27,6 +27,8 @@ struct ControlSettings {
   std::optional<std::uint64_t> run = {};
   /// Of the run. Whoever says that it is the node of another region is a stranger.
   std::uint32_t region_count = 1U << 20;
+  /// Neither sends nor takes commands, and publishes no map: in a run with keys a viewer may not.
+  bool only_watches = false;
 };
 
 /// Used by one thread. The participant must outlive it.

@@ -84,6 +84,7 @@ Domain::Domain(const Settings& settings) : profiles_(settings.profiles), guard_(
   install(qos, guard_, delay_line_);
   switch_intraprocess_delivery_off();
   set_type_tables_up();
+  if (settings.keys) refusals_.emplace(settings.tell_refusal);
   participant_.reset(
       DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos, this, StatusMask::none()));
   if (participant_ == nullptr) {
@@ -146,6 +147,18 @@ eprosima::fastdds::dds::Topic& Domain::topic(TopicId id) {
     }
   }
   return *topics_[index];
+}
+
+void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                                      eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) {
+  if (refusals_) SecurityLog::instance().note(info);
+}
+
+void Domain::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*,
+                                         eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) {
+  using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
+  if (info.status != ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) return;
+  SecurityLog::instance().refused(info.guid);
 }
 
 void Domain::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,

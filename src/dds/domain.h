@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "dds/delay_line.h"
 #include "dds/liveliness_asserter.h"
 #include "dds/profiles.h"
+#include "dds/security_log.h"
 #include "dds/settings.h"
 #include "dds/speakers.h"
 #include "dds/watch.h"
@@ -81,6 +83,10 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   DatagramGuard& guard() const { return *guard_; }
 
  private:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* participant,
+                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -91,6 +97,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Directory directory_;
   Speakers speakers_;
   bool loopback_only_ = false;
+  std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
   std::shared_ptr<DatagramGuard> guard_;
   std::mutex topics_mutex_;

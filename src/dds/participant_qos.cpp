@@ -123,6 +123,25 @@ void fit_to_links(DomainParticipantQos& qos) {
   }
 }
 
+/// DDS-Security with the plugins that Fast DDS brings.
+void set_keys(DomainParticipantQos& qos, const security::KeyFiles& keys) {
+  auto& properties = qos.properties().properties();
+  const auto set = [&properties](const char* name, const std::string& value) { properties.emplace_back(name, value); };
+  const auto set_file = [&set](const char* name, const std::filesystem::path& file) {
+    set(name, "file://" + file.string());
+  };
+  set("dds.sec.auth.plugin", "builtin.PKI-DH");
+  set_file("dds.sec.auth.builtin.PKI-DH.identity_ca", keys.identity_ca);
+  set_file("dds.sec.auth.builtin.PKI-DH.identity_certificate", keys.certificate);
+  set_file("dds.sec.auth.builtin.PKI-DH.identity_crl", keys.revocations);
+  set_file("dds.sec.auth.builtin.PKI-DH.private_key", keys.key);
+  set("dds.sec.access.plugin", "builtin.Access-Permissions");
+  set_file("dds.sec.access.builtin.Access-Permissions.permissions_ca", keys.permissions_ca);
+  set_file("dds.sec.access.builtin.Access-Permissions.governance", keys.governance);
+  set_file("dds.sec.access.builtin.Access-Permissions.permissions", keys.permissions);
+  set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
 }  // namespace
 
 DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings) {
@@ -136,6 +155,7 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   } else if (settings.discovery == config::Discovery::kServer) {
     set_servers(qos, settings);
   }
+  if (settings.keys) set_keys(qos, *settings.keys);
   return qos;
 }
 

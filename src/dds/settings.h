@@ -4,12 +4,15 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "config/discovery.h"
 #include "dds/impairment.h"
+#include "security/key_files.h"
 
 namespace aurasim::dds {
 
@@ -30,6 +33,10 @@ struct Settings {
   std::uint64_t impairment_stream = 0;
   /// A process whose owner has not called any transport or bus for this long no longer counts as alive.
   std::chrono::nanoseconds hang_limit = std::chrono::seconds(10);
+  /// Joins a run with keys; nothing: an open one.
+  std::optional<security::KeyFiles> keys;
+  /// Called from DDS's threads with a sentence for each peer, reader or writer whom keys refuse.
+  std::function<void(const std::string&)> tell_refusal;
 };
 
 /// A profile, an endpoint or a peer is missing or wrong; what() names it and the file.

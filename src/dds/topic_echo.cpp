@@ -83,7 +83,9 @@ Json to_json(types::DynamicData& data, types::MemberId id, types::DynamicType& t
 
 /// Whoever only watches must hold nobody up: where no history is asked for, what is lost on the way stays lost.
 EndpointSpec watching(TopicId topic, const std::string& partition) {
-  EndpointSpec spec{topic, {partition, in_any_life(partition)}, {}, {}};
+  EndpointSpec spec{topic, {partition}, {}, {}};
+  const bool has_lives = topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
+  if (has_lives) spec.partitions.push_back(in_any_life(partition));
   spec.best_effort_if_volatile = true;
   return spec;
 }
@@ -127,6 +129,12 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
       partitions.push_back(kWorldPartition);
   }
   return partitions;
+}
+
+std::string every_partition_of_topic(const std::string& name) {
+  const std::vector<std::string> partitions = partitions_of_topic(name, 1);
+  if (checked(name) == TopicId::kCheckpoint) return "*";  // and what is for all
+  return partitions.front() == kWorldPartition ? kWorldPartition : kEveryRegionPartition;
 }
 
 struct TopicEcho::Impl {

@@ -20,6 +20,8 @@ std::vector<std::string> topic_names();
 /// Where a topic is published in a run of so many regions; never empty. Throws std::invalid_argument when there is no
 /// such topic.
 std::vector<std::string> partitions_of_topic(const std::string& topic, std::size_t regions);
+/// All of them in one pattern. Throws likewise.
+std::string every_partition_of_topic(const std::string& topic);
 
 /// Used by one thread. The participant must outlive it.
 class TopicEcho {

@@ -74,13 +74,15 @@ TEST(LaunchFile, APresetSetsThePhysicsAndWhatStandsBesideItGoesBefore) {
 TEST(LaunchFile, EveryKeyIsRead) {
   const Workspace workspace;
   workspace.write("qos.xml", "<dds/>");
+  workspace.write("keys/identity_ca.pem", "");
   const Launch launch = workspace.launch(R"(scene: scene.yaml
 regions: {layout: grid, rows: 1, columns: 3, cell: [50, 60], neighbour_distance: 70}
 time: {step_hz: 120, substeps: 2, sync: deterministic, lookahead: 3, pace: none}
 tolerances: {speed: 20, latency: 0.001, frame: 0.005}
 aura: {radius: tight, uncertainty: 1}
 physics: {precision: single, solver: dantzig, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
-dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"]}
+dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"],
+      security: keys}
 observe: {tick_hz: 30}
 )");
   EXPECT_EQ(launch.regions.size(), 3u);
@@ -101,6 +103,7 @@ observe: {tick_hz: 30}
   EXPECT_TRUE(launch.physics.is_continuous());
   EXPECT_EQ(launch.dds.domain, 7);
   EXPECT_EQ(launch.dds.profiles, workspace.folder() / "qos.xml");
+  EXPECT_EQ(launch.dds.security, workspace.folder() / "keys");
   EXPECT_EQ(launch.dds.discovery, Discovery::kPeers);
   EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("10.0.0.1", "127.0.0.1"));
   EXPECT_THAT(launch.dds.peers, testing::ElementsAre("10.0.0.2:7400"));

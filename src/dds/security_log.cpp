@@ -1,0 +1,186 @@
+#include "dds/security_log.h"
+
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <fmt/format.h>
+
+namespace aurasim::dds {
+
+using eprosima::fastdds::dds::Log;
+using eprosima::fastdds::dds::LogConsumer;
+using eprosima::fastdds::dds::StdoutErrConsumer;
+using eprosima::fastrtps::rtps::GUID_t;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+
+namespace {
+
+constexpr const char* kOurs = "SECURITY_AURASIM";
+constexpr const char* kReasons = "SECURITY_AUTHENTICATION";
+constexpr const char* kRefused = "refused ";
+
+// What strangers can make us say and remember.
+constexpr std::size_t kMostNames = 4096;
+constexpr std::size_t kMostSaid = 1024;
+constexpr auto kSayAgain = std::chrono::minutes(1);
+constexpr auto kWindow = std::chrono::seconds(10);
+constexpr std::uint64_t kMostInWindow = 30;
+constexpr std::size_t kLongestClaim = 128;
+
+/// Warnings but for those of kReasons are of no use: dozens a second while two participants meet.
+bool is_about_security(const std::string& category, const std::string& message) {
+  return category.starts_with("SECURITY") || (category == "RTPS_EDP" && message.starts_with("Security manager"));
+}
+
+/// Fast DDS's log, but for what it says of security.
+class Listener final : public LogConsumer {
+ public:
+  void Consume(const Log::Entry& entry) override {
+    const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
+    const bool is_error = entry.kind == Log::Kind::Error;
+    if (category == kOurs || category == kReasons || (is_error && is_about_security(category, entry.message))) {
+      SecurityLog::instance().hear(entry.message, category);
+    } else if (is_error) {
+      others_.Consume(entry);
+    }
+  }
+
+ private:
+  StdoutErrConsumer others_;
+};
+
+template <class T>
+std::string text_of(const T& value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+/// It comes from a stranger, and goes to a terminal.
+std::string printable(const std::string& text) {
+  std::string out;
+  for (const char c : text.substr(0, kLongestClaim)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out;
+}
+
+std::string claim_in(const ParticipantDiscoveryInfo& info) {
+  for (const auto& property : info.info.identity_token_.properties()) {
+    if (property.name() == "dds.cert.sn") return "who says to be " + printable(property.value());
+  }
+  return "without keys";
+}
+
+std::string address_in(const ParticipantDiscoveryInfo& info) {
+  const auto& locators = info.info.metatraffic_locators.unicast;
+  return locators.empty() ? "nowhere" : text_of(locators.at(0));
+}
+
+/// Without the place in Fast DDS's sources.
+std::string without_place(std::string message) {
+  for (std::size_t place = 0; (place = message.find(" (./src")) != std::string::npos;) {
+    const std::size_t end = message.find(')', place);
+    message.erase(place, end == std::string::npos ? end : end + 1 - place);
+  }
+  while (!message.empty() && (message.back() == '\n' || message.back() == '.')) message.pop_back();
+  return message;
+}
+
+}  // namespace
+
+SecurityLog& SecurityLog::instance() {
+  static SecurityLog* log = new SecurityLog;  // Fast DDS's log thread outlives what is destroyed at the end
+  return *log;
+}
+
+SecurityLog::SecurityLog() {
+  Log::ClearConsumers();
+  Log::RegisterConsumer(std::make_unique<Listener>());
+  Log::SetVerbosity(Log::Kind::Warning);
+}
+
+SecurityLog::Hearing::Hearing(Tell tell) {
+  SecurityLog& log = instance();
+  const std::lock_guard lock(log.mutex_);
+  number_ = log.next_number_++;
+  log.tells_.emplace(number_, std::move(tell));
+}
+
+SecurityLog::Hearing::~Hearing() {
+  SecurityLog& log = instance();
+  {
+    const std::lock_guard lock(log.mutex_);
+    log.tells_.erase(number_);
+  }
+  Log::Flush();  // whoever is being told has been told
+}
+
+void SecurityLog::note(const ParticipantDiscoveryInfo& info) {
+  const std::string prefix = text_of(info.info.m_guid.guidPrefix);
+  const std::lock_guard lock(mutex_);
+  if (info.status == ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+      info.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    names_.erase(prefix);
+  } else if (names_.size() < kMostNames) {
+    names_.insert_or_assign(prefix, fmt::format("the participant at {}, {}", address_in(info), claim_in(info)));
+  }
+}
+
+void SecurityLog::refused(const GUID_t& participant) {
+  // By the log, so that it comes after the reason.
+  Log::QueueLog(kRefused + text_of(participant), Log::Context{__FILE__, __LINE__, __func__, kOurs}, Log::Kind::Warning);
+}
+
+void SecurityLog::hear(const std::string& message, const std::string& category) {
+  std::vector<std::string> texts;
+  std::map<int, Tell> tells;
+  {
+    const std::lock_guard lock(mutex_);
+    if (category == kOurs) {
+      const std::string reason = std::exchange(reason_, {});
+      texts = worth_saying(fmt::format("{}{}", with_names(message), reason.empty() ? "" : ": " + reason));
+    } else if (category == kReasons) {
+      reason_ = without_place(message);
+    } else {
+      texts = worth_saying(with_names(without_place(message)));
+    }
+    tells = tells_;
+  }
+  for (const std::string& text : texts) {  // a terminal that stands still must not hold DDS's threads up
+    for (const auto& [number, tell] : tells) {
+      if (tell) tell(text);
+    }
+  }
+}
+
+std::string SecurityLog::with_names(std::string message) const {
+  // A number is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the participant, then what of it is meant.
+  constexpr std::size_t kPrefix = 12 * 3 - 1;
+  const std::size_t bar = message.find('|');
+  if (bar == std::string::npos || bar < kPrefix) return message;
+  const auto name = names_.find(message.substr(bar - kPrefix, kPrefix));
+  if (name != names_.end()) message.insert(bar - kPrefix, fmt::format("[{}] ", name->second));
+  return message;
+}
+
+std::vector<std::string> SecurityLog::worth_saying(const std::string& text) {
+  const Clock::time_point now = Clock::now();
+  if (const auto said = said_.find(text); said != said_.end() && now < said->second + kSayAgain) return {};
+  if (now > window_begin_ + kWindow) {
+    window_begin_ = now;
+    in_window_ = 0;
+  }
+  if (++in_window_ > kMostInWindow) {
+    ++unsaid_;
+    return {};
+  }
+  if (said_.size() >= kMostSaid) said_.clear();
+  said_[text] = now;
+  const std::uint64_t unsaid = std::exchange(unsaid_, 0);
+  if (unsaid == 0) return {text};
+  return {fmt::format("{} more refusals were not listed", unsaid), text};
+}
+
+}  // namespace aurasim::dds
