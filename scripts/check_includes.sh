@@ -31,7 +31,7 @@ awk '
     wrap("config", "yaml-cpp assimp")
     wrap("cli", "CLI")
     wrap("security", "openssl")
-    wrap("overseer", "boost")
+    wrap("overseer", "boost openssl")
 
   }
 
@@ -43,7 +43,7 @@ awk '
 
   function wrap(folder, libraries,    list, n, i) {
     n = split(libraries, list, " ")
-    for (i = 1; i <= n; ++i) wrapper[list[i]] = folder
+    for (i = 1; i <= n; ++i) wrapper[list[i]] = wrapper[list[i]] " " folder
   }
 
   function refuse(why) {
@@ -70,7 +70,9 @@ awk '
     }
     split(name, parts, "/")
     library = name ~ /^bt[A-Z]/ ? "bullet" : parts[1]
-    if (library in wrapper && wrapper[library] != folder) refuse("only " wrapper[library] " knows this library")
+    if (library in wrapper && index(" " wrapper[library] " ", " " folder " ") == 0) {
+      refuse("only " wrapper[library] " may know this library")
+    }
   }
 
   function unit_of(name) {

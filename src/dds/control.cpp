@@ -380,7 +380,7 @@ std::uint64_t ControlBus::send(RunCommand command) {
   if (command.request == 0) {
     command.request = draw_id();
   }
-  impl_->remember(command.request, impl_->command_writer.guid());
+  impl_->remember(command.request, impl_->command_writer->guid());
   encode(command, impl_->sender, impl_->command);
   if (impl_->command_writer->write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
@@ -401,14 +401,14 @@ std::vector<RunCommand> ControlBus::take_commands() {
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);
-      impl_->command_reader.refuse_from(origin, *error);
+      impl_->command_reader->refuse_from(origin, *error);
       continue;
     }
     auto& command = std::get<RunCommand>(decoded);
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
     if (const std::string problem = impl_->problem_with(command, origin); !problem.empty()) {
       impl_->refused.add(WireError::kSource);
-      impl_->command_reader.refuse_from(origin, fmt::format("{}: {}", name_of(command.kind), problem));
+      impl_->command_reader->refuse_from(origin, fmt::format("{}: {}", name_of(command.kind), problem));
       continue;
     }
     command.clock_ahead = origin.clock_ahead;
@@ -423,7 +423,7 @@ void ControlBus::refuse(const RunCommand& command, const std::string& why) {
   const auto sender = impl_->requests.find(command.request);
   if (sender == impl_->requests.end()) return;
   impl_->refused.add(WireError::kRange);
-  impl_->command_reader.refuse_from({sender->second}, fmt::format("{}: {}", name_of(command.kind), why));
+  impl_->command_reader->refuse_from({sender->second}, fmt::format("{}: {}", name_of(command.kind), why));
 }
 
 void ControlBus::wait(std::chrono::nanoseconds time_out) {

@@ -152,8 +152,8 @@ struct RunCommand {
     bool survives = false;      ///< it knows which orders there have been
   };
   std::vector<Member> members;  ///< kRestore: by region
-  bool is_of_itself = false;  ///< kLost: that very process says so. Not sent.
-  bool is_of_a_node = true;   ///< as far as is known; else it is a launcher's, an operator's, or anybody's. Not sent.
+  bool is_of_itself = false;    ///< kLost: that very process says so. Not sent.
+  bool is_of_a_node = true;     ///< as far as is known; else it is a launcher's, an operator's, or anybody's. Not sent.
   /// How far the sender's wall clock was ahead of ours when it came, less its way. Not sent.
   std::chrono::nanoseconds clock_ahead{0};
 };

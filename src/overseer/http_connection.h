@@ -100,8 +100,8 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
       return refuse(400, "a header stands there twice");
     const std::string why = hub_.access().why_not(header(Field::host), header(Field::origin), local_address_);
     if (!why.empty()) return refuse(403, why);
-    const auto found = hub_.access().standing_of(
-        address(), {header(Field::authorization), header(Field::cookie)}, Clock::now());
+    const auto found =
+        hub_.access().standing_of(address(), {header(Field::authorization), header(Field::cookie)}, Clock::now());
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(refusal->status, refusal->why);
     standing_ = std::get<Standing>(found);
     serve();

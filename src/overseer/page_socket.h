@@ -38,7 +38,10 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   using Clock = std::chrono::steady_clock;
 
   PageSocket(Stream stream, WebHub& hub, PagePlace place, Standing its_standing)
-      : socket_(std::move(stream)), hub_(hub), place_(std::move(place)), spacing_(socket_.get_executor()),
+      : socket_(std::move(stream)),
+        hub_(hub),
+        place_(std::move(place)),
+        spacing_(socket_.get_executor()),
         reading_(socket_.get_executor()) {
     standing = its_standing;
   }

@@ -10,8 +10,8 @@
 namespace aurasim::overseer {
 namespace {
 
-constexpr double kGuesses = 10;          // wrong tokens of one address at once
-constexpr double kGuesses_per_s = 0.2;   // and from then on
+constexpr double kGuesses = 10;         // wrong tokens of one address at once
+constexpr double kGuesses_per_s = 0.2;  // and from then on
 constexpr std::size_t kMostGuessers = 1'000;
 
 }  // namespace

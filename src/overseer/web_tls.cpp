@@ -75,8 +75,8 @@ ssl::context make_tls_context(const config::Tls& tls) {
   SSL_CTX_set_min_proto_version(native, TLS1_2_VERSION);
   SSL_CTX_set_cipher_list(native, kCiphersOfTls12);
   SSL_CTX_set_options(native, SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION | SSL_OP_CIPHER_SERVER_PREFERENCE);
-  SSL_CTX_set_mode(native, SSL_MODE_RELEASE_BUFFERS);            // many idle connections need little memory
-  SSL_CTX_set_session_cache_mode(native, SSL_SESS_CACHE_OFF);    // tickets do
+  SSL_CTX_set_mode(native, SSL_MODE_RELEASE_BUFFERS);                    // many idle connections need little memory
+  SSL_CTX_set_session_cache_mode(native, SSL_SESS_CACHE_OFF);            // tickets do
   context.set_password_callback([](auto...) { return std::string(); });  // instead of asking at the terminal
   ERR_clear_error();
   if (SSL_CTX_use_certificate_chain_file(native, tls.certificate.c_str()) != 1)

@@ -30,6 +30,8 @@ Grants grants_of_node(const std::string& region) {
   const std::vector<std::string> own = {fmt::format("region/{}", region)};
   const std::vector<std::string> to_it = {fmt::format("region/*/to/{}", region),
                                           fmt::format("region/*/to/{}/since/*", region)};
+  std::vector<std::string> kept_here = to_it;
+  kept_here.push_back(kWorld);
   Grants grants;
   grants.publishes = {{"aura", from(region)},
                       {"migration", {to_any}},
@@ -42,6 +44,7 @@ Grants grants_of_node(const std::string& region) {
                       {"cluster_graph", own},
                       {"command_reply", {kWorld}},
                       {"orders", {kWorld}},
+                      {"shape", {kWorld}},
                       {"checkpoint", {to_any, kWorld}}};
   // Whom it listens to changes with the bodies (docs/decisions/0003), so it may listen to all.
   grants.subscribes = {{"aura", {kEveryRegion}},
@@ -52,7 +55,7 @@ Grants grants_of_node(const std::string& region) {
                        {"run_control", {kWorld}},
                        {"command", {kWorld}},
                        {"shape", {kWorld}},
-                       {"checkpoint", {fmt::format("region/*/to/{}", region), kWorld}}};
+                       {"checkpoint", kept_here}};
   return grants;
 }
 

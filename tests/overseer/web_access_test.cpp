@@ -119,8 +119,8 @@ class Access : public ::testing::Test {
 TEST_F(Access, IsByTheNamesAndAddressesThatTheServerIsMeantToBeAskedBy) {
   const WebAccess access = this->access();
   const auto is_served = [&](const char* host) { return access.why_not(host, {}, "10.0.0.5").empty(); };
-  for (const char* host : {"10.0.0.5:8080", "localhost:9000", "127.0.0.1", "[::1]:80", "viewer.lab", "VIEWER.lab:8080",
-                           "a.example.org"})
+  for (const char* host :
+       {"10.0.0.5:8080", "localhost:9000", "127.0.0.1", "[::1]:80", "viewer.lab", "VIEWER.lab:8080", "a.example.org"})
     EXPECT_TRUE(is_served(host)) << host;
   for (const char* host : {"", "10.0.0.6", "evil.example", "viewer.lab.evil.example", "example.org", "a.b.example.org",
                            ".example.org", "localhost.evil.example", "127.0.0.1.evil.example"})
@@ -134,8 +134,8 @@ TEST_F(Access, IsForPagesOfTheSameOrigin) {
   const WebAccess plain = access();
   EXPECT_TRUE(is_served(plain, "http://viewer.lab:8080"));
   EXPECT_TRUE(is_served(plain, "https://viewer.lab:8080")) << "a proxy speaks TLS";
-  for (const char* origin : {"null", "http://viewer.lab", "http://viewer.lab:8081", "http://evil.example", "viewer.lab:8080",
-                             "http://viewer.lab:8080.evil.example", "file://viewer.lab:8080"})
+  for (const char* origin : {"null", "http://viewer.lab", "http://viewer.lab:8081", "http://evil.example",
+                             "viewer.lab:8080", "http://viewer.lab:8080.evil.example", "file://viewer.lab:8080"})
     EXPECT_FALSE(is_served(plain, origin)) << origin;
   settings_.tls = config::Tls{};
   EXPECT_TRUE(is_served(access(), "https://viewer.lab:8080"));

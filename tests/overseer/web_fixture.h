@@ -1,8 +1,6 @@
 // A web server alone, and what its tests ask of it.
 #pragma once
 
-#include "overseer/web_server.h"
-
 #include <atomic>
 #include <fstream>
 #include <thread>
@@ -13,6 +11,7 @@
 
 #include "config/meshes.h"
 #include "overseer/web_client.h"
+#include "overseer/web_server.h"
 
 namespace aurasim::overseer {
 

@@ -197,7 +197,9 @@ TEST_F(Web, NodesAreAskedForSoManyRaysAndNoMore) {
   serve();
   Page page(port());
   for (int i = 0; i < 60; ++i)
-    page.send(Json{{"type", "command"}, {"request", std::to_string(i)}, {"command", {{"kind", "ray"}, {"from", {0, 0, 9}}, {"to", {0, 0, 0}}}}});
+    page.send(Json{{"type", "command"},
+                   {"request", std::to_string(i)},
+                   {"command", {{"kind", "ray"}, {"from", {0, 0, 9}}, {"to", {0, 0, 0}}}}});
   ASSERT_TRUE(page.wait_until([&] { return page.replies.contains("59"); }));
   EXPECT_THAT(page.latest["reply"].at("text").get<std::string>(), HasSubstr("too many rays"));
   const std::size_t asked = server_->take_requests().size();

@@ -15,9 +15,9 @@ namespace beast = testing::beast;
 namespace http = testing::http;
 namespace ssl = asio::ssl;
 using testing::HttpReply;
-using testing::TestCertificate;
 using ::testing::Not;
 using ::testing::StartsWith;
+using testing::TestCertificate;
 
 class WebOverTls : public Web {
  protected:
