@@ -17,7 +17,7 @@ namespace aurasim::dds {
 struct PeerLimits {
   std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
   std::size_t endpoints_of_a_participant = 4096;
-  std::uint64_t longest_jump = std::uint64_t{1} << 28;  ///< at 60 steps a second: 51 days
+  std::uint64_t longest_jump = std::uint64_t{1} << 26;  ///< at 60 steps a second: 13 days
   std::uint64_t longest_gap = std::uint64_t{1} << 18;
   std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
   std::size_t unfinished_B = std::size_t{512} << 20, unfinished_of_a_participant_B = std::size_t{256} << 20;

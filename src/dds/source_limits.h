@@ -22,7 +22,7 @@ struct RateLimits {
   double bytes_per_s = 250e6, bytes_burst = 500e6;             ///< of one socket
   double address_datagrams_per_s = 400'000, address_datagrams_burst = 400'000;
   // Numbers that are left out; each one costs Fast DDS a few ns with the reader's lock held, and one in a gap memory.
-  double jumps_per_s = 1U << 23, jumps_burst = 1U << 30;  ///< of heartbeats, of one address
+  double jumps_per_s = 1U << 21, jumps_burst = 1U << 28;  ///< of heartbeats, of one address
   double gaps_per_s = 1U << 12, gaps_burst = 1U << 19;    ///< of gaps, of one address
 };
 

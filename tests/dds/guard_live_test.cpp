@@ -38,17 +38,16 @@ class GuardedRegions : public ::testing::Test {
     });
   }
   /// What b's writers, but for the built-in ones, have sent heartbeats with.
-  std::set<std::uint32_t> writers_of_b() {
-    std::set<std::uint32_t> writers;
+  const std::set<std::uint32_t>& writers_of_b() {
     Findings findings;
     for (const Bytes& bytes : recorded_datagrams()) {
       if (check_datagram(bytes, findings)) continue;
       for (const Claim& claim : findings.claims) {
         if (claim.kind != Claim::Kind::kHeartbeat || is_built_in(claim.guid.entity)) continue;
-        if (claim.guid.prefix == prefix_of(b_)) writers.insert(claim.guid.entity);
+        if (claim.guid.prefix == prefix_of(b_)) writers_.insert(claim.guid.entity);
       }
     }
-    return writers;
+    return writers_;
   }
   static GuidPrefix prefix_of(RunEndpoints& endpoints) {
     GuidPrefix prefix;
@@ -82,6 +81,7 @@ class GuardedRegions : public ::testing::Test {
 
   int socket_;
   RunEndpoints a_, b_;
+  std::set<std::uint32_t> writers_;
   core::Step step_ = 0;
 };
 
