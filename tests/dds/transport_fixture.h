@@ -1,6 +1,7 @@
 // Regions in one process, each with a participant of its own, on loopback.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -68,6 +69,7 @@ struct Peer {
     core::Outbox outbox;
     outbox.aura = batch_of(auras, region());
     outbox.aura.stamp = stamp;
+    for (core::AuraRecord& aura : outbox.aura.updates) aura.stamp = std::min(aura.stamp, stamp);
     transport.send(outbox);
   }
   core::RegionId region() const { return region_; }
