@@ -1,5 +1,6 @@
 #include "dds/checkpoint_bus.h"
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,18 @@
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
+
+namespace {
+
+/// Parts of processes of which no status has told yet that they are nodes: that may come later.
+constexpr std::size_t kMostWaiting = 64;
+
+struct Given {
+  Checkpoint part;
+  Origin by;
+};
+
+}  // namespace
 
 struct CheckpointBus::Impl {
   Impl(Participant& participant_in, core::RegionId region_in)
@@ -33,6 +46,7 @@ struct CheckpointBus::Impl {
   std::optional<core::RegionId> keeper;
   std::optional<TypedWriter<wire::Checkpoint>> to_keeper;
   std::optional<TypedReader<wire::Checkpoint>> reader;
+  std::deque<Given> given;
 };
 
 CheckpointBus::CheckpointBus(Participant& participant, core::RegionId region)
@@ -64,13 +78,23 @@ std::vector<Checkpoint> CheckpointBus::take() {
   impl_->wakeup.clear();
   std::vector<Checkpoint> taken;
   const Speakers& speakers = impl_->participant.domain().speakers();
-  impl_->reader->take_each({}, [&](Checkpoint&& part, const Origin& origin) {
-    // In a recovery, whoever keeps another's part gives it.
-    const bool may_say = part.kind == Checkpoint::Kind::kGoBack ? speakers.is_node(origin.writer)
-                                                                : speakers.may_speak(origin.writer, part.source);
-    if (may_say) return taken.push_back(std::move(part));
-    impl_->reader->refuse_from(origin, fmt::format("a part of region {}", core::value_of(part.source)));
+  // In a recovery, whoever keeps another's part gives it.
+  const auto may_say = [&](const Given& given) {
+    return given.part.kind == Checkpoint::Kind::kGoBack ? speakers.is_node(given.by.writer)
+                                                        : speakers.may_speak(given.by.writer, given.part.source);
+  };
+  impl_->reader->take_each({}, [&](Checkpoint&& part, const Origin& by) {
+    impl_->given.push_back({std::move(part), by});
   });
+  std::erase_if(impl_->given, [&](Given& given) {
+    const bool is_taken = may_say(given);
+    if (is_taken) taken.push_back(std::move(given.part));
+    return is_taken;
+  });
+  for (; impl_->given.size() > kMostWaiting; impl_->given.pop_front()) {
+    const Given& oldest = impl_->given.front();
+    impl_->reader->refuse_from(oldest.by, fmt::format("a part of region {}", core::value_of(oldest.part.source)));
+  }
   return taken;
 }
 

@@ -47,15 +47,9 @@ Grants grants_of_node(const std::string& region) {
                       {"shape", {kWorld}},
                       {"checkpoint", {to_any, kWorld}}};
   // Whom it listens to changes with the bodies (docs/decisions/0003), so it may listen to all.
-  grants.subscribes = {{"aura", {kEveryRegion}},
-                       {"migration", to_it},
-                       {"migration_ack", to_it},
-                       {"node_status", {kEveryRegion}},
-                       {"region_map", {kWorld}},
-                       {"run_control", {kWorld}},
-                       {"command", {kWorld}},
-                       {"shape", {kWorld}},
-                       {"checkpoint", kept_here}};
+  grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
+                       {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
+                       {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here}};
   return grants;
 }
 
