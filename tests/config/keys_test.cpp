@@ -90,6 +90,7 @@ std::string sample_of(const Value& value) {
     case Value::Kind::kText:
       if (value.what == "a scene file") return "scene.yaml";
       if (value.what == "an XML file") return "qos.xml";
+      if (value.what == "a folder") return ".";
       return value.what == "a name" || value.what == "an address" ? "it" : "it.obj";
     case Value::Kind::kWord:
       return std::string(value.words.back().name);

@@ -65,7 +65,7 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.version(0); }), "malformed");
   EXPECT_EQ(after([](auto& w) { w.version(kProtocolVersion + 1); }), "version");
   EXPECT_EQ(after([](auto& w) { w.source(4); }), "range");
-  EXPECT_EQ(after([](auto& w) { w.state(8); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.state(9); }), "enum");
   EXPECT_EQ(after([](auto& w) { w.frame_max_ms(kNan); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.real_time_factor(-1); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(kNan); }), "range");

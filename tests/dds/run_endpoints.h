@@ -24,7 +24,7 @@ struct RunEndpoints {
         additions(peer.participant, peer.region()),
         additions_reader(peer.participant),
         aura_watch(peer.participant, observed()) {
-    checkpoints.use_keeper(regions(neighbours).front());
+    checkpoints.use_keeper(regions(neighbours).front(), 0);
   }
 
   static ObserverSettings observed() { return {kMapVersion, 16, 100}; }

@@ -8,6 +8,7 @@
 
 #include <arpa/inet.h>
 #include <fastdds/rtps/common/LocatorList.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -56,9 +56,7 @@ TEST(ANode, MayListenToWhomeverItsBodiesCallFor) {
   }
 }
 
-TEST(ANode, AsksForNothing) {
-  EXPECT_FALSE(may_say(Role::kRegion, 2, "command", "world"));
-}
+TEST(ANode, AsksForNothing) { EXPECT_FALSE(may_say(Role::kRegion, 2, "command", "world")); }
 
 TEST(ASpare, SpeaksForTheRegionThatItTakesOver) {
   for (const char* region : {"0", "7", "1048575"}) {
