@@ -91,14 +91,24 @@ PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   return &peer.endpoints[entity];
 }
 
-/// Two of one number, one of them unfinished: Fast DDS takes either for whole, and may end itself.
-std::optional<Refusal> PeerBook::take_data(const Endpoint& writer, const Claim& claim) {
-  const auto unfinished = writer.samples.find(claim.first);
-  const bool is = unfinished != writer.samples.end() && unfinished->second.missing > 0;
-  return is ? std::optional(Refusal::kFragment) : std::nullopt;
+/// A sample beyond what a heartbeat has come to makes the way there expensive (take_heartbeat). It is sent again.
+bool PeerBook::is_far_ahead(Endpoint& writer, const Claim& claim) const {
+  std::uint64_t reached = writer.highest;
+  for (const auto& [reader, first] : writer.first) reached = std::max(reached, first);
+  if (claim.first > reached + limits_.farthest_ahead) return true;
+  writer.highest = std::max(writer.highest, claim.first);
+  return false;
 }
 
-/// Fast DDS goes through all numbers from the one that it has last told of to the heartbeat's first.
+/// Two of one number, one of them unfinished: Fast DDS takes either for whole, and may end itself.
+std::optional<Refusal> PeerBook::take_data(Endpoint& writer, const Claim& claim) const {
+  const auto unfinished = writer.samples.find(claim.first);
+  if (unfinished != writer.samples.end() && unfinished->second.missing > 0) return Refusal::kFragment;
+  return is_far_ahead(writer, claim) ? std::optional(Refusal::kJump) : std::nullopt;
+}
+
+/// Fast DDS counts from the number that it has last told of to the heartbeat's first, with its reader locked; if there
+/// is a sample on the way it looks all of them up in its history. Who joins late hears a heartbeat before samples.
 std::optional<Refusal> PeerBook::take_heartbeat(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
                                                 SourceLimits& rates, Time now) {
   forget_samples(peer, writer, claim.reader, 0, claim.first);
@@ -108,9 +118,8 @@ std::optional<Refusal> PeerBook::take_heartbeat(Peer& peer, Endpoint& writer, co
   if (claim.first <= known) return std::nullopt;
   const std::uint64_t jump = claim.first - known;
   if (jump > limits_.longest_jump) return Refusal::kJump;
-  if (jump > limits_.free_jump && !rates.take_jump(source.address, static_cast<double>(jump), now)) {
-    return Refusal::kJump;
-  }
+  const double price = static_cast<double>(jump) * (writer.highest > 0 ? limits_.price_with_samples : 1);
+  if (jump > limits_.free_jump && !rates.take_jump(source.address, price, now)) return Refusal::kJump;
   first = claim.first;
   return std::nullopt;
 }
@@ -129,6 +138,7 @@ std::optional<Refusal> PeerBook::take_gap(Peer& peer, Endpoint& writer, const Cl
 
 /// Fast DDS takes memory for the whole sample at its first fragment, and sizes from the first one that comes.
 std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim) {
+  if (is_far_ahead(writer, claim)) return Refusal::kJump;
   auto it = writer.samples.find(claim.first);
   if (it == writer.samples.end()) {
     if (unfinished_B_ + claim.sample_B > limits_.unfinished_B ||

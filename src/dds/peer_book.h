@@ -17,10 +17,12 @@ namespace aurasim::dds {
 struct PeerLimits {
   std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
   std::size_t endpoints_of_a_participant = 4096;
-  std::uint64_t longest_jump = std::uint64_t{1} << 26;  ///< at 60 steps a second: 13 days
+  std::uint64_t longest_jump = std::uint64_t{1} << 27;    ///< at 60 steps a second: 26 days
+  std::uint64_t farthest_ahead = std::uint64_t{1} << 14;  ///< samples, of what their writer was known to have reached
+  double price_with_samples = 32;                         ///< of a jump over numbers among which there are samples
   std::uint64_t longest_gap = std::uint64_t{1} << 18;
   std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
-  std::size_t unfinished_B = std::size_t{512} << 20, unfinished_of_a_participant_B = std::size_t{256} << 20;
+  std::size_t unfinished_B = std::size_t{192} << 20, unfinished_of_a_participant_B = std::size_t{96} << 20;
 };
 
 class PeerBook {
@@ -46,6 +48,7 @@ class PeerBook {
   struct Endpoint {
     bool announced = false;
     std::map<std::uint32_t, std::uint64_t> first;  ///< by reader (0: all): the highest that a heartbeat has begun with
+    std::uint64_t highest = 0;                     ///< of its samples
     std::map<std::uint64_t, Sample> samples;
   };
   struct Peer {
@@ -61,7 +64,8 @@ class PeerBook {
 
   std::optional<Refusal> take_participant(const Claim& claim, Source source, Time now);
   std::optional<Refusal> take_endpoint(Peer& peer, const Claim& claim);
-  static std::optional<Refusal> take_data(const Endpoint& writer, const Claim& claim);
+  bool is_far_ahead(Endpoint& writer, const Claim& claim) const;
+  std::optional<Refusal> take_data(Endpoint& writer, const Claim& claim) const;
   std::optional<Refusal> take_heartbeat(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
                                         SourceLimits& rates, Time now);
   std::optional<Refusal> take_gap(Peer& peer, Endpoint& writer, const Claim& claim, Source source, SourceLimits& rates,

@@ -16,6 +16,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -46,6 +47,7 @@ class Target {
       ::dup2(ends[1], STDOUT_FILENO);
       ::close(ends[0]);
       ::close(ends[1]);
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
       ::execl(program.c_str(), program.c_str(), std::to_string(domain).c_str(), nullptr);
       ::_exit(127);
     }
