@@ -1,4 +1,7 @@
 // Processes that speak in the name of others, over DDS: what they say does nothing to those whose name they use.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +10,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "aurasim.h"
 #include "control_samples.h"
@@ -122,33 +126,6 @@ TEST_F(AStranger, IsNotListenedToAnyMoreAfterAHundredLies) {
   EXPECT_EQ(zero_.participant.refused_of_strangers(), 100U);
 }
 
-/// Its last 4096 samples wait for it, and nobody else does.
-TEST_F(AStranger, ThatReadsNothingHoldsNobodyUp) {
-  auto qos = stranger_.domain().profiles().reader(
-      *stranger_.domain().participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT),
-      "aura_reader");
-  eprosima::fastdds::dds::SubscriberQos of_region_1;
-  of_region_1.partition().push_back("region/1");
-  qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_instances = qos.resource_limits().allocated_samples = 1;
-  ASSERT_NE(stranger_.domain()
-                .participant()
-                .create_subscriber(of_region_1)
-                ->create_datareader(&stranger_.domain().topic(TopicId::kAura), qos),
-            nullptr);
-  std::this_thread::sleep_for(500ms);
-  const auto begin = std::chrono::steady_clock::now();
-  constexpr std::size_t kSteps = 6000;
-  for (std::size_t step = 0; step < kSteps; ++step) {
-    one_.send_batch(static_cast<core::Step>(step), 1);
-    zero_.transport.take(zero_.inbox);
-  }
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, testing::kDeadline);
-  ASSERT_TRUE(take_until(zero_, [&] { return zero_.inbox.auras.size() == kSteps; }));
-  EXPECT_EQ(one_.transport.counters().aura.send_failed, 0U);
-  EXPECT_THAT(one_.participant.take_said(), Contains(HasSubstr("listens to aura and has acknowledged nothing")));
-}
-
 TEST_F(AStranger, SpeaksOfNoRegionThatTheRunHasNot) {
   const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{9}), RegionId{9});
   statuses->send(of_this_host(9));
@@ -217,6 +194,46 @@ TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
   lost.process = 101;
   zero_bus_.hear_of_death(lost);
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
+}
+
+/// The profiles, with a history of 64 instead of 4096.
+Settings with_short_histories() {
+  std::ifstream in(std::filesystem::path(AURASIM_SOURCE_DIR) / "qos" / "aurasim.xml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (std::size_t at = 0; (at = text.find("<depth>4096</depth>", at)) != std::string::npos;)
+    text.replace(at, 19, "<depth>64</depth>");
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + ".xml");
+  std::ofstream(file) << text;
+  Settings settings = testing::settings_for(own_domain());
+  settings.profiles = file;
+  return settings;
+}
+
+/// Its last samples wait for it, and nobody else does.
+TEST(ADeafReader, HoldsNobodyUp) {
+  const Settings settings = with_short_histories();
+  Participant stranger(
+      settings);  // goes last: Fast DDS 2.9.1 can lock up when a reader leaves that is being sent repeats
+  Peer zero(settings, 0, {1});
+  Peer one(settings, 1, {0});
+  eprosima::fastdds::dds::SubscriberQos of_region_1;
+  of_region_1.partition().push_back("region/1");
+  auto* const subscriber = stranger.domain().participant().create_subscriber(of_region_1);
+  auto qos = stranger.domain().profiles().reader(*subscriber, "aura_reader");
+  qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_instances = qos.resource_limits().allocated_samples = 1;
+  ASSERT_NE(subscriber->create_datareader(&stranger.domain().topic(TopicId::kAura), qos), nullptr);
+  ASSERT_TRUE(holds_in_time([&] { return zero.transport.all_matched() && one.transport.all_matched(); }));
+  std::this_thread::sleep_for(500ms);  // the deaf one, too
+  constexpr core::Step kSteps = 200;
+  for (core::Step step = 0; step < kSteps; ++step) {
+    one.send_batch(step, 1);
+    ASSERT_TRUE(take_until(zero, [&] { return std::ssize(zero.inbox.auras) == step + 1; })) << step;
+  }
+  EXPECT_EQ(one.transport.counters().aura.send_failed, 0U);
+  EXPECT_THAT(one.participant.take_said(), Contains(HasSubstr("listens to aura and has acknowledged nothing")));
+  std::filesystem::remove(settings.profiles);
 }
 
 }  // namespace
