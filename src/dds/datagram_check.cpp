@@ -388,7 +388,6 @@ class Checker {
     claim.payload = body.at();
     claim.payload_B = body.left();
     if (!fragments_fit(claim)) return Refusal::kFragment;
-    if (is_built_in(claim.guid.entity)) hide_submessage();
     findings_.claims.push_back(claim);
     return kFine;
   }

@@ -43,15 +43,13 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
   peers_.hear(sender, now);
   for (const Claim& claim : findings.claims) {
     if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
+    // The library asks for pieces that were lost, so it gets them as they come; without the last one it has nothing.
     if (claim.kind == Claim::Kind::kFragments && is_built_in(claim.guid.entity)) {
-      auto whole = pieces_.add(claim, bytes, now);
-      if (!whole) continue;
-      Findings of_whole;
-      if (const auto refused = check_datagram(*whole, of_whole)) return refused;
-      if (const auto refused = judge(of_whole, *whole, source, now, admitted)) return refused;
-      of_whole.hide(*whole);
-      admitted.before.push_back(std::move(*whole));
-      continue;
+      if (const auto whole = pieces_.add(claim, bytes, now)) {
+        Findings of_whole;
+        if (const auto refused = check_datagram(*whole, of_whole)) return refused;
+        if (const auto refused = judge(of_whole, *whole, source, now, admitted)) return refused;
+      }
     }
     if (const auto refused = peers_.judge(claim, source, rates_, now)) return refused;
     if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));

@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kLargest_B = 64U << 10;
-constexpr std::size_t kMost = 256;
+constexpr std::size_t kMost = 2048;
 constexpr TokenBucket::Time kPatience = 10s;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Discovery that comes in fragments, put together before it is checked: in pieces nobody can check it.
+// Discovery that comes in fragments, put together to be checked before its last one goes on: in pieces nobody can.
 // Pure; time is passed in.
 #pragma once
 

@@ -232,39 +232,31 @@ TEST_F(Guard, RefusesASampleOfWhichPartsAreHere) {
 }
 
 /// In pieces nobody could check it.
-TEST_F(Guard, PutsDiscoveryTogetherBeforeItIsChecked) {
-  const auto in_pieces = [](const Bytes& payload) {
+TEST_F(Guard, ChecksDiscoveryInPiecesBeforeItIsWhole) {
+  const auto in_pieces = [](const Bytes& payload, std::uint64_t number) {
     std::vector<Bytes> pieces;
     for (std::size_t at = 0; at < payload.size(); at += 1024) {
       const std::size_t size = std::min<std::size_t>(1024, payload.size() - at);
       const Bytes part(payload.begin() + static_cast<std::ptrdiff_t>(at),
                        payload.begin() + static_cast<std::ptrdiff_t>(at + size));
-      pieces.push_back(datagram({fragment({kEndpointWriter, 1, static_cast<std::uint32_t>(at / 1024 + 1), 1, 1024,
+      pieces.push_back(datagram({fragment({kEndpointWriter, number, static_cast<std::uint32_t>(at / 1024 + 1), 1, 1024,
                                            static_cast<std::uint32_t>(payload.size()), size},
                                           part),
-                                 heartbeat(1, 1, kEndpointWriter)}));
+                                 heartbeat(1, 2, kEndpointWriter)}));
     }
     return pieces;
   };
   ASSERT_TRUE(passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
   const Octets type = Octets().parameter(0x72, Octets().zeros(2800));
-  auto pieces = in_pieces(endpoint(kPrefix, kWriter, type).bytes());
+  auto pieces = in_pieces(endpoint(kPrefix, kWriter, type).bytes(), 1);
   ASSERT_EQ(pieces.size(), 3U);
-  std::vector<Bytes> whole;
-  for (Bytes& piece : pieces) {
-    const auto admitted = guard_.admit(piece, kSource, now_);
-    EXPECT_EQ(piece[kHeaderBytes], 0x01) << "the piece itself is padding";
-    whole.insert(whole.end(), admitted.before.begin(), admitted.before.end());
-  }
-  ASSERT_EQ(whole.size(), 1U);
-  Findings findings;
-  EXPECT_EQ(check_datagram(whole[0], findings), std::nullopt);
-  ASSERT_EQ(findings.claims.size(), 1U);
-  EXPECT_EQ(findings.claims[0].kind, Claim::Kind::kEndpoint);
-  EXPECT_TRUE(findings.hidden_parameters.empty());  // is hidden
+  for (Bytes& piece : pieces) EXPECT_GT(guard_.admit(piece, kSource, now_).size, 0U);
   const Octets endless = Octets().parameter(0x29, Octets().u32(~0U).zeros(2800));
-  auto bad = in_pieces(endpoint(kPrefix, kWriter, endless).bytes());
-  for (Bytes& piece : bad) EXPECT_TRUE(guard_.admit(piece, kSource, now_).before.empty());
+  auto bad = in_pieces(endpoint(kPrefix, kWriter, endless).bytes(), 2);
+  for (Bytes& piece : bad) {
+    const bool is_last = &piece == &bad.back();
+    EXPECT_EQ(guard_.admit(piece, kSource, now_).size == 0, is_last) << "without it the sample is never whole";
+  }
   EXPECT_EQ(refused(Refusal::kParameter), 1U);
 }
 
