@@ -361,7 +361,8 @@ const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
   for (const auto& [by, map] : impl_->announced) {
     const bool is_ours = impl_->settings.agreement && map.agreement == *impl_->settings.agreement;
     if (is_ours && !impl_->participant.domain().speakers().is_node(by.second)) continue;
-    impl_->maps.insert_or_assign(by.first, map);
+    const auto [known, is_first] = impl_->maps.try_emplace(by.first, map);
+    if (!is_first && map.generation >= known->second.generation) known->second = map;
   }
   return impl_->maps;
 }
