@@ -187,6 +187,21 @@ TEST(Maps, AreSeenByLateJoiners) {
   EXPECT_EQ(late.bus.maps().at(78).regions.size(), 2U);
 }
 
+TEST(Maps, OfALaterGenerationCountWhoeverPublishesThem) {
+  Member one(own_domain()), other(own_domain()), reader(own_domain());
+  for (Member* const last : {&one, &other}) {
+    WorldMap map = map_of(77);
+    ASSERT_TRUE(one.bus.publish_map(map));
+    ASSERT_TRUE(other.bus.publish_map(map));
+    map.generation = last == &one ? 3 : 4;
+    ASSERT_TRUE(last->bus.publish_map(map));
+    EXPECT_TRUE(reader.wait_until([&] {
+      const auto& maps = reader.bus.maps();
+      return maps.contains(77) && maps.at(77).generation == map.generation;
+    }));
+  }
+}
+
 TEST(Commands, ReachEveryoneInOrderOnceAndAlsoLateJoiners) {
   Member launcher(own_domain());
   Member node(own_domain(), 0, 77);
