@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -202,8 +203,10 @@ Settings with_short_histories() {
   std::string text{std::istreambuf_iterator<char>(in), {}};
   for (std::size_t at = 0; (at = text.find("<depth>4096</depth>", at)) != std::string::npos;)
     text.replace(at, 19, "<depth>64</depth>");
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + ".xml");
+  // A process has one profile of a name: these have names of their own.
+  const std::string stem = "short" + std::to_string(::getpid());
+  text = std::regex_replace(text, std::regex("profile_name=\"(aurasim_)?"), "profile_name=\"" + stem + "_");
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / (stem + ".xml");
   std::ofstream(file) << text;
   Settings settings = testing::settings_for(own_domain());
   settings.profiles = file;
