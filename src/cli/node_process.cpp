@@ -203,6 +203,7 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
 /// The first state of a generation is there.
 void NodeProcess::begin_with(const node::StepReport& report) {
   run_orders_.clear();
+  run_control_limits_.begin(node_->current_step(), Clock::now());
   if (recovers()) let_sigterm_ask_to_leave(options_.has_launcher);
   hurry_until_ = 0;
   refusals_noted_ = 0;

@@ -38,7 +38,7 @@ double ahead_s(const dds::RunCommand& command, std::int64_t now_ns) {
 }  // namespace
 
 void RunControlLimits::note(core::Step step, Time now) {
-  if (!past_.empty() && step < past_.back().step) past_.clear();  // reset, or put back
+  if (!past_.empty() && step < past_.back().step) past_.clear();  // put back
   if (!past_.empty() && now < past_.back().when + kLookEvery) return;
   past_.push_back({now, step});
   while (past_.size() > 1 && past_[1].when + kLongestWay <= now) past_.pop_front();

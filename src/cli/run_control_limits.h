@@ -15,6 +15,8 @@ class RunControlLimits {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
+  /// A world begins, or goes on from an earlier state: what was past in the one before says nothing of it.
+  void begin(core::Step step, Time now) { past_ = {{now, step}}; }
   /// The node is in this state.
   void note(core::Step step, Time now);
 

@@ -52,6 +52,12 @@ TEST_F(ARunCommand, AtTheBeginningMayNameAnyState) {
   EXPECT_THAT(problem(Kind::kStop, 0), IsEmpty());
 }
 
+TEST_F(ARunCommand, BeforeTheFirstStateAfterAResetMayNameOneOfTheNewWorld) {
+  run_for(20s);
+  limits_.begin(0, now_);
+  EXPECT_THAT(problem(Kind::kPause, 40), IsEmpty());
+}
+
 TEST_F(ARunCommand, AfterTheRunHasGoneBackMayNameWhatIsAheadAgain) {
   run_for(20s);
   step_ = 600;
