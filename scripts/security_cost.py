@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns. Writes DIR/runs.jsonl
+and docs/security_cost.md."""
+import argparse
+import hashlib
+import json
+import pathlib
+import resource
+import statistics
+import tempfile
+import time
+
+from recovery import REGIONS, Case, hashes
+from report_parts import machine_line, measured_line, table
+
+TEXT = """# What keys cost: measured
+
+{measured}
+
+Written by `scripts/security_cost.sh`; do not edit. {machine}.
+
+The demo on four nodes of one host, `deterministic`, {steps} states paced by the clock, open and with `launch --secure` (keys
+are made first, every participant is authenticated, discovery and data are encrypted; [security.md](security.md)), {repeats}
+times each by turns; medians. *One state*: a run of a single state, from the command to its end. *CPU*: of the launcher and all
+nodes. *Frame*, *sending* and *waiting* for neighbours: of each node and state. *Back*: a node is killed (`kill -9`); from then
+until all have gone back and compute, with the launcher's new process, and with a spare that was there before.
+
+{costs}
+{verdict}
+"""
+
+KINDS = {"open": [], "keys": ["--secure"]}
+
+
+def seconds_of_children():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def middle(summary, name, part):
+    return statistics.median(region[name][part] for region in summary["regions"])
+
+
+def one_state(case, words):
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        run = case.launch(folder, "run", [*words, "--steps", "1"])
+        run.wait(120)
+        return round(time.monotonic() - begin, 3)
+
+
+def whole_run(case, words):
+    with tempfile.TemporaryDirectory() as folder:
+        cpu = seconds_of_children()
+        run = case.launch(folder, "run", words)
+        run.wait(case.options.steps / 60 + 120)
+        summary = json.loads(pathlib.Path(f"{folder}/run/summary.json").read_text())
+        row = {"cpu_s": round(seconds_of_children() - cpu, 2), "exit": run.process.returncode,
+               "hashes": hashlib.sha256(hashes(f"{folder}/run").encode()).hexdigest()}
+        for key in ("real_time_factor", "migrations", "bodies_lost"):
+            row[key] = summary[key]
+        for name in ("frame_ms", "wait_ms", "transport_ms"):
+            row[name] = {part: middle(summary, name, part) for part in ("p50", "p99")}
+        return row
+
+
+def back_s(case, words):
+    """None: it was not back within a minute."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = case.launch(folder, "run", words)
+        while run.running() and case.state_of(folder, "run") < 240:
+            time.sleep(0.05)
+        killed = time.monotonic()
+        run.kill(2)
+        while run.running() and len(run.times("went back to state", killed)) < REGIONS and time.monotonic() < killed + 60:
+            time.sleep(0.01)
+        back = run.times("went back to state", killed)
+        run.wait(case.options.steps / 60 + 120)
+        return round(back[-1] - killed, 3) if len(back) >= REGIONS else None
+
+
+def measure(options):
+    case = Case(options, 1, "keys")
+    with (options.out / "runs.jsonl").open("w") as file:
+        for repeat in range(options.repeats):
+            for kind, words in KINDS.items():
+                row = {"kind": kind, "repeat": repeat, "one_state_s": one_state(case, words), **whole_run(case, words),
+                       "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])}
+                file.write(json.dumps(row) + "\n")
+                print(json.dumps(row), flush=True)
+
+
+def write(options):
+    rows = [json.loads(line) for line in (options.out / "runs.jsonl").read_text().splitlines()]
+
+    def of(kind, *path):
+        values = []
+        for row in rows:
+            value = row
+            for key in path:
+                value = value[key]
+            if row["kind"] == kind and value is not None:
+                values.append(value)
+        return f"{statistics.median(values):.3g}" if values else "never"
+
+    wanted = [("one state, s", ["one_state_s"]), ("CPU, s", ["cpu_s"]), ("real-time factor", ["real_time_factor"]),
+              ("frame p50, ms", ["frame_ms", "p50"]), ("p99", ["frame_ms", "p99"]),
+              ("sending p50, ms", ["transport_ms", "p50"]), ("p99", ["transport_ms", "p99"]),
+              ("waiting p50, ms", ["wait_ms", "p50"]), ("p99", ["wait_ms", "p99"]), ("hand-offs", ["migrations"]),
+              ("back by the launcher, s", ["launcher_s"]), ("back by a spare, s", ["spare_s"])]
+    costs = table(["", *KINDS], [[name, *[of(kind, *path) for kind in KINDS]] for name, path in wanted])
+    equal = len({row["hashes"] for row in rows}) == 1
+    verdict = (f"The hash of every state is {'the same in all runs' if equal else 'NOT the same in all runs'}; bodies lost: "
+               f"{sum(row['bodies_lost'] for row in rows)}; runs that did not end well: {sum(row['exit'] != 0 for row in rows)}.")
+    text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), steps=options.steps,
+                       repeats=options.repeats, costs=costs, verdict=verdict)
+    pathlib.Path("docs/security_cost.md").write_text(text)
+    return equal
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default="build/release/aurasim")
+    parser.add_argument("--scene", default="demo")
+    parser.add_argument("--steps", type=int, default=900)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--domain", type=int, default=74)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/security_cost"))
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    measure(options)
+    return 0 if write(options) else 1
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# What keys cost: the demo open and secure, by turns, with a node killed as well. Writes docs/security_cost.md. About 12
+# minutes on 2 cores, where nothing else runs.
+#   scripts/security_cost.sh [--repeats N=5] [--domain N=74] [--out DIR=build/security_cost]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out=build/security_cost arguments=("$@")
+while [[ ${1:-} == --* ]]; do
+  [[ $1 != --out ]] || out=$2
+  shift 2
+done
+
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/security_cost.md "$out" double
+/usr/bin/python3 scripts/security_cost.py "${arguments[@]}"
+echo "written: docs/security_cost.md" >&2
