@@ -57,6 +57,7 @@ constexpr std::size_t kMostOfNoRegion = 64;  ///< and of all regions that the ru
 constexpr std::size_t kMostMaps = 256;
 constexpr std::size_t kMostRequests = 1U << 16U;
 constexpr std::size_t kMostClaims = 1024;
+constexpr auto kLongAgo = std::chrono::seconds(1);
 /// Statuses come ten times a second.
 constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
 
@@ -70,6 +71,12 @@ bool acts(const Status& status) {
 bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
   return found == writers.rend() || found->lost;
+}
+
+/// Late joiners are told what was said long before, by nodes that have been replaced since.
+bool is_old_news(const RunCommand& command, const Origin& origin) {
+  const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore;
+  return is_of_nodes && origin.clock_ahead < -kLongAgo;
 }
 
 }  // namespace
@@ -412,6 +419,7 @@ std::vector<RunCommand> ControlBus::take_commands() {
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
     if (const std::string problem = impl_->problem_with(command, origin); !problem.empty()) {
       impl_->refused.add(WireError::kSource);
+      if (is_old_news(command, origin)) continue;
       impl_->command_reader->refuse_from(origin, fmt::format("{}: {}", name_of(command.kind), problem));
       continue;
     }

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kMostGone = 4096;
 constexpr std::size_t kMostProcesses = 4096;
 constexpr std::size_t kMostWords = 64;
+constexpr std::size_t kMostFormer = 64;
 
 constexpr std::string_view kRegionPartition = "region/";
 
@@ -60,7 +61,9 @@ void Speakers::remove(const Guid& writer) {
 
 void Speakers::set(core::RegionId region, const ProcessPrefix& process) {
   const std::lock_guard lock(mutex_);
-  nodes_.insert_or_assign(region, process);
+  ProcessPrefix& node = nodes_.try_emplace(region, process).first->second;
+  if (node != process) former_.push_back(std::exchange(node, process));
+  if (former_.size() > kMostFormer) former_.pop_front();
   shunned_.erase(process);
 }
 
@@ -95,10 +98,11 @@ bool Speakers::is_node_locked(const ProcessPrefix& process) const {
 void Speakers::refuse(const Guid& writer, const std::string& what) {
   const std::lock_guard lock(mutex_);
   if (is_node_locked(writer.guidPrefix)) return;  // that is counted, and ends, elsewhere
-  ++refused_;
+  const bool was_node = std::ranges::find(former_, writer.guidPrefix) != former_.end();
+  refused_ += was_node ? 0 : 1;
   if (refused_of_.size() >= kMostProcesses && !refused_of_.contains(writer.guidPrefix)) return;
   const std::uint64_t count = ++refused_of_[writer.guidPrefix];
-  if (count == 1) say_locked(fmt::format("process {} is refused: {}", text_of(writer.guidPrefix), what));
+  if (count == 1 && !was_node) say_locked(fmt::format("process {} is refused: {}", text_of(writer.guidPrefix), what));
   if (count != kPatience) return;
   shun_locked(writer.guidPrefix, fmt::format("it has been refused {} times, lastly: {}", count, what));
 }

@@ -38,7 +38,7 @@ class Speakers {
   bool is_node(const Guid& endpoint) const;
 
   /// What `writer` has said was not its to say, or cannot be. A process of no node is not listened to any more after
-  /// kPatience of them.
+  /// kPatience of them. Of one that was a node, the last words may come late: they are not told.
   void refuse(const Guid& writer, const std::string& what);
   /// It is not listened to from now on, unless it is a node's.
   void shun(const ProcessPrefix& process, const std::string& why);
@@ -62,6 +62,7 @@ class Speakers {
   std::map<Guid, std::int64_t> homes_;  ///< of writers: their region; -1: of none, or of several
   std::deque<Guid> gone_;               ///< what they have published may still be waiting here
   std::map<core::RegionId, ProcessPrefix> nodes_;
+  std::deque<ProcessPrefix> former_;  ///< nodes until others took their regions over, oldest first
   std::map<ProcessPrefix, std::uint64_t> refused_of_;
   std::set<ProcessPrefix> shunned_;
   std::uint64_t refused_ = 0;

@@ -50,6 +50,16 @@ TEST_F(WhoMaySpeak, ThenOnlyThatNodeAndThisProcessMay) {
   EXPECT_FALSE(speakers_.is_node(endpoint(kStranger)));
 }
 
+TEST_F(WhoMaySpeak, TheLastWordsOfANodeThatWasReplacedAreNotTold) {
+  speakers_.set(RegionId{1}, endpoint(kNode).guidPrefix);
+  speakers_.set(RegionId{1}, endpoint(kStranger).guidPrefix);
+  refuse(kNode, 3);
+  EXPECT_THAT(speakers_.take_said(), IsEmpty());
+  EXPECT_EQ(speakers_.refused(), 0U);
+  refuse(kNode, Speakers::kPatience);
+  EXPECT_TRUE(speakers_.shuns(endpoint(kNode).guidPrefix)) << "but that many are no last words";
+}
+
 TEST_F(WhoMaySpeak, AWriterIsAtHomeWhereAllItsPartitionsAre) {
   const auto is_at_home = [this](const std::vector<std::string>& partitions) {
     speakers_.add(endpoint(kNode), partitions);
