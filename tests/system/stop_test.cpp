@@ -61,7 +61,7 @@ TEST_F(CtrlC, AClosedPipeEndsARunAsWell) {
   const std::string command = AURASIM_BINARY_DIR "/aurasim launch " + launch_file("two_spheres") + " --report " +
                               report.folder().string() +
                               " --set overseer.port=0 --set dds.domain=" + std::to_string(test::own_domain()) +
-                              " | head -n 1; exit ${PIPESTATUS[0]}";
+                              " | grep -m 1 running; exit ${PIPESTATUS[0]}";
   expect_exit(start_program({"/bin/bash", "-c", command}), 0);
   expect_all_bodies_accounted_for(report);
   for (const auto& node : report.summary().at("nodes")) EXPECT_EQ(node.at("outcome"), "finished");
