@@ -57,5 +57,38 @@ TEST_F(Strangers, WhoForgesWhatNodesSayChangesNoBitAndEndsNobody) {
   EXPECT_GT(report_of("alone").count("migrations"), 50);
 }
 
+/// 17 readers that take no samples and ask for all of them with each heartbeat: a run was 15 to 30 times slower.
+TEST_F(Strangers, WhoListensAndNeverReadsSlowsNobodyDown) {
+  using Seconds = std::chrono::duration<double>;
+  const auto start = Clock::now();
+  Process& alone = run("alone");
+  expect_exit(alone, 0, 2 * kGenerous);
+  const Seconds undisturbed = Clock::now() - start;
+
+  const auto again = Clock::now();
+  Process& attacked = run("attacked");
+  expect_reaches(report_of("attacked"), 4, 60);
+  Process& stranger =
+      start_program({AURASIM_BINARY_DIR "/dds_stranger_process", std::to_string(test::own_domain()), "60", "deaf"});
+  std::vector<pid_t> nodes;
+  std::vector<long> before_KiB;
+  for (int region = 0; region < 4; ++region) {
+    nodes.push_back(node_of(attacked, region));
+    before_KiB.push_back(memory_of(nodes.back()));
+  }
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("attacked"), 4, 1100));
+  for (std::size_t r = 0; r < nodes.size(); ++r) {
+    EXPECT_LT(memory_of(nodes[r]), before_KiB[r] + 50 * 1024) << "region " << r;
+  }
+  EXPECT_TRUE(stranger.running()) << stranger.said();
+  expect_exit(attacked, 0, 2 * kGenerous);
+  const Seconds disturbed = Clock::now() - again;
+  EXPECT_LT(disturbed.count(), 2 * undisturbed.count() + 5);
+  EXPECT_THAT(attacked.err(), HasSubstr("reads what nodes say to each other, and is none"));
+  EXPECT_TRUE(report_of("attacked").state_hash() == report_of("alone").state_hash());
+  stranger.signal(SIGKILL);
+  EXPECT_TRUE(stranger.wait(kGenerous));
+}
+
 }  // namespace
 }  // namespace aurasim::system_test
