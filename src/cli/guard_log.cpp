@@ -8,7 +8,7 @@ namespace aurasim::cli {
 
 void log_new_refusals(dds::Participant& participant) {
   for (const auto& source : dds::take_new_refusals(participant)) {
-    spdlog::warn("datagrams from {} are no RTPS that a run's peers send, and dropped: so far {}",
+    spdlog::warn("datagrams from {} are not what a run's peers send, and dropped: so far {}",
                  dds::text_of_address(source.address), dds::text_of(source.refused));
   }
 }

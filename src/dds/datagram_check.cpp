@@ -1,6 +1,7 @@
 #include "dds/datagram_check.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "dds/parameter_check.h"
 #include "dds/wire_cursor.h"
@@ -201,24 +202,45 @@ class Checker {
     return body.failed() ? Result(Refusal::kNumberSet) : kFine;
   }
 
-  Result check_ack_nack(WireCursor& body) {
-    body.skip(8);
-    const std::uint64_t base = body.sequence_number();
-    if (body.failed()) return Refusal::kLength;
-    if (base > kLargestSequenceNumber) return Refusal::kSequenceNumber;
+  Request request_of(WireCursor& body) const {
+    Request request;
+    request.destination = destination_;
+    const std::uint32_t reader = body.entity();
+    request.reader = {source_, reader};
+    request.writer = body.entity();
+    request.at = begin_;
+    request.goes_to_end = last_;
+    return request;
+  }
+
+  /// `bits` is at the number of them.
+  Result add_request(Request request, WireCursor bits, WireCursor& body) {
     if (Result refused = check_bits(body)) return refused;
-    return body.left() >= 4 ? kFine : Refusal::kLength;
+    if (body.left() < 4) return Refusal::kLength;
+    for (std::uint32_t left = bits.u32(); left > 0; left -= std::min(left, 32U)) {
+      request.wanted += static_cast<std::uint32_t>(std::popcount(bits.u32()));
+    }
+    findings_.requests.push_back(request);
+    return kFine;
+  }
+
+  Result check_ack_nack(WireCursor& body) {
+    Request request = request_of(body);
+    request.base = body.sequence_number();
+    if (body.failed()) return Refusal::kLength;
+    if (request.base > kLargestSequenceNumber) return Refusal::kSequenceNumber;
+    return add_request(request, body, body);
   }
 
   Result check_nack_frag(WireCursor& body) {
-    body.skip(8);
+    Request request = request_of(body);
+    request.of_fragments = true;
     const std::uint64_t sequence = body.sequence_number();
     const std::uint32_t base = body.u32();
     if (body.failed()) return Refusal::kLength;
     if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
     if (base < 1 || base > kLargestFragmentNumber) return Refusal::kFragment;
-    if (Result refused = check_bits(body)) return refused;
-    return body.left() >= 4 ? kFine : Refusal::kLength;
+    return add_request(request, body, body);
   }
 
   Result check_heartbeat_frag(WireCursor& body) {
@@ -390,15 +412,6 @@ class Checker {
     if (!fragments_fit(claim)) return Refusal::kFragment;
     findings_.claims.push_back(claim);
     return kFine;
-  }
-
-  /// Padding of length 0 would have none: what goes on to the end is cut off.
-  void hide_submessage() {
-    if (last_) {
-      findings_.size = begin_;
-    } else {
-      findings_.hidden_submessages.push_back(begin_);
-    }
   }
 
   /// Fast DDS keeps its list of missing fragments in the sample, one number at each one's begin: they must be larger

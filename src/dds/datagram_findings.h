@@ -26,11 +26,16 @@ enum class Refusal : std::uint8_t {
   kJump,            ///< sequence numbers that leave out too many
   kUnfinished,      ///< too many bytes of samples of which parts are missing
   kTooMany,         ///< participants or endpoints
+  kRepeat,          ///< asked for by a process that is no node, and not answered; the rest of the datagram passes
+  kShunned,         ///< of a process that is not listened to any more
 };
-inline constexpr std::size_t kRefusalCount = 14;
+inline constexpr std::size_t kRefusalCount = 16;
 const char* name_of(Refusal refusal);
 
 using GuidPrefix = std::array<std::uint8_t, 12>;
+struct PrefixHash {
+  std::size_t operator()(const GuidPrefix& prefix) const;
+};
 
 struct WireGuid {
   GuidPrefix prefix{};
@@ -54,15 +59,36 @@ struct Claim {
   std::size_t payload = 0, payload_B = 0;           ///< where in the datagram fragments of discovery are
 };
 
+/// A reader says what it has of a writer, and what it would like to be sent again.
+struct Request {
+  GuidPrefix destination{};  ///< zeros: everybody
+  WireGuid reader;
+  std::uint32_t writer = 0;
+  bool of_fragments = false;  ///< of one sample
+  std::uint64_t base = 0;     ///< all samples before it are acknowledged; 0: it has just come. Not of fragments
+  std::uint32_t wanted = 0;   ///< samples or fragments
+  std::size_t at = 0;         ///< where its submessage begins
+  bool goes_to_end = false;   ///< it has no length
+};
+
 /// Reused from datagram to datagram.
 struct Findings {
   std::size_t size = 0;  ///< how much of the datagram Fast DDS may see: without eProsima's statistics at its end
   std::vector<Claim> claims;
+  std::vector<Request> requests;
   std::vector<std::size_t> hidden_parameters;   ///< offsets of parameter ids that Fast DDS must not act on
   std::vector<std::size_t> hidden_submessages;  ///< offsets of submessage ids, likewise
   std::vector<std::size_t> hidden_bits;         ///< offsets of the numbers of a gap's bits
+  struct Acknowledgement {
+    std::size_t at = 0;  ///< where an acknowledgement's submessage begins
+    std::uint64_t base = 0;
+    void write_over(std::span<std::uint8_t> submessage) const;
+  };
+  std::vector<Acknowledgement> acknowledgements;  ///< that are to say that all before `base` is there
   void clear();
-  /// Makes the first two padding, and the bits none. `bytes` is the datagram that was checked.
+  void hide_submessage(const Request& request);
+  /// Makes the first two padding, and the bits none; acknowledgements want nothing. `bytes` is the datagram that was
+  /// checked.
   void hide(std::span<std::uint8_t> bytes) const;
 };
 

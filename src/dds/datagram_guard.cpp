@@ -31,6 +31,7 @@ DatagramGuard::Admitted DatagramGuard::admit(std::span<std::uint8_t> bytes, Sour
     return {};
   }
   ++passed_;
+  answer_requests(findings, source, now);
   findings.hide(bytes);
   admitted.size = findings.size;
   return admitted;
@@ -40,6 +41,7 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
                                             Source source, Time now, Admitted& admitted) {
   GuidPrefix sender;
   std::copy_n(bytes.begin() + 8, sender.size(), sender.begin());
+  if (is_of_shunned(findings, sender)) return Refusal::kShunned;
   peers_.hear(sender, now);
   for (const Claim& claim : findings.claims) {
     if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
@@ -55,6 +57,70 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
     if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));
   }
   return std::nullopt;
+}
+
+/// What others announce of it may come with what is not its.
+bool DatagramGuard::is_of_shunned(const Findings& findings, const GuidPrefix& sender) const {
+  if (shunned_.empty()) return false;
+  const auto is_announcement = [](const Claim& claim) {
+    return claim.kind == Claim::Kind::kParticipant || claim.kind == Claim::Kind::kEndpoint ||
+           claim.kind == Claim::Kind::kEndpointGone;
+  };
+  return shunned_.contains(sender) ||
+         std::ranges::any_of(
+             findings.claims,
+             [&](const Claim& claim) { return !is_announcement(claim) && shunned_.contains(claim.guid.prefix); }) ||
+         std::ranges::any_of(findings.requests,
+                             [&](const Request& request) { return shunned_.contains(request.reader.prefix); });
+}
+
+void DatagramGuard::answer_requests(Findings& findings, Source source, Time now) {
+  for (const Request& request : findings.requests) {
+    if (own_ && request.destination != GuidPrefix{} && request.destination != *own_) continue;
+    const Repeats::Answer answer = repeats_.judge(request, now);
+    if (answer == Repeats::Answer::kPass) continue;
+    if (request.wanted > 0) refuse(Refusal::kRepeat, source);
+    if (answer == Repeats::Answer::kHasAll) {
+      findings.acknowledgements.push_back({request.at, repeats_.last_of(request.writer) + 1});
+    } else {
+      findings.hide_submessage(request);
+    }
+  }
+}
+
+void DatagramGuard::set_nodes(Repeats::Prefixes nodes) {
+  const std::lock_guard lock(mutex_);
+  repeats_.set_nodes(std::move(nodes));
+}
+
+void DatagramGuard::add_writer_of_nodes(std::uint32_t writer) {
+  const std::lock_guard lock(mutex_);
+  repeats_.add_writer_of_nodes(writer);
+}
+
+void DatagramGuard::remove_writer_of_nodes(std::uint32_t writer) {
+  const std::lock_guard lock(mutex_);
+  repeats_.remove_writer_of_nodes(writer);
+}
+
+void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
+  const std::lock_guard lock(mutex_);
+  repeats_.note_sent(bytes);
+}
+
+std::vector<std::pair<GuidPrefix, Repeats::Answer>> DatagramGuard::take_new_askers() {
+  const std::lock_guard lock(mutex_);
+  return repeats_.take_news();
+}
+
+void DatagramGuard::shun(const GuidPrefix& process) {
+  const std::lock_guard lock(mutex_);
+  shunned_.insert(process);
+}
+
+void DatagramGuard::forgive(const GuidPrefix& process) {
+  const std::lock_guard lock(mutex_);
+  shunned_.erase(process);
 }
 
 void DatagramGuard::refuse(Refusal why, Source source) {

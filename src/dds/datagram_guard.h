@@ -9,12 +9,14 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "dds/datagram_findings.h"
 #include "dds/discovery_pieces.h"
 #include "dds/guard_report.h"
 #include "dds/peer_book.h"
+#include "dds/repeats.h"
 #include "dds/source_limits.h"
 
 namespace aurasim::dds {
@@ -22,6 +24,7 @@ namespace aurasim::dds {
 struct GuardLimits {
   RateLimits rates;
   PeerLimits peers;
+  RepeatLimits repeats;
 };
 
 /// Thread-safe.
@@ -29,10 +32,19 @@ class DatagramGuard {
  public:
   using Time = TokenBucket::Time;  ///< of any clock that does not go back
 
-  explicit DatagramGuard(const GuardLimits& limits = {}) : rates_(limits.rates), peers_(limits.peers) {}
+  explicit DatagramGuard(const GuardLimits& limits = {})
+      : rates_(limits.rates), peers_(limits.peers), repeats_(limits.repeats) {}
 
   /// What is for others alone says nothing about what Fast DDS here has seen.
   void set_own(const GuidPrefix& own);
+  /// Who is a node of the run, but for this process: see repeats.h.
+  void set_nodes(Repeats::Prefixes nodes);
+  /// A writer of this process, of what nodes say to each other.
+  void add_writer_of_nodes(std::uint32_t writer);
+  void remove_writer_of_nodes(std::uint32_t writer);
+  /// Nothing of it passes from now on, until it is forgiven.
+  void shun(const GuidPrefix& process);
+  void forgive(const GuidPrefix& process);
 
   struct Admitted {
     /// Datagrams that Fast DDS is to see first: discovery that came in pieces, and what is better said otherwise.
@@ -41,20 +53,27 @@ class DatagramGuard {
   };
   /// Changes `bytes`: what Fast DDS must not act on becomes padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
+  /// What this process sends.
+  void note_sent(std::span<const std::uint8_t> bytes);
 
   GuardReport report() const;
   /// Sources of which something was refused for the first time since the last call.
   std::vector<GuardReport::Address> take_new_sources();
+  std::vector<std::pair<GuidPrefix, Repeats::Answer>> take_new_askers();
 
  private:
   std::optional<Refusal> judge(const Findings& findings, std::span<const std::uint8_t> bytes, Source source, Time now,
                                Admitted& admitted);
+  bool is_of_shunned(const Findings& findings, const GuidPrefix& sender) const;
+  void answer_requests(Findings& findings, Source source, Time now);
   void refuse(Refusal why, Source source);
 
   mutable std::mutex mutex_;
   std::optional<GuidPrefix> own_;
   SourceLimits rates_;
   PeerBook peers_;
+  Repeats repeats_;
+  Repeats::Prefixes shunned_;
   DiscoveryPieces pieces_;
   GuardReport::Counts refused_{};
   std::uint64_t passed_ = 0;

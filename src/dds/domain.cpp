@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "aurasimPubSubTypes.h"
+#include "dds/datagram_guard.h"
 #include "dds/guarded_type.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
@@ -73,7 +74,8 @@ std::string partition_to(core::RegionId destination) {
   return fmt::format("region/*/to/{}", core::value_of(destination));
 }
 
-Domain::Domain(const Settings& settings) : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()) {
+Domain::Domain(const Settings& settings)
+    : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()), speakers_(guard_) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   loopback_only_ = on_loopback_only(qos);
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
@@ -93,9 +95,7 @@ Domain::Domain(const Settings& settings) : profiles_(settings.profiles), guard_(
         "there, and are fewer than 100 processes in this domain on this host?",
         settings.domain, settings.profiles.string()));
   }
-  GuidPrefix own;
-  std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
-  guard_->set_own(own);
+  guard_->set_own(prefix_of(participant_->guid().guidPrefix));
   speakers_.set_self(participant_->guid().guidPrefix);
   register_types();
   liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit);

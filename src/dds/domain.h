@@ -95,11 +95,11 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
 
   Profiles profiles_;
   Directory directory_;
+  std::shared_ptr<DatagramGuard> guard_;
   Speakers speakers_;
   bool loopback_only_ = false;
   std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
-  std::shared_ptr<DatagramGuard> guard_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
   struct Leave {

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dds/datagram_guard.h"
+
 namespace aurasim::dds {
 
 using eprosima::fastdds::dds::DataReaderQos;
@@ -32,6 +34,17 @@ std::string profile_of(const EndpointSpec& spec, const char* kind) {
   return spec.profile.empty() ? std::string(name_of(spec.topic)) + kind : spec.profile;
 }
 
+bool is_of_nodes(TopicId topic) {
+  return topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
+}
+
+/// As the guard reads it from the wire.
+std::uint32_t entity_of(const Guid& endpoint) {
+  std::uint32_t entity = 0;
+  for (const unsigned char octet : endpoint.entityId.value) entity = entity << 8 | octet;
+  return entity;
+}
+
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -39,7 +52,8 @@ std::string profile_of(const EndpointSpec& spec, const char* kind) {
 
 }  // namespace
 
-Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domain_(domain), watch_(wakeup) {
+Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
+    : domain_(domain), watch_(wakeup), is_of_nodes_(is_of_nodes(spec.topic)) {
   PublisherQos publisher_qos;
   set_partitions(publisher_qos.partition(), spec.partitions);
   publisher_ = domain.participant().create_publisher(publisher_qos);
@@ -54,6 +68,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);
   }
+  if (is_of_nodes_) domain.guard().add_writer_of_nodes(entity_of(writer_->guid()));
   if (spec.region) {
     domain.directory().add(writer_->guid(), *spec.region);
   }
@@ -63,6 +78,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
 }
 
 Writer::~Writer() {
+  if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
   writer_->set_listener(nullptr);
   publisher_->delete_datawriter(writer_);

@@ -64,7 +64,8 @@ class Writer {
 
   Domain& domain_;
   WriterWatch watch_;
-  std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had everything
+  bool is_of_nodes_ = false;  ///< what it writes, nodes say to each other
+  std::int32_t unread_ = 0;   ///< calls of forget_acknowledged() since every reader had everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };

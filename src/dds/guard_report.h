@@ -9,7 +9,7 @@
 namespace aurasim::dds {
 
 struct GuardReport {
-  using Counts = std::array<std::uint64_t, 14>;  ///< by Refusal of datagram_check.h
+  using Counts = std::array<std::uint64_t, 16>;  ///< by Refusal of datagram_check.h
 
   struct Address {
     std::uint32_t address = 0;  ///< IPv4; 127.0.0.1 is 0x7f000001

@@ -1,5 +1,8 @@
 #include "dds/participant.h"
 
+#include <fmt/format.h>
+
+#include "dds/datagram_guard.h"
 #include "dds/domain.h"
 
 namespace aurasim::dds {
@@ -21,9 +24,22 @@ std::optional<Participant::ImpairmentReport> Participant::impairment() const {
   return ImpairmentReport{line->impairment(), line->counters()};
 }
 
-std::uint64_t Participant::refused_of_strangers() const { return domain_->speakers().refused(); }
+std::uint64_t Participant::refused_of_strangers() const {
+  const GuardReport guarded = domain_->guard().report();
+  return domain_->speakers().refused() + guarded.refused[static_cast<std::size_t>(Refusal::kRepeat)];
+}
 
-std::vector<std::string> Participant::take_said() { return domain_->speakers().take_said(); }
+std::vector<std::string> Participant::take_said() {
+  std::vector<std::string> said = domain_->speakers().take_said();
+  for (const auto& [process, answer] : domain_->guard().take_new_askers()) {
+    const char* const what = answer == Repeats::Answer::kHasAll
+                                 ? "reads what nodes say to each other, and is none: nothing is sent again to it, or "
+                                   "kept for it"
+                                 : "asks for more to be sent again than it is given";
+    said.push_back(fmt::format("process {} {}", text_of(process_of(process)), what));
+  }
+  return said;
+}
 
 void Participant::flush_delayed() {
   if (DelayLine* line = domain_->delay_line()) line->flush();

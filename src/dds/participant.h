@@ -40,7 +40,7 @@ class Participant {
   };
   /// Nothing where nothing is impaired. Any thread.
   std::optional<ImpairmentReport> impairment() const;
-  /// Samples that were refused of processes that are no nodes of the run. Any thread.
+  /// Samples of processes that are no nodes of the run, and repeats for them, that were refused. Any thread.
   std::uint64_t refused_of_strangers() const;
   /// For the log: who is refused what, since the last call. Any thread.
   std::vector<std::string> take_said();

@@ -1,7 +1,6 @@
 #include "dds/peer_book.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace aurasim::dds {
 namespace {
@@ -15,14 +14,6 @@ constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;
 
 }  // namespace
-
-std::size_t PeerBook::PrefixHash::operator()(const GuidPrefix& prefix) const {
-  std::uint64_t low = 0;
-  std::uint32_t high = 0;
-  std::memcpy(&low, prefix.data(), sizeof low);
-  std::memcpy(&high, prefix.data() + sizeof low, sizeof high);
-  return (low ^ (std::uint64_t{high} << 29)) * 0x9e3779b97f4a7c15ULL >> 17;
-}
 
 void PeerBook::hear(const GuidPrefix& participant, Time now) {
   if (const auto it = peers_.find(participant); it != peers_.end()) it->second.heard = now;

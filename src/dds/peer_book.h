@@ -57,9 +57,6 @@ class PeerBook {
     std::size_t unfinished_B = 0;
     std::unordered_map<std::uint32_t, Endpoint> endpoints;
   };
-  struct PrefixHash {
-    std::size_t operator()(const GuidPrefix& prefix) const;
-  };
   using Peers = std::unordered_map<GuidPrefix, Peer, PrefixHash>;
 
   std::optional<Refusal> take_participant(const Claim& claim, Source source, Time now);

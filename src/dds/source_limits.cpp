@@ -1,24 +1,6 @@
 #include "dds/source_limits.h"
 
-#include <utility>
-
 namespace aurasim::dds {
-
-template <class Key, class Value>
-template <class Make>
-Value& SourceLimits::Recent<Key, Value>::find(const Key& key, std::size_t most, Make make) {
-  if (const auto it = young.find(key); it != young.end()) return it->second;
-  if (young.size() >= most / 2) {
-    old = std::move(young);
-    young.clear();
-  }
-  if (const auto it = old.find(key); it != old.end()) {
-    Value value = it->second;
-    old.erase(it);
-    return young.emplace(key, value).first->second;
-  }
-  return young.emplace(key, make()).first->second;
-}
 
 SourceLimits::Address& SourceLimits::address_of(std::uint32_t address, Time now) {
   return addresses_.find(address, kMostAddresses, [&] {

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
 
+#include "dds/recent.h"
 #include "dds/token_bucket.h"
 
 namespace aurasim::dds {
@@ -50,14 +50,6 @@ class SourceLimits {
   };
   struct Address {
     TokenBucket datagrams, jumps, gaps;
-  };
-
-  /// Keeps those that were seen since the last time that half of them had come.
-  template <class Key, class Value>
-  struct Recent {
-    std::unordered_map<Key, Value> young, old;
-    template <class Make>
-    Value& find(const Key& key, std::size_t most, Make make);
   };
 
   Address& address_of(std::uint32_t address, Time now);

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dds/datagram_guard.h"
+
 namespace aurasim::dds {
 namespace {
 
@@ -31,6 +33,18 @@ std::int64_t region_of_partition(std::string_view partition) {
 }
 
 }  // namespace
+
+GuidPrefix prefix_of(const ProcessPrefix& process) {
+  GuidPrefix prefix{};
+  std::ranges::copy(process.value, prefix.begin());
+  return prefix;
+}
+
+ProcessPrefix process_of(const GuidPrefix& prefix) {
+  ProcessPrefix process;
+  std::ranges::copy(prefix, std::begin(process.value));
+  return process;
+}
 
 std::string text_of(const ProcessPrefix& process) {
   return fmt::format("{:02x}", fmt::join(std::begin(process.value), std::end(process.value), "."));
@@ -60,8 +74,21 @@ void Speakers::remove(const Guid& writer) {
 
 void Speakers::set(core::RegionId region, const ProcessPrefix& process) {
   const std::lock_guard lock(mutex_);
-  nodes_.insert_or_assign(region, process);
-  shunned_.erase(process);
+  const auto [node, is_new] = nodes_.try_emplace(region, process);
+  if (!is_new && node->second == process) return;
+  node->second = process;
+  const bool was_shunned = shunned_.erase(process) > 0;
+  if (guard_ == nullptr) return;
+  if (was_shunned) guard_->forgive(prefix_of(process));
+  tell_guard_of_nodes();
+}
+
+void Speakers::tell_guard_of_nodes() const {
+  Repeats::Prefixes nodes;
+  for (const auto& [region, process] : nodes_) {
+    if (process != self_) nodes.insert(prefix_of(process));
+  }
+  guard_->set_nodes(std::move(nodes));
 }
 
 std::optional<ProcessPrefix> Speakers::of(core::RegionId region) const {
@@ -110,6 +137,7 @@ void Speakers::shun(const ProcessPrefix& process, const std::string& why) {
 
 void Speakers::shun_locked(const ProcessPrefix& process, const std::string& why) {
   if (shunned_.size() >= kMostProcesses || !shunned_.insert(process).second) return;
+  if (guard_ != nullptr) guard_->shun(prefix_of(process));
   say_locked(fmt::format("process {} is not listened to any more: {}", text_of(process), why));
 }
 

@@ -6,20 +6,28 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
+#include "dds/datagram_findings.h"
 #include "dds/watch.h"
 
 namespace aurasim::dds {
 
+class DatagramGuard;  // datagram_guard.h
+
 /// Thread-safe.
 class Speakers {
  public:
+  /// `guard`, if there is one, is told who is a node and who is not listened to.
+  explicit Speakers(std::shared_ptr<DatagramGuard> guard = nullptr) : guard_(std::move(guard)) {}
+
   /// Of this process: it may say everything.
   void set_self(const ProcessPrefix& self);
   /// A writer was discovered, with the partitions that it announces, or is gone.
@@ -57,6 +65,9 @@ class Speakers {
   void shun_locked(const ProcessPrefix& process, const std::string& why);
   void say_locked(std::string text);
 
+  void tell_guard_of_nodes() const;
+
+  std::shared_ptr<DatagramGuard> guard_;
   mutable std::mutex mutex_;
   std::optional<ProcessPrefix> self_;
   std::map<Guid, std::int64_t> homes_;  ///< of writers: their region; -1: of none, or of several
@@ -68,6 +79,8 @@ class Speakers {
   std::vector<std::string> said_;
 };
 
+GuidPrefix prefix_of(const ProcessPrefix& process);
+ProcessPrefix process_of(const GuidPrefix& prefix);
 /// "01.0f.6a...": as Fast DDS and other tools print it.
 std::string text_of(const ProcessPrefix& process);
 

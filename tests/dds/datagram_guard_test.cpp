@@ -1,6 +1,8 @@
 // What takes a memory to refuse. Time is passed in.
 #include "dds/datagram_guard.h"
 
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "datagram_samples.h"
@@ -229,6 +231,129 @@ TEST_F(Guard, RefusesASampleOfWhichPartsAreHere) {
   EXPECT_TRUE(passes(fragment({.first = 2})));
   EXPECT_TRUE(passes(fragment({.first = 3, .payload_B = 952})));
   EXPECT_TRUE(passes(whole));  // Fast DDS knows that it has it
+}
+
+/// A guard of a node that has sent samples 1 to kLast by kWriter, of kSample_B each.
+class RepeatsForStrangers : public Guard {
+ protected:
+  RepeatsForStrangers() {
+    guard_.set_nodes({prefix_of(kNode)});
+    for (std::uint64_t number = 1; number <= kLast; ++number) {
+      guard_.note_sent(datagram({heartbeat(1, number), data(kWriter, number, Bytes(kSample_B - 20))}));
+    }
+  }
+  /// What Fast DDS is shown of it; nothing: padding.
+  std::optional<Request> admit(std::uint32_t process, const Octets& submessage) {
+    Bytes bytes = header(prefix_of(process)).raw(submessage.bytes()).bytes();
+    EXPECT_EQ(guard_.admit(bytes, kSource, now_).size, bytes.size()) << "what else is in the datagram passes";
+    Findings findings;
+    EXPECT_EQ(check_datagram(bytes, findings), std::nullopt);
+    return findings.requests.empty() ? std::nullopt : std::optional(findings.requests.front());
+  }
+  /// How many of so many requests.
+  int answered(std::uint32_t process, int asked, std::uint32_t wanted = 256) {
+    int count = 0;
+    for (int i = 0; i < asked; ++i) {
+      const auto shown = admit(process, ack_nack(1, wanted));
+      if (shown && shown->wanted == wanted && shown->base == 1) ++count;
+    }
+    return count;
+  }
+
+  static constexpr std::uint32_t kNode = 1, kViewer = 2, kOther = 1000;
+  static constexpr std::uint64_t kLast = 300;
+  static constexpr std::size_t kSample_B = 10'000;
+};
+
+TEST_F(RepeatsForStrangers, AreNoMatterForNodes) {
+  guard_.add_writer_of_nodes(kWriter);
+  EXPECT_EQ(answered(kNode, 10'000), 10'000);
+  now_ += 1h;
+  EXPECT_EQ(answered(kNode, 10'000), 10'000);
+  EXPECT_EQ(refused(Refusal::kRepeat), 0U);
+}
+
+TEST_F(RepeatsForStrangers, AreNoneBeforeAnyNodeIsKnown) {
+  guard_.set_nodes({});
+  EXPECT_EQ(answered(kViewer, 10'000), 10'000);
+}
+
+TEST_F(RepeatsForStrangers, AreSoManyBytesASecond) {
+  EXPECT_EQ(answered(kViewer, 1000), 12) << "32 MB at once";
+  EXPECT_EQ(refused(Refusal::kRepeat), 988U);
+  const auto askers = guard_.take_new_askers();
+  ASSERT_EQ(askers.size(), 1U) << "said once";
+  EXPECT_EQ(askers[0].first, prefix_of(kViewer));
+  now_ += 1s;
+  EXPECT_EQ(answered(kViewer, 1000), 3) << "8 MB a second";
+  EXPECT_EQ(answered(kOther, 1000), 12) << "another has its own";
+}
+
+TEST_F(RepeatsForStrangers, AreBoundedForAllOfThemTogether) {
+  int count = 0;
+  for (std::uint32_t process = 0; process < 100; ++process) count += answered(kOther + process, 20);
+  EXPECT_EQ(count, 50) << "128 MB at once";
+}
+
+/// Whoever has it lacks all, but its acknowledgement is heard: Fast DDS keeps nothing for it.
+TEST_F(RepeatsForStrangers, AreNoneOfWhatNodesSayToEachOther) {
+  guard_.add_writer_of_nodes(kWriter);
+  EXPECT_EQ(answered(kViewer, 1), 1) << "it may become a node";
+  now_ += 11s;
+  const auto shown = admit(kViewer, ack_nack(1, 256));
+  ASSERT_TRUE(shown);
+  EXPECT_EQ(shown->base, kLast + 1);
+  EXPECT_EQ(shown->wanted, 0U);
+  EXPECT_EQ(refused(Refusal::kRepeat), 1U);
+  EXPECT_FALSE(admit(kViewer, nack_fragments(5)));
+  const auto greeting = admit(kViewer, ack_nack(0, 0));
+  ASSERT_TRUE(greeting);
+  EXPECT_EQ(greeting->base, 0U) << "it wants to hear where the writer is";
+  EXPECT_EQ(admit(kViewer, ack_nack(kLast + 1, 0))->base, kLast + 1);
+  guard_.set_nodes({prefix_of(kNode), prefix_of(kViewer)});
+  EXPECT_EQ(answered(kViewer, 100), 100) << "now it is one";
+}
+
+/// 60 samples a second of each of 16 topics, 10% lost, and asked for four times until they are there.
+TEST_F(RepeatsForStrangers, AreEnoughForAViewerOnABadNetwork) {
+  for (int i = 0; i < 60 * 60; ++i, now_ += 16'666us) {
+    for (int topic = 0; topic < 16; ++topic) {
+      const int lost = (i + topic) % 10 == 0 ? 4 : 0;
+      ASSERT_EQ(answered(kViewer, lost, 1), lost) << i;
+    }
+  }
+}
+
+/// A picture of 20 MB in fragments of 1400 bytes, 10% of them lost, and asked for five times.
+TEST_F(RepeatsForStrangers, AreEnoughForASpareThatComesLate) {
+  guard_.note_sent(datagram({fragment({.fragment_B = 1400, .sample_B = 20U << 20, .payload_B = 1400})}));
+  for (std::uint32_t i = 0; i < 5 * (20U << 20) / 1400 / 10 / 8; ++i) {
+    ASSERT_TRUE(admit(kViewer, nack_fragments(1))) << i;
+  }
+}
+
+TEST_F(RepeatsForStrangers, AreBoundedInFragments) {
+  guard_.note_sent(datagram({fragment({.fragment_B = 60'000, .sample_B = 20U << 20, .payload_B = 60'000})}));
+  int count = 0;
+  for (int i = 0; i < 1000; ++i) count += admit(kViewer, nack_fragments(1)) ? 1 : 0;
+  EXPECT_EQ(count, 66) << "32 MB";
+}
+
+TEST_F(Guard, PassesNothingOfWhomNobodyListensTo) {
+  const auto from_it = datagram({heartbeat(1, 1)});
+  Octets source;
+  source.zeros(8);
+  for (const std::uint8_t octet : kPrefix) source.raw({octet});
+  const Bytes in_its_name =
+      header(prefix_of(9)).raw(submessage(0x0c, 0, source).bytes()).raw(heartbeat(1, 1).bytes()).bytes();
+  EXPECT_TRUE(passes(from_it));
+  EXPECT_TRUE(passes(in_its_name));
+  guard_.shun(kPrefix);
+  EXPECT_FALSE(passes(from_it));
+  EXPECT_FALSE(passes(in_its_name));
+  EXPECT_EQ(refused(Refusal::kShunned), 2U);
+  guard_.forgive(kPrefix);
+  EXPECT_TRUE(passes(from_it));
 }
 
 /// In pieces nobody could check it.

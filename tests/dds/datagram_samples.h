@@ -89,6 +89,22 @@ inline Octets gap(std::uint64_t first, std::uint64_t base, std::uint32_t count =
                     Octets().entity(kReader).entity(kWriter).sequence(first).sequence(base).raw(bits(count).bytes()));
 }
 
+/// Of a reader: it has all before `base`, and would like to have the next `wanted`.
+inline Octets ack_nack(std::uint64_t base, std::uint32_t wanted, std::uint32_t writer = kWriter) {
+  Octets body;
+  body.entity(kReader).entity(writer).sequence(base).u32(wanted);
+  for (std::uint32_t left = wanted; left > 0; left -= left < 32 ? left : 32) {
+    body.u32(left < 32 ? ~(~0U >> left) : ~0U);
+  }
+  return submessage(0x06, 0, body.u32(1));
+}
+
+/// Of fragments 1 to 8.
+inline Octets nack_fragments(std::uint64_t sequence) {
+  return submessage(0x12, 0,
+                    Octets().entity(kReader).entity(kWriter).sequence(sequence).u32(1).u32(8).u32(0xff00'0000).u32(1));
+}
+
 inline Octets data(std::uint32_t writer, std::uint64_t sequence, const Bytes& payload, const Bytes& inline_qos = {}) {
   const std::uint8_t flags = inline_qos.empty() ? 4 : 6;
   return submessage(0x15, flags,

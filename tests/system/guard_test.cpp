@@ -59,7 +59,7 @@ TEST_F(Guard, ARunGoesOnAfterADatagramThatEndsFastDds) {
   for (int i = 0; i < 20; ++i) stranger.send_to_all(the_one_of_92_bytes());
   expect_exit(run, 0);
   expect_all_bodies_accounted_for(report_of("run"));
-  EXPECT_THAT(run.err(), HasSubstr("datagrams from 127.0.0.1 are no RTPS that a run's peers send"));
+  EXPECT_THAT(run.err(), HasSubstr("datagrams from 127.0.0.1 are not what a run's peers send"));
   EXPECT_THAT(run.err(), HasSubstr("statistics"));
 }
 

@@ -1,0 +1,87 @@
+#include "dds/repeats.h"
+
+#include <algorithm>
+
+#include "dds/wire_cursor.h"
+
+namespace aurasim::dds {
+
+void Repeats::note_sent(std::span<const std::uint8_t> datagram) {
+  constexpr std::uint8_t kData = 0x15, kDataFrag = 0x16;
+  std::size_t at = kHeaderBytes;
+  while (datagram.size() >= at + 4) {
+    const std::uint8_t id = datagram[at];
+    const bool little = (datagram[at + 1] & 1) != 0;
+    std::size_t length = WireCursor(datagram, at + 2, at + 4, little).u16();
+    at += 4;
+    if ((length == 0 && (id == kData || id == kDataFrag)) || length > datagram.size() - at) {
+      length = datagram.size() - at;
+    }
+    WireCursor body(datagram, at, at + length, little);
+    at += length;
+    if (id != kData && id != kDataFrag) continue;
+    body.skip(8);
+    const std::uint32_t writer = body.entity();
+    const std::uint64_t number = body.sequence_number();
+    if (id == kData) {
+      note_sent(writer, number, static_cast<std::uint32_t>(length), 0);
+    } else {
+      body.skip(6);
+      const std::uint32_t fragment_B = body.u16();
+      note_sent(writer, number, body.u32(), fragment_B);
+    }
+  }
+}
+
+void Repeats::note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B, std::uint32_t fragment_B) {
+  if (sent_.size() >= kMostWriters) sent_.clear();
+  Sent& sent = sent_[writer];
+  sent.last = std::max(sent.last, number);
+  sent.sample_B = std::max(sent.sample_B - sent.sample_B / 16, sample_B);
+  sent.fragment_B = std::max(sent.fragment_B, fragment_B);
+}
+
+std::uint64_t Repeats::last_of(std::uint32_t writer) const {
+  const auto sent = sent_.find(writer);
+  return sent == sent_.end() ? 0 : sent->second.last;
+}
+
+double Repeats::price_of(const Request& request) const {
+  const auto sent = sent_.find(request.writer);
+  const std::uint32_t known_B =
+      sent == sent_.end() ? 0 : (request.of_fragments ? sent->second.fragment_B : sent->second.sample_B);
+  const double each_B = request.of_fragments ? known_B : std::max<double>(known_B, limits_.smallest_sample_B);
+  return std::min(request.wanted * each_B, limits_.bytes_burst);
+}
+
+Repeats::Answer Repeats::judge(const Request& request, Time now) {
+  if (nodes_.empty() || nodes_.contains(request.reader.prefix)) return Answer::kPass;
+  const bool is_of_nodes = of_nodes_.contains(request.writer);
+  if (request.wanted == 0 && !is_of_nodes) return Answer::kPass;
+  Asker& asker = askers_.find(request.reader.prefix, kMostAskers, [&] {
+    return Asker{{limits_.bytes_per_s, limits_.bytes_burst, now}, Time(0), false, false};
+  });
+  if (is_of_nodes && is_too_late(asker, request, now)) {
+    if (request.wanted > 0) tell(asker.is_said_of_nodes, request, Answer::kHasAll);
+    return request.of_fragments ? Answer::kDrop : Answer::kHasAll;
+  }
+  const double price = price_of(request);
+  if (asker.bytes.take(price, now) && (is_built_in(request.writer) || all_.take(price, now))) return Answer::kPass;
+  tell(asker.is_said, request, Answer::kDrop);
+  return Answer::kDrop;
+}
+
+/// What it has already, or has just come to, is its to say.
+bool Repeats::is_too_late(Asker& asker, const Request& request, Time now) const {
+  if (asker.since == Time(0)) asker.since = now;
+  if (now - asker.since < limits_.until_known) return false;
+  return request.of_fragments || (request.base > 0 && request.base <= last_of(request.writer));
+}
+
+void Repeats::tell(bool& is_said, const Request& request, Answer answer) {
+  if (is_said || news_.size() >= kMostNews) return;
+  is_said = true;
+  news_.emplace_back(request.reader.prefix, answer);
+}
+
+}  // namespace aurasim::dds

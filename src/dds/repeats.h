@@ -1,0 +1,87 @@
+// What is said again to readers that ask for it. Nodes of the run get all that they ask for. Everybody else gets so
+// much a second, and of what nodes say to each other after a while nothing: a reader that takes no samples asks for all
+// of them with each heartbeat, for ever, and they are kept for it. Pure; time is passed in.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "dds/datagram_findings.h"
+#include "dds/recent.h"
+#include "dds/token_bucket.h"
+
+namespace aurasim::dds {
+
+/// Of processes that are no nodes. A viewer with 10% loss asks each node for some kB a second, a spare that comes late
+/// for some 20 MB at once.
+struct RepeatLimits {
+  double bytes_per_s = 8e6, bytes_burst = 32e6;            ///< of one process
+  double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< of all together; discovery is not counted
+  double smallest_sample_B = 8192;                         ///< what any costs
+  /// Who listens to what nodes say to each other has so long to become known as one.
+  TokenBucket::Time until_known = std::chrono::seconds(10);
+};
+
+class Repeats {
+ public:
+  using Time = TokenBucket::Time;
+  using Prefixes = std::unordered_set<GuidPrefix, PrefixHash>;
+
+  explicit Repeats(const RepeatLimits& limits)
+      : limits_(limits), all_(limits.all_bytes_per_s, limits.all_bytes_burst, Time(0)) {}
+
+  /// But for this process itself. Before any is known, everybody is one.
+  void set_nodes(Prefixes nodes) { nodes_ = std::move(nodes); }
+  /// A writer of this process, of what nodes say to each other.
+  void add_writer_of_nodes(std::uint32_t writer) { of_nodes_.insert(writer); }
+  void remove_writer_of_nodes(std::uint32_t writer) { of_nodes_.erase(writer); }
+
+  /// A datagram that this process sends: how large samples are, and how many there have been.
+  void note_sent(std::span<const std::uint8_t> datagram);
+
+  enum class Answer : std::uint8_t {
+    kPass,
+    kDrop,    ///< who asks again may be heard
+    kHasAll,  ///< as if it had acknowledged all samples until last_of()
+  };
+  Answer judge(const Request& request, Time now);
+  std::uint64_t last_of(std::uint32_t writer) const;
+
+  /// Processes that were refused repeats, or of which nothing is awaited any more, for the first time since the last
+  /// call.
+  std::vector<std::pair<GuidPrefix, Answer>> take_news() { return std::exchange(news_, {}); }
+
+  static constexpr std::size_t kMostAskers = 2048, kMostWriters = 65'536, kMostNews = 64;
+
+ private:
+  struct Asker {
+    TokenBucket bytes;
+    Time since{0};  ///< that it was first heard of what nodes say to each other; 0: it has not been
+    bool is_said = false, is_said_of_nodes = false;
+  };
+  struct Sent {
+    std::uint64_t last = 0;
+    std::uint32_t sample_B = 0, fragment_B = 0;  ///< the largest of late: those of 100 samples ago hardly count
+  };
+
+  void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B, std::uint32_t fragment_B);
+  double price_of(const Request& request) const;
+  bool is_too_late(Asker& asker, const Request& request, Time now) const;
+  void tell(bool& is_said, const Request& request, Answer answer);
+
+  RepeatLimits limits_;
+  Prefixes nodes_;
+  std::unordered_set<std::uint32_t> of_nodes_;
+  std::unordered_map<std::uint32_t, Sent> sent_;
+  Recent<GuidPrefix, Asker, PrefixHash> askers_;
+  TokenBucket all_;
+  std::vector<std::pair<GuidPrefix, Answer>> news_;
+};
+
+}  // namespace aurasim::dds
