@@ -60,9 +60,10 @@ void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
 }
 
 int replay(const ReplayArguments& arguments) {
+  const overseer::WebSettings settings = web_settings({}, arguments.web);
   overseer::Replay replay(arguments.file);
   overseer::ShapeStore shapes(read_mesh_apart);
-  const auto web = open_web_server(web_settings({}, arguments.web), arguments.web, shapes);
+  const auto web = open_web_server(settings, arguments.web, shapes);
   web->publish(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
   catch_stop_signals();
   auto next_status = Clock::now();

@@ -77,6 +77,11 @@ void WebArguments::add_to(CLI::App& command) {
                   "name that the viewer is asked for by, beside its addresses, this host's name and those of its "
                   "certificate")
       ->allow_extra_args(false);
+  CLI::Option* const certificate = command.add_option("--tls-certificate", tls_certificate,
+                                                      "PEM file; with it the viewer speaks HTTPS (overseer.tls)");
+  CLI::Option* const key = command.add_option("--tls-key", tls_key, "PEM file with the certificate's key");
+  certificate->needs(key);
+  key->needs(certificate);
   command.add_option("--web", pages, "folder of the built page")->check(CLI::ExistingDirectory);
 }
 
@@ -90,12 +95,29 @@ void check_tls_of(const config::Launch& launch) {
   }
 }
 
+namespace {
+
+std::optional<config::Tls> tls_of(const config::Launch& launch, const WebArguments& arguments) {
+  if (arguments.tls_certificate.empty()) {
+    check_tls_of(launch);
+    return launch.overseer.tls;
+  }
+  const config::Tls tls{arguments.tls_certificate, arguments.tls_key};
+  try {
+    overseer::check_tls(tls);
+  } catch (const overseer::BadTls& error) {
+    throw config::BadConfig({fmt::format("--tls-{}: {}", error.key(), error.what())});
+  }
+  return tls;
+}
+
+}  // namespace
+
 overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments) {
   overseer::WebSettings settings;
   settings.bind = arguments.bind.empty() ? launch.overseer.bind : arguments.bind;
   settings.port = static_cast<std::uint16_t>(arguments.port < 0 ? launch.overseer.port : arguments.port);
-  settings.tls = launch.overseer.tls;
-  check_tls_of(launch);
+  settings.tls = tls_of(launch, arguments);
   const bool is_reached_by_others = !overseer::is_loopback_address(settings.bind);
   if (is_reached_by_others) settings.names = own_names();
   settings.names.insert(settings.names.end(), arguments.names.begin(), arguments.names.end());

@@ -21,6 +21,7 @@ struct WebArguments {
   std::string view_token;
   bool anyone_may_look = false;
   std::vector<std::string> names;
+  std::string tls_certificate, tls_key;  ///< both or none
   std::string pages;
 
   void add_to(CLI::App& command);
@@ -29,7 +30,7 @@ struct WebArguments {
 /// Throws BadConfig when certificate and key, if there are any, cannot be used.
 void check_tls_of(const config::Launch& launch);
 
-/// Draws the tokens that are needed and were not given. Throws as check_tls_of.
+/// Draws the tokens that are needed and were not given. Throws as check_tls_of; so for what the command line names.
 overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments);
 
 /// Prints the address, and the tokens that were not given: who starts it may keep its output, and knows those. Takes

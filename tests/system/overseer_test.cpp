@@ -161,6 +161,17 @@ TEST_F(Overseers, FilesOfTlsThatCannotBeUsedAreNamedWithTheirPlace) {
   }
 }
 
+TEST_F(Overseers, AReplaySpeaksHttpsWithFilesThatCanBeUsed) {
+  const std::string recording = write("recording", "none").string(), key = write("key.pem", "no key").string();
+  Process& without_key = start({"replay", recording, "--tls-certificate", "nowhere.pem"});
+  EXPECT_TRUE(without_key.wait(kGenerous));
+  EXPECT_THAT(without_key.err(), HasSubstr("--tls-key"));
+  Process& without_certificate = start({"replay", recording, "--tls-certificate", "nowhere.pem", "--tls-key", key});
+  expect_exit(without_certificate, 2);
+  EXPECT_THAT(without_certificate.err(), HasSubstr("--tls-certificate: "));
+  EXPECT_THAT(without_certificate.err(), HasSubstr("nowhere.pem"));
+}
+
 TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
   const Words goes_on = set({"survival.on_death=go_on"});
   ASSERT_NO_FATAL_FAILURE(start_run(goes_on));
