@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "config/meshes.h"
+#include "core/mesh_hash.h"
 
 namespace aurasim::cli {
 namespace {
@@ -88,7 +88,7 @@ core::MeshRef RunCommandSink::parts_of(std::uint64_t hash, const std::shared_ptr
   const PartFinder::Parts& parts = *part_finder_.parts_of(hash, mesh);
   if (const auto* why = std::get_if<std::string>(&parts)) throw BadAsk(*why);
   const auto& pieces = std::get<core::TriangleMesh>(parts);
-  const std::uint64_t hash_of_parts = config::content_hash(pieces);
+  const std::uint64_t hash_of_parts = core::content_hash(pieces);
   client_.bring(hash_of_parts, pieces);
   return {hash_of_parts, core::MeshUse::kDecomposition};
 }

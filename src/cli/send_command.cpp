@@ -18,6 +18,7 @@
 #include "config/convex_parts.h"
 #include "config/meshes.h"
 #include "core/limits.h"
+#include "core/mesh_hash.h"
 #include "cut/cut_file.h"
 
 namespace aurasim::cli {
@@ -80,7 +81,7 @@ core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClie
   if (use == core::MeshUse::kDecomposition) mesh = config::decompose(std::get<core::TriangleMesh>(mesh));
   if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
   const auto& triangles = std::get<core::TriangleMesh>(mesh);
-  const std::uint64_t hash = config::content_hash(triangles);
+  const std::uint64_t hash = core::content_hash(triangles);
   client.bring(hash, triangles);
   return {hash, use};
 }

@@ -208,13 +208,6 @@ std::uint64_t content_hash(std::string_view bytes) {
   return hash;
 }
 
-std::uint64_t content_hash(const core::TriangleMesh& mesh) {
-  std::string content;
-  for (const Vec3& p : mesh.points) content += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
-  for (const auto& t : mesh.triangles) content += fmt::format("{} {} {} ", t[0], t[1], t[2]);
-  return content_hash(content);
-}
-
 core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use) {
   if (use == core::MeshUse::kTriangles) return mesh;
   if (use == core::MeshUse::kDecomposition) return convex_parts(mesh);

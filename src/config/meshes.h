@@ -32,7 +32,6 @@ std::variant<core::TriangleMesh, std::string> read_mesh(const std::string& name,
 
 /// By which clients and nodes name a mesh of this content.
 std::uint64_t content_hash(std::string_view bytes);
-std::uint64_t content_hash(const core::TriangleMesh& mesh);
 
 /// Points of the convex hull of a mesh: all of them up to a limit, beyond it those that are extreme in many directions.
 std::vector<core::Vec3> hull_points(const core::TriangleMesh& mesh);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/mesh_hash.h"
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
@@ -75,13 +76,20 @@ bool MeshWriter::tell_again(std::uint64_t hash, const core::TriangleMesh& mesh) 
 }
 
 struct MeshReader::Impl {
-  Impl(Participant& participant, const MeshCacheLimits& limits)
-      : reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
+  Impl(Participant& participant_in, const MeshCacheLimits& limits)
+      : participant(participant_in), reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
 
+  /// What a node tells again it has looked at when it came; in worlds that were saved by others, names may be others.
+  bool is_what_it_is_called(const NamedMesh& named, const Origin& origin) const {
+    return core::content_hash(named.mesh) == named.hash ||
+           (named.is_told_again && participant.domain().speakers().is_node(origin.writer));
+  }
+
+  Participant& participant;
   Wakeup wakeup;
   TypedReader<wire::MeshShape> reader;
   MeshCache meshes;
-  std::uint64_t without_room = 0;
+  std::uint64_t without_room = 0, misnamed = 0;
 };
 
 MeshReader::MeshReader(Participant& participant, const MeshCacheLimits& limits)
@@ -91,6 +99,10 @@ MeshReader::~MeshReader() = default;
 
 MeshCache& MeshReader::meshes() {
   impl_->reader.take_each({}, [&](NamedMesh&& named, const Origin& origin) {
+    if (!impl_->is_what_it_is_called(named, origin)) {
+      ++impl_->misnamed;
+      return impl_->reader.refuse_from(origin, "a mesh that is not the one that it is called");
+    }
     const std::uint64_t source = std::hash<std::string>()(text_of(origin.writer.guidPrefix));
     const bool added = named.is_told_again ? impl_->meshes.add_spare(named.hash, std::move(named.mesh), source)
                                            : impl_->meshes.add(named.hash, std::move(named.mesh), source);
@@ -99,6 +111,8 @@ MeshCache& MeshReader::meshes() {
   return impl_->meshes;
 }
 
-std::uint64_t MeshReader::refused() const { return impl_->reader.refused().total() + impl_->without_room; }
+std::uint64_t MeshReader::refused() const {
+  return impl_->reader.refused().total() + impl_->without_room + impl_->misnamed;
+}
 
 }  // namespace aurasim::dds

@@ -65,11 +65,11 @@ class MeshReader {
  public:
   explicit MeshReader(Participant& participant, const MeshCacheLimits& limits = {});
   ~MeshReader();
-  /// Takes in what has come.
+  /// Takes in what has come, if it is what it is called by (core::content_hash).
   MeshCache& meshes();
   /// Null if it has not come (yet).
   const core::TriangleMesh* mesh(std::uint64_t hash) { return meshes().find(hash); }
-  /// Meshes that were not sound, or that there was no room for.
+  /// Meshes that were not sound, not what they were called, or that there was no room for.
   std::uint64_t refused() const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/meshes.h"
+#include "core/mesh_hash.h"
 
 namespace aurasim::overseer {
 namespace {
@@ -18,11 +19,12 @@ ShapeStore::Stored summary_of(std::uint64_t hash, const core::TriangleMesh& mesh
 
 std::variant<ShapeStore::Stored, std::string> ShapeStore::add(const std::string& name, std::string_view bytes) {
   if (bytes.size() > kLargestMeshFile) return "it is larger than 16 MiB";
-  const std::uint64_t hash = config::content_hash(bytes);
-  if (const auto known = find(hash)) return summary_of(hash, *known);
+  const std::uint64_t of_file = config::content_hash(bytes);
+  if (const auto stored = known(of_file)) return *stored;
   auto read = read_(name, bytes);
   if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);
   auto mesh = std::make_shared<const core::TriangleMesh>(std::get<core::TriangleMesh>(std::move(read)));
+  const std::uint64_t hash = core::content_hash(*mesh);
   const std::lock_guard lock(mutex_);
   if (mesh->points.size() > kMostPointsOfAll) return "it has too many points";
   if (!meshes_.contains(hash)) {
@@ -30,7 +32,21 @@ std::variant<ShapeStore::Stored, std::string> ShapeStore::add(const std::string&
     points_ += mesh->points.size();
     meshes_[hash] = {mesh, ++questions_};
   }
+  if (of_files_.size() >= 4 * kMostMeshes) of_files_.clear();
+  of_files_[of_file] = hash;
   return summary_of(hash, *mesh);
+}
+
+std::optional<ShapeStore::Stored> ShapeStore::known(std::uint64_t of_file) const {
+  std::uint64_t hash = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto file = of_files_.find(of_file);
+    if (file == of_files_.end()) return std::nullopt;
+    hash = file->second;
+  }
+  const auto mesh = find(hash);
+  return mesh == nullptr ? std::nullopt : std::optional(summary_of(hash, *mesh));
 }
 
 void ShapeStore::make_room(std::size_t points) {

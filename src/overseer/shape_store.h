@@ -1,5 +1,5 @@
-// Meshes that pages have sent, by the hash of their bytes. So much and no more: those that have not been asked for the
-// longest go. Thread-safe.
+// Meshes that pages have sent, by the hash of their content. So much and no more: those that have not been asked for
+// the longest go. Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,11 +44,14 @@ class ShapeStore {
     std::shared_ptr<const core::TriangleMesh> mesh;
     mutable std::uint64_t asked = 0;  ///< when last, by count of questions
   };
+  /// Of a file that was read before.
+  std::optional<Stored> known(std::uint64_t of_file) const;
   void make_room(std::size_t points);
 
   MeshReader read_;
   mutable std::mutex mutex_;
   mutable std::uint64_t questions_ = 0;
+  std::map<std::uint64_t, std::uint64_t> of_files_;  ///< by the hash of a file: of its mesh
   std::map<std::uint64_t, Kept> meshes_;
   std::size_t points_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "config/meshes.h"
+#include "core/mesh_hash.h"
 
 namespace aurasim::config {
 namespace {
@@ -131,7 +132,7 @@ TEST(ConvexParts, AMeshWhoseTrianglesFaceInwardsIsTurned) {
 
 TEST(ConvexParts, AreTheSameEveryTime) {
   const TriangleMesh once = parts_of(channel()), again = parts_of(channel());
-  EXPECT_EQ(content_hash(once), content_hash(again));
+  EXPECT_EQ(core::content_hash(once), core::content_hash(again));
 }
 
 TEST(ConvexParts, OfTooManyTrianglesAreNotLookedFor) {

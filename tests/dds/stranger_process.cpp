@@ -15,6 +15,7 @@
 
 #include "aurasim.h"
 #include "control_samples.h"
+#include "core/mesh_hash.h"
 #include "dds/checkpoint_codec.h"
 #include "dds/codec.h"
 #include "dds/command_bus.h"
@@ -203,7 +204,7 @@ class Stranger {
         mesh.points.emplace_back(static_cast<double>(i), static_cast<double>(m), 0.0);
         mesh.triangles.push_back({0, 1, static_cast<std::uint32_t>(i)});
       }
-      client.bring(draw_id(), mesh);
+      client.bring(core::content_hash(mesh), mesh);
     }
     for (std::size_t i = 0; i < rays; ++i) {
       client.send({draw_id(), 0, core::Ray{core::Vec3(0, 0, 50), core::Vec3(0, 0, -5), {}}}, 0);

@@ -15,9 +15,12 @@
 
 #include "aurasim.h"
 #include "control_samples.h"
+#include "core/mesh_hash.h"
 #include "dds/codec.h"
+#include "dds/command_bus.h"
 #include "dds/control_codec.h"
 #include "dds/random_id.h"
+#include "dds/scene_additions_bus.h"
 #include "dds/typed_endpoints.h"
 #include "transport_fixture.h"
 
@@ -174,6 +177,20 @@ TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
   }));
   EXPECT_THAT(taken, ElementsAre(Kind::kPause));
   EXPECT_EQ(zero_.participant.refused_of_strangers(), 3U);
+}
+
+TEST_F(AStranger, BringsNoMeshUnderAnotherOnesName) {
+  CommandClientEndpoint client(stranger_);
+  MeshReader reader(zero_.participant);
+  const core::TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}};
+  const std::uint64_t hash = core::content_hash(mesh);
+  client.bring(5, mesh);
+  client.bring(hash, mesh);
+  ASSERT_TRUE(holds_in_time([&] { return reader.mesh(hash) != nullptr; }));
+  EXPECT_EQ(reader.mesh(5), nullptr);
+  EXPECT_EQ(reader.refused(), 1U);
+  EXPECT_EQ(zero_.participant.refused_of_strangers(), 1U);
+  EXPECT_THAT(said(), HasSubstr("shape: a mesh that is not the one that it is called"));
 }
 
 TEST_F(AStranger, DoesNotKillByItsWord) {

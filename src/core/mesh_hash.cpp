@@ -1,0 +1,35 @@
+#include "core/mesh_hash.h"
+
+#include <bit>
+
+namespace aurasim::core {
+namespace {
+
+/// FNV-1a by words of 64 bits instead of octets, as meshes have many; the shift brings high bits down.
+class WordHash {
+ public:
+  void add(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 1099511628211ULL;
+    hash_ ^= hash_ >> 29;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 1469598103934665603ULL;
+};
+
+}  // namespace
+
+std::uint64_t content_hash(const TriangleMesh& mesh) {
+  WordHash hash;
+  hash.add(mesh.points.size());
+  for (const Vec3& point : mesh.points) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(std::bit_cast<std::uint64_t>(point[axis]));
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) hash.add(corner);
+  }
+  return hash.value();
+}
+
+}  // namespace aurasim::core
