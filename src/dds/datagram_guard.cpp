@@ -45,18 +45,26 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
   peers_.hear(sender, now);
   for (const Claim& claim : findings.claims) {
     if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
-    // The library asks for pieces that were lost, so it gets them as they come; without the last one it has nothing.
-    if (claim.kind == Claim::Kind::kFragments && is_built_in(claim.guid.entity)) {
-      if (const auto whole = pieces_.add(claim, bytes, now)) {
-        Findings of_whole;
-        if (const auto refused = check_datagram(*whole, of_whole)) return refused;
-        if (const auto refused = judge(of_whole, *whole, source, now, admitted)) return refused;
-      }
+    if (const auto refused = peers_.judge(claim, bytes, source, rates_, now)) return refused;
+    if (claim.kind == Claim::Kind::kFragments) {
+      if (const auto refused = judge_discovery_in_pieces(claim, bytes, source, now, admitted)) return refused;
     }
-    if (const auto refused = peers_.judge(claim, source, rates_, now)) return refused;
     if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));
   }
   return std::nullopt;
+}
+
+/// The library asks for pieces that were lost, so it gets them as they come; without the last one it has nothing.
+std::optional<Refusal> DatagramGuard::judge_discovery_in_pieces(const Claim& claim, std::span<const std::uint8_t> bytes,
+                                                                Source source, Time now, Admitted& admitted) {
+  const auto payload = peers_.take_whole(claim);
+  if (!payload) return std::nullopt;
+  const auto whole = datagram_of_data(claim, bytes, *payload);
+  Findings of_whole;
+  std::optional<Refusal> refusal = check_datagram(whole, of_whole);
+  if (!refusal) refusal = judge(of_whole, whole, source, now, admitted);
+  if (refusal) peers_.refuse(claim, *refusal);
+  return refusal;
 }
 
 /// What others announce of it may come with what is not its.

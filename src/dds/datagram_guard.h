@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "dds/datagram_findings.h"
-#include "dds/discovery_pieces.h"
 #include "dds/guard_report.h"
 #include "dds/peer_book.h"
 #include "dds/repeats.h"
@@ -47,7 +46,7 @@ class DatagramGuard {
   void forgive(const GuidPrefix& process);
 
   struct Admitted {
-    /// Datagrams that Fast DDS is to see first: discovery that came in pieces, and what is better said otherwise.
+    /// Datagrams that Fast DDS is to see first: what is better said otherwise.
     std::vector<std::vector<std::uint8_t>> before;
     std::size_t size = 0;  ///< of the datagram's begin, that Fast DDS may see; 0: nothing
   };
@@ -64,6 +63,8 @@ class DatagramGuard {
  private:
   std::optional<Refusal> judge(const Findings& findings, std::span<const std::uint8_t> bytes, Source source, Time now,
                                Admitted& admitted);
+  std::optional<Refusal> judge_discovery_in_pieces(const Claim& claim, std::span<const std::uint8_t> bytes,
+                                                   Source source, Time now, Admitted& admitted);
   bool is_of_shunned(const Findings& findings, const GuidPrefix& sender) const;
   void answer_requests(Findings& findings, Source source, Time now);
   void refuse(Refusal why, Source source);
@@ -74,7 +75,6 @@ class DatagramGuard {
   PeerBook peers_;
   Repeats repeats_;
   Repeats::Prefixes shunned_;
-  DiscoveryPieces pieces_;
   GuardReport::Counts refused_{};
   std::uint64_t passed_ = 0;
   std::unordered_map<std::uint32_t, GuardReport::Address> addresses_;

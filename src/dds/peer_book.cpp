@@ -1,6 +1,7 @@
 #include "dds/peer_book.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace aurasim::dds {
 namespace {
@@ -12,6 +13,8 @@ constexpr TokenBucket::Time kLonger = 10s;
 /// Samples of one writer that are told apart; an older one counts as new when more of it comes.
 constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;
+/// Discovery and handshakes: a description of an endpoint has some kB.
+constexpr std::uint32_t kLargestDiscovery_B = 64U << 10;
 
 }  // namespace
 
@@ -19,14 +22,16 @@ void PeerBook::hear(const GuidPrefix& participant, Time now) {
   if (const auto it = peers_.find(participant); it != peers_.end()) it->second.heard = now;
 }
 
-std::optional<Refusal> PeerBook::judge(const Claim& claim, Source source, SourceLimits& rates, Time now) {
+std::optional<Refusal> PeerBook::judge(const Claim& claim, std::span<const std::uint8_t> datagram, Source source,
+                                       SourceLimits& rates, Time now) {
   if (claim.kind == Claim::Kind::kParticipant) return take_participant(claim, source, now);
   const auto it = peers_.find(claim.guid.prefix);
   if (it == peers_.end()) return std::nullopt;  // Fast DDS does not know it either
   Peer& peer = it->second;
   if (claim.kind == Claim::Kind::kEndpoint) return take_endpoint(peer, claim);
   if (claim.kind == Claim::Kind::kEndpointGone) {
-    if (const auto gone = peer.endpoints.find(claim.guid.entity); gone != peer.endpoints.end()) {
+    const auto gone = peer.endpoints.find(claim.guid.entity);
+    if (gone != peer.endpoints.end() && !is_built_in(claim.guid.entity)) {
       for (const auto& [sequence, sample] : gone->second.samples) forget(peer, sample);
       peer.endpoints.erase(gone);
     }
@@ -37,7 +42,7 @@ std::optional<Refusal> PeerBook::judge(const Claim& claim, Source source, Source
   if (claim.kind == Claim::Kind::kData) return take_data(*writer, claim);
   if (claim.kind == Claim::Kind::kHeartbeat) return take_heartbeat(peer, *writer, claim, source, rates, now);
   if (claim.kind == Claim::Kind::kGap) return take_gap(peer, *writer, claim, source, rates, now);
-  return take_fragments(peer, *writer, claim);
+  return take_fragments(peer, *writer, claim, datagram);
 }
 
 std::optional<Refusal> PeerBook::take_participant(const Claim& claim, Source source, Time now) {
@@ -73,8 +78,11 @@ PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   if (const auto it = peer.endpoints.find(entity); it != peer.endpoints.end()) return &it->second;
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) {
     std::erase_if(peer.endpoints, [&](const auto& entry) {
+      const auto& samples = entry.second.samples;
+      const auto is_open = [](const auto& sample) { return sample.second.missing > 0 || sample.second.refused; };
       if (entry.second.announced) return false;
-      for (const auto& [sequence, sample] : entry.second.samples) forget(peer, sample);
+      if (is_built_in(entry.first) && std::ranges::any_of(samples, is_open)) return false;
+      for (const auto& [sequence, sample] : samples) forget(peer, sample);
       return true;
     });
   }
@@ -127,8 +135,23 @@ std::optional<Refusal> PeerBook::take_gap(Peer& peer, Endpoint& writer, const Cl
   return std::nullopt;
 }
 
+/// What is forgotten of a writer's discovery, Fast DDS must not have parts of.
+bool PeerBook::make_room_for_sample(Peer& peer, Endpoint& writer, bool built_in) {
+  if (writer.samples.size() < kMostSamples) return true;
+  const auto oldest = std::ranges::find_if(writer.samples, [&](const auto& entry) {
+    return !built_in || (entry.second.missing == 0 && !entry.second.refused);
+  });
+  if (oldest == writer.samples.end()) return false;
+  forget(peer, oldest->second);
+  writer.samples.erase(oldest);
+  return true;
+}
+
 /// Fast DDS takes memory for the whole sample at its first fragment, and sizes from the first one that comes.
-std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim) {
+std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
+                                                std::span<const std::uint8_t> datagram) {
+  const bool built_in = is_built_in(claim.guid.entity);
+  if (built_in && claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
   if (is_far_ahead(writer, claim)) return Refusal::kJump;
   auto it = writer.samples.find(claim.first);
   if (it == writer.samples.end()) {
@@ -136,24 +159,32 @@ std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, co
         peer.unfinished_B + claim.sample_B > limits_.unfinished_of_a_participant_B) {
       return Refusal::kUnfinished;
     }
-    if (writer.samples.size() >= kMostSamples) {
-      forget(peer, writer.samples.begin()->second);
-      writer.samples.erase(writer.samples.begin());
-    }
-    Sample sample{claim.sample_B, claim.fragment_B, (claim.sample_B + claim.fragment_B - 1) / claim.fragment_B, {}, 0};
+    if (!make_room_for_sample(peer, writer, built_in)) return Refusal::kUnfinished;
+    Sample sample;
+    sample.sample_B = claim.sample_B;
+    sample.fragment_B = claim.fragment_B;
+    sample.missing = (claim.sample_B + claim.fragment_B - 1) / claim.fragment_B;
     sample.here.resize(sample.missing);
     sample.reader = claim.reader;
+    if (built_in) sample.bytes.resize(claim.sample_B);
     it = writer.samples.emplace(claim.first, std::move(sample)).first;
     unfinished_B_ += claim.sample_B;
     peer.unfinished_B += claim.sample_B;
   }
   Sample& sample = it->second;
+  if (sample.refused) return sample.refused;
   if (sample.sample_B != claim.sample_B || sample.fragment_B != claim.fragment_B) return Refusal::kFragment;
   if (sample.missing == 0) return std::nullopt;
   for (std::uint32_t i = 0; i < claim.fragments; ++i) {
     const std::size_t index = claim.first_fragment - 1 + i;
-    if (!sample.here[index]) --sample.missing;
+    if (sample.here[index]) continue;  // Fast DDS keeps the first, too
     sample.here[index] = true;
+    --sample.missing;
+    if (!built_in) continue;
+    const std::size_t offset = index * sample.fragment_B;
+    const std::size_t size = std::min<std::size_t>(sample.fragment_B, sample.bytes.size() - offset);
+    std::ranges::copy(datagram.subspan(claim.payload + std::size_t{i} * sample.fragment_B, size),
+                      sample.bytes.begin() + static_cast<std::ptrdiff_t>(offset));
   }
   if (sample.missing == 0) {
     unfinished_B_ -= sample.sample_B;
@@ -161,6 +192,25 @@ std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, co
     sample.here = {};
   }
   return std::nullopt;
+}
+
+PeerBook::Sample* PeerBook::find(const Claim& claim) {
+  const auto peer = peers_.find(claim.guid.prefix);
+  if (peer == peers_.end()) return nullptr;
+  const auto writer = peer->second.endpoints.find(claim.guid.entity);
+  if (writer == peer->second.endpoints.end()) return nullptr;
+  const auto sample = writer->second.samples.find(claim.first);
+  return sample == writer->second.samples.end() ? nullptr : &sample->second;
+}
+
+std::optional<std::vector<std::uint8_t>> PeerBook::take_whole(const Claim& claim) {
+  Sample* const sample = find(claim);
+  if (sample == nullptr || sample->missing > 0 || sample->bytes.empty()) return std::nullopt;
+  return std::exchange(sample->bytes, {});
+}
+
+void PeerBook::refuse(const Claim& claim, Refusal why) {
+  if (Sample* const sample = find(claim)) sample->refused = why;
 }
 
 void PeerBook::forget(Peer& peer, const Sample& sample) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -33,7 +34,14 @@ class PeerBook {
 
   /// A participant has said something, whatever it is.
   void hear(const GuidPrefix& participant, Time now);
-  std::optional<Refusal> judge(const Claim& claim, Source source, SourceLimits& rates, Time now);
+  /// `datagram` is what the claim was found in.
+  std::optional<Refusal> judge(const Claim& claim, std::span<const std::uint8_t> datagram, Source source,
+                               SourceLimits& rates, Time now);
+  /// Discovery of which `claim` was the last fragment that was missing; nothing: of no other claim.
+  std::optional<std::vector<std::uint8_t>> take_whole(const Claim& claim);
+  /// That sample is unsound, which could not be seen before: none of its fragments is taken from now on. Fast DDS has
+  /// the others, and would be content with this one whenever it comes.
+  void refuse(const Claim& claim, Refusal why);
 
   std::size_t participants() const { return peers_.size(); }
   std::size_t unfinished_B() const { return unfinished_B_; }
@@ -41,9 +49,11 @@ class PeerBook {
  private:
   struct Sample {
     std::uint32_t sample_B = 0, fragment_B = 0;
-    std::uint32_t missing = 0;  ///< fragments; 0: whole
-    std::vector<bool> here;     ///< by fragment; none once it is whole
-    std::uint32_t reader = 0;   ///< that it is for; 0: all
+    std::uint32_t missing = 0;        ///< fragments; 0: whole
+    std::vector<bool> here;           ///< by fragment; none once it is whole
+    std::uint32_t reader = 0;         ///< that it is for; 0: all
+    std::vector<std::uint8_t> bytes;  ///< of discovery, until it has been looked at
+    std::optional<Refusal> refused;
   };
   struct Endpoint {
     bool announced = false;
@@ -67,7 +77,10 @@ class PeerBook {
                                         SourceLimits& rates, Time now);
   std::optional<Refusal> take_gap(Peer& peer, Endpoint& writer, const Claim& claim, Source source, SourceLimits& rates,
                                   Time now);
-  std::optional<Refusal> take_fragments(Peer& peer, Endpoint& writer, const Claim& claim);
+  std::optional<Refusal> take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
+                                        std::span<const std::uint8_t> datagram);
+  bool make_room_for_sample(Peer& peer, Endpoint& writer, bool built_in);
+  Sample* find(const Claim& claim);
   Endpoint* endpoint_of(Peer& peer, std::uint32_t entity);
   void forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from, std::uint64_t to);
   void forget(Peer& peer, const Sample& sample);

@@ -1,6 +1,6 @@
-// What is said again to readers that ask for it. Nodes of the run get all that they ask for. Everybody else gets so much
-// a second, and of what nodes say to each other after a while nothing: a reader that takes no samples asks for all of
-// them with each heartbeat, for ever, and they are kept for it. Pure; time is passed in.
+// What is said again to readers that ask for it. Nodes of the run get all that they ask for. Everybody else gets so
+// much a second, and of what nodes say to each other after a while nothing: a reader that takes no samples asks for all
+// of them with each heartbeat, for ever, and they are kept for it. Pure; time is passed in.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,9 @@ namespace aurasim::dds {
 /// Of processes that are no nodes. A viewer with 10% loss asks each node for some kB a second, a spare that comes late
 /// for some 20 MB at once.
 struct RepeatLimits {
-  double bytes_per_s = 8e6, bytes_burst = 32e6;           ///< of one process
+  double bytes_per_s = 8e6, bytes_burst = 32e6;            ///< of one process
   double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< of all together; discovery is not counted
-  double smallest_sample_B = 8192;                        ///< what any costs
+  double smallest_sample_B = 8192;                         ///< what any costs
   /// Who listens to what nodes say to each other has so long to become known as one.
   TokenBucket::Time until_known = std::chrono::seconds(10);
 };

@@ -356,9 +356,11 @@ TEST_F(Guard, PassesNothingOfWhomNobodyListensTo) {
   EXPECT_TRUE(passes(from_it));
 }
 
-/// In pieces nobody could check it.
-TEST_F(Guard, ChecksDiscoveryInPiecesBeforeItIsWhole) {
-  const auto in_pieces = [](const Bytes& payload, std::uint64_t number) {
+class DiscoveryInPieces : public Guard {
+ protected:
+  DiscoveryInPieces() { passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())); }
+
+  static std::vector<Bytes> in_pieces(const Bytes& payload, std::uint64_t number) {
     std::vector<Bytes> pieces;
     for (std::size_t at = 0; at < payload.size(); at += 1024) {
       const std::size_t size = std::min<std::size_t>(1024, payload.size() - at);
@@ -370,19 +372,78 @@ TEST_F(Guard, ChecksDiscoveryInPiecesBeforeItIsWhole) {
                                  heartbeat(1, 2, kEndpointWriter)}));
     }
     return pieces;
-  };
-  ASSERT_TRUE(passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
-  const Octets type = Octets().parameter(0x72, Octets().zeros(2800));
-  auto pieces = in_pieces(endpoint(kPrefix, kWriter, type).bytes(), 1);
-  ASSERT_EQ(pieces.size(), 3U);
-  for (Bytes& piece : pieces) EXPECT_GT(guard_.admit(piece, kSource, now_).size, 0U);
-  const Octets endless = Octets().parameter(0x29, Octets().u32(~0U).zeros(2800));
-  auto bad = in_pieces(endpoint(kPrefix, kWriter, endless).bytes(), 2);
-  for (Bytes& piece : bad) {
-    const bool is_last = &piece == &bad.back();
-    EXPECT_EQ(guard_.admit(piece, kSource, now_).size == 0, is_last) << "without it the sample is never whole";
   }
+  /// One parameter of 2.8 kB, all of `octet`.
+  static std::vector<Bytes> description(std::uint16_t pid, std::uint8_t octet, std::uint64_t number) {
+    Octets value;
+    value.raw(Bytes(2804, octet));
+    return in_pieces(endpoint(kPrefix, kWriter, Octets().parameter(pid, value)).bytes(), number);
+  }
+  static std::vector<Bytes> sound(std::uint64_t number) { return description(0x72, 0, number); }
+  /// So many partitions there are not.
+  static std::vector<Bytes> unsound(std::uint64_t number) { return description(0x29, 0xff, number); }
+  int passed_of(const std::vector<Bytes>& pieces) {
+    int count = 0;
+    for (const Bytes& piece : pieces) count += passes(piece) ? 1 : 0;
+    return count;
+  }
+};
+
+/// In pieces nobody could check it, and Fast DDS has nothing of it before the last one.
+TEST_F(DiscoveryInPieces, IsCheckedBeforeItIsWhole) {
+  ASSERT_EQ(sound(1).size(), 3U);
+  EXPECT_EQ(passed_of(sound(1)), 3);
+  const auto bad = unsound(2);
+  EXPECT_TRUE(passes(bad[2]));
+  EXPECT_TRUE(passes(bad[0]));
+  EXPECT_FALSE(passes(bad[1])) << "it would be whole";
   EXPECT_EQ(refused(Refusal::kParameter), 1U);
+}
+
+/// Fast DDS has two of them, and takes the third whenever it comes.
+TEST_F(DiscoveryInPieces, ThatIsUnsoundIsRememberedByAllItsPieces) {
+  EXPECT_EQ(passed_of(unsound(2)), 2);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(passed_of(unsound(2)), 0);
+  now_ += 1h;
+  EXPECT_EQ(passed_of(unsound(2)), 0);
+  EXPECT_EQ(refused(Refusal::kParameter), 13U);
+  EXPECT_EQ(passed_of(sound(3)), 3);
+}
+
+TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNotDrivenOutByMore) {
+  passed_of(unsound(1));
+  const auto open = unsound(2);
+  EXPECT_TRUE(passes(open[0]));
+  EXPECT_TRUE(passes(open[1]));
+  for (std::uint64_t number = 10; number < 5'000; ++number) passes(unsound(number)[0]);
+  for (std::uint32_t i = 0; i < 6'000; ++i) {
+    passes(data(kEndpointWriter, 1, endpoint(kPrefix, 0x1000'0003 + (i << 8)).bytes()));
+  }
+  const Octets gone = submessage(0x15, 2,
+                                 Octets()
+                                     .u16(0)
+                                     .u16(16)
+                                     .entity(0)
+                                     .entity(kEndpointWriter)
+                                     .sequence(2)
+                                     .parameter(0x70, Octets().guid(kPrefix, kEndpointWriter))
+                                     .parameter(0x71, Octets().raw({0, 0, 0, 3}))
+                                     .sentinel());
+  EXPECT_TRUE(passes(gone));
+  EXPECT_EQ(passed_of(unsound(1)), 0);
+  EXPECT_FALSE(passes(open[2]));
+}
+
+TEST_F(DiscoveryInPieces, IsForgottenWhenFastDdsForgetsIt) {
+  passed_of(unsound(1));
+  const Octets for_all = Octets().entity(0).entity(kEndpointWriter).sequence(2).sequence(2).u32(1);
+  EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));
+  EXPECT_EQ(passed_of(unsound(1)), 2);
+}
+
+TEST_F(DiscoveryInPieces, HasSomeKilobytes) {
+  EXPECT_FALSE(passes(fragment({.writer = kEndpointWriter, .sample_B = 100'000})));
+  EXPECT_EQ(refused(Refusal::kFragment), 1U);
 }
 
 }  // namespace

@@ -214,6 +214,30 @@ TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
 }
 
+/// Reliable, and takes nothing: after the first sample it acknowledges no more.
+void listen_and_never_read(Participant& participant, const char* partition) {
+  eprosima::fastdds::dds::SubscriberQos where;
+  where.partition().push_back(partition);
+  auto* const subscriber = participant.domain().participant().create_subscriber(where);
+  auto qos = participant.domain().profiles().reader(*subscriber, "aura_reader");
+  qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_instances = qos.resource_limits().allocated_samples = 1;
+  ASSERT_NE(subscriber->create_datareader(&participant.domain().topic(TopicId::kAura), qos), nullptr);
+}
+
+/// It is 10 s until nobody expects it to become a node.
+TEST_F(AStranger, WhoDoesNotReadIsNotWaitedFor) {
+  Writer writer(one_.participant.domain(), {TopicId::kAura, {"region/1/not/read"}, {}, {}}, wakeup_);
+  listen_and_never_read(stranger_, "region/1/not/read");
+  ASSERT_TRUE(holds_in_time([&] { return one_bus_.statuses().size() == 2 && writer.reader_count() == 1; }));
+  wire::AuraBatch sample;
+  for (int i = 0; i < 100; ++i) ASSERT_NE(writer.write(&sample), WriteResult::kFailed);
+  EXPECT_FALSE(writer.all_acknowledged());
+  EXPECT_TRUE(holds_in_time([&] { return writer.all_acknowledged(); }));
+  const auto said = one_.participant.take_said();
+  EXPECT_THAT(said, Contains(HasSubstr("reads what nodes say to each other, and is none")));
+}
+
 /// The profiles, with a history of 64 instead of 4096.
 Settings with_short_histories() {
   std::ifstream in(std::filesystem::path(AURASIM_SOURCE_DIR) / "qos" / "aurasim.xml");
@@ -237,13 +261,7 @@ TEST(ADeafReader, HoldsNobodyUp) {
       settings);  // goes last: Fast DDS 2.9.1 can lock up when a reader leaves that is being sent repeats
   Peer zero(settings, 0, {1});
   Peer one(settings, 1, {0});
-  eprosima::fastdds::dds::SubscriberQos of_region_1;
-  of_region_1.partition().push_back("region/1");
-  auto* const subscriber = stranger.domain().participant().create_subscriber(of_region_1);
-  auto qos = stranger.domain().profiles().reader(*subscriber, "aura_reader");
-  qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_instances = qos.resource_limits().allocated_samples = 1;
-  ASSERT_NE(subscriber->create_datareader(&stranger.domain().topic(TopicId::kAura), qos), nullptr);
+  listen_and_never_read(stranger, "region/1");
   ASSERT_TRUE(holds_in_time([&] { return zero.transport.all_matched() && one.transport.all_matched(); }));
   std::this_thread::sleep_for(500ms);  // the deaf one, too
   constexpr core::Step kSteps = 200;
