@@ -88,10 +88,11 @@ constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
 }
 
 /// Takes all samples of a reader into `inbox`; what decode refuses is counted, by topic and by link. What is not said
-/// by the region's node is nobody's word: nobody is held for dead for it.
+/// by the region's node is nobody's word: nobody is held for dead for it. As long as nobody has told which process that
+/// is (`is_told`), it is no lie either: of two, the first may have died without a word.
 template <class WireMessage, class Message>
 void drain(Reader& reader, WireMessage& sample, const Expected& expected, const std::optional<ProcessPrefix>& node,
-           std::vector<Message>& inbox, TopicCounters& counters, std::uint64_t& refused,
+           bool is_told, std::vector<Message>& inbox, TopicCounters& counters, std::uint64_t& refused,
            std::vector<core::Refusal>& refusals) {
   Origin origin;
   while (reader.take(&sample, &origin)) {
@@ -99,7 +100,8 @@ void drain(Reader& reader, WireMessage& sample, const Expected& expected, const 
     counters.received_bytes += bytes_of(sample);
     if (node && origin.writer.guidPrefix != *node) {
       counters.refused.add(WireError::kSource);
-      reader.refuse_from(origin, fmt::format("it is not the node of region {}", value_of(*expected.source)));
+      if (is_told)
+        reader.refuse_from(origin, fmt::format("it is not the node of region {}", value_of(*expected.source)));
       continue;
     }
     auto decoded = decode(sample, expected);
@@ -329,8 +331,9 @@ void DdsTransport::take(core::Inbox& inbox) {
     Expected expected = impl_->expected;
     expected.source = link->region;
     const std::optional<ProcessPrefix> node = impl_->node_of(*link);
+    const bool is_told = impl_->participant.domain().speakers().of(link->region).has_value();
     const auto take_all = [&](Reader& reader, auto& sample, auto& messages, TopicCounters& topic) {
-      drain(reader, sample, expected, node, messages, topic, link->refused, inbox.refusals);
+      drain(reader, sample, expected, node, is_told, messages, topic, link->refused, inbox.refusals);
     };
     take_all(link->aura_reader, impl_->aura, inbox.auras, counters.aura);
     take_all(link->migration_reader, impl_->migration, inbox.hand_offs, counters.migration);
