@@ -200,7 +200,12 @@ void Launcher::collect_exits() {
       child.running = true;
       child.died = false;
     } else if (can_be_replaced(child)) {
-      replace(child);
+      if (somebody_knows_the_world()) {
+        replace(child);
+      } else {
+        must_not_go_on_ = true;
+        spdlog::error("{}", world_is_lost(options_.save.folder));
+      }
     }
   }
 }
@@ -241,6 +246,16 @@ bool Launcher::can_be_replaced(const Child& child) const {
       children_, [](const Child& other) { return other.running || other.died; });  // and nobody has finished
   return child.died && has_begun_ && all_wait && !stopping_ && !has_to_stop() && children_.size() > 1 &&
          launch_.survival.on_death == config::OnDeath::kRecover;
+}
+
+/// Or else only such as have come to take over from others.
+bool Launcher::somebody_knows_the_world() {
+  const auto& statuses = control_.statuses();
+  return std::ranges::any_of(children_, [&statuses](const Child& child) {
+    const auto seen = statuses.find(child.region);
+    return child.running && seen != statuses.end() && is_of(seen->second.status, child) &&
+           seen->second.status.state != dds::NodeState::kSpare;
+  });
 }
 
 void Launcher::replace(Child& child) {

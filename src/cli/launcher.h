@@ -69,6 +69,7 @@ class Launcher {
   static bool is_of(const dds::Status& status, const Child& child);
   void note_exit(Child& child, int status);
   bool can_be_replaced(const Child& child) const;
+  bool somebody_knows_the_world();
   void replace(Child& child);
   pid_t successor_of(const Child& child);
   std::vector<std::string> words_for(const char* command) const;

@@ -122,6 +122,7 @@ class NodeProcess {
   void begin_to_recover();
   bool agree_on_restore();
   bool is_not_needed();
+  bool nobody_knows_the_world();
   bool is_meant(core::RegionId region, const dds::Status& status) const;
   std::vector<std::uint32_t> vacant_regions();
   void go_on_without();
@@ -224,7 +225,7 @@ class NodeProcess {
   bool goes_on_ = false;            ///< without those who have died: nobody has taken their regions over
   bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
   core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
-  std::chrono::steady_clock::time_point recovering_since_, idle_since_;
+  std::chrono::steady_clock::time_point recovering_since_, idle_since_, alone_since_;
   std::map<std::uint32_t, std::chrono::steady_clock::time_point> called_;  ///< regions that spares were called for
   std::set<std::uint64_t> taken_;                                          ///< spares that were called
   struct StandIn {

@@ -47,7 +47,7 @@ void NodeProcess::recover(const std::string& why) {
 
 /// What a change of the run had begun is forgotten: whoever wanted it asks again.
 void NodeProcess::begin_to_recover() {
-  recovering_since_ = idle_since_ = Clock::now();
+  recovering_since_ = idle_since_ = alone_since_ = Clock::now();
   fence_.watch_closely();
   if (before_change_) {
     launch_ = std::move(before_change_->launch);
@@ -81,6 +81,7 @@ bool NodeProcess::agree_on_restore() {
       somebody_came = Clock::now() + kPatienceWithStandIn - patience;
     }
     if (!node_ && is_not_needed()) return false;
+    if (!node_ && nobody_knows_the_world()) throw std::runtime_error(world_is_lost(options_.saves));
     publish(fence_.is_cut_off() ? "hears too few of the others, and waits for them"
                                 : fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
     if (may_go_on && node_) {

@@ -96,6 +96,17 @@ bool NodeProcess::is_not_needed() {
   return Clock::now() > idle_since_ + kPatienceOfSuccessor;
 }
 
+/// Whoever is there for another region, if anybody is, has come to take over, too.
+bool NodeProcess::nobody_knows_the_world() {
+  const bool somebody_does = std::ranges::any_of(control_.statuses(), [this](const auto& entry) {
+    const dds::SeenStatus& seen = entry.second;
+    const bool is_there = !seen.lost && !seen.has_ended();  // it may be cut off
+    return entry.first != options_.region && is_there && seen.status.state != dds::NodeState::kSpare;
+  });
+  if (somebody_does) alone_since_ = Clock::now();
+  return Clock::now() > alone_since_ + kPatienceOfSuccessor;
+}
+
 /// Regions that nobody is there for.
 std::vector<std::uint32_t> NodeProcess::vacant_regions() {
   std::vector<std::uint32_t> vacant;

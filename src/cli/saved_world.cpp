@@ -91,6 +91,12 @@ std::string newest_saved_world(const std::filesystem::path& folder) {
   return newest.second;
 }
 
+std::string world_is_lost(const std::filesystem::path& saves) {
+  const std::string saved = newest_saved_world(saves);
+  return fmt::format("nobody knows the world any more: all nodes have died. The newest saved world here: {}",
+                     saved.empty() ? "none" : saved);
+}
+
 SavedState newest_saved_until(const std::filesystem::path& folder, const config::Launch& launch, core::Step latest) {
   SavedState newest;
   const std::uint64_t wanted = launch.world_identity();

@@ -49,6 +49,9 @@ const char* problem_with_save_name(const std::string& name);
 /// there is none.
 std::string newest_saved_world(const std::filesystem::path& folder);
 
+/// For people, when no process has any of the run's world any more: what there is in the folder of saved worlds.
+std::string world_is_lost(const std::filesystem::path& saves);
+
 /// A world that lies in a folder of saved worlds.
 struct SavedState {
   core::Step step = -1;  ///< -1: there is none

@@ -57,6 +57,8 @@ constexpr std::size_t kMostOfNoRegion = 64;  ///< and of all regions that the ru
 constexpr std::size_t kMostMaps = 256;
 constexpr std::size_t kMostRequests = 1U << 16U;
 constexpr std::size_t kMostClaims = 1024;
+constexpr std::size_t kMostWaiting = 64;
+constexpr auto kUntilKnown = std::chrono::seconds(3);
 constexpr auto kLongAgo = std::chrono::seconds(1);
 /// Statuses come ten times a second.
 constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
@@ -73,6 +75,12 @@ bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   return found == writers.rend() || found->lost;
 }
 
+struct HeardCommand {
+  RunCommand command;
+  Origin origin;
+  std::chrono::steady_clock::time_point since;
+};
+
 /// Late joiners are told what was said long before, by nodes that have been replaced since.
 bool is_old_news(const RunCommand& command, const Origin& origin) {
   const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore;
@@ -88,6 +96,7 @@ struct ControlBus::Impl {
   void note(Status status, const Origin& origin);
   std::string problem_with(const Status& status, const Origin& origin) const;
   std::string problem_with(const RunCommand& command, const Origin& origin) const;
+  void judge(HeardCommand heard, std::vector<RunCommand>& commands);
   bool is_region(RegionId region) const { return region != kNoRegion && value_of(region) < settings.region_count; }
   bool has_room_for(RegionId region) const;
   bool shows_no_life(const Received& one) const;
@@ -121,6 +130,7 @@ struct ControlBus::Impl {
   std::set<std::uint64_t> dead;                ///< processes that have ended
   std::set<std::uint64_t> claimed;             ///< others say so
   std::map<std::uint64_t, Guid> requests;      ///< seen or sent, and by whom
+  std::vector<HeardCommand> waiting;           ///< of nodes, if it is they who have said it
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
   RateLimit<Guid> against_statuses{1, 1};
   WireErrors refused;
@@ -399,16 +409,36 @@ std::uint64_t ControlBus::send(RunCommand command) {
   return command.request;
 }
 
+/// A process that has just begun hears commands before it knows who the nodes are: what only they may say waits for
+/// that.
+void ControlBus::Impl::judge(HeardCommand heard, std::vector<RunCommand>& commands) {
+  const std::string problem = problem_with(heard.command, heard.origin);
+  if (problem.empty()) {
+    RunCommand& command = heard.command;
+    command.clock_ahead = heard.origin.clock_ahead;
+    command.is_of_itself = is_of(command.process, heard.origin);
+    command.is_of_a_node = participant.domain().speakers().is_node(heard.origin.writer);
+    if (remember(command.request, heard.origin.writer)) commands.push_back(std::move(command));
+    return;
+  }
+  if (std::chrono::steady_clock::now() < heard.since + kUntilKnown && waiting.size() < kMostWaiting) {
+    waiting.push_back(std::move(heard));
+    return;
+  }
+  refused.add(WireError::kSource);
+  if (is_old_news(heard.command, heard.origin)) return;
+  command_reader->refuse_from(heard.origin, fmt::format("{}: {}", name_of(heard.command.kind), problem));
+}
+
 std::vector<RunCommand> ControlBus::take_commands() {
   impl_->participant.progress();
   std::vector<RunCommand> commands;
   if (!impl_->command_reader) return commands;
-  bool any = false;
+  std::vector<HeardCommand> heard = std::exchange(impl_->waiting, {});
   Expected expected;
   expected.map_version = impl_->settings.map_version;
   Origin origin;
   while (impl_->command_reader->take(&impl_->command, &origin)) {
-    if (!std::exchange(any, true)) statuses();  // who may say what
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);
@@ -417,17 +447,10 @@ std::vector<RunCommand> ControlBus::take_commands() {
     }
     auto& command = std::get<RunCommand>(decoded);
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
-    if (const std::string problem = impl_->problem_with(command, origin); !problem.empty()) {
-      impl_->refused.add(WireError::kSource);
-      if (is_old_news(command, origin)) continue;
-      impl_->command_reader->refuse_from(origin, fmt::format("{}: {}", name_of(command.kind), problem));
-      continue;
-    }
-    command.clock_ahead = origin.clock_ahead;
-    command.is_of_itself = impl_->is_of(command.process, origin);
-    command.is_of_a_node = impl_->participant.domain().speakers().is_node(origin.writer);
-    if (impl_->remember(command.request, origin.writer)) commands.push_back(command);
+    heard.push_back({std::move(command), origin, std::chrono::steady_clock::now()});
   }
+  if (!heard.empty()) statuses();  // who may say what
+  for (HeardCommand& one : heard) impl_->judge(std::move(one), commands);
   return commands;
 }
 

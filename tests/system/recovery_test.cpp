@@ -68,6 +68,29 @@ TEST_F(Recovery, AlsoANodeAndItsKeeperThenFromTheFirstState) {
   expect_survives(run_of_demo(), {1, 2}, "went back to state 0");
 }
 
+TEST_F(Recovery, AWorldThatNobodyKnowsAnyMoreEndsTheRunWithAWord) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  std::vector<pid_t> nodes;
+  for (const int region : {0, 1, 2, 3}) nodes.push_back(node_of(run, region));
+  for (const pid_t node : nodes) ::kill(node, SIGKILL);
+  expect_exit(run, 1);
+  EXPECT_THAT(run.err(), ::testing::HasSubstr("nobody knows the world any more"));
+}
+
+/// As when the nodes of a run that was started by hand have died one after the other.
+TEST_F(Recovery, ThoseWhoCameToTakeOverDoNotWaitForEachOtherForEver) {
+  std::vector<Process*> nodes;
+  for (const char* region : {"0", "1"}) {
+    nodes.push_back(&start(Words{"node", launch_file("two_spheres"), "--take-over", "--run", "5", "--region", region} +
+                           kDeterministic + in_own_domain()));
+  }
+  for (Process* node : nodes) {
+    expect_exit(*node, 1);
+    EXPECT_THAT(node->err(), ::testing::HasSubstr("nobody knows the world any more"));
+  }
+}
+
 TEST_F(Recovery, AnotherDeathWhileAllRecover) {
   Process& run = run_of_demo();
   expect_reaches(report_of("run"), 4, 120);
