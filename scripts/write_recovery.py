@@ -24,7 +24,7 @@ again.
 
 {sums}
 {misses}
-## What it costs a healthy run
+{rolling}{soak}## What it costs a healthy run
 
 {rounds} runs of each kind by turns, without anybody dying: `survival.on_death: go_on`, where no parts are kept, against `recover`
 with a part every second. Medians; frames of all nodes.
@@ -58,6 +58,45 @@ def miss_lines(runs):
     return "\n".join(["Misses:", "", *lines, ""]) if lines else "No misses.\n"
 
 
+def read_lines(file):
+    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+
+
+def rolling_text(runs):
+    """Every node in turn gives its region to a new process."""
+    if not runs:
+        return ""
+    rows = []
+    for run in runs:
+        stood = [drain["stood_s"] for drain in run["drains"] if drain["stood_s"] is not None]
+        rows.append([run["steps"], len(run["drains"]), sum(drain["ok"] for drain in run["drains"]),
+                     f"{max(stood, default=float('nan')):.2f}", f"{run['real_time_factor'] or 0:.3f}",
+                     "yes" if run["equal"] else "NO", run["bodies_lost"], run["bodies_duplicated"]])
+    return ("## A rolling restart\n\n`send drain` of one region after the other (`scripts/recovery_rolling.py`): its node leaves when "
+            "the launcher's new process is there. *Stood*: the longest time that the others stood for it.\n\n"
+            + table(["states", "drains", "done", "stood, s", "real-time factor", "hashes as undisturbed", "bodies lost", "twice"],
+                    rows))
+
+
+def soak_text(runs):
+    """Kills, drains and saves at random, all the time."""
+    if not runs:
+        return ""
+    rows = []
+    for run in runs:
+        sizes = run["sizes"]
+        at = lambda share: sizes[min(len(sizes) - 1, int(share * len(sizes)))]
+        counts = run["counts"]
+        rows.append([run["minutes"], run["steps"], counts["kills"], counts["drains"], counts["saves"],
+                     "yes" if run["equal"] else "NO", run["bodies_lost"], run["bodies_duplicated"],
+                     ", ".join(f"{at(share)[2] / 1024:.0f}" for share in (0.1, 0.5, 1.0)),
+                     ", ".join(f"{at(share)[3] / 1024:.0f}" for share in (0.1, 0.5, 1.0))])
+    return ("## A long run\n\nNodes are killed, drained and saved every 2 to 12 s (`scripts/recovery_rolling.py --soak MINUTES`); "
+            "memory after a tenth, half and all of the time, of the largest node and of the launcher.\n\n"
+            + table(["minutes", "states", "kills", "drains", "saves", "hashes as undisturbed", "bodies lost", "twice",
+                     "node, MiB", "launcher, MiB"], rows))
+
+
 def cost_rows(rows):
     result = []
     for scene in sorted({row["scene"] for row in rows}):
@@ -87,7 +126,9 @@ def main():
                   "back p50, s", "p95", "max", "from state 0", "not back"],
                  [sum_row(kind, [r for r in runs if r["kind"] == kind]) for kind in ("single", "pairs")
                   if any(r["kind"] == kind for r in runs)])
-    text = TEXT.format(measured=measured_line(options.directory), machine=machine_line(), sums=sums,
+    rolling = rolling_text(read_lines(options.directory / "rolling.jsonl"))
+    soak = soak_text(read_lines(options.directory / "soak.jsonl"))
+    text = TEXT.format(rolling=rolling, soak=soak, measured=measured_line(options.directory), machine=machine_line(), sums=sums,
                        steps=max(r["steps"] or 0 for r in runs), misses=miss_lines(runs), rounds=len(costs) // 4,
                        costs=table(["scene", "without: frame p50, ms", "p99", "with: p50", "p99", "p99 with to without",
                                     "sent to neighbours, kB/s", "to keepers, kB/s"], cost_rows(costs)))

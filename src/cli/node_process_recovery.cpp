@@ -115,6 +115,7 @@ void NodeProcess::lead_recovery() {
   std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
   if (!plan || plan->lead != options_.region) return;
   dds::RunCommand restore = plan->command;
+  restore.generation = std::max(restore.generation, std::max(generation_, restoring_) + 1);
   if (restore.count == 1) {
     restore.at_step = first_step();
     const std::string saved = newest_saved_world(options_.saves);

@@ -69,6 +69,9 @@ bool acts(const Status& status) {
          status.state == NodeState::kRecovering;
 }
 
+/// Which of a region's processes is its node: of those that live, one that has not only come to take over from another.
+int rank_of(const SeenStatus& seen) { return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : 2; }
+
 /// Where Fast DDS matched a writer anew, the later match counts.
 bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
@@ -174,7 +177,7 @@ std::string ControlBus::Impl::problem_with(const Status& fresh, const Origin& or
   }
   const auto known = statuses.find(fresh.region);
   const bool has_node =
-      known != statuses.end() && known->second.is_live() && publishers.at(fresh.region) != origin.writer;
+      known != statuses.end() && rank_of(known->second) == 2 && publishers.at(fresh.region) != origin.writer;
   const bool says_so = has_node && acts(fresh) && is_of_the_run(fresh, origin.writer);
   return says_so ? fmt::format("region {} has another node", number) : std::string();
 }
@@ -231,8 +234,9 @@ void ControlBus::Impl::choose_publisher(RegionId region, const std::vector<Recei
   for (const Received& one : of_region) {
     if (!is_of_the_run(one)) continue;
     const bool stands = publishers.contains(region) && publishers[region] == one.writer;
-    const bool is_better = chosen == nullptr || (one.seen.is_live() && !chosen->seen.is_live()) ||
-                           (stands && one.seen.is_live() == chosen->seen.is_live());
+    const int rank = rank_of(one.seen);
+    const bool is_better =
+        chosen == nullptr || rank > rank_of(chosen->seen) || (stands && rank == rank_of(chosen->seen));
     if (is_better) chosen = &one;
   }
   if (chosen == nullptr) return;

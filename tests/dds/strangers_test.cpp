@@ -193,6 +193,34 @@ TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
   EXPECT_TRUE(holds_in_time([&] { return refused() == 3U; })) << refused();
 }
 
+/// A drain gives a region a second process, which waits for the first to leave.
+TEST(AProcessThatHasJustBegun, TakesWhoActsForARegionsNodeThoughItsSuccessorIsHeardFirst) {
+  const auto settings = [](std::uint32_t region) {
+    ControlSettings settings;
+    settings.region = RegionId{region};
+    settings.run = 11;
+    settings.region_count = 2;
+    return settings;
+  };
+  Participant first(testing::settings_for(own_domain())), second(testing::settings_for(own_domain()));
+  Participant participant(testing::settings_for(own_domain()));
+  ControlBus node(first, settings(1)), successor(second, settings(1)), newcomer(participant, settings(0));
+  Status waits = status_of(1);
+  waits.state = NodeState::kSpare;
+  waits.process = 2;
+  successor.publish_status(waits);
+  ASSERT_TRUE(holds_in_time([&] { return newcomer.statuses().contains(RegionId{1}); }));
+  Status acts = status_of(1);
+  acts.state = NodeState::kRecovering;
+  acts.process = 1;
+  node.publish_status(acts);
+  EXPECT_TRUE(holds_in_time([&] { return newcomer.statuses().at(RegionId{1}).status.process == 1; }));
+  successor.publish_status(waits);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(newcomer.statuses().at(RegionId{1}).status.process, 1U);
+  EXPECT_THAT(participant.take_said(), IsEmpty());
+}
+
 /// It is told where all go back to within a tenth of a second of its beginning.
 TEST(AProcessThatHasJustBegun, TakesTheWordOfANodeThatItDoesNotYetKnow) {
   const auto settings = [](std::uint32_t region) {
