@@ -97,7 +97,7 @@ class Case:
     def orders(self):
         """In states that both runs come to, with time to arrive: a push and a new body, now and then."""
         made = []
-        for state in range(700, self.options.steps - 60, 100):
+        for state in range(700, self.options.steps - 60, 150):
             at = state + self.random.randrange(60)
             if self.random.random() < 0.5:
                 made.append((at, ["spawn", "--radius", "0.4", "--p", *self.place(), "--at", str(at)]))
@@ -117,9 +117,12 @@ class Case:
         """Orders whose state comes within ten seconds; one after the other, so that they have the same numbers."""
         replies = []
         while orders and orders[0][0] < state_now + 600 and run.running():
-            told = self.send(orders.pop(0)[1])
+            at, words = orders.pop(0)
+            told = self.send(words)
             out, _ = told.communicate(timeout=90)
-            replies.append((told.returncode, out.strip().splitlines()[-1] if out.strip() else ""))
+            said = out.strip().splitlines()[-1] if out.strip() else ""
+            is_late = told.returncode == 0 and json.loads(said).get("step") != at
+            replies.append((1 if is_late else told.returncode, f"for state {at}, too late: {said}" if is_late else said))
         return replies
 
     def go(self):

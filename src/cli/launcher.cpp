@@ -194,6 +194,7 @@ void Launcher::collect_exits() {
     if (child.successor != 0 && ::waitpid(child.successor, &status, WNOHANG) == child.successor) child.successor = 0;
     if (!child.running || ::waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
     note_exit(child, status);
+    if (has_finished(child)) end_successor(child);
     if (child.successor != 0) {
       if (!child.died) tell_lost(child);
       child.pid = std::exchange(child.successor, 0);
@@ -208,6 +209,20 @@ void Launcher::collect_exits() {
       }
     }
   }
+}
+
+/// It has not left its region to another process: the run has come to its end.
+bool Launcher::has_finished(const Child& child) {
+  const auto seen = control_.statuses().find(child.region);
+  return child.exit_code == 0 && seen != control_.statuses().end() && is_of(seen->second.status, child) &&
+         seen->second.status.state == dds::NodeState::kFinished;
+}
+
+void Launcher::end_successor(Child& child) {
+  if (child.successor == 0) return;
+  ::kill(child.successor, SIGKILL);  // it has nothing to bring to an end
+  ::waitpid(child.successor, nullptr, 0);
+  child.successor = 0;
 }
 
 /// DDS would need a second to find out.

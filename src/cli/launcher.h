@@ -66,6 +66,8 @@ class Launcher {
   void end_silent_nodes();
   void collect_exits();
   void tell_lost(const Child& child);
+  bool has_finished(const Child& child);
+  void end_successor(Child& child);
   static bool is_of(const dds::Status& status, const Child& child);
   void note_exit(Child& child, int status);
   bool can_be_replaced(const Child& child) const;

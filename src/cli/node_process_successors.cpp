@@ -83,9 +83,11 @@ bool NodeProcess::has_successor() {
   });
 }
 
-/// The others compute without us: nobody waits for this process any more.
+/// The run is over, or the others compute without us: nobody waits for this process any more.
 bool NodeProcess::is_not_needed() {
   const auto& statuses = control_.statuses();
+  const auto has_finished = [](const auto& entry) { return entry.second.status.state == dds::NodeState::kFinished; };
+  if (std::ranges::any_of(statuses, has_finished) && vacant_regions().size() + 1 == launch_.regions.size()) return true;
   const bool computes = std::ranges::any_of(statuses, [](const auto& entry) {
     return entry.second.is_live() && entry.second.status.state == dds::NodeState::kRunning;
   });
