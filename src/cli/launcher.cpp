@@ -25,8 +25,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kShowEvery = 250ms;
 constexpr auto kSayThatWeWait = 2s;
-constexpr auto kSilent = 2s;       // beyond its lease: a busy machine may hold it up
-constexpr int kMostDeaths = 3;     // of one region's nodes in a row, at one place
+constexpr auto kSilent = 2s;    // beyond its lease: a busy machine may hold it up
+constexpr int kMostDeaths = 3;  // of one region's nodes in a row, at one place
+constexpr auto kPatienceWithDrained = 5s;
 constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process twice
 
 }  // namespace
@@ -153,18 +154,29 @@ void Launcher::look_at_nodes() {
   }
 }
 
-/// A node that is to leave gets a successor first.
+/// Whoever asks for a drain may know a process that has just begun before it is known here.
 void Launcher::hear_commands() {
-  for (const dds::RunCommand& command : control_.take_commands()) {
-    if (command.kind != dds::RunCommandKind::kDrain || stopping_) continue;
-    for (Child& child : children_) {
-      const auto seen = control_.statuses().find(child.region);
-      const bool is_meant = seen != control_.statuses().end() && seen->second.status.process == command.process &&
-                            is_of(seen->second.status, child);
-      if (!is_meant || !child.running || child.successor != 0) continue;
-      child.successor = successor_of(child);
-    }
+  const auto now = Clock::now();
+  for (dds::RunCommand& command : control_.take_commands()) {
+    if (command.kind == dds::RunCommandKind::kDrain) drains_.push_back({std::move(command), now});
   }
+  if (stopping_) drains_.clear();
+  std::erase_if(drains_, [&](const Drain& drain) {
+    return begin_drain(drain.command) || now > drain.heard + kPatienceWithDrained;
+  });
+}
+
+/// A node that is to leave gets a successor first. False: there is no such process.
+bool Launcher::begin_drain(const dds::RunCommand& drain) {
+  for (Child& child : children_) {
+    const auto seen = control_.statuses().find(child.region);
+    const bool is_meant = seen != control_.statuses().end() && seen->second.status.process == drain.process &&
+                          is_of(seen->second.status, child);
+    if (!is_meant || !child.running) continue;
+    if (child.successor == 0) child.successor = successor_of(child);
+    return true;
+  }
+  return false;
 }
 
 /// One that hangs holds all others up; what takes its place must not meet it again.

@@ -63,6 +63,7 @@ class Launcher {
   pid_t start_node(std::uint32_t region, Start start) const;
   std::vector<std::string> arguments_of(std::uint32_t region, Start start) const;
   void hear_commands();
+  bool begin_drain(const dds::RunCommand& drain);
   void end_silent_nodes();
   void collect_exits();
   void tell_lost(const Child& child);
@@ -97,6 +98,11 @@ class Launcher {
   std::optional<FolderLock> report_folder_;
   std::vector<Child> children_;
   std::vector<pid_t> spares_;
+  struct Drain {
+    dds::RunCommand command;
+    std::chrono::steady_clock::time_point heard;
+  };
+  std::vector<Drain> drains_;  ///< of processes that are not yet known here
   bool has_begun_ = false;     ///< a node has shown that all have met
   bool cannot_begin_ = false;  ///< a node is missing, and the others would wait for it
   bool stopping_ = false;
