@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
+constexpr auto kLongestUntold = 2s;
 constexpr auto kStatusAge = 300ms;          ///< by then every node has said which meshes it has, since the command came
 constexpr std::size_t kMostInAState = 300;  ///< commands that become orders
 constexpr std::size_t kTextWeighs = 20;
@@ -44,6 +45,7 @@ CommandServer::CommandServer(const config::Launch& launch, dds::Participant& par
 
 void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
   not_kept_.clear();
+  for (Taken& one : taken_) one.went_back = true;
   reply_all_done(0);
   take_over(node, generation);
 }
@@ -70,6 +72,7 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
 }
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
+  tell_what_is_taken(node, run);
   // Who leads from now on tells observers what a saved world has brought.
   if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) send_additions();
   dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
@@ -224,6 +227,7 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   }
   if (std::string why = problem_with_world(command.ask); !why.empty()) return refuse(command.request, std::move(why));
   if (const core::Order* const known = node.ordered(command.request)) return tell_again(*known, node);
+  const core::Step known_at = node.protocol().earliest_effect();
   Issued issued = issuer_.issue(
       command, run.facts, [this](const core::MeshRef& mesh) { return make_mesh(mesh); }, node);
   if (!issued.order) return refuse(command.request, std::move(issued.refused));
@@ -232,14 +236,19 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   reply.outcome = core::Outcome::kAccepted;
   reply.at_step = issued.order->at_step;
   reply.object = issued.object;
-  endpoint_.reply(std::move(reply));
+  const core::Step at_step = reply.at_step;
+  if (command.at_step > 0) {
+    taken_.push_back({known_at, Clock::now(), false, std::move(reply)});
+  } else {
+    endpoint_.reply(std::move(reply));
+  }
   const core::Action& action = issued.order->action;
   const bool all_reply = std::holds_alternative<core::Save>(action);
   if (all_reply || core::changes_the_run(action)) not_kept_.push_back(command.request);
   if (core::changes_the_run(action)) change_at_ = issued.order->at_step;
   if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
-  due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : reply.at_step,
+  due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : at_step,
                            issued.object};
 }
 
@@ -255,7 +264,23 @@ void CommandServer::tell_again(const core::Order& order, const node::Node& node)
   due_[order.request] = {std::max(order.at_step, node.current_step()), reply.object};
 }
 
+/// A world that stands makes nothing known; in slow motion that takes longer than anybody waits.
+void CommandServer::tell_what_is_taken(const node::Node& node, const RunView& run) {
+  const bool stands = run.holds_at && node.current_step() >= *run.holds_at;
+  std::erase_if(taken_, [&](Taken& one) {
+    const bool is_time = stands || one.went_back || Clock::now() > one.since + kLongestUntold;
+    if (!is_time && node.current_step() < one.known_at) return false;
+    if (one.went_back && node.ordered(one.reply.request) == nullptr) {
+      endpoint_.forget(one.reply.request);  // whoever asks again is heard
+    } else {
+      endpoint_.reply(std::move(one.reply));
+    }
+    return true;
+  });
+}
+
 void CommandServer::go_back(node::Node& node, core::Generation generation) {
+  for (Taken& one : taken_) one.went_back = true;
   for (const std::uint64_t request : std::exchange(not_kept_, {})) {
     endpoint_.forget(request);
     due_.erase(request);

@@ -94,6 +94,7 @@ class CommandServer {
   void take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node);
   void reply_done(std::uint64_t request, core::Step step, std::optional<core::ObjectRef> object = {});
   void reply_all_done(core::Step step);
+  void tell_what_is_taken(const node::Node& node, const RunView& run);
   void take_over(node::Node& node, core::Generation generation);
   void tell_again(const core::Order& order, const node::Node& node);
   bool comes_after_the_pause(const core::Command& command, const node::Node& node, const RunView& run) const;
@@ -118,7 +119,15 @@ class CommandServer {
   dds::SceneAdditions additions_;
   bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;
-  std::map<std::uint64_t, Due> due_;     ///< requests to report as done at their step
+  std::map<std::uint64_t, Due> due_;  ///< requests to report as done at their step
+  /// An order that nobody waits for to show: it is told to be taken once others know it, too, whoever dies then.
+  struct Taken {
+    core::Step known_at = 0;
+    std::chrono::steady_clock::time_point since;
+    bool went_back = false;  ///< others have died meanwhile
+    core::CommandReply reply;
+  };
+  std::vector<Taken> taken_;
   std::vector<std::uint64_t> not_kept_;  ///< requests of orders about the run as a whole
   std::optional<double> wanted_rate_;
   std::optional<core::Command> wanted_back_;
