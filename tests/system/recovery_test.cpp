@@ -3,6 +3,7 @@
 #include <csignal>
 #include <map>
 #include <sstream>
+#include <thread>
 
 #include <signal.h>
 
@@ -143,6 +144,21 @@ TEST_F(Recovery, AnOrderIsObeyedOnceThoughWhoTookItDies) {
   expect_all_bodies_accounted_for(report);
   undisturbed();
   EXPECT_EQ(report.count("bodies_spawned"), report_of("undisturbed").count("bodies_spawned") + 1);
+}
+
+/// Its word that it takes an order is no word before others know the order.
+TEST_F(Recovery, AnOrderWithATimeIsObeyedThoughWhoHasTakenItDiesAtOnce) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  Process& spawn =
+      start(Words{"send", "spawn", launch_file("demo"), "--radius", "0.5", "--p", "3", "3", "9", "--at", "400"} +
+            kDeterministic + in_own_domain());
+  while (spawn.running()) std::this_thread::sleep_for(1ms);
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 0));
+  expect_exit(spawn, 0);
+  expect_exit(run, 0);
+  undisturbed();
+  EXPECT_EQ(report_of("run").count("bodies_spawned"), report_of("undisturbed").count("bodies_spawned") + 1);
 }
 
 TEST_F(Recovery, AWorldThatIsPausedStaysSo) {
