@@ -45,12 +45,12 @@ CommandServer::CommandServer(const config::Launch& launch, dds::Participant& par
 
 void CommandServer::begin_generation(node::Node& node, core::Generation generation) {
   not_kept_.clear();
-  for (Taken& one : taken_) one.went_back = true;
   reply_all_done(0);
   take_over(node, generation);
 }
 
 void CommandServer::take_over(node::Node& node, core::Generation generation) {
+  for (Taken& one : taken_) one.went_back = true;
   change_at_.reset();
   additions_ = {generation, {}};
   issuer_.begin_generation();
@@ -236,7 +236,6 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   reply.outcome = core::Outcome::kAccepted;
   reply.at_step = issued.order->at_step;
   reply.object = issued.object;
-  const core::Step at_step = reply.at_step;
   if (command.at_step > 0) {
     taken_.push_back({known_at, Clock::now(), false, std::move(reply)});
   } else {
@@ -248,8 +247,8 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   if (core::changes_the_run(action)) change_at_ = issued.order->at_step;
   if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
   // A change of the run is done when the run goes on after it.
-  due_[command.request] = {core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : at_step,
-                           issued.object};
+  due_[command.request] = {
+      core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : issued.order->at_step, issued.object};
 }
 
 /// A lead that has died has ordered it, or this node before it started anew.
@@ -280,7 +279,6 @@ void CommandServer::tell_what_is_taken(const node::Node& node, const RunView& ru
 }
 
 void CommandServer::go_back(node::Node& node, core::Generation generation) {
-  for (Taken& one : taken_) one.went_back = true;
   for (const std::uint64_t request : std::exchange(not_kept_, {})) {
     endpoint_.forget(request);
     due_.erase(request);

@@ -169,10 +169,8 @@ void Launcher::hear_commands() {
 /// A node that is to leave gets a successor first. False: there is no such process.
 bool Launcher::begin_drain(const dds::RunCommand& drain) {
   for (Child& child : children_) {
-    const auto seen = control_.statuses().find(child.region);
-    const bool is_meant = seen != control_.statuses().end() && seen->second.status.process == drain.process &&
-                          is_of(seen->second.status, child);
-    if (!is_meant || !child.running) continue;
+    const dds::SeenStatus* const seen = said_by(child);
+    if (seen == nullptr || seen->status.process != drain.process || !child.running) continue;
     if (child.successor == 0) child.successor = successor_of(child);
     return true;
   }
@@ -186,9 +184,8 @@ void Launcher::end_silent_nodes() {
     return !entry.second.lost && entry.second.status.state == dds::NodeState::kRecovering;
   });
   for (Child& child : children_) {
-    const auto seen = statuses.find(child.region);
-    const bool is_silent =
-        all_stand && child.running && seen != statuses.end() && seen->second.lost && is_of(seen->second.status, child);
+    const dds::SeenStatus* const seen = said_by(child);
+    const bool is_silent = all_stand && child.running && seen != nullptr && seen->lost;
     if (!is_silent) {
       child.lost_since.reset();
     } else if (!child.lost_since) {
@@ -225,9 +222,8 @@ void Launcher::collect_exits() {
 
 /// It has not left its region to another process: the run has come to its end.
 bool Launcher::has_finished(const Child& child) {
-  const auto seen = control_.statuses().find(child.region);
-  return child.exit_code == 0 && seen != control_.statuses().end() && is_of(seen->second.status, child) &&
-         seen->second.status.state == dds::NodeState::kFinished;
+  const dds::SeenStatus* const seen = said_by(child);
+  return child.exit_code == 0 && seen != nullptr && seen->status.state == dds::NodeState::kFinished;
 }
 
 void Launcher::end_successor(Child& child) {
@@ -239,15 +235,19 @@ void Launcher::end_successor(Child& child) {
 
 /// DDS would need a second to find out.
 void Launcher::tell_lost(const Child& child) {
-  const auto seen = control_.statuses().find(child.region);
-  if (seen == control_.statuses().end() || !is_of(seen->second.status, child)) return;
-  const std::uint64_t process = seen->second.status.process;
+  const dds::SeenStatus* const seen = said_by(child);
+  if (seen == nullptr) return;
+  const std::uint64_t process = seen->status.process;
   control_.hold_for_dead(process);
   control_.send(about_process(dds::RunCommandKind::kLost, run_, child.region, process));
 }
 
-bool Launcher::is_of(const dds::Status& status, const Child& child) {
-  return status.pid == static_cast<std::uint32_t>(child.pid);
+/// Null: nothing yet. Its region's status may be of the process before it.
+const dds::SeenStatus* Launcher::said_by(const Child& child) {
+  const auto& statuses = control_.statuses();
+  const auto seen = statuses.find(child.region);
+  const bool is_its_own = seen != statuses.end() && seen->second.status.pid == static_cast<std::uint32_t>(child.pid);
+  return is_its_own ? &seen->second : nullptr;
 }
 
 void Launcher::note_exit(Child& child, int status) {
@@ -277,11 +277,9 @@ bool Launcher::can_be_replaced(const Child& child) const {
 
 /// Or else only such as have come to take over from others.
 bool Launcher::somebody_knows_the_world() {
-  const auto& statuses = control_.statuses();
-  return std::ranges::any_of(children_, [&statuses](const Child& child) {
-    const auto seen = statuses.find(child.region);
-    return child.running && seen != statuses.end() && is_of(seen->second.status, child) &&
-           seen->second.status.state != dds::NodeState::kSpare;
+  return std::ranges::any_of(children_, [this](const Child& child) {
+    const dds::SeenStatus* const seen = said_by(child);
+    return child.running && seen != nullptr && seen->status.state != dds::NodeState::kSpare;
   });
 }
 

@@ -69,7 +69,7 @@ class Launcher {
   void tell_lost(const Child& child);
   bool has_finished(const Child& child);
   void end_successor(Child& child);
-  static bool is_of(const dds::Status& status, const Child& child);
+  const dds::SeenStatus* said_by(const Child& child);
   void note_exit(Child& child, int status);
   bool can_be_replaced(const Child& child) const;
   bool somebody_knows_the_world();

@@ -185,16 +185,7 @@ TEST_F(Guard, TakesNothingFromWhatIsForOthers) {
   meet();
   guard_.set_own(prefix_of(77));
   const Octets elsewhere = submessage(0x0e, 0, Octets().raw({9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9}));
-  const Octets gone = submessage(0x15, 2,
-                                 Octets()
-                                     .u16(0)
-                                     .u16(16)
-                                     .entity(0)
-                                     .entity(kEndpointWriter)
-                                     .sequence(2)
-                                     .parameter(0x70, Octets().guid(kPrefix, kWriter))
-                                     .parameter(0x71, Octets().raw({0, 0, 0, 3}))
-                                     .sentinel());
+  const Octets gone = farewell(kEndpointWriter, kPrefix, kWriter);
   EXPECT_TRUE(passes(heartbeat(60'000'000, 60'000'000)));
   EXPECT_TRUE(passes(datagram({elsewhere, gone})));
   EXPECT_TRUE(passes(heartbeat(120'000'000, 120'000'000)));  // from where it was, not from 0
@@ -419,16 +410,7 @@ TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNotDrivenOutByMore) {
   for (std::uint32_t i = 0; i < 6'000; ++i) {
     passes(data(kEndpointWriter, 1, endpoint(kPrefix, 0x1000'0003 + (i << 8)).bytes()));
   }
-  const Octets gone = submessage(0x15, 2,
-                                 Octets()
-                                     .u16(0)
-                                     .u16(16)
-                                     .entity(0)
-                                     .entity(kEndpointWriter)
-                                     .sequence(2)
-                                     .parameter(0x70, Octets().guid(kPrefix, kEndpointWriter))
-                                     .parameter(0x71, Octets().raw({0, 0, 0, 3}))
-                                     .sentinel());
+  const Octets gone = farewell(kEndpointWriter, kPrefix, kEndpointWriter);
   EXPECT_TRUE(passes(gone));
   EXPECT_EQ(passed_of(unsound(1)), 0);
   EXPECT_FALSE(passes(open[2]));

@@ -161,4 +161,18 @@ inline Octets endpoint(const GuidPrefix& prefix, std::uint32_t entity, const Oct
                     .sentinel());
 }
 
+/// `writer` takes back what it has announced of `entity`: it is gone, and nothing of it is kept.
+inline Octets farewell(std::uint32_t writer, const GuidPrefix& prefix, std::uint32_t entity) {
+  return submessage(0x15, 2,
+                    Octets()
+                        .u16(0)
+                        .u16(16)
+                        .entity(0)
+                        .entity(writer)
+                        .sequence(2)
+                        .parameter(0x70, Octets().guid(prefix, entity))
+                        .parameter(0x71, Octets().raw({0, 0, 0, 3}))
+                        .sentinel());
+}
+
 }  // namespace aurasim::dds::testing

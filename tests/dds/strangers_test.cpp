@@ -51,6 +51,15 @@ bool take_any(ControlBus& bus, std::vector<RunCommand>& taken, std::chrono::mill
   return !taken.empty();
 }
 
+/// In run 11.
+ControlSettings node_of(std::uint32_t region, std::uint32_t regions) {
+  ControlSettings settings;
+  settings.region = RegionId{region};
+  settings.run = 11;
+  settings.region_count = regions;
+  return settings;
+}
+
 /// Nodes 0 and 1, that listen to each other, and somebody.
 class AStranger : public ::testing::Test {
  protected:
@@ -63,11 +72,8 @@ class AStranger : public ::testing::Test {
   }
 
   static ControlSettings settings(std::uint32_t region) {
-    ControlSettings settings;
-    settings.region = RegionId{region};
+    ControlSettings settings = node_of(region, 2);
     settings.agreement = 88;
-    settings.run = 11;
-    settings.region_count = 2;
     return settings;
   }
   static Status of_this_host(std::uint32_t region) {
@@ -195,16 +201,9 @@ TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
 
 /// A drain gives a region a second process, which waits for the first to leave.
 TEST(AProcessThatHasJustBegun, TakesWhoActsForARegionsNodeThoughItsSuccessorIsHeardFirst) {
-  const auto settings = [](std::uint32_t region) {
-    ControlSettings settings;
-    settings.region = RegionId{region};
-    settings.run = 11;
-    settings.region_count = 2;
-    return settings;
-  };
   Participant first(testing::settings_for(own_domain())), second(testing::settings_for(own_domain()));
   Participant participant(testing::settings_for(own_domain()));
-  ControlBus node(first, settings(1)), successor(second, settings(1)), newcomer(participant, settings(0));
+  ControlBus node(first, node_of(1, 2)), successor(second, node_of(1, 2)), newcomer(participant, node_of(0, 2));
   Status waits = status_of(1);
   waits.state = NodeState::kSpare;
   waits.process = 2;
@@ -223,18 +222,11 @@ TEST(AProcessThatHasJustBegun, TakesWhoActsForARegionsNodeThoughItsSuccessorIsHe
 
 /// It is told where all go back to within a tenth of a second of its beginning.
 TEST(AProcessThatHasJustBegun, TakesTheWordOfANodeThatItDoesNotYetKnow) {
-  const auto settings = [](std::uint32_t region) {
-    ControlSettings settings;
-    settings.region = RegionId{region};
-    settings.run = 11;
-    settings.region_count = 3;
-    return settings;
-  };
   std::vector<std::unique_ptr<Participant>> participants;
   std::vector<std::unique_ptr<ControlBus>> buses;
   for (const std::uint32_t region : {0U, 1U, 2U}) {
     participants.push_back(std::make_unique<Participant>(testing::settings_for(own_domain())));
-    buses.push_back(std::make_unique<ControlBus>(*participants.back(), settings(region)));
+    buses.push_back(std::make_unique<ControlBus>(*participants.back(), node_of(region, 3)));
   }
   ControlBus& newcomer = *buses[2];
   buses[0]->publish_status(status_of(0));
