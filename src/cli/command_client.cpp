@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatienceForAnswers = 6s;
+constexpr auto kPatienceForAnswers = 15s;
 constexpr auto kPatienceForMeshes = 20s;  ///< the lead waits for 15 s until all nodes have one, and says who has not
 constexpr auto kPatienceAfterIt = 2s;     ///< once all nodes have computed its state: a host says so when it has obeyed
 constexpr auto kPatienceForChanges = 20s;
@@ -75,21 +75,26 @@ std::uint64_t CommandClient::send(core::Command command) {
   return request;
 }
 
+void CommandClient::accept(const core::CommandReply& reply, UnderWay& under_way) {
+  if (under_way.accepted) return;  // told again
+  Delivery& delivery = under_way.delivery;
+  under_way.accepted = true;
+  under_way.deadline = Clock::now() + (under_way.changes_the_run ? Clock::duration(kPatienceForChanges)
+                                       : delivery.is_save        ? Clock::duration(kPatienceForDisks)
+                                                                 : Clock::duration(kPatienceAfterIt));
+  delivery.at_step = reply.at_step;
+  delivery.object = reply.object;
+  if (delivery.is_save && paused_in() >= reply.at_step) {  // of a state that is kept: the others hear so from us
+    under_way.command.at_step = reply.at_step;
+    under_way.again = Clock::now();
+  }
+}
+
 void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   switch (reply.outcome) {
     case core::Outcome::kAccepted:
-      if (under_way.accepted) return;  // told again
-      under_way.accepted = true;
-      under_way.deadline = Clock::now() + (under_way.changes_the_run ? Clock::duration(kPatienceForChanges)
-                                           : delivery.is_save        ? Clock::duration(kPatienceForDisks)
-                                                                     : Clock::duration(kPatienceAfterIt));
-      delivery.at_step = reply.at_step;
-      delivery.object = reply.object;
-      if (delivery.is_save && paused_in() >= reply.at_step) {  // of a state that is kept: the others hear so from us
-        under_way.command.at_step = reply.at_step;
-        under_way.again = Clock::now();
-      }
+      accept(reply, under_way);
       return;
     case core::Outcome::kDone:
       delivery.done = true;
@@ -104,6 +109,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
       under_way.deadline = {};
       return;
     case core::Outcome::kSeen:
+      if (delivery.is_save) accept(reply, under_way);  // whose part is saved has taken it: that word may be lost
       if (std::ranges::find(under_way.answered, reply.source) != under_way.answered.end()) return;  // told again
       under_way.answered.push_back(reply.source);
       delivery.at_step = std::max(delivery.at_step, reply.at_step);
@@ -185,7 +191,8 @@ bool CommandClient::has_ended(UnderWay& under_way) {
     return true;
   }
   if (!delivery.text.empty()) return true;
-  delivery.text = !under_way.accepted ? "no node has taken it"
+  delivery.text = !under_way.accepted ? fmt::format("no node has taken it: {} are alive, and {} listen",
+                                                    live_nodes().size(), endpoint_.listeners())
                   : delivery.is_save  ? "some regions have not saved their parts"
                   : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
                                       : "it was taken, but nobody has shown its effect";

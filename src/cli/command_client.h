@@ -65,6 +65,7 @@ class CommandClient {
 
   std::vector<const dds::Status*> live_nodes();
   std::optional<core::Step> paused_in();
+  void accept(const core::CommandReply& reply, UnderWay& under_way);
   void note(const core::CommandReply& reply, UnderWay& under_way);
   bool has_ended(UnderWay& under_way);
   bool all_have_answered(UnderWay& under_way);

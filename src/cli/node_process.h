@@ -157,7 +157,7 @@ class NodeProcess {
   void change_regions(const std::vector<core::Rectangle>& boxes);
   void settle_all();
   void wait_until_all_stand();
-  void connect_anew(const dds::TransportSettings& settings);
+  void connect_anew(dds::TransportSettings settings);
   bool finished();
   bool has_reached(core::Step step) const;
   void keep_the_end();
@@ -215,7 +215,8 @@ class NodeProcess {
   std::vector<dds::RunCommand> early_;         ///< of a generation that has not begun here
   std::optional<dds::RunCommand> restore_;     ///< the newest
   core::Generation restoring_ = 0;             ///< that a recovery is about to begin, or has begun
-  core::Generation life_ = 0;                  ///< with which the run went on after the last death
+  int failed_changes_ = 0;                     ///< in a row
+  core::Generation life_ = 0;                  ///< with which the run went on after the last death or change
   core::Generation life_of_node_ = 0;          ///< with which node_ has begun
   std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
   bool drains_ = false;                        ///< gives its region to another process as soon as there is one

@@ -24,8 +24,9 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kPatienceWithOthers = 20s;
 constexpr auto kRound = 5ms;
 constexpr double kRateNoticeS = 0.1;
+constexpr int kMostFailedChanges = 3;  // in a row
 
-/// What went wrong and with whom: the run cannot go on.
+/// What went wrong and with whom.
 class ChangeFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -215,9 +216,17 @@ void NodeProcess::change_if_due() {
   const core::Order order = *std::exchange(change_, std::nullopt);
   before_change_ = BeforeChange{launch_, options_.world};
   const bool stands = hold_at_.has_value();
-  if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
-  if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
-  if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
+  try {
+    if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
+    if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
+    if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
+  } catch (const ChangeFailed& failed) {
+    // All are here, and what they had before can be gone back to: then it is tried once more.
+    if (!recovers() || stop_requested() || ++failed_changes_ > kMostFailedChanges) throw;
+    throw SomebodyDied(failed.what());
+  }
+  failed_changes_ = 0;
+  life_of_node_ = life_;
   before_change_.reset();
   if (stands) hold_at_ = node_->current_step();
 }
@@ -251,7 +260,7 @@ void NodeProcess::begin_anew() {
   waits_to_start_ = generation_ + 1;
   publish_map(waits_to_start_, first_step());  // first: observers read the new scene before its bodies come
   node_.reset();
-  connect_anew(transport_settings());
+  connect_anew(neighbour_transport(launch_, options_.region));
   begin_generation(waits_to_start_, *start_);
 }
 
@@ -293,8 +302,10 @@ void NodeProcess::settle_all() {
   if (recorder_) recorder_->write_settling(report);
 }
 
-/// Another transport; returns when all nodes have theirs and region 0 says when to go on.
-void NodeProcess::connect_anew(const dds::TransportSettings& settings) {
+/// Another transport; returns when all nodes have theirs and region 0 says when to go on. It meets those that others
+/// have made for this change, and not what they are about to let go of: what is sent to that is lost.
+void NodeProcess::connect_anew(dds::TransportSettings settings) {
+  settings.life = life_ = waits_to_start_;
   transport_.reset();
   transport_.emplace(participant_, settings);
   const auto deadline = Clock::now() + kPatienceWithOthers;
@@ -332,7 +343,6 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
       settings, take_census(settings, deadline, participant_, *node_, [this] { look_for_deaths(); }), *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
-  to_all.life = life_;
   to_all.neighbours.clear();
   for (std::uint32_t r = 0; r < changed->regions.size(); ++r) {
     if (core::RegionId{r} != options_.region) to_all.neighbours.push_back(core::RegionId{r});
@@ -344,7 +354,9 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   node::Exchange exchange(settings, departures, *transport_, *node_);
   while (!exchange.ready()) {
     look_for_deaths();
-    if (Clock::now() > deadline) throw ChangeFailed("new regions: not every region has sent its bodies");
+    if (Clock::now() > deadline) {
+      throw ChangeFailed(fmt::format("new regions: regions {} have not sent their bodies", exchange.silent()));
+    }
     transport_->wait_for_arrival(kRound);
   }
   for (const node::HandOffRow& row : exchange.finish()) {
@@ -359,7 +371,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   status_.map_version = launch_.regions.version();
   status_.footprint = launch_.regions.region(options_.region);
   waits_to_start_ = settings.census + 1;
-  connect_anew(transport_settings());
+  connect_anew(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = node_setup(launch_, options_.region, generation_);
   observers_->begin_generation(generation_);
   command_server_->change_map(generation_, node_->current_step());

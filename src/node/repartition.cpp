@@ -114,8 +114,17 @@ bool Exchange::ready() {
     if (hand_off.generation == settings_.census) came_.insert_or_assign(hand_off.source, std::move(hand_off));
   }
   inbox_.clear();
-  return expects_.size() + 1 == settings_.map->size() &&
-         std::ranges::all_of(expects_, [&](const auto& e) { return !e.second || came_.contains(e.first); });
+  return silent().empty();
+}
+
+std::vector<std::uint32_t> Exchange::silent() const {
+  std::vector<std::uint32_t> silent;
+  for (std::uint32_t r = 0; r < settings_.map->size(); ++r) {
+    const auto spoken = expects_.find(RegionId{r});
+    const bool has_sent = spoken != expects_.end() && (!spoken->second || came_.contains(RegionId{r}));
+    if (RegionId{r} != settings_.region && !has_sent) silent.push_back(r);
+  }
+  return silent;
 }
 
 std::vector<HandOffRow> Exchange::finish() {

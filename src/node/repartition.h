@@ -62,6 +62,8 @@ class Exchange {
 
   /// Takes in the mail. True when every region has sent what it sends us.
   bool ready();
+  /// Regions that have not, ascending.
+  std::vector<std::uint32_t> silent() const;
   /// Once ready: adopts what has come. Returns the hand-offs, both ways, for the report.
   std::vector<HandOffRow> finish();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <iostream>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -61,6 +62,9 @@ void SystemTest::SetUp() {
 
 void SystemTest::TearDown() {
   const bool stopped_early = HasFatalFailure();
+  for (const auto& process : processes_) {
+    if (HasFailure()) std::cerr << process->said() << '\n';
+  }
   processes_.clear();
   const Words left = end_all_children();
   if (!stopped_early) {
