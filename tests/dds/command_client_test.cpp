@@ -42,8 +42,8 @@ struct PausedNode {
   dds::Status status;
 };
 
-/// In a pause the lead says that it has taken a save, and of which state, and right after it that its part is saved. The
-/// first word may find no reader yet. The others wait for the client to tell them the state.
+/// In a pause the lead says that it has taken a save, and of which state, and right after it that its part is saved.
+/// The first word may find no reader yet. The others wait for the client to tell them the state.
 TEST(CommandClient, TellsTheOthersTheStateThatTheLeadHasSavedThoughItHasNotHeardThatItWasTaken) {
   constexpr core::Step kSaved = 1200;
   PausedNode lead(test::own_domain(), 0), other(test::own_domain(), 1);
