@@ -6,11 +6,13 @@
 simulation="CMakeLists.txt src/core src/physics src/node src/transport"
 # Counts what is late, and changes nothing: for pages of bits, errors and times.
 uncounted="$simulation :!src/node/collision_watch.*"
+# Files of records, and new regions in a run: for pages of simulations within one process.
+in_one_process=":!src/node/recorder.* :!src/node/row_file.* :!src/node/repartition.*"
 # shellcheck disable=SC2034
 declare -A measures=(
-  [docs/accuracy.md]="$uncounted src/config src/experiment/stability src/experiment/pareto.cpp
+  [docs/accuracy.md]="$uncounted $in_one_process src/config src/experiment/stability src/experiment/pareto.cpp
     src/experiment/measured_run.* src/experiment/case.h scripts/accuracy.sh"
-  [docs/correctness.md]="$simulation src/experiment :!src/experiment/stability :!src/experiment/scale :!src/experiment/speed
+  [docs/correctness.md]="$simulation $in_one_process src/experiment :!src/experiment/stability :!src/experiment/scale :!src/experiment/speed
     :!src/experiment/pareto.cpp scripts/correctness.sh"
   [docs/correctness_over_dds.md]="$simulation src/dds idl qos src/experiment :!src/experiment/stability
     :!src/experiment/scale :!src/experiment/speed :!src/experiment/pareto.cpp scripts/correctness_over_dds.sh"

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Kills nodes of real runs at random, 100 times one and 20 times two at once, and compares every state with that of the run
-# that nobody disturbed; measures what keeping parts costs a healthy run. Writes docs/recovery.md. About 25 minutes on 2
-# cores, where nothing else runs; goes on where it was stopped.
-#   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--domain N=73] [--out DIR=build/recovery]
+# that nobody disturbed; restarts all nodes one after the other; measures what keeping parts costs a healthy run. Writes
+# docs/recovery.md. About 35 minutes on 2 cores, where nothing else runs, and those of the long run; goes on where it was
+# stopped.
+#   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--soak MINUTES=60] [--domain N=73] [--out DIR=build/recovery]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-deaths=100 pairs=20 domain=73 out=build/recovery
+deaths=100 pairs=20 soak=60 domain=73 out=build/recovery
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --deaths) deaths=$2 ;;
     --pairs) pairs=$2 ;;
+    --soak) soak=$2 ;;
     --domain) domain=$2 ;;
     --out) out=$2 ;;
     *) printf 'recovery.sh: %s?\n' "$1" >&2; exit 2 ;;
@@ -23,7 +25,10 @@ source scripts/measured.sh
 begin_measuring docs/recovery.md "$out" double
 failures=0
 /usr/bin/python3 scripts/recovery.py --deaths "$deaths" --pairs "$pairs" --domain "$domain" --out "$out" || failures=1
+[[ -s $out/rolling.jsonl ]] || /usr/bin/python3 scripts/recovery_rolling.py --domain "$domain" --out "$out" || failures=1
 /usr/bin/python3 scripts/recovery_cost.py --domain "$domain" --out "$out"
+[[ $soak == 0 || -s $out/soak.jsonl ]] ||
+  /usr/bin/python3 scripts/recovery_rolling.py --repeats 0 --soak "$soak" --domain "$domain" --out "$out" || failures=1
 /usr/bin/python3 scripts/write_recovery.py "$out"
 echo "written: docs/recovery.md" >&2
 exit "$failures"

@@ -141,6 +141,7 @@ class NodeProcess {
   core::WorldCut gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
   core::WorldCut decode_part(const std::string& octets) const;
   void connect_again(const dds::RunCommand& restore);
+  void record_after(std::optional<core::Step> step);
   void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();

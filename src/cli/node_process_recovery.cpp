@@ -153,8 +153,8 @@ void NodeProcess::throw_away_after(core::Step step) {
                  step + 1, node_->current_step());
   }
   const bool has_successor = recorder_ && recorder_->is_replaced();
-  recorder_.reset();
-  if (options_.report && !has_successor) recorder_.emplace(*options_.report, options_.region, step);
+  if (has_successor) return recorder_.reset();
+  record_after(step);
 }
 
 /// Whoever takes a region over has not heard of a pause, and those who have would forget a reset.
@@ -280,16 +280,24 @@ void NodeProcess::connect_again(const dds::RunCommand& restore) {
   enter(NodeEvent::kStarted);
 }
 
+/// Without records the world goes on all the same.
+void NodeProcess::record_after(std::optional<core::Step> step) {
+  recorder_.reset();  // or it would write the rest of its rows into the files of the next
+  if (!options_.report) return;
+  try {
+    recorder_.emplace(*options_.report, options_.region, step);
+  } catch (const std::runtime_error& error) {
+    spdlog::error("region {}: nothing is recorded from here on: {}", core::value_of(options_.region), error.what());
+  }
+}
+
 void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
                                  const std::map<core::RegionId, std::string>& parts) {
   const bool from_first = restore.count == 1;
   node_ = make_node();
   life_of_node_ = life_;
   command_server_->go_back(*node_, generation_);
-  recorder_.reset();  // or it would write the rest of its rows into the files of the next
-  if (options_.report) {
-    recorder_.emplace(*options_.report, options_.region, from_first ? std::nullopt : std::optional(restore.at_step));
-  }
+  record_after(from_first ? std::nullopt : std::optional(restore.at_step));
   pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
   status_.rate = restore.rate;
   fence_.begin_anew(true);

@@ -1,5 +1,6 @@
 #include "node/recorder.h"
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr core::Step kFlushEvery = 60;
 constexpr std::size_t kLastWordBytes = 8 * 1024;
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max() / 2;  ///< no row of ours
 constexpr std::array<const char*, core::kViolationKinds> kKindNames = {"speed", "latency", "frame", "promise", "span"};
 
 const char* name_of(core::HandOffReason reason) {
@@ -27,20 +29,20 @@ std::filesystem::path make_folder(const std::filesystem::path& folder, core::Reg
   return folder;
 }
 
-/// Rows of states up to `after`, by the columns that say so; nothing: no rows at all.
-RowFile::Keep up_to(std::optional<core::Step> after, std::size_t column) {
+/// Rows of states up to `after`, by the column that says so; nothing: no rows at all.
+std::optional<RowFile::Keep> up_to(std::optional<core::Step> after, std::size_t column) {
   if (!after) return {};
-  return [after, column](std::span<const std::string_view> cells) {
-    return cells.size() > column && std::cmp_less_equal(whole(cells[column]), *after);
-  };
+  return RowFile::Keep{static_cast<std::uint64_t>(*after), [column](std::span<const std::string_view> cells) {
+                         return cells.size() > column ? whole(cells[column]) : kNever;
+                       }};
 }
 
 /// Who came is told by the state in which it took part first.
-RowFile::Keep moves_up_to(std::optional<core::Step> after) {
+std::optional<RowFile::Keep> moves_up_to(std::optional<core::Step> after) {
   if (!after) return {};
-  return [after](std::span<const std::string_view> cells) {
-    return cells.size() > 3 && std::cmp_less_equal(whole(cells[cells[1] == "out" ? 2 : 3]), *after);
-  };
+  return RowFile::Keep{static_cast<std::uint64_t>(*after), [](std::span<const std::string_view> cells) {
+                         return cells.size() > 3 ? whole(cells[cells[1] == "out" ? 2 : 3]) : kNever;
+                       }};
 }
 
 }  // namespace

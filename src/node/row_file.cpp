@@ -1,6 +1,5 @@
 #include "node/row_file.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +10,8 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "node/csv.h"
 
 namespace aurasim::node {
 namespace {
@@ -30,36 +31,63 @@ std::string cannot_write(const std::filesystem::path& file) {
   return fmt::format("cannot write {}: {}", file.string(), std::strerror(errno));
 }
 
-std::string rows_to_keep(const std::filesystem::path& file, const RowFile::Keep& keep) {
-  std::string kept;
-  std::vector<std::string_view> cells;
-  std::ifstream in(file);
+std::uint64_t state_of(const std::string& row, const RowFile::Keep& keep) {
+  thread_local std::vector<std::string_view> cells;
+  split_cells(row, cells);
+  return keep.state_of(cells);
+}
+
+/// How many bytes from the first on are rows that all stay, with the header: at least that.
+std::int64_t bytes_that_stay(std::ifstream& in, std::int64_t size, const RowFile::Keep& keep) {
   std::string line;
-  std::getline(in, line);                        // the header
-  while (std::getline(in, line) && !in.eof()) {  // a row without its end may be half a row
-    cells.clear();
-    for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      cells.push_back(std::string_view(line).substr(begin, end - begin));
-      begin = end + 1;
-    }
-    if (keep(cells)) kept.append(line).push_back('\n');
+  if (!std::getline(in, line) || in.eof()) return 0;
+  const std::int64_t rows = in.tellg();
+  for (std::int64_t tail = 64 * 1024; tail < size - rows; tail *= 4) {
+    in.seekg(size - tail);
+    std::getline(in, line);  // the rest of a row
+    const std::int64_t at = in.tellg();
+    const bool is_row = std::getline(in, line) && !in.eof();
+    if (is_row && state_of(line, keep) + RowFile::kLatest <= keep.last) return at;
+    in.clear();
   }
-  return kept;
+  return rows;
+}
+
+/// Makes `fresh` of the part of `file` that stays as it is; returns the rest of the rows that stay.
+std::string copy_what_stays(const std::filesystem::path& file, const std::filesystem::path& fresh,
+                            const std::string& header, const RowFile::Keep& keep) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code none;
+  const auto size = in ? static_cast<std::int64_t>(std::filesystem::file_size(file, none)) : 0;
+  const std::int64_t stay = size > 0 ? bytes_that_stay(in, size, keep) : 0;
+  if (stay == 0) {
+    std::filesystem::remove(fresh, none);
+    return header;
+  }
+  std::filesystem::copy_file(file, fresh, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::resize_file(fresh, static_cast<std::uintmax_t>(stay));
+  std::string rest;
+  in.clear();
+  in.seekg(stay);
+  for (std::string line; std::getline(in, line) && !in.eof();) {  // a row without its end may be half a row
+    if (state_of(line, keep) <= keep.last) rest.append(line).push_back('\n');
+  }
+  return rest;
 }
 
 }  // namespace
 
-RowFile::RowFile(const std::filesystem::path& file, const std::string& header, const Keep& keep)
+RowFile::RowFile(const std::filesystem::path& file, const std::string& header, const std::optional<Keep>& keep)
     : path_(file), buffer_(header) {
   // Whoever is killed meanwhile leaves the old file.
   std::filesystem::path fresh = file;
   if (keep) {
-    buffer_ += rows_to_keep(file, keep);
     fresh += ".new";
+    buffer_ = copy_what_stays(file, fresh, header, *keep);
   }
-  file_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  file_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (keep ? O_APPEND : O_TRUNC), 0644);
   if (file_ < 0) throw std::runtime_error(cannot_write(fresh));
+  whole_ = ::lseek(file_, 0, SEEK_END);
   if (flush() && (!keep || ::rename(fresh.c_str(), file.c_str()) == 0)) return;
   const std::string why = failure_.empty() ? cannot_write(file) : failure_;
   ::close(file_);

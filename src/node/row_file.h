@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,12 +15,18 @@ namespace aurasim::node {
 
 class RowFile {
  public:
-  /// Which rows of a file stay, by their cells.
-  using Keep = std::function<bool(std::span<const std::string_view> cells)>;
+  /// Which rows of a file stay: those of states up to `last`.
+  struct Keep {
+    std::uint64_t last = 0;
+    /// Which state a row is of, by its cells. Rows are in the order of their states, but for some that came late.
+    std::function<std::uint64_t(std::span<const std::string_view> cells)> state_of;
+  };
+  /// A row does not come later than this many states after its own.
+  static constexpr std::uint64_t kLatest = 3600;
 
-  /// An empty file with one header line; with `keep` those rows that are there already and are to stay. Throws
-  /// std::runtime_error when there can be none.
-  RowFile(const std::filesystem::path& file, const std::string& header, const Keep& keep = {});
+  /// An empty file with one header line; with `keep` those rows that are there already and are to stay. A long file is
+  /// neither read nor held as a whole. Throws std::runtime_error when there can be none.
+  RowFile(const std::filesystem::path& file, const std::string& header, const std::optional<Keep>& keep = {});
   ~RowFile();
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;

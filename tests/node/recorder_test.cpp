@@ -149,6 +149,33 @@ TEST_F(Records, KnowWhenAnotherProcessHasTakenThemOver) {
   EXPECT_FALSE(successor.is_replaced());
 }
 
+/// Of a long file only the end is read.
+TEST_F(Records, GoOnAfterAnEarlierState) {
+  constexpr core::Step kLast = 20'000, kAfter = 15'000;
+  {
+    Recorder recorder(folder_, RegionId{0});
+    write_steps(recorder, 0, kLast - 1);
+    StepReport last;
+    last.step = kLast;
+    last.births = {{core::BodyId{7}, kAfter - 10}, {core::BodyId{8}, kAfter + 1}};  // both told late
+    recorder.write(last, {});
+    finish(recorder);
+  }
+  ASSERT_EQ(column("steps.csv", 1).size(), kLast + 1);
+  std::ofstream(file("steps.csv"), std::ios::app) << "0,12";  // killed while it wrote
+  {
+    Recorder successor(folder_, RegionId{0}, kAfter);
+    write_steps(successor, kAfter + 1, kAfter + 100);
+    finish(successor);
+  }
+  const auto steps = column("steps.csv", 1);
+  ASSERT_EQ(steps.size(), kAfter + 101);
+  for (std::size_t i = 0; i < steps.size(); ++i) ASSERT_EQ(steps[i], i);
+  EXPECT_EQ(column("state_hash.csv", 0).size(), kAfter + 101);
+  EXPECT_THAT(column("births.csv", 1), ::testing::ElementsAre(7));
+  EXPECT_FALSE(std::filesystem::exists(file("steps.csv.new")));
+}
+
 TEST_F(Records, AFileThatCannotBeWrittenIsNamedAtTheStart) {
   std::filesystem::create_directories(folder_ / "region_0");
   std::filesystem::create_symlink("/dev/full", file("steps.csv"));
