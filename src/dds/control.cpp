@@ -414,8 +414,11 @@ std::uint64_t ControlBus::send(RunCommand command) {
 }
 
 /// A process that has just begun hears commands before it knows who the nodes are: what only they may say waits for
-/// that.
+/// that, and what they say after it waits with it: a pause means nothing before the world that it is for.
 void ControlBus::Impl::judge(HeardCommand heard, std::vector<RunCommand>& commands) {
+  const bool is_behind = std::ranges::any_of(
+      waiting, [&](const HeardCommand& other) { return other.origin.writer == heard.origin.writer; });
+  if (is_behind && waiting.size() < kMostWaiting) return waiting.push_back(std::move(heard));
   const std::string problem = problem_with(heard.command, heard.origin);
   if (problem.empty()) {
     RunCommand& command = heard.command;

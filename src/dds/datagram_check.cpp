@@ -67,6 +67,8 @@ Payload payload_of(std::uint32_t writer) {
   }
 }
 
+bool introduces(Payload payload) { return payload == Payload::kParticipant || payload == Payload::kHandshake; }
+
 bool is_sequence_number(std::uint64_t number) { return number >= 1 && number <= kLargestSequenceNumber; }
 
 /// What a 16-octet key stands for, in discovery.
@@ -346,6 +348,7 @@ class Checker {
 
   Result check_payload(std::uint32_t writer, WireCursor& body) {
     const Payload payload = payload_of(writer);
+    findings_.introduces = findings_.introduces || introduces(payload);
     if (payload == Payload::kUnknown) return kFine;  // nobody here listens to it
     if (body.left() < 4) return Refusal::kPayload;
     body.skip(1);
@@ -395,6 +398,7 @@ class Checker {
     const std::uint32_t reader = body.entity();
     Claim claim = claim_of(Claim::Kind::kFragments, body.entity());
     claim.reader = reader;
+    findings_.introduces = findings_.introduces || introduces(payload_of(claim.guid.entity));
     claim.first = claim.last = body.sequence_number();
     claim.first_fragment = body.u32();
     claim.fragments = body.u16();

@@ -24,6 +24,7 @@ std::size_t PrefixHash::operator()(const GuidPrefix& prefix) const {
 
 void Findings::clear() {
   size = 0;
+  introduces = false;
   claims.clear();
   requests.clear();
   hidden_parameters.clear();

@@ -73,7 +73,8 @@ struct Request {
 
 /// Reused from datagram to datagram.
 struct Findings {
-  std::size_t size = 0;  ///< how much of the datagram Fast DDS may see: without eProsima's statistics at its end
+  std::size_t size = 0;     ///< how much of the datagram Fast DDS may see: without eProsima's statistics at its end
+  bool introduces = false;  ///< it says who somebody is: a participant's discovery, or a handshake
   std::vector<Claim> claims;
   std::vector<Request> requests;
   std::vector<std::size_t> hidden_parameters;   ///< offsets of parameter ids that Fast DDS must not act on

@@ -34,6 +34,7 @@ DatagramGuard::Admitted DatagramGuard::admit(std::span<std::uint8_t> bytes, Sour
   answer_requests(findings, source, now);
   findings.hide(bytes);
   admitted.size = findings.size;
+  admitted.is_alone = findings.introduces;
   return admitted;
 }
 

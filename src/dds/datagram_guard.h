@@ -49,9 +49,15 @@ class DatagramGuard {
     /// Datagrams that Fast DDS is to see first: what is better said otherwise.
     std::vector<std::vector<std::uint8_t>> before;
     std::size_t size = 0;  ///< of the datagram's begin, that Fast DDS may see; 0: nothing
+    /// Fast DDS 2.9.1 must not see another one like it meanwhile, on another socket: what it keeps of whom it meets
+    /// passes through variables that all threads share (SecurityManager's temporaries; mended in 2.9.2, #3373). Of two
+    /// participants with keys, one would not be met, for ever.
+    bool is_alone = false;
   };
   /// Changes `bytes`: what Fast DDS must not act on becomes padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
+  /// Held while Fast DDS sees a datagram that it has to see alone.
+  std::mutex& meeting() { return meeting_; }
   /// What this process sends.
   void note_sent(std::span<const std::uint8_t> bytes);
 
@@ -69,6 +75,7 @@ class DatagramGuard {
   void answer_requests(Findings& findings, Source source, Time now);
   void refuse(Refusal why, Source source);
 
+  std::mutex meeting_;
   mutable std::mutex mutex_;
   std::optional<GuidPrefix> own_;
   SourceLimits rates_;

@@ -54,6 +54,20 @@ TEST_F(Guard, CountsByReasonAndAddress) {
   EXPECT_TRUE(guard_.take_new_sources().empty());
 }
 
+/// Fast DDS 2.9.1 keeps what it is told of two participants in the same variables.
+TEST_F(Guard, LetsFastDdsMeetOneParticipantAtATime) {
+  const auto is_alone = [this](const Octets& submessage) {
+    Bytes bytes = datagram({submessage});
+    return guard_.admit(bytes, kSource, now_).is_alone;
+  };
+  EXPECT_TRUE(is_alone(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
+  EXPECT_TRUE(
+      is_alone(data(kHandshakeWriter, 1, Octets().raw({0, 1, 0, 0}).zeros(96).text("dds.sec.auth").u32(0).bytes())));
+  EXPECT_FALSE(is_alone(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())));
+  EXPECT_FALSE(is_alone(data(kWriter, 5, {0, 1, 0, 0, 9, 9, 9, 9})));
+  EXPECT_FALSE(is_alone(heartbeat(1, 1)));
+}
+
 /// Fast DDS counts from the last number that it has told of to the first of a heartbeat, with the reader's lock held.
 TEST_F(Guard, RefusesHeartbeatsThatLeaveOutBillions) {
   meet();

@@ -236,10 +236,14 @@ TEST(AProcessThatHasJustBegun, TakesTheWordOfANodeThatItDoesNotYetKnow) {
   restore.run = 11;
   restore.region = RegionId{1};
   buses[1]->send(restore);
+  buses[1]->send(command_of(RunCommandKind::kPause));  // of the world that all go back to
   std::vector<RunCommand> taken;
   EXPECT_FALSE(take_any(newcomer, taken, 500ms)) << "region 1 has not said that it is one";
   buses[1]->publish_status(status_of(1));
-  EXPECT_TRUE(take_any(newcomer, taken, 2s));
+  ASSERT_TRUE(take_any(newcomer, taken, 2s));
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0].kind, RunCommandKind::kRestore);
+  EXPECT_EQ(taken[1].kind, RunCommandKind::kPause);
   EXPECT_THAT(participants[2]->take_said(), IsEmpty());
 }
 
