@@ -263,6 +263,7 @@ void NodeProcess::run_until_end() {
     leave_if_asked();
     execute_commands();
     look_for_deaths();
+    obey_late_commands();
     serve_clients();
     save_parts();
     reset_if_due();
@@ -397,11 +398,10 @@ void NodeProcess::linger() {
   const auto begin = Clock::now();
   std::map<core::RegionId, core::Step> steps;
   auto moved = begin;
-  const auto all_done = [this] {
-    const auto& statuses = control_.statuses();
-    return node_->ready_to_settle() &&
-           std::all_of(statuses.begin(), statuses.end(), [](const auto& entry) { return !entry.second.is_live(); });
+  const auto nobody_lives = [this] {
+    return std::ranges::none_of(control_.statuses(), [](const auto& entry) { return entry.second.is_live(); });
   };
+  const auto all_done = [&] { return node_->ready_to_settle() && nobody_lives(); };
   const auto others_run = [&] {
     bool running = false;
     for (const auto& [region, seen] : control_.statuses()) {
@@ -413,7 +413,7 @@ void NodeProcess::linger() {
   };
   while (!all_done() && (Clock::now() < begin + kLinger || others_run())) {
     execute_commands();
-    look_for_deaths();
+    if (!nobody_lives()) look_for_deaths();  // of the last one that left, the last word may be lost
     publish();
     control_.wait(10ms);
   }

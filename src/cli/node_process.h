@@ -148,6 +148,7 @@ class NodeProcess {
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
+  void obey_late_commands();
   bool can_be_meant(const dds::RunCommand& command);
   void reset_if_due();
   void change_if_due();
@@ -214,6 +215,7 @@ class NodeProcess {
   };
   std::optional<BeforeChange> before_change_;  ///< while one is under way
   std::vector<dds::RunCommand> early_;         ///< of a generation that has not begun here
+  std::vector<dds::RunCommand> late_;          ///< of generations before restore_'s, heard since
   std::optional<dds::RunCommand> restore_;     ///< the newest
   core::Generation restoring_ = 0;             ///< that a recovery is about to begin, or has begun
   int failed_changes_ = 0;                     ///< in a row

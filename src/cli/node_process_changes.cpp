@@ -71,6 +71,7 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   if (command.generation > generation_ && restore_ && command.generation == restore_->generation) {
     early_.push_back(command);
   }
+  if (restore_ && command.generation < restore_->generation) return late_.push_back(command);
   if (command.generation != generation_ || !node_) return;  // for a run that is over
   if (!can_be_meant(command)) return;
   switch (command.kind) {
@@ -106,6 +107,18 @@ void NodeProcess::execute(const dds::RunCommand& command) {
       pacer_.set_rate(command.rate, command.at_step, command.epoch_ns, command.clock_ahead, node::read_clocks());
       status_.rate = command.rate;
       break;
+  }
+}
+
+/// What was said to the world that all have left, as they did: some might have obeyed and some not. So all do what the
+/// one who says where all go back to says once more.
+void NodeProcess::obey_late_commands() {
+  for (dds::RunCommand command : std::exchange(late_, {})) {
+    if (restore_->region != options_.region) continue;
+    command.generation = generation_;
+    command.request = 0;
+    command.request = control_.send(command);
+    execute(command);
   }
 }
 

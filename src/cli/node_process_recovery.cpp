@@ -304,6 +304,7 @@ void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::Wor
   checkpoints_->go_back(restore.era, restore.at_step, parts);
   status_.era = restore.era;
   reset_.reset();
+  if (restore.region != options_.region) hold_at_.reset();  // that one says again whether all stand
   if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
   begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
   const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();

@@ -59,6 +59,12 @@ bool RunSteering::is_paused() {
   });
 }
 
+bool RunSteering::wait_until_paused(std::chrono::milliseconds time_out) {
+  const auto deadline = Clock::now() + time_out;
+  while (!is_paused() && Clock::now() < deadline) control_.wait(50ms);
+  return is_paused();
+}
+
 /// By what the live nodes say, and by their own silence.
 std::set<std::uint32_t> RunSteering::dead_regions() {
   std::set<std::uint32_t> dead;

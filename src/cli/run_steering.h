@@ -33,6 +33,8 @@ class RunSteering {
   /// By what has been seen so far: is any node of this launch alive; do all that are stand still?
   bool is_there();
   bool is_paused();
+  /// False if they do not within that time.
+  bool wait_until_paused(std::chrono::milliseconds time_out);
 
   /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent. Throws
   /// SteeringRefused when the run cannot do that any more.

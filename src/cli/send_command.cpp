@@ -28,6 +28,7 @@ using namespace std::chrono_literals;
 using Kind = dds::RunCommandKind;
 using Numbers = std::vector<double>;
 
+constexpr auto kPatienceWithAPause = 10s;
 constexpr auto kPatienceWithTheRun = 60s;  ///< in slow motion an order's state may be so far away
 
 const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
@@ -186,6 +187,8 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
 }
 
 [[noreturn]] void steer(const SendArguments& arguments, RunSteering& steering) {
+  // A world that goes back in a pause computes until it is where it stood.
+  if (arguments.what == "step" && !steering.wait_until_paused(kPatienceWithAPause)) fail("steps are for a run that is paused");
   const dds::RunCommand command = steering.send(kSteering.at(arguments.what), arguments.count);
   if (!steering.wait_for_effect(command, kPatienceWithTheRun)) {
     fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
