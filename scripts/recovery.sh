@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # Kills nodes of real runs at random, 100 times one and 20 times two at once, and compares every state with that of the run
 # that nobody disturbed; restarts all nodes one after the other; measures what keeping parts costs a healthy run. Writes
-# docs/recovery.md. About 35 minutes on 2 cores, where nothing else runs, and those of the long run; goes on where it was
-# stopped.
-#   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--soak MINUTES=60] [--domain N=73] [--out DIR=build/recovery]
+# docs/recovery.md. About 35 minutes on 2 cores, where nothing else runs, those of the long run, and half an hour for a day
+# in virtual time; goes on where it was stopped.
+#   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--soak MINUTES=60] [--hours N=24] [--domain N=73]
+#                       [--out DIR=build/recovery]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-deaths=100 pairs=20 soak=60 domain=73 out=build/recovery
+deaths=100 pairs=20 soak=60 hours=24 domain=73 out=build/recovery
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --deaths) deaths=$2 ;;
     --pairs) pairs=$2 ;;
     --soak) soak=$2 ;;
+    --hours) hours=$2 ;;
     --domain) domain=$2 ;;
     --out) out=$2 ;;
     *) printf 'recovery.sh: %s?\n' "$1" >&2; exit 2 ;;
@@ -29,6 +31,10 @@ failures=0
 /usr/bin/python3 scripts/recovery_cost.py --domain "$domain" --out "$out"
 [[ $soak == 0 || -s $out/soak.jsonl ]] ||
   /usr/bin/python3 scripts/recovery_rolling.py --repeats 0 --soak "$soak" --domain "$domain" --out "$out" || failures=1
+[[ $hours == 0 || -s $out/endurance.jsonl ]] || {
+  build/release/aurasim experiment endurance tower --hours "$hours" >"$out/endurance.part" || failures=1
+  mv "$out/endurance.part" "$out/endurance.jsonl"
+}
 /usr/bin/python3 scripts/write_recovery.py "$out"
 echo "written: docs/recovery.md" >&2
 exit "$failures"

@@ -24,7 +24,7 @@ again.
 
 {sums}
 {misses}
-{rolling}{soak}## What it costs a healthy run
+{rolling}{soak}{endurance}## What it costs a healthy run
 
 {rounds} runs of each kind by turns, without anybody dying: `survival.on_death: go_on`, where no parts are kept, against `recover`
 with a part every second. Medians; frames of all nodes.
@@ -97,6 +97,18 @@ def soak_text(runs):
                      "node, MiB", "launcher, MiB"], rows))
 
 
+def endurance_text(lines):
+    """A line for every simulated hour; the last one has the sums."""
+    if not lines:
+        return ""
+    last = lines[-1]
+    sizes = [line["resident_kB"] / 1024 for line in lines[1:]]
+    return (f"## {last['hours']:.0f} hours in virtual time\n\n`aurasim experiment endurance tower` has compared each of "
+            f"{last['compared']:,} states with that of one node, beside {last['deaths']:,} deaths, {last['loads']:,} loads of "
+            f"saved worlds and {last['orders']:,} orders: {last['failure'] or 'none differs'}. {last['computed']:,} states were "
+            f"computed; memory {min(sizes):.0f} to {max(sizes):.0f} MiB after the first hour.\n\n")
+
+
 def cost_rows(rows):
     result = []
     for scene in sorted({row["scene"] for row in rows}):
@@ -128,7 +140,8 @@ def main():
                   if any(r["kind"] == kind for r in runs)])
     rolling = rolling_text(read_lines(options.directory / "rolling.jsonl"))
     soak = soak_text(read_lines(options.directory / "soak.jsonl"))
-    text = TEXT.format(rolling=rolling, soak=soak, measured=measured_line(options.directory), machine=machine_line(), sums=sums,
+    endurance = endurance_text(read_lines(options.directory / "endurance.jsonl"))
+    text = TEXT.format(rolling=rolling, soak=soak, endurance=endurance, measured=measured_line(options.directory), machine=machine_line(), sums=sums,
                        steps=max(r["steps"] or 0 for r in runs), misses=miss_lines(runs), rounds=len(costs) // 4,
                        costs=table(["scene", "without: frame p50, ms", "p99", "with: p50", "p99", "p99 with to without",
                                     "sent to neighbours, kB/s", "to keepers, kB/s"], cost_rows(costs)))
