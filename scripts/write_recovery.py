@@ -19,8 +19,8 @@ Written by `scripts/recovery.sh`; do not edit. {machine}.
 Real processes over DDS on one host: the demo (four nodes, `deterministic`, {steps} states, paced by the clock), whose nodes are
 killed (`kill -9`) at random, any of them, some within the recovery of another, beside new regions, drains and orders of
 clients. Every later state's hash has to be that of the same run, with the same orders, that nobody disturbed; no body may be
-lost or be there twice. *Back*: from the kill until every node has gone back and computes; *states*: how many are computed
-again.
+lost or be there twice. *Back*: from the kill until every node has gone back and computes. *From state 0*: a node and the one that
+kept its parts died within a moment; what clients had ordered before is not known any more, so those runs may differ.
 
 {sums}
 {misses}
