@@ -188,7 +188,8 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
 
 [[noreturn]] void steer(const SendArguments& arguments, RunSteering& steering) {
   // A world that goes back in a pause computes until it is where it stood.
-  if (arguments.what == "step" && !steering.wait_until_paused(kPatienceWithAPause)) fail("steps are for a run that is paused");
+  if (arguments.what == "step" && !steering.wait_until_paused(kPatienceWithAPause))
+    fail("steps are for a run that is paused");
   const dds::RunCommand command = steering.send(kSteering.at(arguments.what), arguments.count);
   if (!steering.wait_for_effect(command, kPatienceWithTheRun)) {
     fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
