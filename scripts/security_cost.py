@@ -41,11 +41,14 @@ def middle(summary, name, part):
     return statistics.median(region[name][part] for region in summary["regions"])
 
 
-def one_state(case, words):
+def one_state(options, words):
+    case = Case(argparse.Namespace(**{**vars(options), "steps": 1}), 1, "one state")
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
-        run = case.launch(folder, "run", [*words, "--steps", "1"])
+        run = case.launch(folder, "run", words)
         run.wait(120)
+        if run.process.returncode != 0:
+            raise RuntimeError("the run of one state failed: " + "; ".join(line for _, line in run.lines))
         return round(time.monotonic() - begin, 3)
 
 
@@ -84,7 +87,7 @@ def measure(options):
     with (options.out / "runs.jsonl").open("w") as file:
         for repeat in range(options.repeats):
             for kind, words in KINDS.items():
-                row = {"kind": kind, "repeat": repeat, "one_state_s": one_state(case, words), **whole_run(case, words),
+                row = {"kind": kind, "repeat": repeat, "one_state_s": one_state(options, words), **whole_run(case, words),
                        "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])}
                 file.write(json.dumps(row) + "\n")
                 print(json.dumps(row), flush=True)
