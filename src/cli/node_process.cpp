@@ -23,9 +23,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kLinger = 1500ms;
-constexpr auto kPatienceWithRunners = 30s;  // since any of them was seen to go on
-
 void log_impairment(const dds::Participant& participant) {
   const auto report = participant.impairment();
   if (!report) return;
@@ -219,24 +216,6 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
-bool NodeProcess::finished() {
-  if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
-  return stop_requested() || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
-}
-
-/// The state is there, and nothing can come to question it.
-bool NodeProcess::has_reached(core::Step step) const {
-  return node_ && node_->current_step() >= step && node_->confirmed_step() >= step;
-}
-
-/// The next state in which the run ends or changes, as far as it is known.
-void NodeProcess::keep_the_end() {
-  if (stop_at_) node_->keep(*stop_at_);
-  for (const core::Order& order : run_orders_) {
-    if (core::changes_the_run(order.action)) node_->keep(order.at_step);
-  }
-}
-
 void NodeProcess::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     note_faults(report);
@@ -273,30 +252,6 @@ void NodeProcess::run_until_end() {
     compute_step();
     plan_checkpoint();
   }
-}
-
-ExitCode NodeProcess::end() {
-  const double factor = real_time_factor();
-  const bool fenced = fence_.closed();
-  if (fenced) spdlog::error("{}", fence_.reason());
-  if (fenced || phase_ != NodePhase::kLingering) enter(fenced ? NodeEvent::kFence : NodeEvent::kLast);
-  publish(fence_.reason());
-  observers_->while_paused(*node_);
-  // Whoever leaves from now on has finished, too: that is no death.
-  const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
-  if (!fenced) linger();
-  const core::Step last = stop_at_ && !fenced && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
-  record(node_->finish(last));
-  if (recorder_ && !fenced && !node_->settled()) recorder_->write_settling(node_->settle());
-  const dds::TransportCounters& sent = transport_->counters();
-  const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
-  if (recorder_) {
-    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes(),
-                               checkpoints_->left_out()});
-  }
-  if (!fenced) enter(NodeEvent::kSettled);
-  if (fenced) return ExitCode::kFenced;
-  return broken_bodies_ > 0 ? ExitCode::kBroken : ExitCode::kOk;
 }
 
 /// True when the next state is due, allowed and everything it needs is here. Returns often, so that commands are heard.
@@ -390,33 +345,6 @@ void NodeProcess::note_redo(const node::StepReport& report) {
 
 void NodeProcess::execute_commands() {
   for (const dds::RunCommand& command : control_.take_commands()) execute(command);
-}
-
-/// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each
-/// other, one may come to the last state long before the rest: if it left, they would take it for dead.
-void NodeProcess::linger() {
-  const auto begin = Clock::now();
-  std::map<core::RegionId, core::Step> steps;
-  auto moved = begin;
-  const auto nobody_lives = [this] {
-    return std::ranges::none_of(control_.statuses(), [](const auto& entry) { return entry.second.is_live(); });
-  };
-  const auto all_done = [&] { return node_->ready_to_settle() && nobody_lives(); };
-  const auto others_run = [&] {
-    bool running = false;
-    for (const auto& [region, seen] : control_.statuses()) {
-      if (region == options_.region || !seen.is_live()) continue;
-      running = true;
-      if (std::exchange(steps[region], seen.status.step) != seen.status.step) moved = Clock::now();
-    }
-    return running && !stop_requested() && Clock::now() < moved + kPatienceWithRunners;
-  };
-  while (!all_done() && (Clock::now() < begin + kLinger || others_run())) {
-    execute_commands();
-    if (!nobody_lives()) look_for_deaths();  // of the last one that left, the last word may be lost
-    publish();
-    control_.wait(10ms);
-  }
 }
 
 }  // namespace aurasim::cli

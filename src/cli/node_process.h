@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -68,6 +69,14 @@ class NodeProcess {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   };
 
+  /// Which of the worlds that a run goes through a command is for.
+  enum class WorldMeant : std::uint8_t {
+    kPresent,
+    kNext,  ///< that of a restore which is known, and has not begun here
+    kPast,  ///< one that all have left for that of the newest restore
+    kOver   ///< any other
+  };
+
   FenceSettings fence_settings() const;
   std::map<core::RegionId, node::PeerSign> peer_signs();
   bool fence_is_open();
@@ -80,6 +89,7 @@ class NodeProcess {
   bool the_same_run_is_here();
   void name_the_dead();
   void start_when_all_wait();
+  void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
   bool wait_for_start();
   /// `begin`: the command that names when.
   void begin_generation(core::Generation generation, const dds::RunCommand& begin);
@@ -140,7 +150,6 @@ class NodeProcess {
   void wait_in_recovery(std::chrono::steady_clock::time_point deadline, const char* for_what);
   core::WorldCut gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
   core::WorldCut decode_part(const std::string& octets) const;
-  void connect_again(const dds::RunCommand& restore);
   void record_after(std::optional<core::Step> step);
   void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
                       const std::map<core::RegionId, std::string>& parts);
@@ -148,6 +157,8 @@ class NodeProcess {
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
+  WorldMeant world_of(const dds::RunCommand& command) const;
+  void obey(const dds::RunCommand& command);
   void obey_late_commands();
   bool can_be_meant(const dds::RunCommand& command);
   void reset_if_due();
@@ -159,7 +170,7 @@ class NodeProcess {
   void change_regions(const std::vector<core::Rectangle>& boxes);
   void settle_all();
   void wait_until_all_stand();
-  void connect_anew(dds::TransportSettings settings);
+  void connect_for_change(const dds::TransportSettings& settings);
   bool finished();
   bool has_reached(core::Step step) const;
   void keep_the_end();
@@ -167,6 +178,7 @@ class NodeProcess {
   void record(std::span<const node::StepReport> reports);
   void note_redo(const node::StepReport& report);
   void linger();
+  bool all_have_left();
   dds::RunCommand with_clock_of(core::RegionId region, dds::RunCommand command);
   void compare_clocks();
   void watch_the_clock();

@@ -134,6 +134,23 @@ bool NodeProcess::wait_for_start() {
   return true;
 }
 
+/// With endpoints of the generation that waits to start. It meets those that others have made for it, and not those of
+/// the dead or what others are about to let go of: what is sent to that is lost. `wait` returns soon, or throws.
+void NodeProcess::connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait) {
+  settings.life = life_ = waits_to_start_;
+  transport_.reset();
+  transport_.emplace(participant_, settings);
+  while (!transport_->all_matched()) wait("its neighbours");
+  generation_ = waits_to_start_;
+  start_.reset();
+  enter(NodeEvent::kStands);
+  while (!start_) {
+    start_when_all_wait();
+    if (!start_) wait("the others");
+  }
+  enter(NodeEvent::kStarted);
+}
+
 /// Nodes that have died while all wait for each other. Somebody may start them again; a launcher ends the run.
 void NodeProcess::name_the_dead() {
   for (const auto& [region, seen] : control_.statuses()) {

@@ -180,7 +180,9 @@ void NodeProcess::go_back(const dds::RunCommand& restore) {
   take_map_of(restore);
   std::map<core::RegionId, std::string> parts;
   const core::WorldCut world = gather(restore, parts);
-  connect_again(restore);
+  waits_to_start_ = restore.generation;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  connect_anew(transport_settings(), [&](const char* for_what) { wait_in_recovery(deadline, for_what); });
   begin_restored(restore, world, parts);
   is_going_back_ = false;
 }
@@ -263,23 +265,6 @@ core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
   return std::move(part.cut);
 }
 
-/// With new endpoints, which those of the dead are not matched with.
-void NodeProcess::connect_again(const dds::RunCommand& restore) {
-  const auto deadline = Clock::now() + kPatienceWithParts;
-  life_ = restore.generation;
-  transport_.reset();
-  transport_.emplace(participant_, transport_settings());
-  while (!transport_->all_matched()) wait_in_recovery(deadline, "its neighbours");
-  generation_ = waits_to_start_ = restore.generation;
-  start_.reset();
-  enter(NodeEvent::kStands);
-  while (!start_) {
-    start_when_all_wait();
-    if (!start_) wait_in_recovery(deadline, "the others");
-  }
-  enter(NodeEvent::kStarted);
-}
-
 /// Without records the world goes on all the same.
 void NodeProcess::record_after(std::optional<core::Step> step) {
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
@@ -287,7 +272,8 @@ void NodeProcess::record_after(std::optional<core::Step> step) {
   try {
     recorder_.emplace(*options_.report, options_.region, step);
   } catch (const std::runtime_error& error) {
-    spdlog::error("region {}: nothing is recorded from here on: {}", core::value_of(options_.region), error.what());
+    fault_ = fmt::format("nothing is recorded from here on: {}", error.what());
+    spdlog::error("region {}: {}", core::value_of(options_.region), fault_);
   }
 }
 

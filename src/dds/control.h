@@ -39,6 +39,8 @@ class ControlBus {
 
   /// Only with a region. False when the write failed twice.
   bool publish_status(const Status& status);
+  /// All that listen have the last one.
+  bool status_is_known();
   /// The latest status of every region of this run seen so far (also this one's). Where several processes are the
   /// node of a region, the one that was here first counts, until it is lost or has ended.
   const std::map<core::RegionId, SeenStatus>& statuses();

@@ -73,7 +73,7 @@ case ${1:?short, long or survive} in
   short)
     duration=4
     central $duration
-    scripts/netns_lab.sh impair loss=10
+    scripts/netns_lab.sh impair loss=25
     same_as_central lossy_and_cut --cut 2@1.5+1.5
     scripts/netns_lab.sh impair
     cut_longer_than_lease 3

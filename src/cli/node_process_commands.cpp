@@ -1,0 +1,191 @@
+// What a node is told of the run while it runs, and by whom: of which world it is meant, and what comes of it; and what
+// clients ask of it.
+#include <algorithm>
+#include <utility>
+
+#include "cli/node_process.h"
+
+namespace aurasim::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRateNoticeS = 0.1;
+
+}  // namespace
+
+void NodeProcess::execute(const dds::RunCommand& command) {
+  using Kind = dds::RunCommandKind;
+  if (command.kind == Kind::kStart) {
+    const bool is_awaited = !start_ && command.generation == waits_to_start_;
+    if (is_awaited && can_be_meant(command)) start_ = with_clock_of(core::RegionId{0}, command);
+    return;
+  }
+  if (command.kind == Kind::kLost) return control_.hear_of_death(command);
+  if (command.kind == Kind::kRestore) {
+    if (can_be_meant(command)) hear_of_restore(command);
+    return;
+  }
+  if (command.kind == Kind::kDrain) return hear_of_drain(command);
+  if (command.kind == Kind::kTake) return;  // to spares
+  switch (world_of(command)) {
+    case WorldMeant::kPresent:
+      if (node_ && can_be_meant(command)) obey(command);
+      break;
+    case WorldMeant::kNext:
+      early_.push_back(command);
+      break;
+    case WorldMeant::kPast:
+      late_.push_back(command);
+      break;
+    case WorldMeant::kOver:
+      break;
+  }
+}
+
+NodeProcess::WorldMeant NodeProcess::world_of(const dds::RunCommand& command) const {
+  if (restore_ && command.generation < restore_->generation) return WorldMeant::kPast;
+  if (command.generation == generation_) return WorldMeant::kPresent;
+  return restore_ && command.generation == restore_->generation ? WorldMeant::kNext : WorldMeant::kOver;
+}
+
+void NodeProcess::obey(const dds::RunCommand& command) {
+  using Kind = dds::RunCommandKind;
+  switch (command.kind) {
+    case Kind::kStart:
+    case Kind::kLost:
+    case Kind::kRestore:
+    case Kind::kDrain:
+    case Kind::kTake:
+      break;
+    case Kind::kPause:
+      hold_at_ = command.at_step;
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kStep:
+      if (hold_at_) {
+        pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
+        hold_at_ = *hold_at_ + command.count;
+      }
+      break;
+    case Kind::kResume:
+      if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
+      hold_at_.reset();
+      break;
+    case Kind::kReset:
+      reset_ = command;
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kStop:
+      stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step);
+      hurry_until_ = std::max(hurry_until_, command.at_step);
+      break;
+    case Kind::kRate:
+      pacer_.set_rate(command.rate, command.at_step, command.epoch_ns, command.clock_ahead, node::read_clocks());
+      status_.rate = command.rate;
+      break;
+  }
+}
+
+/// What was said to the world that all have left, as they did: some might have obeyed and some not. So all do what the
+/// one who says where all go back to says once more.
+void NodeProcess::obey_late_commands() {
+  for (dds::RunCommand command : std::exchange(late_, {})) {
+    if (restore_->region != options_.region) continue;
+    command.generation = generation_;
+    command.request = 0;
+    command.request = control_.send(command);
+    execute(command);
+  }
+}
+
+bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
+  const std::string why = run_control_limits_.problem_with(command, std::max({generation_, restoring_, status_.era}),
+                                                           node::wall_clock_ns());
+  if (!why.empty()) control_.refuse(command, why);
+  return why.empty();
+}
+
+void NodeProcess::reset_if_due() {
+  if (!reset_ || node_->current_step() < reset_->at_step) return;
+  const dds::RunCommand reset = *reset_;
+  reset_.reset();
+  enter(NodeEvent::kReset);
+  begin_generation(reset.generation + 1, reset);
+}
+
+/// The state of a change has been computed, and is still to be confirmed: what is ordered now would not reach all
+/// before they stop for it.
+bool NodeProcess::is_about_to_change() const {
+  return std::ranges::any_of(run_orders_, [this](const core::Order& order) {
+    return core::changes_the_run(order.action) && node_->current_step() >= order.at_step;
+  });
+}
+
+/// The live node of the lowest region gives commands their place in time.
+void NodeProcess::serve_clients() {
+  if (is_about_to_change()) return;
+  const auto& statuses = control_.statuses();
+  const auto is_ours = [this](const dds::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
+  RunView run;
+  run.leads = true;
+  for (const auto& [region, seen] : statuses) {
+    if (!is_ours(seen)) continue;
+    run.facts.complete = run.facts.complete && seen.is_live();
+    if (!seen.is_live()) continue;
+    run.facts.bodies += seen.status.bodies;
+    run.leads = run.leads && region >= options_.region;
+  }
+  run.lacking = [&statuses, is_ours](std::uint64_t mesh) {
+    std::vector<core::RegionId> lacking;
+    for (const auto& [region, seen] : statuses) {
+      const std::vector<std::uint64_t>& known = seen.status.meshes;
+      const bool has_it = std::find(known.begin(), known.end(), mesh) != known.end();
+      if (is_ours(seen) && seen.is_live() && !has_it) lacking.push_back(region);
+    }
+    return lacking;
+  };
+  run.holds_at = hold_at_;
+  command_server_->serve(*node_, run);
+  save_what_is_kept();
+  if (run.leads) {
+    save_regularly();
+    compute_until_change();
+    step_back(run);
+  }
+  status_.meshes = command_server_->meshes();
+  if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
+}
+
+/// All nodes are told outside the steps, which may be seconds apart. The step that would be due in a moment stays due
+/// then, and from it on the new rate holds.
+void NodeProcess::change_rate(double rate) {
+  const double steps = std::min(pacer_.rate(), 1.0) * kRateNoticeS / launch_.step_s();
+  dds::RunCommand command;
+  command.kind = dds::RunCommandKind::kRate;
+  command.generation = generation_;
+  command.at_step = node_->current_step() + 1 + static_cast<core::Step>(steps);
+  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
+  command.rate = rate;
+  command.request = control_.send(command);
+  execute(command);
+}
+
+/// A change of the run comes after a state, which has to be certain. In a pause all compute up to there, and stand
+/// again in the first state of what is new.
+void NodeProcess::compute_until_change() {
+  const std::optional<core::Step> change = command_server_->change_at();
+  if (!change || !hold_at_ || node_->current_step() < *hold_at_) return;
+  const core::Step until_certain = node_->current_step() - node_->confirmed_step();
+  dds::RunCommand command;
+  command.kind = dds::RunCommandKind::kStep;
+  command.generation = generation_;
+  command.run = options_.run;
+  command.count = std::max<core::Step>(1, *change + until_certain - *hold_at_);
+  command.at_step = *hold_at_ + command.count;
+  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
+  command.request = control_.send(command);
+  execute(command);
+}
+
+}  // namespace aurasim::cli

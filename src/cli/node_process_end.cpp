@@ -1,0 +1,100 @@
+// How a node comes to the end of its run, and leaves so that the others can come to theirs.
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/node_process.h"
+#include "cli/stop_signal.h"
+
+namespace aurasim::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kLinger = 1500ms;
+constexpr auto kPatienceWithRunners = 30s;  // since any of them was seen to go on
+constexpr auto kPatienceWithReaders = 1s;   // some may have left without a word
+
+}  // namespace
+
+bool NodeProcess::finished() {
+  if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
+  return stop_requested() || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
+}
+
+/// The state is there, and nothing can come to question it.
+bool NodeProcess::has_reached(core::Step step) const {
+  return node_ && node_->current_step() >= step && node_->confirmed_step() >= step;
+}
+
+/// The next state in which the run ends or changes, as far as it is known.
+void NodeProcess::keep_the_end() {
+  if (stop_at_) node_->keep(*stop_at_);
+  for (const core::Order& order : run_orders_) {
+    if (core::changes_the_run(order.action)) node_->keep(order.at_step);
+  }
+}
+
+ExitCode NodeProcess::end() {
+  const double factor = real_time_factor();
+  const bool fenced = fence_.closed();
+  if (fenced) spdlog::error("{}", fence_.reason());
+  if (fenced || phase_ != NodePhase::kLingering) enter(fenced ? NodeEvent::kFence : NodeEvent::kLast);
+  publish(fence_.reason());
+  observers_->while_paused(*node_);
+  // Whoever leaves from now on has finished, too: that is no death.
+  const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
+  if (!fenced) linger();
+  const core::Step last = stop_at_ && !fenced && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
+  record(node_->finish(last));
+  if (recorder_ && !fenced && !node_->settled()) recorder_->write_settling(node_->settle());
+  const dds::TransportCounters& sent = transport_->counters();
+  const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
+  if (recorder_) {
+    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes(),
+                               checkpoints_->left_out()});
+  }
+  if (!fenced) enter(NodeEvent::kSettled);
+  if (fenced) return ExitCode::kFenced;
+  return broken_bodies_ > 0 ? ExitCode::kBroken : ExitCode::kOk;
+}
+
+/// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each
+/// other, one may come to the last state long before the rest: if it left, they would take it for dead.
+void NodeProcess::linger() {
+  const auto begin = Clock::now();
+  std::map<core::RegionId, core::Step> steps;
+  auto moved = begin;
+  const auto others_run = [&] {
+    bool running = false;
+    for (const auto& [region, seen] : control_.statuses()) {
+      if (region == options_.region || !seen.is_live()) continue;
+      running = true;
+      if (std::exchange(steps[region], seen.status.step) != seen.status.step) moved = Clock::now();
+    }
+    return running && !stop_requested() && Clock::now() < moved + kPatienceWithRunners;
+  };
+  while (!(node_->ready_to_settle() && all_have_left()) && (Clock::now() < begin + kLinger || others_run())) {
+    execute_commands();
+    if (!all_have_left()) look_for_deaths();
+    publish();
+    control_.wait(10ms);
+  }
+  const auto last_word = Clock::now();
+  while (!control_.status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control_.wait(10ms);
+}
+
+/// Or have died, as far as anybody can tell: of whoever has come to the end the last word may be lost.
+bool NodeProcess::all_have_left() {
+  const std::vector<core::RegionId> silent = node_->protocol().intake().dead_regions();
+  return std::ranges::all_of(control_.statuses(), [&](const auto& entry) {
+    const auto& [region, seen] = entry;
+    const bool is_silent = seen.lost || std::ranges::find(silent, region) != silent.end();
+    return region == options_.region || seen.has_ended() || (is_silent && !seen.dead);
+  });
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,180 @@
+#include "dds/node_roster.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace aurasim::dds {
+
+using core::RegionId;
+using core::value_of;
+
+namespace {
+
+/// Of what is kept of others, whoever they are.
+constexpr std::size_t kMostOfARegion = 64;   ///< processes that say that they are its node
+constexpr std::size_t kMostOfNoRegion = 64;  ///< and of all regions that the run has not
+constexpr std::size_t kMostClaims = 1024;
+
+/// A sample that was long on its way makes its sender's clock look late: the fastest tells best. Of the last second, as
+/// clocks may be set.
+constexpr std::size_t kSamplesOfAClock = 10;
+
+std::uint16_t host_of(const Guid& guid) {
+  return static_cast<std::uint16_t>(guid.guidPrefix.value[2] << 8 | guid.guidPrefix.value[3]);
+}
+
+/// Statuses come ten times a second.
+constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
+
+/// A process that only waits does nobody harm: a successor does, and a second launch of the same file by mistake.
+bool acts(const Status& status) {
+  return status.state == NodeState::kRunning || status.state == NodeState::kPaused ||
+         status.state == NodeState::kRecovering;
+}
+
+/// Which of a region's processes is its node: of those that live, one that has not only come to take over from another.
+int rank_of(const SeenStatus& seen) { return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : 2; }
+
+/// Where Fast DDS matched a writer anew, the later match counts.
+bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
+  const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
+  return found == writers.rend() || found->lost;
+}
+
+}  // namespace
+
+bool NodeRoster::is_region(RegionId region) const {
+  return region != kNoRegion && value_of(region) < settings_.region_count;
+}
+
+std::string NodeRoster::problem_with(const Status& fresh, const Origin& origin) const {
+  const std::uint32_t number = value_of(fresh.region);
+  if (!speakers_.is_at_home(origin.writer, fresh.region)) {
+    return fmt::format("it speaks of region {} where others do", number);
+  }
+  const auto known = statuses_.find(fresh.region);
+  const bool has_node =
+      known != statuses_.end() && rank_of(known->second) == 2 && publishers_.at(fresh.region) != origin.writer;
+  const bool says_so = has_node && acts(fresh) && is_of_the_run(fresh, origin.writer);
+  return says_so ? fmt::format("region {} has another node", number) : std::string();
+}
+
+bool NodeRoster::has_room_for(RegionId region) const {
+  if (is_region(region) || region == kNoRegion) {
+    const auto known = received_.find(region);
+    return known == received_.end() || known->second.size() < kMostOfARegion;
+  }
+  std::size_t others = 0;
+  for (const auto& [other, of_region] : received_) others += is_region(other) ? 0 : of_region.size();
+  return others < kMostOfNoRegion;
+}
+
+void NodeRoster::note(Status fresh, const Origin& origin) {
+  if (!has_room_for(fresh.region)) return;
+  std::vector<Received>& of_region = received_[fresh.region];
+  auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
+  if (found == of_region.end()) {
+    found = of_region.insert(found, {origin.writer, {}, {}});
+  }
+  found->seen.status = std::move(fresh);
+  found->seen.seen = std::chrono::steady_clock::now();
+  found->seen.host = host_of(origin.writer);
+  found->clock_ahead.push_back(origin.clock_ahead);
+  if (found->clock_ahead.size() > kSamplesOfAClock) found->clock_ahead.pop_front();
+  found->seen.clock_ahead = std::ranges::max(found->clock_ahead);
+}
+
+void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
+  for (auto& [region, of_region] : received_) {
+    for (Received& one : of_region) {
+      if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
+      one.seen.dead = dead_.contains(one.seen.status.process);
+      one.seen.lost = one.seen.dead || is_lost(writers, one.writer);
+    }
+    if (is_region(region)) choose_publisher(region, of_region);
+    std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers_[region]; });
+  }
+}
+
+void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& of_region) {
+  const Received* chosen = nullptr;
+  for (const Received& one : of_region) {
+    if (!is_of_the_run(one)) continue;
+    const bool stands = publishers_.contains(region) && publishers_[region] == one.writer;
+    const int rank = rank_of(one.seen);
+    const bool is_better =
+        chosen == nullptr || rank > rank_of(chosen->seen) || (stands && rank == rank_of(chosen->seen));
+    if (is_better) chosen = &one;
+  }
+  if (chosen == nullptr) return;
+  publishers_[region] = chosen->writer;
+  statuses_[region] = chosen->seen;
+  speakers_.set(region, chosen->writer.guidPrefix);
+}
+
+/// On this host its process is looked for; elsewhere, who lives says something.
+bool NodeRoster::shows_no_life(const Received& one) const {
+  if (!settings_.stays_on_this_host) return std::chrono::steady_clock::now() > one.seen.seen + kShowsNoLife;
+  const auto pid = static_cast<::pid_t>(one.seen.status.pid);
+  return pid <= 0 || (::kill(pid, 0) != 0 && errno == ESRCH);
+}
+
+bool NodeRoster::is_of(std::uint64_t process, const Origin& origin) const {
+  return std::ranges::any_of(received_, [&](const auto& entry) {
+    return std::ranges::any_of(entry.second, [&](const Received& one) {
+      return one.seen.status.process == process && one.writer.guidPrefix == origin.writer.guidPrefix;
+    });
+  });
+}
+
+bool NodeRoster::is_of(RegionId region, const Origin& origin) const {
+  const auto known = received_.find(region);
+  return known != received_.end() && std::ranges::any_of(known->second, [&](const Received& one) {
+           return is_of_the_run(one) && one.writer.guidPrefix == origin.writer.guidPrefix;
+         });
+}
+
+bool NodeRoster::is_of_the_run(const Status& s, const Guid& writer) const {
+  if (!is_region(s.region) && s.region != kNoRegion) return false;
+  if (speakers_.shuns(writer.guidPrefix)) return false;
+  if (settings_.agreement && s.agreement != *settings_.agreement) return false;
+  if (settings_.run && s.run != *settings_.run) return false;
+  return settings_.region != s.region || writer == settings_.writer;
+}
+
+std::vector<SeenStatus> NodeRoster::strangers() const {
+  std::vector<SeenStatus> strangers;
+  for (const auto& [region, of_region] : received_) {
+    for (const Received& one : of_region) {
+      if (region != kNoRegion && one.seen.is_live() && !is_of_the_run(one)) strangers.push_back(one.seen);
+    }
+  }
+  return strangers;
+}
+
+std::vector<Status> NodeRoster::spares() const {
+  std::vector<Status> spares;
+  const auto of_no_region = received_.find(kNoRegion);
+  if (of_no_region == received_.end()) return spares;
+  for (const Received& one : of_no_region->second) {
+    if (one.seen.is_live() && is_of_the_run(one)) spares.push_back(one.seen.status);
+  }
+  return spares;
+}
+
+bool NodeRoster::hear_of_death(std::uint64_t process) {
+  for (const auto& [region, of_region] : received_) {
+    const auto meant =
+        std::ranges::find(of_region, process, [](const Received& one) { return one.seen.status.process; });
+    if (meant == of_region.end()) continue;
+    if (settings_.stays_on_this_host && !shows_no_life(*meant)) return false;
+    if (claimed_.size() < kMostClaims) claimed_.insert(process);
+  }
+  return true;
+}
+
+}  // namespace aurasim::dds
