@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns. Writes DIR/runs.jsonl
-and docs/security_cost.md."""
+"""What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns, and open beside an
+overseer that is left alone or attacked. Writes DIR/runs.jsonl and docs/security_cost.md."""
 import argparse
+import contextlib
 import hashlib
 import json
+import os
 import pathlib
 import resource
+import socket
 import statistics
+import subprocess
 import tempfile
 import time
 
@@ -26,10 +30,17 @@ nodes. *Frame*, *sending* and *waiting* for neighbours: of each node and state. 
 until all have gone back and compute, with the launcher's new process, and with a spare that was there before.
 
 {costs}
+
+The same open run beside `aurasim overseer`, which nobody asks for anything, or which `tests/web/attack.mjs` does all at once
+to that it has to stand: 500 connections that drip, floods of requests, messages, pings and of what is none, frames of 100 MB.
+The attack has what the others leave of the processors, as if it came from another host; the overseer runs beside the nodes.
+
+{attacked}
 {verdict}
 """
 
 KINDS = {"open": [], "keys": ["--secure"]}
+OVERSEERS = ("left alone", "attacked")
 
 
 def seconds_of_children():
@@ -52,11 +63,48 @@ def one_state(options, words):
         return round(time.monotonic() - begin, 3)
 
 
-def whole_run(case, words):
+@contextlib.contextmanager
+def process(words, **options):
+    child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options)
+    try:
+        yield child
+    finally:
+        child.terminate()
+        child.wait(60)
+
+
+def wait_for_port(port):
+    deadline = time.monotonic() + 60
+    while socket.socket().connect_ex(("127.0.0.1", port)) != 0:
+        if time.monotonic() > deadline:
+            raise RuntimeError("the overseer does not listen")
+        time.sleep(0.05)
+
+
+def only_on_idle_processors():
+    os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+
+
+@contextlib.contextmanager
+def overseer(case, is_attacked):
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with process([case.options.program, "overseer", case.file, "--port", str(port), *case.own]) as served:
+        wait_for_port(port)
+        attack = ["node", "tests/web/attack.mjs", f"http://127.0.0.1:{port}/", "--seconds", "600"]
+        with process(attack, preexec_fn=only_on_idle_processors) if is_attacked else contextlib.nullcontext():
+            yield
+            if served.poll() is not None:
+                raise RuntimeError(f"the overseer has ended with {served.returncode}")
+
+
+def whole_run(case, words, beside=contextlib.nullcontext):
     with tempfile.TemporaryDirectory() as folder:
         cpu = seconds_of_children()
-        run = case.launch(folder, "run", words)
-        run.wait(case.options.steps / 60 + 120)
+        with beside():
+            run = case.launch(folder, "run", words)
+            run.wait(case.options.steps / 60 + 120)
         summary = json.loads(pathlib.Path(f"{folder}/run/summary.json").read_text())
         row = {"cpu_s": round(seconds_of_children() - cpu, 2), "exit": run.process.returncode,
                "hashes": hashlib.sha256(hashes(f"{folder}/run").encode()).hexdigest()}
@@ -91,6 +139,11 @@ def measure(options):
                        "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])}
                 file.write(json.dumps(row) + "\n")
                 print(json.dumps(row), flush=True)
+            for kind in OVERSEERS:
+                row = {"kind": kind, "repeat": repeat,
+                       **whole_run(case, [], lambda: overseer(case, kind == "attacked"))}
+                file.write(json.dumps(row) + "\n")
+                print(json.dumps(row), flush=True)
 
 
 def write(options):
@@ -99,24 +152,28 @@ def write(options):
     def of(kind, *path):
         values = []
         for row in rows:
+            if row["kind"] != kind:
+                continue
             value = row
             for key in path:
                 value = value[key]
-            if row["kind"] == kind and value is not None:
+            if value is not None:
                 values.append(value)
         return f"{statistics.median(values):.3g}" if values else "never"
 
-    wanted = [("one state, s", ["one_state_s"]), ("CPU, s", ["cpu_s"]), ("real-time factor", ["real_time_factor"]),
-              ("frame p50, ms", ["frame_ms", "p50"]), ("p99", ["frame_ms", "p99"]),
+    frame = [("real-time factor", ["real_time_factor"]), ("frame p50, ms", ["frame_ms", "p50"]),
+             ("p99", ["frame_ms", "p99"])]
+    wanted = [("one state, s", ["one_state_s"]), ("CPU, s", ["cpu_s"]), *frame,
               ("sending p50, ms", ["transport_ms", "p50"]), ("p99", ["transport_ms", "p99"]),
               ("waiting p50, ms", ["wait_ms", "p50"]), ("p99", ["wait_ms", "p99"]), ("hand-offs", ["migrations"]),
               ("back by the launcher, s", ["launcher_s"]), ("back by a spare, s", ["spare_s"])]
     costs = table(["", *KINDS], [[name, *[of(kind, *path) for kind in KINDS]] for name, path in wanted])
+    attacked = table(["overseer", *OVERSEERS], [[name, *[of(kind, *path) for kind in OVERSEERS]] for name, path in frame])
     equal = len({row["hashes"] for row in rows}) == 1
     verdict = (f"The hash of every state is {'the same in all runs' if equal else 'NOT the same in all runs'}; bodies lost: "
                f"{sum(row['bodies_lost'] for row in rows)}; runs that did not end well: {sum(row['exit'] != 0 for row in rows)}.")
     text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), steps=options.steps,
-                       repeats=options.repeats, costs=costs, verdict=verdict)
+                       repeats=options.repeats, costs=costs, attacked=attacked, verdict=verdict)
     pathlib.Path("docs/security_cost.md").write_text(text)
     return equal
 

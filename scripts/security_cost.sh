@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What keys cost: the demo open and secure, by turns, with a node killed as well. Writes docs/security_cost.md. About 12
-# minutes on 2 cores, where nothing else runs.
+# What keys cost: the demo open and secure, by turns, with a node killed as well; and what an attack on the overseer costs
+# its nodes. Writes docs/security_cost.md. About 15 minutes on 2 cores, where nothing else runs.
 #   scripts/security_cost.sh [--repeats N=5] [--domain N=74] [--out DIR=build/security_cost]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
