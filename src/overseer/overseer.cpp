@@ -156,13 +156,17 @@ void Overseer::turn() {
   publish_status();
 }
 
-/// The same regions under other processes: the world of the old ones is gone.
+/// The same regions under other processes: the world of the old ones is gone. Whoever takes a region over goes on with
+/// it in a later generation.
 bool Overseer::run_was_restarted() {
   bool restarted = false;
   for (const auto& [region, seen] : nodes_) {
-    const auto [known, is_new] = pids_.try_emplace(region, seen.status.pid);
-    restarted = restarted || (!is_new && known->second != seen.status.pid);
-    known->second = seen.status.pid;
+    const dds::Status& status = seen.status;
+    const auto [known, is_first] = pids_.try_emplace(region, status.pid);
+    const bool begins_anew = status.generation == 0 || status.generation < view_->generation();
+    if (known->second == status.pid || status.state == dds::NodeState::kSpare) continue;
+    known->second = status.pid;
+    restarted = restarted || begins_anew;
   }
   return restarted;
 }
@@ -174,7 +178,10 @@ void Overseer::look_at_nodes() {
   for (const auto& [region, seen] : control_.statuses()) {
     if (is_of_this_run(seen) && core::value_of(region) < launch_.regions.size()) nodes_.emplace(region, seen);
   }
-  if (run_was_restarted()) view_.emplace(view_settings_);
+  if (run_was_restarted()) {
+    view_.emplace(view_settings_);
+    replicas_.emplace(participant_, observer_settings_);  // nodes give all that they have to whoever comes
+  }
   for (const auto& [region, seen] : nodes_) view_->set_region(region, region_state(seen));
 }
 
