@@ -230,7 +230,9 @@ int send(const SendArguments& arguments) {
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size())});
   RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
-    fail(fmt::format("no run of {} in DDS domain {}", arguments.files.file, launch.dds.domain));
+    const bool differs = !control.strangers().empty();
+    fail(fmt::format("no run of {} in DDS domain {}{}", arguments.files.file, launch.dds.domain,
+                     differs ? ", but one that differs: give the same file and --set as its nodes have" : ""));
   }
   leave_after([&]() -> ExitCode {
     if (arguments.what == "drain") drain(arguments, control);

@@ -63,8 +63,6 @@ std::optional<Refusal> DatagramGuard::judge_discovery_in_pieces(const Claim& cla
   const auto whole = datagram_of_data(claim, bytes, *payload);
   Findings of_whole;
   std::optional<Refusal> refusal = check_datagram(whole, of_whole);
-  // What would have to be hidden is with Fast DDS already, but for the last piece.
-  if (!refusal && !of_whole.hidden_parameters.empty()) refusal = Refusal::kParameter;
   if (!refusal) refusal = judge(of_whole, whole, source, now, admitted);
   if (refusal) peers_.refuse(claim, *refusal);
   return refusal;

@@ -384,7 +384,7 @@ class DiscoveryInPieces : public Guard {
     value.raw(Bytes(2804, octet));
     return in_pieces(endpoint(kPrefix, kWriter, Octets().parameter(pid, value)).bytes(), number);
   }
-  static std::vector<Bytes> sound(std::uint64_t number) { return description(0x3f00, 0, number); }  // unknown
+  static std::vector<Bytes> sound(std::uint64_t number) { return description(0x72, 0, number); }
   /// So many partitions there are not.
   static std::vector<Bytes> unsound(std::uint64_t number) { return description(0x29, 0xff, number); }
   int passed_of(const std::vector<Bytes>& pieces) {
@@ -428,14 +428,6 @@ TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNotDrivenOutByMore) {
   EXPECT_TRUE(passes(gone));
   EXPECT_EQ(passed_of(unsound(1)), 0);
   EXPECT_FALSE(passes(open[2]));
-}
-
-/// Type object, type information, content filter, shared memory.
-TEST_F(DiscoveryInPieces, ThatWouldHaveToBeHiddenIsUnsound) {
-  std::uint64_t number = 2;
-  for (const std::uint16_t pid : {0x72, 0x75, 0x35, 0x8006}) EXPECT_EQ(passed_of(description(pid, 0, number++)), 2);
-  EXPECT_EQ(refused(Refusal::kParameter), 4U);
-  EXPECT_EQ(passed_of(sound(number)), 3);
 }
 
 TEST_F(DiscoveryInPieces, IsForgottenWhenFastDdsForgetsIt) {
