@@ -92,7 +92,8 @@ def soak_text(runs):
                      ", ".join(f"{at(share)[2] / 1024:.0f}" for share in (0.1, 0.5, 1.0)),
                      ", ".join(f"{at(share)[3] / 1024:.0f}" for share in (0.1, 0.5, 1.0))])
     return ("## A long run\n\nNodes are killed, drained and saved every 2 to 12 s (`scripts/recovery_rolling.py --soak MINUTES`); "
-            "memory after a tenth, half and all of the time, of the largest node and of the launcher.\n\n"
+            "memory after a tenth, half and all of the time, of the largest node and of the launcher."
+            + "".join(f" At commit {run['commit']}." for run in runs if "commit" in run) + "\n\n"
             + table(["minutes", "states", "kills", "drains", "saves", "hashes as undisturbed", "bodies lost", "twice",
                      "node, MiB", "launcher, MiB"], rows))
 
@@ -141,8 +142,8 @@ def main():
     rolling = rolling_text(read_lines(options.directory / "rolling.jsonl"))
     soak = soak_text(read_lines(options.directory / "soak.jsonl"))
     endurance = endurance_text(read_lines(options.directory / "endurance.jsonl"))
-    text = TEXT.format(rolling=rolling, soak=soak, endurance=endurance, measured=measured_line(options.directory), machine=machine_line(), sums=sums,
-                       steps=max(r["steps"] or 0 for r in runs), misses=miss_lines(runs), rounds=len(costs) // 4,
+    text = TEXT.format(rolling=rolling, soak=soak, endurance=endurance, measured=measured_line(options.directory),
+                       machine=machine_line(), sums=sums, steps=max(r["steps"] or 0 for r in runs), misses=miss_lines(runs), rounds=len(costs) // 4,
                        costs=table(["scene", "without: frame p50, ms", "p99", "with: p50", "p99", "p99 with to without",
                                     "sent to neighbours, kB/s", "to keepers, kB/s"], cost_rows(costs)))
     (options.out / "recovery.md").write_text(text)
