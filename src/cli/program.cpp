@@ -69,6 +69,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
       "  aurasim send pause demo          from another terminal");
   add_check(*program, action);
   add_schema(*program, action);
+  add_import(*program, action);
   add_keys(*program, action);
   add_node(*program, action);
   add_launch(*program, action);

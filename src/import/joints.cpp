@@ -1,0 +1,149 @@
+#include "import/joints.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace aurasim::import {
+namespace {
+
+using core::JointLimits;
+using core::Vec3;
+using std::numbers::pi;
+
+constexpr double kFarthestWay = 1e7;  ///< m; a scene's limits of a slider
+constexpr double kSquare = 1e-9;      ///< cosine of the angle between axes that count as square to each other
+
+std::optional<JointLimits> turn_limits(const AxisRule& rule, const std::string& element, Model& model) {
+  if (rule.low >= -pi && rule.high <= pi) return JointLimits{rule.low, rule.high};
+  if (std::isfinite(rule.low) || std::isfinite(rule.high)) {
+    model.lose(element, fmt::format("its limits, {:.6g} to {:.6g} rad: a scene's are within half a turn either way; it "
+                                    "is left free",
+                                    rule.low, rule.high));
+  }
+  return std::nullopt;
+}
+
+std::optional<JointLimits> way_limits(const AxisRule& rule) {
+  if (!std::isfinite(rule.low) && !std::isfinite(rule.high)) return std::nullopt;
+  return JointLimits{std::max(rule.low, -kFarthestWay), std::min(rule.high, kFarthestWay)};
+}
+
+std::optional<JointLimits> limits_of(const AxisRule& rule, const std::string& element, Model& model) {
+  return rule.turns ? turn_limits(rule, element, model) : way_limits(rule);
+}
+
+core::SpringJoint all_locked() {
+  core::SpringJoint spring;
+  for (core::SpringAxis& axis : spring.axes) axis.limits = JointLimits{};
+  return spring;
+}
+
+/// The axes of J, of which one to three are given; the others are made up.
+struct Triad {
+  std::array<std::optional<Vec3>, 3> given;
+  core::Mat3 axes = core::Mat3::Identity();
+  bool third_turned_over = false;  ///< the z axis is the opposite of the one that was given
+
+  bool is_square() const {
+    for (int i = 0; i < 3; ++i) {
+      const auto& a = given[i];
+      const auto& b = given[(i + 1) % 3];
+      if (a && b && std::abs(a->dot(*b)) > kSquare) return false;
+    }
+    return true;
+  }
+
+  void complete() {
+    for (int i = 0; i < 3; ++i) {  // one is given: any other that is square to it
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
+      if (given[i] && !given[next] && !given[last]) given[next] = axis_frame(*given[i]) * Vec3::UnitX();
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
+      if (!given[i]) given[i] = given[next]->cross(*given[last]);
+      axes.col(i) = *given[i];
+    }
+    third_turned_over = axes.determinant() < 0;
+    if (third_turned_over) axes.col(2) *= -1;
+  }
+};
+
+/// Which of the turns about x, y and z stand for the first, second and third of `count`. Two are x and z: about y a
+/// scene's joint cannot turn by a quarter or more.
+std::vector<int> turn_slots(std::size_t count) {
+  if (count == 0) return {};
+  if (count == 1) return {2};
+  if (count == 2) return {0, 2};
+  return {0, 1, 2};
+}
+
+/// Gives the ways the axes of J that turns have left.
+void choose_axes_of_ways(const std::vector<AxisRule>& ways, Triad& triad) {
+  for (const AxisRule& rule : ways) {
+    const Vec3 axis = rule.axis_W.normalized();
+    bool is_new = true;
+    for (const auto& other : triad.given) is_new = is_new && !(other && std::abs(other->dot(axis)) > kSquare);
+    const auto free = std::find(triad.given.begin(), triad.given.end(), std::nullopt);
+    if (is_new && free != triad.given.end()) *free = axis;
+  }
+}
+
+AxisRule turned_over(AxisRule rule) {
+  rule.axis_W = -rule.axis_W;
+  std::swap(rule.low, rule.high);
+  rule.low = -rule.low;
+  rule.high = -rule.high;
+  return rule;
+}
+
+}  // namespace
+
+core::Quat axis_frame(const Vec3& axis_W) { return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis_W); }
+
+core::JointKind one_axis_kind(const AxisRule& rule, const std::string& element, Model& model) {
+  const std::optional<JointLimits> limits = limits_of(rule, element, model);
+  if (rule.stiffness == 0 && rule.damping == 0) {
+    if (rule.turns) return core::HingeJoint{limits, {}};
+    return core::SliderJoint{limits};
+  }
+  core::SpringJoint spring = all_locked();
+  spring.axes[rule.turns ? 5 : 2] = {limits, rule.stiffness, rule.damping};
+  return spring;
+}
+
+std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules, const std::string& element,
+                                             Model& model) {
+  std::vector<AxisRule> ways, turns;
+  for (const AxisRule& rule : rules) {
+    if (!rule.turns && !turns.empty()) return std::nullopt;
+    (rule.turns ? turns : ways).push_back(rule);
+  }
+  if (ways.size() > 3 || turns.size() > 3) return std::nullopt;
+  // Ways and turns share the axes of J. The turns' order matters, so they choose; then each way has to lie along one.
+  Triad triad;
+  const std::vector<int> slots = turn_slots(turns.size());
+  for (std::size_t i = 0; i < turns.size(); ++i) triad.given[slots[i]] = turns[i].axis_W.normalized();
+  choose_axes_of_ways(ways, triad);
+  if (!triad.is_square()) return std::nullopt;
+  if (turns.size() == 3 && !(turns[1].low > -pi / 2 && turns[1].high < pi / 2)) return std::nullopt;
+  triad.complete();
+  core::SpringJoint spring = all_locked();
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const AxisRule rule = slots[i] == 2 && triad.third_turned_over ? turned_over(turns[i]) : turns[i];
+    spring.axes[3 + slots[i]] = {limits_of(rule, element, model), rule.stiffness, rule.damping};
+  }
+  for (AxisRule rule : ways) {
+    const Vec3 along = triad.axes.transpose() * rule.axis_W.normalized();
+    Eigen::Index i = 0;
+    if (along.cwiseAbs().maxCoeff(&i) < 1 - kSquare) return std::nullopt;
+    if (along[i] < 0) rule = turned_over(rule);
+    spring.axes[i] = {limits_of(rule, element, model), rule.stiffness, rule.damping};
+  }
+  return SeveralAxes{spring, core::Quat(triad.axes)};
+}
+
+}  // namespace aurasim::import

@@ -1,0 +1,199 @@
+#include "import/mjcf_joints.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "import/joints.h"
+
+namespace aurasim::import {
+namespace {
+
+constexpr double kSamePlace_m = 1e-9;
+
+/// What position and velocity actuators do at a control of 0: they are springs and dampers.
+struct Servo {
+  double stiffness = 0, damping = 0;
+};
+
+Servo servo_of(const mjModel& m, int joint, const std::string& element, Model& model) {
+  Servo servo;
+  for (int a = 0; a < m.nu; ++a) {
+    const bool drives = (m.actuator_trntype[a] == mjTRN_JOINT || m.actuator_trntype[a] == mjTRN_JOINTINPARENT) &&
+                        m.actuator_trnid[2 * a] == joint;
+    if (!drives) continue;
+    const std::string actuator = element_name("actuator", mjcf_name(m, mjOBJ_ACTUATOR, a, "actuator"));
+    const mjtNum* bias = m.actuator_biasprm + mjNBIAS * a;
+    const bool plain = m.actuator_dyntype[a] == mjDYN_NONE && m.actuator_gaintype[a] == mjGAIN_FIXED;
+    if (!plain || (m.actuator_biastype[a] != mjBIAS_AFFINE && m.actuator_biastype[a] != mjBIAS_NONE)) {
+      model.lose(actuator, fmt::format("it drives {} in a way that a scene has not", element));
+      continue;
+    }
+    const double gear = m.actuator_gear[6 * a];
+    if (m.actuator_biastype[a] == mjBIAS_AFFINE) {
+      servo.stiffness -= gear * gear * bias[1];
+      servo.damping -= gear * gear * bias[2];
+      if (bias[0] != 0) model.lose(actuator, fmt::format("a steady force on {}", element));
+      if (m.actuator_forcelimited[a])
+        model.lose(actuator, "forcerange: its spring and damper have no bound in a scene");
+    }
+    model.note(actuator, "its control: a scene has it at 0");
+  }
+  return servo;
+}
+
+AxisRule mjcf_rule(const mjModel& m, const mjData& d, int joint, const std::string& element, Model& model) {
+  const int dof = m.jnt_dofadr[joint];
+  const double start = m.qpos0[m.jnt_qposadr[joint]], relaxed = m.qpos_spring[m.jnt_qposadr[joint]];
+  AxisRule rule{.axis_W = mj_vec3(d.xaxis + 3 * joint), .turns = m.jnt_type[joint] == mjJNT_HINGE};
+  if (m.jnt_limited[joint]) {
+    rule.low = m.jnt_range[2 * joint] - start;
+    rule.high = m.jnt_range[2 * joint + 1] - start;
+  }
+  const Servo servo = servo_of(m, joint, element, model);
+  rule.stiffness = m.jnt_stiffness[joint] + servo.stiffness;
+  rule.damping = m.dof_damping[dof] + servo.damping;
+  if (m.jnt_stiffness[joint] != 0 && relaxed != start)
+    model.lose(element, fmt::format("springref {}: a scene's springs pull towards the start", relaxed));
+  if (servo.stiffness != 0 && start != 0) model.lose(element, "ref: a scene's springs pull towards the start");
+  if (rule.stiffness < 0 || rule.damping < 0) {
+    model.lose(element, "a stiffness or damping below 0: taken for 0");
+    rule.stiffness = std::max(rule.stiffness, 0.0);
+    rule.damping = std::max(rule.damping, 0.0);
+  }
+  return rule;
+}
+
+void tell_of_dofs(const mjModel& m, int joint, const std::string& element, Model& model) {
+  const int count = m.jnt_type[joint] == mjJNT_FREE ? 6 : m.jnt_type[joint] == mjJNT_BALL ? 3 : 1;
+  for (int dof = m.jnt_dofadr[joint]; dof < m.jnt_dofadr[joint] + count; ++dof) {
+    if (m.dof_frictionloss[dof] != 0) return model.lose(element, "frictionloss");
+    if (m.dof_armature[dof] != 0) return model.lose(element, "armature");
+  }
+}
+
+/// Of joints with three or six degrees of freedom, beyond what holds them.
+void tell_of_wide_joint(const mjModel& m, int joint, const std::string& element, Model& model) {
+  if (m.dof_damping[m.jnt_dofadr[joint]] != 0) model.lose(element, "damping of a ball or free joint");
+  if (m.jnt_stiffness[joint] != 0) model.lose(element, "stiffness of a ball or free joint");
+  if (m.jnt_limited[joint]) model.lose(element, "the limit of a ball joint");
+}
+
+struct Parts {
+  std::vector<AxisRule> rules;
+  std::vector<core::Vec3> anchors;  ///< of the turns
+  int balls = 0, frees = 0;
+};
+
+/// Nothing if a scene has no joint for all that joins the body.
+std::optional<SeveralAxes> mjcf_kind(const Parts& parts, const std::string& element, Model& model) {
+  if (parts.balls == 1 && parts.rules.empty()) return SeveralAxes{core::BallJoint{}, core::Quat::Identity()};
+  if (parts.balls > 0) return std::nullopt;
+  if (parts.rules.size() == 1) {
+    const AxisRule& rule = parts.rules.front();
+    return SeveralAxes{one_axis_kind(rule, element, model), axis_frame(rule.axis_W)};
+  }
+  for (const core::Vec3& anchor : parts.anchors) {
+    if ((anchor - parts.anchors.front()).norm() > kSamePlace_m) return std::nullopt;
+  }
+  return several_axes_kind(parts.rules, element, model);
+}
+
+struct EqualityEnds {
+  std::size_t child = 0;
+  std::optional<std::size_t> parent;
+};
+
+/// Nothing if neither end moves, or both are one link.
+std::optional<EqualityEnds> ends_of(const std::optional<std::size_t>& a, const std::optional<std::size_t>& b) {
+  if ((!a && !b) || a == b) return std::nullopt;
+  return a ? EqualityEnds{*a, b} : EqualityEnds{*b, std::nullopt};
+}
+
+/// Whether a weld holds its bodies as they stand.
+bool holds_as_it_stands(const mjData& d, const mjtNum* data, int body1, int body2) {
+  const core::Pose X_W1{mj_vec3(d.xpos + 3 * body1), mj_quat(d.xquat + 4 * body1)};
+  const core::Pose X_W2{mj_vec3(d.xpos + 3 * body2), mj_quat(d.xquat + 4 * body2)};
+  const core::Pose X_12 = inverse(X_W1) * X_W2;
+  // 2.2: data is anchor, relpos, relquat; the anchor is a point of body 2, relpos the place of body 2's frame in 1.
+  const core::Vec3 point_2 = mj_vec3(data), relpos = mj_vec3(data + 3);
+  const core::Vec3 held = X_12.p_WB + X_12.q_WB * point_2;
+  return (held - relpos).norm() < 1e-6 && X_12.q_WB.angularDistance(mj_quat(data + 6)) < 1e-6;
+}
+
+const char* equality_kind(int type) {
+  switch (type) {
+    case mjEQ_JOINT:
+      return "joint: one joint that follows another (a gear, a mimic)";
+    case mjEQ_TENDON:
+      return "tendon: a tendon of a given length";
+    default:
+      return "distance: two geoms at a given distance";
+  }
+}
+
+}  // namespace
+
+std::string mjcf_name(const mjModel& m, int type, int id, const char* kind) {
+  const char* name = mj_id2name(&m, type, id);
+  return name != nullptr && *name != '\0' ? name : fmt::format("{} {}", kind, id);
+}
+
+void add_mjcf_joints(const mjModel& m, const mjData& d, int body, const LinkOfBody& link_of, Model& model) {
+  const int first = m.body_jntadr[body], count = m.body_jntnum[body];
+  if (count == 0) return;
+  Parts parts;
+  const std::string name = mjcf_name(m, mjOBJ_JOINT, first, "joint");
+  for (int joint = first; joint < first + count; ++joint) {
+    const std::string element = element_name("joint", mjcf_name(m, mjOBJ_JOINT, joint, "joint"));
+    tell_of_dofs(m, joint, element, model);
+    if (m.jnt_type[joint] == mjJNT_FREE || m.jnt_type[joint] == mjJNT_BALL) {
+      tell_of_wide_joint(m, joint, element, model);
+      ++(m.jnt_type[joint] == mjJNT_FREE ? parts.frees : parts.balls);
+    } else {
+      parts.rules.push_back(mjcf_rule(m, d, joint, element, model));
+    }
+    if (m.jnt_type[joint] != mjJNT_SLIDE) parts.anchors.push_back(mj_vec3(d.xanchor + 3 * joint));
+  }
+  if (parts.frees > 0) return;
+  const std::string element = element_name("joint", name);
+  const std::optional<SeveralAxes> kind = mjcf_kind(parts, element, model);
+  if (!kind) {
+    return model.lose(element_name("body", mjcf_name(m, mjOBJ_BODY, body, "body")),
+                      fmt::format("its {} joints together: they are left out, and it is free", count));
+  }
+  const core::Vec3 p_WJ = parts.anchors.empty() ? mj_vec3(d.xanchor + 3 * first) : parts.anchors.front();
+  model.joints.push_back({name, kind->kind, *link_of[body], link_of[m.body_parentid[body]], {p_WJ, kind->q_WJ}, false});
+}
+
+void add_mjcf_equalities(const mjModel& m, const mjData& d, const LinkOfBody& link_of, Model& model) {
+  for (int e = 0; e < m.neq; ++e) {
+    const std::string name = mjcf_name(m, mjOBJ_EQUALITY, e, "equality");
+    const std::string element = element_name("equality", name);
+    if (!m.eq_active[e]) {
+      model.note(element, "it is not active");
+      continue;
+    }
+    const int type = m.eq_type[e], body1 = m.eq_obj1id[e], body2 = m.eq_obj2id[e];
+    const mjtNum* data = m.eq_data + mjNEQDATA * e;
+    if (type != mjEQ_CONNECT && type != mjEQ_WELD) {
+      model.lose(element, equality_kind(type));
+      continue;
+    }
+    const auto ends = ends_of(link_of[body1], link_of[body2]);
+    if (!ends) continue;
+    if (type == mjEQ_WELD && !holds_as_it_stands(d, data, body1, body2)) {
+      model.lose(element, "a weld that first has to pull its bodies together: it is left out");
+      continue;
+    }
+    // The anchor of a connect is a point of body 1.
+    const core::Pose X_W1{mj_vec3(d.xpos + 3 * body1), mj_quat(d.xquat + 4 * body1)};
+    const core::Vec3 p_WJ = type == mjEQ_CONNECT ? core::Vec3(X_W1.p_WB + X_W1.q_WB * mj_vec3(data)) : X_W1.p_WB;
+    const core::JointKind kind =
+        type == mjEQ_CONNECT ? core::JointKind(core::BallJoint{}) : core::JointKind(core::FixedJoint{});
+    model.joints.push_back({name, kind, ends->child, ends->parent, {p_WJ, core::Quat::Identity()}, true});
+  }
+}
+
+}  // namespace aurasim::import

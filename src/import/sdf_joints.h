@@ -1,0 +1,15 @@
+// Joints of an SDF model.
+#pragma once
+
+#include <map>
+
+#include "import/model.h"
+#include "import/sdf_frames.h"
+
+namespace aurasim::import {
+
+/// Adds one joint. `links` has the model's links by their whole names.
+void add_sdf_joint(const sdf::Joint& joint, const SdfScope& scope, const std::map<std::string, std::size_t>& links,
+                   Model& model);
+
+}  // namespace aurasim::import

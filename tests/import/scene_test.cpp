@@ -1,0 +1,119 @@
+// What is written is a scene that our own reader takes, with the same numbers.
+#include <numbers>
+
+#include "import/imported.h"
+#include "import/stand_ins.h"
+
+namespace aurasim::import {
+namespace {
+
+std::string letters_of(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+class WrittenAndRead : public ::testing::TestWithParam<std::string> {
+ protected:
+  const Model& model_ = model_of(GetParam());
+  core::Scene scene_ = scene_of(model_);
+
+  std::vector<const Link*> moving() const {
+    std::vector<const Link*> links;
+    for (const Link& link : model_.links) {
+      if (!link.is_static) links.push_back(&link);
+    }
+    return links;
+  }
+};
+
+TEST_P(WrittenAndRead, BodiesHaveMassAndPose) {
+  const std::vector<const Link*> links = moving();
+  ASSERT_EQ(scene_.bodies.size(), links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const core::InitialBody& body = scene_.bodies[i];
+    const core::Pose expected = body_pose(*links[i]);
+    EXPECT_EQ(scene_.prototypes[core::value_of(body.prototype)].mass_kg, links[i]->mass_kg);
+    EXPECT_LT(distance(body.pose.p_WB, expected.p_WB), kAsTheLibrary);
+    EXPECT_LT(distance(body.pose.q_WB.toRotationMatrix(), expected.q_WB.toRotationMatrix()), kAsTheLibrary);
+  }
+}
+
+TEST_P(WrittenAndRead, JointsHaveAnchorAxisAndLimits) {
+  ASSERT_EQ(scene_.joints.size(), model_.joints.size() + model_.apart.size());
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& expected = model_.joints[i];
+    const core::JointSpec& joint = scene_.joints[i];
+    EXPECT_EQ(joint.name, expected.name);
+    EXPECT_EQ(joint.kind.index(), expected.kind.index());
+    EXPECT_EQ(joint.b.has_value(), expected.parent.has_value());
+    EXPECT_EQ(joint.collide, expected.collide);
+    EXPECT_LT(distance(joint.X_WJ.p_WB, expected.X_WJ.p_WB), kAsTheLibrary);
+    if (std::holds_alternative<core::BallJoint>(joint.kind) || std::holds_alternative<core::FixedJoint>(joint.kind))
+      continue;
+    EXPECT_LT(distance(joint.X_WJ.q_WB * core::Vec3::UnitZ(), expected.X_WJ.q_WB * core::Vec3::UnitZ()), kAsTheLibrary);
+    if (const auto* spring = std::get_if<core::SpringJoint>(&joint.kind)) {
+      EXPECT_LT(distance(joint.X_WJ.q_WB.toRotationMatrix(), expected.X_WJ.q_WB.toRotationMatrix()), kAsTheLibrary);
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        const core::SpringAxis& of = std::get<core::SpringJoint>(expected.kind).axes[axis];
+        EXPECT_EQ(spring->axes[axis].limits.has_value(), of.limits.has_value());
+        EXPECT_EQ(spring->axes[axis].stiffness, of.stiffness);
+        EXPECT_EQ(spring->axes[axis].damping, of.damping);
+        if (of.limits) {
+          EXPECT_NEAR(spring->axes[axis].limits->low, of.limits->low, kAsTheLibrary);
+          EXPECT_NEAR(spring->axes[axis].limits->high, of.limits->high, kAsTheLibrary);
+        }
+      }
+    }
+  }
+}
+
+TEST_P(WrittenAndRead, ShapesAreThoseOfTheModel) {
+  const std::vector<const Link*> links = moving();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const core::Shape expected = body_shape(*links[i]);
+    const core::Shape& shape = scene_.shapes[scene_.prototypes[core::value_of(scene_.bodies[i].prototype)].shape].shape;
+    ASSERT_EQ(shape.index(), expected.index()) << links[i]->name;
+    EXPECT_NEAR(core::bounding_radius(shape), core::bounding_radius(expected), kAsTheLibrary);
+  }
+  std::size_t statics = 0;
+  for (const Link& link : model_.links) statics += link.is_static ? link.collisions.size() : 0;
+  EXPECT_EQ(scene_.statics.size(), statics);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, WrittenAndRead, ::testing::ValuesIn(all_models()), letters_of);
+
+TEST(Scene, InstancesStandWhereTheyAreToldUnderNamesOfTheirOwn) {
+  const core::Quat quarter(Eigen::AngleAxisd(std::numbers::pi / 2, core::Vec3::UnitZ()));
+  const Model arm = model_of("arm.urdf");
+  const core::Scene scene = scene_of(arm, {{"left", {}}, {"right", {{0, 5, 0}, quarter}}});
+  ASSERT_EQ(scene.bodies.size(), 14u);
+  EXPECT_EQ(scene.prototypes.size(), 7u) << "shared";
+  EXPECT_EQ(scene.joints.front().name, "left/foot");
+  const core::Vec3 p = scene.bodies[3].pose.p_WB;
+  EXPECT_LT(distance(scene.bodies[10].pose.p_WB, core::Vec3(-p.y(), p.x() + 5, p.z())), kAsTheLibrary);
+}
+
+TEST(Scene, FrictionAndRestitutionOfTwoEqualSurfacesAreThoseOfTheFile) {
+  const core::Scene scene = scene_of(model_of("shapes.sdf"));
+  const core::Material& ground = scene.materials[scene.statics.front().material];
+  EXPECT_NEAR(ground.friction * ground.friction, 0.49, 1e-12);
+  EXPECT_NEAR(ground.restitution * ground.restitution, 0.25, 1e-12);
+  EXPECT_EQ(scene.gravity.z(), -3.7);
+}
+
+TEST(Scene, WhatIsKeptApartIsJoinedByWhatHoldsNothing) {
+  const core::Scene scene = scene_of(model_of("servos.xml"));
+  const auto free = std::get<core::SpringJoint>(scene.joints.back().kind);
+  for (const core::SpringAxis& axis : free.axes) EXPECT_FALSE(axis.limits);
+  EXPECT_FALSE(scene.joints.back().collide);
+}
+
+TEST(Scene, TheFileSaysWhatIsLost) {
+  const SceneText text = scene_text(model_of("gripper.urdf"), {{}}, "x.yaml");
+  EXPECT_THAT(text.yaml, ::testing::StartsWith("# not as in the file: joint 'right_slide'/mimic: "));
+}
+
+}  // namespace
+}  // namespace aurasim::import
