@@ -16,6 +16,8 @@ packages=(
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
   # saved worlds
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libzstd-dev
+  # other programs' models: SDF and URDF, MJCF, what neither says of XML
+  libsdformat-dev libmujoco-dev libtinyxml2-dev
   # keys and certificates, TLS of the overseer
   libssl-dev
   # HTTP and WebSocket of the overseer, its page

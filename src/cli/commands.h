@@ -14,6 +14,7 @@ using Action = std::function<int()>;
 
 void add_check(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
+void add_export(CLI::App& program, Action& action);
 void add_import(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_node(CLI::App& program, Action& action);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/text_files.h"
 #include "config/launch.h"
 #include "import/read_model.h"
 #include "import/scene_writer.h"
@@ -94,25 +94,6 @@ void print_notes(const import::Model& model) {
   }
 }
 
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  std::error_code error;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: it cannot be written", file.string()));
-}
-
-void write_scene(const import::SceneText& scene, const std::string& out) {
-  if (out.empty()) {
-    if (!scene.meshes.empty()) throw config::BadConfig({"meshes have to be written beside the scene: give --out FILE"});
-    fmt::print("{}", scene.yaml);
-    return;
-  }
-  write_file(out, scene.yaml);
-  for (const auto& [file, text] : scene.meshes) write_file(std::filesystem::path(out).parent_path() / file, text);
-}
-
 import::Model read_for_import(const ImportArguments& given){import::ReadSettings settings;
 settings.paths.assign(given.paths.begin(), given.paths.end());
 if (given.mass_kg > 0) settings.mass_kg = given.mass_kg;
@@ -131,7 +112,8 @@ int run_import(const ImportArguments& given) {
     fmt::print(stderr, "not representable: {}: {}\n", finding.element, finding.what);
   if (given.strict && !model.lost.empty()) return static_cast<int>(ExitCode::kBadConfig);
   const std::string file = given.out.empty() ? model.name + ".yaml" : given.out;
-  write_scene(import::scene_text(model, instances, file), given.out);
+  const import::SceneText scene = import::scene_text(model, instances, file);
+  write_texts(given.out, scene.yaml, scene.meshes);
   return 0;
 }
 

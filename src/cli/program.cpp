@@ -70,6 +70,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_check(*program, action);
   add_schema(*program, action);
   add_import(*program, action);
+  add_export(*program, action);
   add_keys(*program, action);
   add_node(*program, action);
   add_launch(*program, action);

@@ -115,6 +115,13 @@ core::ConvexHull ellipsoid_hull(const Vec3& half_axes) {
   return hull;
 }
 
+std::string obj_text(const core::TriangleMesh& mesh) {
+  std::string text;
+  for (const Vec3& p : mesh.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+  for (const auto& t : mesh.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  return text;
+}
+
 core::Vec3 mesh_centre(const std::filesystem::path& file) {
   const auto read = read_triangles(file, Vec3::Ones());
   if (const auto* why = std::get_if<std::string>(&read)) throw BadModel({fmt::format("{}: {}", file.string(), *why)});

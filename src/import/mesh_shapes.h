@@ -23,6 +23,9 @@ core::ConvexHull ellipsoid_hull(const core::Vec3& half_axes);
 /// Centre of mass of what a file's triangles enclose. Throws BadModel if the file cannot be read.
 core::Vec3 mesh_centre(const std::filesystem::path& file);
 
+/// Triangles as the text of an OBJ file.
+std::string obj_text(const core::TriangleMesh& mesh);
+
 /// Gives the link a collision shape for each convex part of the mesh; of a static link, the file itself where the scene
 /// reader reads it, or else the triangles. Throws BadModel if the file cannot be read.
 void add_mesh(const std::filesystem::path& file, const core::Vec3& scale, Collision collision,

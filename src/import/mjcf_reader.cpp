@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMostBodies = 100'000;
 constexpr int kMostGeoms = 200'000;
-constexpr int kMostPairsApart = 50'000;
 constexpr int kDeepestInclude = 16;
 
 struct MujocoError : std::runtime_error {
@@ -299,9 +298,10 @@ class MjcfReader {
         if (is_filtered(geom1, geom2)) ++filtered;
       }
     }
-    if (filtered == 0 || model_.apart.size() >= kMostPairsApart) return;
+    if (filtered == 0) return;
     const bool both_move = !model_.links[a].is_static && !model_.links[b].is_static;
-    if (filtered == all && both_move) return model_.apart.emplace_back(a, b), void();
+    if (filtered == all && both_move && model_.apart.size() < kMostPairsApart)
+      return model_.apart.emplace_back(a, b), void();
     if (model_.links[a].is_static && model_.links[b].is_static) return;
     model_.lose(fmt::format("{} and {}", element_name("body", model_.links[a].name),
                             element_name("body", model_.links[b].name)),

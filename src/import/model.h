@@ -63,6 +63,9 @@ struct Joint {
   bool collide = false;  ///< whether child and parent collide with each other
 };
 
+/// More pairs of links than these are not kept apart: each costs a joint.
+inline constexpr std::size_t kMostPairsApart = 50'000;
+
 /// What a scene cannot say.
 struct Finding {
   std::string element;  ///< as "link 'arm'/collision 'tip'"

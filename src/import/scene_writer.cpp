@@ -1,6 +1,7 @@
 #include "import/scene_writer.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "import/inertia.h"
+#include "import/mesh_shapes.h"
 #include "import/stand_ins.h"
 
 namespace aurasim::import {
@@ -104,13 +106,6 @@ class ShapeWriter {
 
   YAML::Emitter& out_;
 };
-
-std::string obj_text(const core::TriangleMesh& mesh) {
-  std::string text;
-  for (const Vec3& p : mesh.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
-  for (const auto& t : mesh.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  return text;
-}
 
 /// Ways and turns of a joint, within its map.
 class JointWriter {

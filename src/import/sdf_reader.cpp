@@ -3,9 +3,9 @@
 #include <sdf/sdf.hh>
 
 #include "import/inertia.h"
-#include "import/places.h"
 #include "import/read_model.h"
 #include "import/sdf_frames.h"
+#include "import/sdf_includes.h"
 #include "import/sdf_joints.h"
 #include "import/sdf_shapes.h"
 #include "import/urdf_check.h"
@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostLinks = 100'000;
-constexpr std::size_t kMostPairsApart = 50'000;
 
 std::string message_of(const sdf::Error& error, const fs::path& file) {
   std::string text = error.FilePath().value_or(file.string());
@@ -33,13 +32,8 @@ sdf::ParserConfig parser_config(const fs::path& file, const ReadSettings& settin
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
   const fs::path folder = file.parent_path();
   config.SetFindCallback([folder, paths = settings.paths](const std::string& uri) -> std::string {
-    const auto found = find_named_file(uri, folder, paths);
-    if (const auto* path = std::get_if<fs::path>(&found)) return path->string();
-    for (const char* name : {"/model.sdf"}) {  // a folder of a model
-      const auto inside = find_named_file(uri + name, folder, paths);
-      if (const auto* path = std::get_if<fs::path>(&inside)) return path->parent_path().string();
-    }
-    return "";
+    const fs::path found = included_file(uri, folder, paths);
+    return found.filename() == "model.sdf" ? found.parent_path().string() : found.string();
   });
   return config;
 }
@@ -222,7 +216,10 @@ Model load_guarded(const fs::path& file, const ReadSettings& settings, bool is_u
 
 }  // namespace
 
-Model read_sdf(const fs::path& file, const ReadSettings& settings) { return load_guarded(file, settings, false); }
+Model read_sdf(const fs::path& file, const ReadSettings& settings) {
+  check_sdf_includes(file, settings.paths);
+  return load_guarded(file, settings, false);
+}
 
 Model read_urdf(const fs::path& file, const ReadSettings& settings) {
   check_urdf(file);

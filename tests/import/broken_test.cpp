@@ -68,6 +68,11 @@ const std::vector<BrokenCase> kBroken = {
      sdf("<link name=\"a\"><collision "
          "name=\"c\"><geometry><mesh><uri>model://no/such.obj</uri></mesh></geometry></collision></link>"),
      {"a.sdf", "link 'a'/collision 'c'", "model://no/such.obj"}},
+    {"SdfIncludesItself",
+     "a.sdf",
+     "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\"><model "
+     "name=\"m\"><include><uri>a.sdf</uri></include></model></sdf>",
+     {"a.sdf", "<include>", "includes itself"}},
     {"MjcfUnknownElement",
      "a.xml",
      "<mujoco>\n<worldbody>\n<boody/>\n</worldbody>\n</mujoco>",

@@ -1,0 +1,16 @@
+// Which files an SDF file includes: sdformat follows them without an end.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace aurasim::import {
+
+/// Throws BadModel if a file includes itself, directly or through others, or if it goes too deep.
+void check_sdf_includes(const std::filesystem::path& file, const std::vector<std::filesystem::path>& paths);
+
+/// The file that an <include>'s uri names: itself, or `model.sdf` in the folder that it names. Empty if there is none.
+std::filesystem::path included_file(const std::string& uri, const std::filesystem::path& folder,
+                                    const std::vector<std::filesystem::path>& paths);
+
+}  // namespace aurasim::import
