@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what aurasim is built, run and tested with: packages of Debian 12. Run it as often as you like; when
 # everything is there it changes nothing and takes no time.
-#   scripts/setup.sh [--demo]     --demo: only what a world that runs needs, without what tests and experiments need
+#   scripts/setup.sh [--demo]     --demo: only what a world that runs needs, without what import, tests and experiments need
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -16,12 +16,14 @@ packages=(
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
   # saved worlds
   libyaml-cpp-dev libassimp-dev zlib1g-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libzstd-dev
-  # other programs' models: SDF and URDF, MJCF, what neither says of XML
-  libsdformat-dev libmujoco-dev libtinyxml2-dev
   # keys and certificates, TLS of the overseer
   libssl-dev
   # HTTP and WebSocket of the overseer, its page
   libboost1.74-dev esbuild
+)
+packages_of_import=(
+  # other programs' models: SDF and URDF, MJCF, what neither says of XML
+  libsdformat-dev libmujoco-dev libtinyxml2-dev
 )
 packages_of_tests=(
   # second builds in seconds, the format check, the Debian package
@@ -45,7 +47,7 @@ fail() {
 
 case ${1:-} in
   '')
-    packages+=("${packages_of_tests[@]}")
+    packages+=("${packages_of_import[@]}" "${packages_of_tests[@]}")
     # A node of another origin is as good (and brings an npm that Debian's would be in conflict with).
     command -v node >/dev/null || packages+=(nodejs)
     command -v npm >/dev/null || packages+=(npm)

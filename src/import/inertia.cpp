@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using core::Mat3;
@@ -63,4 +63,4 @@ core::Box equal_box(double mass_kg, const Vec3& moments) {
   return {(edges.cwiseMax(kThinnest * edges.maxCoeff())) / 2};
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

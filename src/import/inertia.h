@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 struct PrincipalInertia {
   core::Mat3 R_LB =
@@ -23,4 +23,4 @@ bool is_physical(const core::Vec3& moments);
 /// The box of even density that has this mass and these moments; edges of at least a thousandth of the longest.
 core::Box equal_box(double mass_kg, const core::Vec3& moments);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

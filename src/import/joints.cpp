@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using core::JointLimits;
@@ -146,4 +146,4 @@ std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules,
   return SeveralAxes{spring, core::Quat(triad.axes)};
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

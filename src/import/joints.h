@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// One way or turn of a joint, as files describe it. Infinite limits are none.
 struct AxisRule {
@@ -32,4 +32,4 @@ struct SeveralAxes {
 std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules, const std::string& element,
                                              Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -14,7 +14,7 @@
 #include "config/convex_parts.h"
 #include "config/meshes.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using core::TriangleMesh;
@@ -146,4 +146,4 @@ void add_mesh(const std::filesystem::path& file, const Vec3& scale, Collision co
   }
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// All triangles of an OBJ, STL, glTF or Collada (DAE) file, times `scale`, or why there are none. Of Collada the axes
 /// are taken as they are written, whatever is said to be up: as the robots' own programs do.
@@ -31,4 +31,4 @@ std::string obj_text(const core::TriangleMesh& mesh);
 void add_mesh(const std::filesystem::path& file, const core::Vec3& scale, Collision collision,
               const std::string& element, Link& link, Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

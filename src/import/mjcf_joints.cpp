@@ -7,7 +7,7 @@
 
 #include "import/joints.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 constexpr double kSamePlace_m = 1e-9;
@@ -196,4 +196,4 @@ void add_mjcf_equalities(const mjModel& m, const mjData& d, const LinkOfBody& li
   }
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -5,7 +5,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// A name as the file gives it, or "KIND NUMBER", which is unique.
 std::string mjcf_name(const mjModel& m, int type, int id, const char* kind);
@@ -22,4 +22,4 @@ void add_mjcf_joints(const mjModel& m, const mjData& d, int body, const LinkOfBo
 
 void add_mjcf_equalities(const mjModel& m, const mjData& d, const LinkOfBody& link_of, Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -13,7 +13,7 @@
 #include "import/places.h"
 #include "import/read_model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -356,4 +356,4 @@ Model read_mjcf(const fs::path& file, const ReadSettings& settings) {
   }
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

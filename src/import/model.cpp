@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 BadModel::BadModel(std::vector<std::string> errors)
     : std::runtime_error(fmt::format("{}", fmt::join(errors, "\n"))), errors_(std::move(errors)) {}
@@ -34,4 +34,4 @@ void tidy_apart(Model& model) {
   }
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

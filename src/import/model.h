@@ -16,7 +16,7 @@
 #include "core/joint.h"
 #include "core/scene.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// Triangles of a file that the scene reader reads itself (OBJ, STL, glTF). Its points times `scale`.
 struct MeshFile {
@@ -107,4 +107,4 @@ std::string element_name(std::string_view kind, std::string_view name);
 /// Sorts `apart`, each pair once, without pairs that a joint keeps apart anyway.
 void tidy_apart(Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

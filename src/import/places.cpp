@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ std::variant<fs::path, std::string> find_named_file(const std::string& uri, cons
   return fmt::format("no file '{}' in the model's folder; --path FOLDER adds another one", uri);
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// The file that `uri` names: model://NAME/REST, package://NAME/REST, file://PATH or a path relative to `folder`.
 /// Or why there is none. Symbolic links are followed before it is asked where the file lies.
@@ -17,4 +17,4 @@ std::variant<std::filesystem::path, std::string> find_named_file(const std::stri
 /// Whether `file` lies in `folder` or below it.
 bool is_within(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

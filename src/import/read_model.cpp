@@ -12,7 +12,7 @@
 #include "import/mesh_shapes.h"
 #include "import/stand_ins.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 constexpr std::uintmax_t kLargestModelBytes = 64u << 20;
@@ -96,4 +96,4 @@ Model read_model(const std::filesystem::path& file, const ReadSettings& settings
   return model;
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

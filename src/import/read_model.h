@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 struct ReadSettings {
   std::vector<std::filesystem::path> paths;  ///< folders besides the file's own in which files that it names may lie
@@ -20,4 +20,4 @@ Model read_sdf(const std::filesystem::path& file, const ReadSettings& settings);
 Model read_urdf(const std::filesystem::path& file, const ReadSettings& settings);
 Model read_mjcf(const std::filesystem::path& file, const ReadSettings& settings);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

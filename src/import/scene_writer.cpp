@@ -12,7 +12,7 @@
 #include "import/mesh_shapes.h"
 #include "import/stand_ins.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -362,4 +362,4 @@ SceneText scene_text(const Model& model, const std::vector<Instance>& instances,
   return SceneWriter(model, instances, file).write();
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

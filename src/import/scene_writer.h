@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// One copy of the model in the scene.
 struct Instance {
@@ -21,4 +21,4 @@ struct SceneText {
 /// folder beside it. Numbers are written so that reading gives the same bits. All instances share their prototypes.
 SceneText scene_text(const Model& model, const std::vector<Instance>& instances, const std::filesystem::path& file);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

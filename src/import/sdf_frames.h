@@ -5,7 +5,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 inline core::Vec3 vec3_of(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 
@@ -32,4 +32,4 @@ struct SdfScope {
   std::size_t root = 0;  ///< number of the outermost model
 };
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

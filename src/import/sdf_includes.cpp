@@ -8,7 +8,7 @@
 #include "import/model.h"
 #include "import/places.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ void check_sdf_includes(const fs::path& file, const std::vector<fs::path>& paths
   IncludeCheck(std::move(all)).follow(fs::weakly_canonical(file));
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

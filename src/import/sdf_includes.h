@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// Throws BadModel if a file includes itself, directly or through others, or if it goes too deep.
 void check_sdf_includes(const std::filesystem::path& file, const std::vector<std::filesystem::path>& paths);
@@ -13,4 +13,4 @@ void check_sdf_includes(const std::filesystem::path& file, const std::vector<std
 std::filesystem::path included_file(const std::string& uri, const std::filesystem::path& folder,
                                     const std::vector<std::filesystem::path>& paths);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

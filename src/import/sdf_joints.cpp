@@ -6,7 +6,7 @@
 
 #include "import/joints.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 constexpr double kNoLimit = 1e15;  ///< sdformat's own is 1e16
@@ -100,4 +100,4 @@ void add_sdf_joint(const sdf::Joint& joint, const SdfScope& scope, const std::ma
   model.joints.push_back({scope.prefix + joint.Name(), kind->kind, *child, parent, X_WJ, false});
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -6,10 +6,10 @@
 #include "import/model.h"
 #include "import/sdf_frames.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// Adds one joint. `links` has the model's links by their whole names.
 void add_sdf_joint(const sdf::Joint& joint, const SdfScope& scope, const std::map<std::string, std::size_t>& links,
                    Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

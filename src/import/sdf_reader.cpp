@@ -10,7 +10,7 @@
 #include "import/sdf_shapes.h"
 #include "import/urdf_check.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,4 +228,4 @@ Model read_urdf(const fs::path& file, const ReadSettings& settings) {
   return model;
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -6,7 +6,7 @@
 #include "import/places.h"
 #include "import/sdf_frames.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 /// The element at the end of a way of names, or null.
@@ -104,4 +104,4 @@ void add_sdf_collision(const sdf::Collision& collision, const std::filesystem::p
   link.collisions.push_back(std::move(added));
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

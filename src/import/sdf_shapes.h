@@ -8,7 +8,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// Adds the shapes of one <collision>. Meshes are looked for in the folder of the file that names them and in `paths`.
 /// `link_element` is how messages call the link.
@@ -16,4 +16,4 @@ void add_sdf_collision(const sdf::Collision& collision, const std::filesystem::p
                        const std::vector<std::filesystem::path>& paths, const std::string& link_element, Link& link,
                        Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

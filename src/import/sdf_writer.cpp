@@ -13,7 +13,7 @@
 #include "import/mesh_shapes.h"
 #include "physics/inertia.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -307,4 +307,4 @@ SdfText sdf_text(const core::Scene& scene, const std::vector<std::string>& names
   return SdfWriter(scene, names, file, triangles_around).write();
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

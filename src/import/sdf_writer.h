@@ -6,7 +6,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// The triangles around points, as triples of indices.
 using TrianglesAround = std::function<std::vector<std::array<std::uint32_t, 3>>(const std::vector<core::Vec3>&)>;
@@ -22,4 +22,4 @@ struct SdfText {
 SdfText sdf_text(const core::Scene& scene, const std::vector<std::string>& names, const std::filesystem::path& file,
                  const TrianglesAround& triangles_around);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -5,7 +5,7 @@
 #include "import/inertia.h"
 #include "physics/inertia.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using core::Vec3;
@@ -95,4 +95,4 @@ void spread_mass_evenly(double mass_kg, const Vec3& p_LB, Link& link) {
   link.I_BL = core::Mat3(physics::inertia_diagonal(body_shape(link), mass_kg).asDiagonal());
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -3,7 +3,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// The shape of a moving link in its frame B: of the prototype that a scene has for it. Of convex collision shapes.
 core::Shape body_shape(const Link& link);
@@ -21,4 +21,4 @@ void compare_inertias(Model& model);
 /// Gives a link of convex shapes a mass, spread evenly over them about this centre in L.
 void spread_mass_evenly(double mass_kg, const core::Vec3& p_LB, Link& link);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using tinyxml2::XMLElement;
@@ -239,4 +239,4 @@ void tell_of_urdf(const std::filesystem::path& file, Model& model) {
     model.note(element_name("transmission", text_of(*transmission, "name")), "for a controller");
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

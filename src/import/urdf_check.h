@@ -4,7 +4,7 @@
 
 #include "import/model.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 /// Throws BadModel with all that is wrong with the file's links, joints and numbers, each with its line.
 void check_urdf(const std::filesystem::path& file);
@@ -12,4 +12,4 @@ void check_urdf(const std::filesystem::path& file);
 /// Adds what was dropped: mimic joints, transmissions, soft limits, links without a mass.
 void tell_of_urdf(const std::filesystem::path& file, Model& model);
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

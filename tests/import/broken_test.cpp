@@ -1,7 +1,7 @@
 // Files that are wrong: refused, with file and element.
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 struct BrokenCase {
@@ -121,4 +121,4 @@ TEST(BrokenFiles, AMissingFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

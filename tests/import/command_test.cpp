@@ -2,10 +2,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/program.h"
+#include "cli/import_program.h"
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 class ImportCommand : public ::testing::Test {
@@ -13,7 +13,7 @@ class ImportCommand : public ::testing::Test {
   /// What the command returns; 2 where main() would return it for wrong input.
   int run(const std::string& words) {
     cli::Action action;
-    const auto program = cli::make_program(action);
+    const auto program = cli::make_import_program(action);
     try {
       program->parse("import " + words, false);
       return action();
@@ -68,4 +68,4 @@ TEST_F(ImportCommand, ABrokenFileIsWrongInput) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -2,7 +2,7 @@
 #include "import/imported.h"
 #include "physics/region_world.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 constexpr double kLoosest_m = 0.02;  ///< at a blow
@@ -66,4 +66,4 @@ INSTANTIATE_TEST_SUITE_P(Models, Simulated,
                          [](const auto& info) { return info.param.substr(0, info.param.find('.')); });
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -5,7 +5,7 @@
 #include "import/sdf_writer.h"
 #include "overseer/convex_hull.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 class ThereAndBack : public ::testing::TestWithParam<std::string> {
@@ -76,4 +76,4 @@ TEST(Export, WhatSdfCannotSayIsNamed) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

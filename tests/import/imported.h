@@ -15,7 +15,7 @@
 #include "import/read_model.h"
 #include "import/scene_writer.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 
 inline constexpr double kAsTheLibrary = 1e-9;
 
@@ -65,4 +65,4 @@ double distance(const A& a, const B& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

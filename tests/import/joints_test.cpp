@@ -3,7 +3,7 @@
 
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 using core::Vec3;
@@ -86,4 +86,4 @@ TEST(Inertia, TheEqualBoxHasTheMoments) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -2,7 +2,7 @@
 #include "import/imported.h"
 #include "import/mesh_shapes.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 TEST(Meshes, WithoutAMassAFileIsAStaticThatTheSceneNames) {
@@ -48,4 +48,4 @@ TEST(Meshes, PartsStayWhereTheyAreInTheFile) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -5,7 +5,7 @@
 
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 core::Vec3 vec3(const mjtNum* p) { return {p[0], p[1], p[2]}; }
@@ -131,4 +131,4 @@ TEST(Mjcf, WhatASceneCannotSayIsNamed) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

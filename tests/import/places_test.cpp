@@ -3,7 +3,7 @@
 
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 class Places : public ::testing::Test {
@@ -48,4 +48,4 @@ TEST_F(Places, NothingLeadsOut) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

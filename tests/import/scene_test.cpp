@@ -4,7 +4,7 @@
 #include "import/imported.h"
 #include "import/stand_ins.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 std::string letters_of(const ::testing::TestParamInfo<std::string>& info) {
@@ -116,4 +116,4 @@ TEST(Scene, TheFileSaysWhatIsLost) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing

@@ -3,7 +3,7 @@
 
 #include "import/imported.h"
 
-namespace aurasim::import {
+namespace aurasim::importing {
 namespace {
 
 core::Vec3 ours(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
@@ -165,4 +165,4 @@ TEST(Sdf, WhatASceneCannotSayIsNamed) {
 }
 
 }  // namespace
-}  // namespace aurasim::import
+}  // namespace aurasim::importing
