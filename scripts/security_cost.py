@@ -75,10 +75,12 @@ def process(words, **options):
 
 def wait_for_port(port):
     deadline = time.monotonic() + 60
-    while socket.socket().connect_ex(("127.0.0.1", port)) != 0:
-        if time.monotonic() > deadline:
-            raise RuntimeError("the overseer does not listen")
+    while time.monotonic() < deadline:
+        with socket.socket() as caller:
+            if caller.connect_ex(("127.0.0.1", port)) == 0:
+                return
         time.sleep(0.05)
+    raise RuntimeError("the overseer does not listen")
 
 
 def only_on_idle_processors():
@@ -133,17 +135,17 @@ def back_s(case, words):
 def measure(options):
     case = Case(options, 1, "keys")
     with (options.out / "runs.jsonl").open("w") as file:
+        def keep(row):
+            file.write(json.dumps(row) + "\n")
+            print(json.dumps(row), flush=True)
+
         for repeat in range(options.repeats):
             for kind, words in KINDS.items():
-                row = {"kind": kind, "repeat": repeat, "one_state_s": one_state(options, words), **whole_run(case, words),
-                       "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])}
-                file.write(json.dumps(row) + "\n")
-                print(json.dumps(row), flush=True)
+                keep({"kind": kind, "repeat": repeat, "one_state_s": one_state(options, words), **whole_run(case, words),
+                      "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])})
             for kind in OVERSEERS:
-                row = {"kind": kind, "repeat": repeat,
-                       **whole_run(case, [], lambda: overseer(case, kind == "attacked"))}
-                file.write(json.dumps(row) + "\n")
-                print(json.dumps(row), flush=True)
+                keep({"kind": kind, "repeat": repeat,
+                      **whole_run(case, [], lambda: overseer(case, kind == "attacked"))})
 
 
 def write(options):

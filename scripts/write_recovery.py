@@ -143,7 +143,8 @@ def main():
     soak = soak_text(read_lines(options.directory / "soak.jsonl"))
     endurance = endurance_text(read_lines(options.directory / "endurance.jsonl"))
     text = TEXT.format(rolling=rolling, soak=soak, endurance=endurance, measured=measured_line(options.directory),
-                       machine=machine_line(), sums=sums, steps=max(r["steps"] or 0 for r in runs), misses=miss_lines(runs), rounds=len(costs) // 4,
+                       machine=machine_line(), sums=sums, steps=max(r["steps"] or 0 for r in runs),
+                       misses=miss_lines(runs), rounds=len(costs) // 4,
                        costs=table(["scene", "without: frame p50, ms", "p99", "with: p50", "p99", "p99 with to without",
                                     "sent to neighbours, kB/s", "to keepers, kB/s"], cost_rows(costs)))
     (options.out / "recovery.md").write_text(text)

@@ -1,9 +1,8 @@
-#include <filesystem>
 #include <memory>
-#include <stdexcept>
 
 #include "cli/commands.h"
 #include "cli/import_arguments.h"
+#include "cli/launch_setup.h"
 #include "cli/spawn.h"
 
 namespace aurasim::cli {
@@ -11,14 +10,10 @@ namespace {
 
 /// With the same words.
 int become_importer() {
-  const std::filesystem::path importer =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "aurasim-import";
-  if (!std::filesystem::exists(importer)) {
-    throw std::runtime_error(importer.string() +
-                             " is not there: it is built where libsdformat-dev, libmujoco-dev and libtinyxml2-dev are");
-  }
   std::vector<std::string> words = own_command_line();
-  words.at(0) = importer.string();
+  words.at(0) =
+      program_beside("aurasim-import", "`scripts/setup.sh && scripts/build.sh release aurasim-import` builds it")
+          .string();
   become(std::move(words));
 }
 

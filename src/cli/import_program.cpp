@@ -87,6 +87,13 @@ void print_notes(const importing::Model& model) {
   }
 }
 
+/// Tells what is lost. Whether so much must not be.
+bool is_too_little(const std::vector<importing::Finding>& lost, bool strict) {
+  for (const importing::Finding& finding : lost)
+    fmt::print(stderr, "not representable: {}: {}\n", finding.element, finding.what);
+  return strict && !lost.empty();
+}
+
 importing::Model read_for_import(const ImportArguments& given) {
   importing::ReadSettings settings;
   settings.paths.assign(given.paths.begin(), given.paths.end());
@@ -104,9 +111,7 @@ int run_import(const ImportArguments& given) {
   const std::vector<importing::Instance> instances = instances_of(given);
   const importing::Model model = read_for_import(given);
   print_notes(model);
-  for (const importing::Finding& finding : model.lost)
-    fmt::print(stderr, "not representable: {}: {}\n", finding.element, finding.what);
-  if (given.strict && !model.lost.empty()) return static_cast<int>(ExitCode::kBadConfig);
+  if (is_too_little(model.lost, given.strict)) return static_cast<int>(ExitCode::kBadConfig);
   const std::string file = given.out.empty() ? model.name + ".yaml" : given.out;
   const importing::SceneText scene = importing::scene_text(model, instances, file);
   write_texts(given.out, scene.yaml, scene.meshes);
@@ -119,9 +124,7 @@ int run_export(const ExportArguments& given) {
   for (const config::SceneSource& source : launch.body_sources) names.push_back(source.name);
   const std::string file = given.out.empty() ? launch.scene.name + ".sdf" : given.out;
   const importing::SdfText world = importing::sdf_text(launch.scene, names, file, overseer::hull_triangles);
-  for (const importing::Finding& finding : world.lost)
-    fmt::print(stderr, "not representable: {}: {}\n", finding.element, finding.what);
-  if (given.strict && !world.lost.empty()) return static_cast<int>(ExitCode::kBadConfig);
+  if (is_too_little(world.lost, given.strict)) return static_cast<int>(ExitCode::kBadConfig);
   write_texts(given.out, world.xml, world.meshes);
   return 0;
 }

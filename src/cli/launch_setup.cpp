@@ -89,15 +89,17 @@ dds::WorldMap world_map(const config::Launch& launch) {
   return map;
 }
 
-std::filesystem::path executable_for(const std::string& precision) {
+std::filesystem::path program_beside(const std::string& name, const std::string& remedy) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  std::filesystem::path program = self.parent_path() / (precision == "single" ? "aurasim-single" : "aurasim");
-  if (!std::filesystem::exists(program)) {
-    throw std::runtime_error(program.string() +
-                             " is missing. `scripts/setup.sh && scripts/build.sh release aurasim-single` builds it; "
-                             "scripts/demo.sh builds double precision only");
-  }
+  std::filesystem::path program = self.parent_path() / name;
+  if (!std::filesystem::exists(program)) throw std::runtime_error(program.string() + " is missing. " + remedy);
   return program;
+}
+
+std::filesystem::path executable_for(const std::string& precision) {
+  return program_beside(precision == "single" ? "aurasim-single" : "aurasim",
+                        "`scripts/setup.sh && scripts/build.sh release aurasim-single` builds it; "
+                        "scripts/demo.sh builds double precision only");
 }
 
 }  // namespace aurasim::cli

@@ -23,6 +23,10 @@ int threads_of(const config::Launch& launch, std::size_t nodes);
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
 dds::WorldMap world_map(const config::Launch& launch);
 
+/// Another program of ours, in the folder of the running one. Throws std::runtime_error with the remedy if it is not
+/// there.
+std::filesystem::path program_beside(const std::string& name, const std::string& remedy);
+
 /// The executable for a precision ("single" or "double"), beside the running one.
 std::filesystem::path executable_for(const std::string& precision);
 

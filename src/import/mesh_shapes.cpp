@@ -24,12 +24,7 @@ constexpr std::uintmax_t kLargestColladaBytes = 64u << 20;
 constexpr std::size_t kMostColladaTriangles = 1'000'000;
 constexpr int kEllipsoidPoints = 200;
 
-bool is_collada(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".dae";
-}
+bool is_collada(const std::filesystem::path& file) { return ending_of(file) == ".dae"; }
 
 /// Equal points are joined, and triangles without an area left out.
 TriangleMesh joined(const aiScene& scene, const Vec3& scale) {
@@ -72,6 +67,12 @@ std::variant<TriangleMesh, std::string> read_collada(const std::filesystem::path
 }
 
 }  // namespace
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
 
 std::variant<TriangleMesh, std::string> read_triangles(const std::filesystem::path& file, const Vec3& scale) {
   if (is_collada(file)) return read_collada(file, scale);
@@ -122,28 +123,23 @@ std::string obj_text(const core::TriangleMesh& mesh) {
   return text;
 }
 
-core::Vec3 mesh_centre(const std::filesystem::path& file) {
-  const auto read = read_triangles(file, Vec3::Ones());
-  if (const auto* why = std::get_if<std::string>(&read)) throw BadModel({fmt::format("{}: {}", file.string(), *why)});
-  return config::centre_of_mass(std::get<TriangleMesh>(read));
-}
-
-void add_mesh(const std::filesystem::path& file, const Vec3& scale, Collision collision, const std::string& element,
-              Link& link, Model& model) {
-  const auto read = read_triangles(file, scale);
+TriangleMesh add_mesh(const std::filesystem::path& file, const Vec3& scale, Collision collision,
+                      const std::string& element, Link& link, Model& model) {
+  auto read = read_triangles(file, scale);
   if (const auto* why = std::get_if<std::string>(&read))
     throw BadModel({fmt::format("{}: {}: {}", file.string(), element, *why)});
-  const auto& mesh = std::get<TriangleMesh>(read);
+  auto& mesh = std::get<TriangleMesh>(read);
   if (link.is_static) {
     const bool reader_takes_it = !is_collada(file) && scale.minCoeff() > 0;
     collision.geometry = reader_takes_it ? Geometry(MeshFile{file, scale}) : Geometry(mesh);
     link.collisions.push_back(std::move(collision));
-    return;
+    return std::move(mesh);
   }
   for (core::ConvexHull& hull : convex_shapes(mesh, element, model)) {
     collision.geometry = std::move(hull);
     link.collisions.push_back(collision);
   }
+  return std::move(mesh);
 }
 
 }  // namespace aurasim::importing

@@ -5,13 +5,13 @@
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
-#include <tinyxml2.h>
 
 #include "import/inertia.h"
 #include "import/mesh_shapes.h"
 #include "import/mjcf_joints.h"
 #include "import/places.h"
 #include "import/read_model.h"
+#include "import/xml_file.h"
 
 namespace aurasim::importing {
 namespace {
@@ -62,11 +62,7 @@ struct FreeData {
 /// Every file that the model names has to lie where it may, before MuJoCo opens one.
 void check_named_files(const fs::path& file, const ReadSettings& settings, int depth) {
   tinyxml2::XMLDocument document;
-  if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
-    throw BadModel({fmt::format("{}:{}: it is no XML: {}", file.string(), document.ErrorLineNum(),
-                                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()))});
-  }
-  std::vector<const tinyxml2::XMLElement*> open = {document.RootElement()};
+  std::vector<const tinyxml2::XMLElement*> open = {load_xml(file, document)};
   while (!open.empty()) {
     const tinyxml2::XMLElement* element = open.back();
     open.pop_back();

@@ -1,16 +1,13 @@
 #include "import/read_model.h"
 
-#include <algorithm>
-#include <cctype>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
+#include "config/meshes.h"
 #include "import/mesh_shapes.h"
 #include "import/stand_ins.h"
+#include "import/xml_file.h"
 
 namespace aurasim::importing {
 namespace {
@@ -31,12 +28,6 @@ void check_size(const std::filesystem::path& file) {
     refuse_file(file, fmt::format("it has {} bytes, at most {}", size, kLargestModelBytes));
 }
 
-std::string ending_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 /// The whole file as one static mesh, or, with a mass, as one body about its centre of mass.
 Model read_mesh_model(const std::filesystem::path& file, const ReadSettings& settings) {
   Model model;
@@ -44,23 +35,18 @@ Model read_mesh_model(const std::filesystem::path& file, const ReadSettings& set
   Link link;
   link.name = model.name;
   link.is_static = !settings.mass_kg;
-  add_mesh(file, core::Vec3::Ones(), {.name = "mesh", .geometry = {}, .X_LC = {}, .surface = {}},
-           element_name("mesh", model.name), link, model);
-  if (settings.mass_kg) spread_mass_evenly(*settings.mass_kg, mesh_centre(file), link);
+  const core::TriangleMesh mesh =
+      add_mesh(file, core::Vec3::Ones(), {.name = "mesh", .geometry = {}, .X_LC = {}, .surface = {}},
+               element_name("mesh", model.name), link, model);
+  if (settings.mass_kg) spread_mass_evenly(*settings.mass_kg, config::centre_of_mass(mesh), link);
   model.links.push_back(std::move(link));
   return model;
 }
 
 std::string outermost_element(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
   tinyxml2::XMLDocument document;
-  if (document.Parse(text.str().c_str(), text.str().size()) != tinyxml2::XML_SUCCESS) {
-    throw BadModel({fmt::format("{}:{}: it is no XML: {}", file.string(), document.ErrorLineNum(),
-                                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()))});
-  }
-  return document.RootElement() == nullptr ? "" : document.RootElement()->Name();
+  const tinyxml2::XMLElement* root = load_xml(file, document);
+  return root == nullptr ? "" : root->Name();
 }
 
 Model read_described(const std::filesystem::path& file, const ReadSettings& settings) {

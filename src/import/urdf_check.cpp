@@ -5,7 +5,8 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
+
+#include "import/xml_file.h"
 
 namespace aurasim::importing {
 namespace {
@@ -196,9 +197,9 @@ class UrdfCheck {
 };
 
 const XMLElement& load_robot(const std::filesystem::path& file, tinyxml2::XMLDocument& document) {
-  if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    throw BadModel({fmt::format("{}:{}: it is no XML", file.string(), document.ErrorLineNum())});
-  return *document.RootElement();
+  const XMLElement* robot = load_xml(file, document);
+  if (robot == nullptr) throw BadModel({fmt::format("{}: it has no element", file.string())});
+  return *robot;
 }
 
 void tell_of_urdf_joint(const XMLElement& joint, Model& model) {
