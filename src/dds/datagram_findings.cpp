@@ -34,11 +34,11 @@ void Findings::clear() {
 }
 
 /// Padding of length 0 would have none: what goes on to the end is cut off.
-void Findings::hide_submessage(const Request& request) {
-  if (request.goes_to_end) {
-    size = std::min(size, request.at);
+void Findings::hide_submessage(std::size_t at, bool goes_to_end) {
+  if (goes_to_end) {
+    size = std::min(size, at);
   } else {
-    hidden_submessages.push_back(request.at);
+    hidden_submessages.push_back(at);
   }
 }
 

@@ -57,6 +57,7 @@ struct Claim {
   std::uint32_t first_fragment = 0, fragments = 0;  ///< from 1
   double lease_s = 0;                               ///< of a participant
   std::size_t payload = 0, payload_B = 0;           ///< where in the datagram fragments of discovery are
+  std::optional<std::uint64_t> timestamp;           ///< of fragments: seconds, and in 32 bits their fraction
 };
 
 /// A reader says what it has of a writer, and what it would like to be sent again.
@@ -87,7 +88,8 @@ struct Findings {
   };
   std::vector<Acknowledgement> acknowledgements;  ///< that are to say that all before `base` is there
   void clear();
-  void hide_submessage(const Request& request);
+  /// That begins at `at`.
+  void hide_submessage(std::size_t at, bool goes_to_end);
   /// Makes the first two padding, and the bits none; acknowledgements want nothing. `bytes` is the datagram that was
   /// checked.
   void hide(std::span<std::uint8_t> bytes) const;
@@ -105,5 +107,7 @@ inline constexpr double kLongestLease_s = 3600;
 
 /// Discovery, liveliness and handshakes: what participants say of themselves, not what a run says.
 inline bool is_built_in(std::uint32_t entity) { return (entity & 0xc0U) == 0xc0U; }
+/// The writer by which a participant announces itself.
+inline constexpr std::uint32_t kParticipantWriter = 0x000100c2;
 
 }  // namespace aurasim::dds

@@ -48,24 +48,26 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
     if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
     if (const auto refused = peers_.judge(claim, bytes, source, rates_, now)) return refused;
     if (claim.kind == Claim::Kind::kFragments) {
-      if (const auto refused = judge_discovery_in_pieces(claim, bytes, source, now, admitted)) return refused;
+      if (const auto refused = judge_whole(claim, bytes, source, now, admitted)) return refused;
     }
     if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));
   }
   return std::nullopt;
 }
 
-/// The library asks for pieces that were lost, so it gets them as they come; without the last one it has nothing.
-std::optional<Refusal> DatagramGuard::judge_discovery_in_pieces(const Claim& claim, std::span<const std::uint8_t> bytes,
-                                                                Source source, Time now, Admitted& admitted) {
+/// Discovery in fragments: Fast DDS sees none of them, but what they are together. So nothing of it is there that
+/// nobody could look at, and what has to be hidden can be.
+std::optional<Refusal> DatagramGuard::judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes,
+                                                  Source source, Time now, Admitted& admitted) {
   const auto payload = peers_.take_whole(claim);
   if (!payload) return std::nullopt;
-  const auto whole = datagram_of_data(claim, bytes, *payload);
-  Findings of_whole;
-  std::optional<Refusal> refusal = check_datagram(whole, of_whole);
-  if (!refusal) refusal = judge(of_whole, whole, source, now, admitted);
-  if (refusal) peers_.refuse(claim, *refusal);
-  return refusal;
+  auto whole = datagram_of_data(claim, bytes, *payload);
+  Findings findings;
+  if (const auto malformed = check_datagram(whole, findings)) return malformed;
+  if (const auto refused = judge(findings, whole, source, now, admitted)) return refused;
+  findings.hide(whole);
+  admitted.before.push_back(std::move(whole));
+  return std::nullopt;
 }
 
 /// What others announce of it may come with what is not its.
@@ -92,7 +94,7 @@ void DatagramGuard::answer_requests(Findings& findings, Source source, Time now)
     if (answer == Repeats::Answer::kHasAll) {
       findings.acknowledgements.push_back({request.at, repeats_.last_of(request.writer) + 1});
     } else {
-      findings.hide_submessage(request);
+      findings.hide_submessage(request.at, request.goes_to_end);
     }
   }
 }

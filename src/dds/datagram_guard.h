@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dds/datagram_findings.h"
+#include "dds/delivery.h"
 #include "dds/guard_report.h"
 #include "dds/peer_book.h"
 #include "dds/repeats.h"
@@ -56,8 +57,7 @@ class DatagramGuard {
   };
   /// Changes `bytes`: what Fast DDS must not act on becomes padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
-  /// Held while Fast DDS sees a datagram that it has to see alone.
-  std::mutex& meeting() { return meeting_; }
+  Delivery& delivery() { return delivery_; }
   /// What this process sends.
   void note_sent(std::span<const std::uint8_t> bytes);
 
@@ -69,13 +69,13 @@ class DatagramGuard {
  private:
   std::optional<Refusal> judge(const Findings& findings, std::span<const std::uint8_t> bytes, Source source, Time now,
                                Admitted& admitted);
-  std::optional<Refusal> judge_discovery_in_pieces(const Claim& claim, std::span<const std::uint8_t> bytes,
-                                                   Source source, Time now, Admitted& admitted);
+  std::optional<Refusal> judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes, Source source, Time now,
+                                     Admitted& admitted);
   bool is_of_shunned(const Findings& findings, const GuidPrefix& sender) const;
   void answer_requests(Findings& findings, Source source, Time now);
   void refuse(Refusal why, Source source);
 
-  std::mutex meeting_;
+  Delivery delivery_;
   mutable std::mutex mutex_;
   std::optional<GuidPrefix> own_;
   SourceLimits rates_;

@@ -54,6 +54,8 @@ std::uint32_t entity_of(const Guid& endpoint) {
 
 Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     : domain_(domain), watch_(wakeup), is_of_nodes_(is_of_nodes(spec.topic)) {
+  auto& topic = domain.topic(spec.topic);
+  const auto stopped = domain.guard().delivery().stop();
   PublisherQos publisher_qos;
   set_partitions(publisher_qos.partition(), spec.partitions);
   publisher_ = domain.participant().create_publisher(publisher_qos);
@@ -64,7 +66,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
-  writer_ = publisher_->create_datawriter(&domain.topic(spec.topic), qos, &watch_, StatusMask::publication_matched());
+  writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);
   }
@@ -80,6 +82,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
 Writer::~Writer() {
   if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
+  const auto stopped = domain_.guard().delivery().stop();
   writer_->set_listener(nullptr);
   publisher_->delete_datawriter(writer_);
   domain_.participant().delete_publisher(publisher_);
@@ -133,6 +136,8 @@ std::size_t Writer::foreign_reader_count() const {
 }
 
 Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domain_(domain), watch_(wakeup) {
+  auto& topic = domain.topic(spec.topic);
+  const auto stopped = domain.guard().delivery().stop();
   SubscriberQos subscriber_qos;
   set_partitions(subscriber_qos.partition(), spec.partitions);
   subscriber_ = domain.participant().create_subscriber(subscriber_qos);
@@ -150,7 +155,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
     watch_.set_grace(std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()) / 2);
   }
   reader_ = subscriber_->create_datareader(
-      &domain.topic(spec.topic), qos, &watch_,
+      &topic, qos, &watch_,
       StatusMask::data_available() << StatusMask::subscription_matched() << StatusMask::liveliness_changed());
   if (reader_ == nullptr) {
     throw_not_created("reader", spec);
@@ -161,6 +166,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
 }
 
 Reader::~Reader() {
+  const auto stopped = domain_.guard().delivery().stop();
   reader_->set_listener(nullptr);
   subscriber_->delete_datareader(reader_);
   domain_.participant().delete_subscriber(subscriber_);

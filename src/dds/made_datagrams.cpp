@@ -18,7 +18,7 @@ void append_number(Bytes& to, std::uint32_t number) {
   for (int i = 0; i < 4; ++i) to.push_back(static_cast<std::uint8_t>(number >> 8 * i));
 }
 
-void append_sequence_number(Bytes& to, std::uint64_t number) {
+void append_number_pair(Bytes& to, std::uint64_t number) {
   append_number(to, static_cast<std::uint32_t>(number >> 32));
   append_number(to, static_cast<std::uint32_t>(number));
 }
@@ -45,10 +45,14 @@ Bytes begin_of(const Claim& claim, std::span<const std::uint8_t> header) {
 std::vector<std::uint8_t> datagram_of_data(const Claim& claim, std::span<const std::uint8_t> header,
                                            std::span<const std::uint8_t> payload) {
   Bytes bytes = begin_of(claim, header);
-  append(bytes,
-         std::array<std::uint8_t, 12>{0x15, 1 | 4, 0, 0, 0, 0, 16, 0, 0, 0, 0, 0});  // to its end, for any reader
+  if (claim.timestamp) {  // Fast DDS puts samples in order by it
+    append(bytes, std::array<std::uint8_t, 4>{0x09, 1, 8, 0});
+    append_number_pair(bytes, *claim.timestamp);
+  }
+  append(bytes, std::array<std::uint8_t, 8>{0x15, 1 | 4, 0, 0, 0, 0, 16, 0});  // to its end
+  append_entity(bytes, claim.reader);
   append_entity(bytes, claim.guid.entity);
-  append_sequence_number(bytes, claim.first);
+  append_number_pair(bytes, claim.first);
   append(bytes, payload);
   return bytes;
 }
@@ -58,8 +62,8 @@ std::vector<std::uint8_t> datagram_of_gap(const Claim& claim, std::span<const st
   append(bytes, std::array<std::uint8_t, 4>{0x08, 1, 28, 0});
   append_entity(bytes, claim.reader);
   append_entity(bytes, claim.guid.entity);
-  append_sequence_number(bytes, claim.first);
-  append_sequence_number(bytes, claim.last + 1);
+  append_number_pair(bytes, claim.first);
+  append_number_pair(bytes, claim.last + 1);
   append_number(bytes, 0);
   return bytes;
 }

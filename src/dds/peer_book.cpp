@@ -13,6 +13,7 @@ constexpr TokenBucket::Time kLonger = 10s;
 /// Samples of one writer that are told apart; an older one counts as new when more of it comes.
 constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;
+constexpr std::size_t kMostStrangers = 64;
 /// Discovery and handshakes: a description of an endpoint has some kB.
 constexpr std::uint32_t kLargestDiscovery_B = 64U << 10;
 
@@ -26,7 +27,10 @@ std::optional<Refusal> PeerBook::judge(const Claim& claim, std::span<const std::
                                        SourceLimits& rates, Time now) {
   if (claim.kind == Claim::Kind::kParticipant) return take_participant(claim, source, now);
   const auto it = peers_.find(claim.guid.prefix);
-  if (it == peers_.end()) return std::nullopt;  // Fast DDS does not know it either
+  if (it == peers_.end()) {  // Fast DDS does not know it either
+    const bool announces = claim.kind == Claim::Kind::kFragments && claim.guid.entity == kParticipantWriter;
+    return announces ? take_stranger(claim, datagram) : std::nullopt;
+  }
   Peer& peer = it->second;
   if (claim.kind == Claim::Kind::kEndpoint) return take_endpoint(peer, claim);
   if (claim.kind == Claim::Kind::kEndpointGone) {
@@ -58,6 +62,7 @@ std::optional<Refusal> PeerBook::take_participant(const Claim& claim, Source sou
   };
   if (full()) forget_the_silent(now);
   if (full()) return Refusal::kTooMany;
+  strangers_.erase(claim.guid.prefix);
   Peer& peer = peers_[claim.guid.prefix];
   peer.address = source.address;
   peer.heard = now;
@@ -78,11 +83,8 @@ PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   if (const auto it = peer.endpoints.find(entity); it != peer.endpoints.end()) return &it->second;
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) {
     std::erase_if(peer.endpoints, [&](const auto& entry) {
-      const auto& samples = entry.second.samples;
-      const auto is_open = [](const auto& sample) { return sample.second.missing > 0 || sample.second.refused; };
       if (entry.second.announced) return false;
-      if (is_built_in(entry.first) && std::ranges::any_of(samples, is_open)) return false;
-      for (const auto& [sequence, sample] : samples) forget(peer, sample);
+      for (const auto& [sequence, sample] : entry.second.samples) forget(peer, sample);
       return true;
     });
   }
@@ -135,23 +137,37 @@ std::optional<Refusal> PeerBook::take_gap(Peer& peer, Endpoint& writer, const Cl
   return std::nullopt;
 }
 
-/// What is forgotten of a writer's discovery, Fast DDS must not have parts of.
-bool PeerBook::make_room_for_sample(Peer& peer, Endpoint& writer, bool built_in) {
-  if (writer.samples.size() < kMostSamples) return true;
-  const auto oldest = std::ranges::find_if(writer.samples, [&](const auto& entry) {
-    return !built_in || (entry.second.missing == 0 && !entry.second.refused);
-  });
-  if (oldest == writer.samples.end()) return false;
-  forget(peer, oldest->second);
-  writer.samples.erase(oldest);
-  return true;
+PeerBook::Sample::Sample(const Claim& first)
+    : sample_B(first.sample_B),
+      fragment_B(first.fragment_B),
+      missing((first.sample_B + first.fragment_B - 1) / first.fragment_B),
+      here(missing),
+      reader(first.reader),
+      bytes(is_built_in(first.guid.entity) ? first.sample_B : 0) {}
+
+bool PeerBook::Sample::is_like(const Claim& claim) const {
+  return sample_B == claim.sample_B && fragment_B == claim.fragment_B;
+}
+
+void PeerBook::Sample::take(const Claim& claim, std::span<const std::uint8_t> datagram) {
+  for (std::uint32_t i = 0; i < claim.fragments; ++i) {
+    const std::size_t index = claim.first_fragment - 1 + i;
+    if (here[index]) continue;  // Fast DDS keeps the first, too
+    here[index] = true;
+    --missing;
+    if (bytes.empty()) continue;
+    const std::size_t offset = index * fragment_B;
+    const std::size_t size = std::min<std::size_t>(fragment_B, bytes.size() - offset);
+    std::ranges::copy(datagram.subspan(claim.payload + std::size_t{i} * fragment_B, size),
+                      bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+  }
+  if (missing == 0) here = {};
 }
 
 /// Fast DDS takes memory for the whole sample at its first fragment, and sizes from the first one that comes.
 std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
                                                 std::span<const std::uint8_t> datagram) {
-  const bool built_in = is_built_in(claim.guid.entity);
-  if (built_in && claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
+  if (is_built_in(claim.guid.entity) && claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
   if (is_far_ahead(writer, claim)) return Refusal::kJump;
   auto it = writer.samples.find(claim.first);
   if (it == writer.samples.end()) {
@@ -159,58 +175,58 @@ std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, co
         peer.unfinished_B + claim.sample_B > limits_.unfinished_of_a_participant_B) {
       return Refusal::kUnfinished;
     }
-    if (!make_room_for_sample(peer, writer, built_in)) return Refusal::kUnfinished;
-    Sample sample;
-    sample.sample_B = claim.sample_B;
-    sample.fragment_B = claim.fragment_B;
-    sample.missing = (claim.sample_B + claim.fragment_B - 1) / claim.fragment_B;
-    sample.here.resize(sample.missing);
-    sample.reader = claim.reader;
-    if (built_in) sample.bytes.resize(claim.sample_B);
-    it = writer.samples.emplace(claim.first, std::move(sample)).first;
+    if (writer.samples.size() >= kMostSamples) {
+      forget(peer, writer.samples.begin()->second);
+      writer.samples.erase(writer.samples.begin());
+    }
+    it = writer.samples.emplace(claim.first, Sample(claim)).first;
     unfinished_B_ += claim.sample_B;
     peer.unfinished_B += claim.sample_B;
   }
   Sample& sample = it->second;
-  if (sample.refused) return sample.refused;
-  if (sample.sample_B != claim.sample_B || sample.fragment_B != claim.fragment_B) return Refusal::kFragment;
+  if (!sample.is_like(claim)) return Refusal::kFragment;
   if (sample.missing == 0) return std::nullopt;
-  for (std::uint32_t i = 0; i < claim.fragments; ++i) {
-    const std::size_t index = claim.first_fragment - 1 + i;
-    if (sample.here[index]) continue;  // Fast DDS keeps the first, too
-    sample.here[index] = true;
-    --sample.missing;
-    if (!built_in) continue;
-    const std::size_t offset = index * sample.fragment_B;
-    const std::size_t size = std::min<std::size_t>(sample.fragment_B, sample.bytes.size() - offset);
-    std::ranges::copy(datagram.subspan(claim.payload + std::size_t{i} * sample.fragment_B, size),
-                      sample.bytes.begin() + static_cast<std::ptrdiff_t>(offset));
-  }
+  sample.take(claim, datagram);
   if (sample.missing == 0) {
     unfinished_B_ -= sample.sample_B;
     peer.unfinished_B -= sample.sample_B;
-    sample.here = {};
   }
   return std::nullopt;
 }
 
-PeerBook::Sample* PeerBook::find(const Claim& claim) {
-  const auto peer = peers_.find(claim.guid.prefix);
-  if (peer == peers_.end()) return nullptr;
-  const auto writer = peer->second.endpoints.find(claim.guid.entity);
-  if (writer == peer->second.endpoints.end()) return nullptr;
-  const auto sample = writer->second.samples.find(claim.first);
-  return sample == writer->second.samples.end() ? nullptr : &sample->second;
+/// Its newest announcement: somebody has to be met first.
+std::optional<Refusal> PeerBook::take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram) {
+  if (claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
+  auto it = strangers_.find(claim.guid.prefix);
+  if (it == strangers_.end()) {
+    if (strangers_.size() >= kMostStrangers) strangers_.erase(strangers_.begin());
+    it = strangers_.emplace(claim.guid.prefix, Announcement{claim.first, Sample(claim)}).first;
+  } else if (it->second.number != claim.first || !it->second.sample.is_like(claim)) {
+    it->second = {claim.first, Sample(claim)};
+  }
+  it->second.sample.take(claim, datagram);
+  return std::nullopt;
 }
 
 std::optional<std::vector<std::uint8_t>> PeerBook::take_whole(const Claim& claim) {
-  Sample* const sample = find(claim);
-  if (sample == nullptr || sample->missing > 0 || sample->bytes.empty()) return std::nullopt;
-  return std::exchange(sample->bytes, {});
-}
-
-void PeerBook::refuse(const Claim& claim, Refusal why) {
-  if (Sample* const sample = find(claim)) sample->refused = why;
+  if (!is_built_in(claim.guid.entity)) return std::nullopt;
+  const auto take_from = [](auto& samples, auto at, Sample& sample) -> std::optional<std::vector<std::uint8_t>> {
+    if (sample.missing > 0) return std::nullopt;
+    auto bytes = std::move(sample.bytes);
+    samples.erase(at);
+    return bytes;
+  };
+  const auto peer = peers_.find(claim.guid.prefix);
+  if (peer == peers_.end()) {
+    const auto stranger = strangers_.find(claim.guid.prefix);
+    return stranger == strangers_.end() ? std::nullopt : take_from(strangers_, stranger, stranger->second.sample);
+  }
+  const auto writer = peer->second.endpoints.find(claim.guid.entity);
+  if (writer == peer->second.endpoints.end()) return std::nullopt;
+  auto& samples = writer->second.samples;
+  const auto sample = samples.find(claim.first);
+  if (sample == samples.end()) return std::nullopt;
+  return take_from(samples, sample, sample->second);
 }
 
 void PeerBook::forget(Peer& peer, const Sample& sample) {

@@ -37,11 +37,9 @@ class PeerBook {
   /// `datagram` is what the claim was found in.
   std::optional<Refusal> judge(const Claim& claim, std::span<const std::uint8_t> datagram, Source source,
                                SourceLimits& rates, Time now);
-  /// Discovery of which `claim` was the last fragment that was missing; nothing: of no other claim.
+  /// Discovery of which `claim` was the last fragment that was missing; nothing: of no other claim. What comes of it
+  /// from now on begins anew.
   std::optional<std::vector<std::uint8_t>> take_whole(const Claim& claim);
-  /// That sample is unsound, which could not be seen before: none of its fragments is taken from now on. Fast DDS has
-  /// the others, and would be content with this one whenever it comes.
-  void refuse(const Claim& claim, Refusal why);
 
   std::size_t participants() const { return peers_.size(); }
   std::size_t unfinished_B() const { return unfinished_B_; }
@@ -52,8 +50,11 @@ class PeerBook {
     std::uint32_t missing = 0;        ///< fragments; 0: whole
     std::vector<bool> here;           ///< by fragment; none once it is whole
     std::uint32_t reader = 0;         ///< that it is for; 0: all
-    std::vector<std::uint8_t> bytes;  ///< of discovery, until it has been looked at
-    std::optional<Refusal> refused;
+    std::vector<std::uint8_t> bytes;  ///< of discovery
+
+    explicit Sample(const Claim& first);
+    bool is_like(const Claim& claim) const;
+    void take(const Claim& claim, std::span<const std::uint8_t> datagram);
   };
   struct Endpoint {
     bool announced = false;
@@ -68,6 +69,10 @@ class PeerBook {
     std::unordered_map<std::uint32_t, Endpoint> endpoints;
   };
   using Peers = std::unordered_map<GuidPrefix, Peer, PrefixHash>;
+  struct Announcement {
+    std::uint64_t number = 0;
+    Sample sample;
+  };
 
   std::optional<Refusal> take_participant(const Claim& claim, Source source, Time now);
   std::optional<Refusal> take_endpoint(Peer& peer, const Claim& claim);
@@ -79,8 +84,7 @@ class PeerBook {
                                   Time now);
   std::optional<Refusal> take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
                                         std::span<const std::uint8_t> datagram);
-  bool make_room_for_sample(Peer& peer, Endpoint& writer, bool built_in);
-  Sample* find(const Claim& claim);
+  std::optional<Refusal> take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram);
   Endpoint* endpoint_of(Peer& peer, std::uint32_t entity);
   void forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from, std::uint64_t to);
   void forget(Peer& peer, const Sample& sample);
@@ -89,6 +93,7 @@ class PeerBook {
 
   PeerLimits limits_;
   Peers peers_;
+  std::unordered_map<GuidPrefix, Announcement, PrefixHash> strangers_;  ///< who announce themselves in fragments
   std::unordered_map<std::uint32_t, std::size_t> peers_of_address_;
   std::size_t unfinished_B_ = 0;
 };

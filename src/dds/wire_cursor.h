@@ -25,11 +25,13 @@ class WireCursor {
   std::uint16_t u16() { return number<std::uint16_t>(); }
   std::uint32_t u32() { return number<std::uint32_t>(); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  /// Two halves, the high one first. Negative ones come out above every limit.
-  std::uint64_t sequence_number() {
+  /// Two halves, the high one first.
+  std::uint64_t u32_pair() {
     const std::uint64_t high = u32();
     return high << 32 | u32();
   }
+  /// Negative ones come out above every limit.
+  std::uint64_t sequence_number() { return u32_pair(); }
   /// Octets in their order, whatever the endianness.
   template <class Array>
   Array octets() {

@@ -1,7 +1,5 @@
 #include "dds/wire_transport.h"
 
-#include <mutex>
-
 #include <fastdds/rtps/common/LocatorsIterator.hpp>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -86,8 +84,7 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
   const std::span datagram(const_cast<octet*>(bytes), size);  // NOLINT
   const auto admitted =
       descriptor_.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
-  std::unique_lock meeting(descriptor_.guard->meeting(), std::defer_lock);
-  if (admitted.is_alone) meeting.lock();
+  const auto delivery = descriptor_.guard->delivery().begin(admitted.is_alone);
   for (const auto& made : admitted.before) {
     receiver->OnDataReceived(made.data(), static_cast<std::uint32_t>(made.size()), local, remote);
   }

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "overseer/give_way.h"
 #include "overseer/http_rules.h"
 #include "overseer/page_socket.h"
 #include "overseer/rate_limit.h"
@@ -155,6 +156,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   void store_mesh() {
     socket_of(stream_).expires_never();
     boost::asio::post(worker_, [self = this->shared_from_this()] {
+      give_way();
       const auto& request = self->parser_->get();
       auto stored = self->hub_.shapes().add(query_value(view_of(request.target()), "name"), request.body());
       boost::asio::post(self->stream_.get_executor(),

@@ -10,8 +10,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
+#include "overseer/give_way.h"
 #include "overseer/web_connection.h"
 #include "overseer/web_tls.h"
 
@@ -25,9 +25,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{500};  // stalled pages
 constexpr std::size_t kReaders = 4;                   // of meshes: one that takes long does not hold up the others
-
-/// This thread gives way where processors are short: whatever pages do, nodes on this host go first.
-constexpr int kNiceness = 10;
 
 tcp::acceptor opened(asio::io_context& io, const WebSettings& settings) {
   tcp::acceptor acceptor(io);
@@ -73,7 +70,7 @@ struct WebServer::Impl {
     accept();
     look_after();
     thread = std::thread([this] {
-      ::setpriority(PRIO_PROCESS, 0, kNiceness);  // on Linux: of this thread
+      give_way();
       io.run();
     });
   }

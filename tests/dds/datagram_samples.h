@@ -14,7 +14,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 inline constexpr GuidPrefix kPrefix = {1, 15, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 inline constexpr std::uint32_t kWriter = 0x00000203, kReader = 0x00000204;
-inline constexpr std::uint32_t kParticipantWriter = 0x000100c2, kEndpointWriter = 0x000003c2;
+inline constexpr std::uint32_t kEndpointWriter = 0x000003c2;
 inline constexpr std::uint32_t kHandshakeWriter = 0x000201c3;
 
 /// Octets, one behind the other; numbers are little-endian.
