@@ -12,7 +12,9 @@ namespace {
 int become_importer() {
   std::vector<std::string> words = own_command_line();
   words.at(0) =
-      program_beside("aurasim-import", "`scripts/setup.sh && scripts/build.sh release aurasim-import` builds it")
+      program_beside("aurasim-import",
+                     "The package of that name has it; from the sources, `scripts/setup.sh && scripts/build.sh "
+                     "release aurasim-import` builds it")
           .string();
   become(std::move(words));
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/going_run.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
@@ -33,6 +34,7 @@ struct NodeArguments {
   int start_time_out_s = 30;
   bool takes_over = false;
   bool has_launcher = false;
+  bool or_spare = false;
 };
 
 /// The other precision is another program with the same arguments; does not return if that is the one wanted.
@@ -43,6 +45,16 @@ void become_the_right_precision(const config::Launch& launch) {
   become(std::move(words));
 }
 
+/// Does not return: the rest of the command line is that of the spare, or of the node.
+[[noreturn]] void become_node_or_spare(const config::Launch& launch, const NodeArguments& arguments) {
+  leave_after([&] {
+    const bool goes_on = a_run_goes_on(launch, arguments.keys.as, core::RegionId{arguments.region});
+    if (stop_requested()) return ExitCode::kOk;
+    if (goes_on) spdlog::info("the run goes on without this process, which becomes a spare");
+    become(goes_on ? words_of_spare(own_words()) : words_of_plain_node(own_words()));
+  });
+}
+
 int run_node(const NodeArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   if (arguments.region >= launch.regions.size()) {
@@ -51,6 +63,10 @@ int run_node(const NodeArguments& arguments) {
   }
   become_the_right_precision(launch);
   spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
+  if (arguments.or_spare) {
+    catch_stop_signals();
+    become_node_or_spare(launch, arguments);
+  }
   // Once in a run; `launch` starts this node as well.
   if (arguments.region == 0 && !arguments.takes_over) {
     for (const std::string& text : scene_warnings(launch)) spdlog::warn("{}", text);
@@ -100,6 +116,9 @@ void add_node(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 3600));
   command->add_flag("--take-over", arguments->takes_over,
                     "the run is there, and its node of this region has died: go on with it");
+  command->add_flag("--or-spare", arguments->or_spare,
+                    "if the run is there and goes on without this node, wait as a spare: for whatever starts a node "
+                    "again that has ended");
   add_has_launcher(*command, arguments->has_launcher);
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);

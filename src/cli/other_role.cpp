@@ -11,7 +11,8 @@ namespace aurasim::cli {
 namespace {
 
 /// What only a node is told. The second ones have a value, behind them or after '='.
-constexpr std::array<std::string_view, 1> kFlagsOfNodes = {"--take-over"};
+constexpr std::string_view kOrSpare = "--or-spare";
+constexpr std::array<std::string_view, 2> kFlagsOfNodes = {"--take-over", kOrSpare};
 constexpr std::array<std::string_view, 2> kOptionsOfNodes = {"--region", "--start-time-out"};
 
 bool has_value_inside(const std::string& word, std::string_view option) {
@@ -60,9 +61,24 @@ std::vector<std::string> words_of_spare(const std::vector<std::string>& words) {
   return spare;
 }
 
+std::vector<std::string> words_of_plain_node(std::vector<std::string> words) {
+  std::erase(words, kOrSpare);
+  return words;
+}
+
+/// After an upgrade the kernel calls the file that we were started from "/usr/bin/aurasim (deleted)"; the new one lies
+/// in its place.
+std::filesystem::path program_at(const std::filesystem::path& link) {
+  constexpr std::string_view kDeleted = " (deleted)";
+  const std::filesystem::path program = std::filesystem::read_symlink(link);
+  const std::string text = program.string();
+  if (!text.ends_with(kDeleted) || std::filesystem::exists(program)) return program;
+  return text.substr(0, text.size() - kDeleted.size());
+}
+
 std::vector<std::string> own_words() {
   std::vector<std::string> words = own_command_line();
-  words.at(0) = std::filesystem::read_symlink("/proc/self/exe").string();
+  words.at(0) = program_at("/proc/self/exe").string();
   return words;
 }
 

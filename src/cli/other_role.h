@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,12 @@ std::vector<std::string> words_of_successor(const std::vector<std::string>& word
 
 /// Likewise; those of a spare.
 std::vector<std::string> words_of_spare(const std::vector<std::string>& words);
+
+/// Likewise; those of a node that has looked whether the run goes on without it.
+std::vector<std::string> words_of_plain_node(std::vector<std::string> words);
+
+/// The program that a link of /proc names, or what has been put in its place since.
+std::filesystem::path program_at(const std::filesystem::path& link);
 
 /// How this process was started, with the program's own path.
 std::vector<std::string> own_words();
