@@ -133,6 +133,8 @@ table ip kube {{
   }}
 }}
 ''')
+            # As kube-proxy does: or what is on its way keeps the old address.
+            subprocess.run(['ip', 'netns', 'exec', pod.netns, 'conntrack', '-D', '-p', 'udp'], capture_output=True, check=False)
 
     def wait(self, what, condition, limit_s=60):
         end = time.monotonic() + limit_s
@@ -149,6 +151,7 @@ table ip kube {{
     def fail(self, what):
         for pod in self.pods.values():
             print(f'--- {pod.process.name}\n{pod.said()[-2500:]}')
+        print(self.rows())
         print(f'FAILED: {what}')
         sys.exit(1)
 
@@ -226,7 +229,7 @@ def play(cluster):
 
 def main():
     source, program = pathlib.Path(sys.argv[1]).resolve(), str(pathlib.Path(sys.argv[2]).resolve())
-    missing = [tool for tool in ('ip', 'nft', 'nsenter', 'unshare', 'fast-discovery-server') if not shutil.which(tool)]
+    missing = [tool for tool in ('ip', 'nft', 'nsenter', 'unshare', 'conntrack', 'fast-discovery-server') if not shutil.which(tool)]
     if os.geteuid() != 0 or missing:
         print('skipped: needs root' if not missing else f'skipped: there is no {missing[0]}')
         sys.exit(77)

@@ -32,7 +32,7 @@ stage "packages"
 (cd "$build" && cpack -G DEB -B "$work/packages" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
 ls -l "$work"/packages/*.deb
 if command -v lintian >/dev/null; then
-  lintian --fail-on error --info=no "$work"/packages/*.deb 2>"$work/lintian.log" || { cat "$work/lintian.log"; fail "lintian"; }
+  lintian --allow-root --fail-on error "$work"/packages/*.deb || fail "lintian"
 fi
 
 make_root() {
@@ -55,13 +55,13 @@ within() {
     exec chroot "$0" /usr/bin/env -i HOME=/root LANG=C.UTF-8 TERM=dumb DEBIAN_FRONTEND=noninteractive \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"' "$root" "$@"
 }
-online() { alone=() within "$@"; }
-offline() { alone=(--net) within "$@"; }
+online() { alone=() && within "$@"; }
+offline() { alone=(--net) && within "$@"; }
 apt() { online apt-get -q -y -o Acquire::Retries=3 "$@" >"$work/apt.log" 2>&1 || { tail -n 20 "$work/apt.log"; fail "apt-get $*"; }; }
 
 # Every file but what belongs to apt, dpkg, caches and logs; every package and user.
 inventory() {
-  (cd "$root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./tmp -o -path ./var/cache -o -path ./var/log -o -path ./var/lib/apt \
+  (cd "$root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./tmp -o -path ./run -o -path ./var/cache -o -path ./var/log -o -path ./var/lib/apt \
     -o -path ./var/lib/dpkg -o -path ./packages -o -path ./models \) -prune -o -print | grep -vE '^\./etc/(passwd|group|shadow|gshadow)-$|^\./etc/ld.so.cache$' | LC_ALL=C sort)
   online dpkg-query --show --showformat '${Package} ${db:Status-Abbrev}\n'
   cut -d: -f1 "$root/etc/passwd" "$root/etc/group"
@@ -80,8 +80,11 @@ stage "installed"
 kib() { du -sk --one-file-system --exclude=./var/cache --exclude=./var/lib/apt "$root" | cut -f1; }
 before_kib=$(kib)
 apt install --no-install-recommends "/packages/$(cd "$root/packages" && ls aurasim_*.deb)"
-printf 'with all that it needs: %d packages, %d MiB on the disk\n' \
-  "$(($(online dpkg-query --show | wc -l) - $(grep -c ' ii ' "$work/before")))" "$((($(kib) - before_kib) / 1024))"
+brings() {
+  printf 'with all that it needs: %d packages, %d MiB on the disk\n' \
+    "$(($(online dpkg-query --show | wc -l) - $(grep -c ' ii ' "$work/before")))" "$((($(kib) - $1) / 1024))"
+}
+brings "$before_kib"
 [[ $(online stat -c %U:%a /etc/aurasim/node.env) == root:644 ]] || fail "/etc/aurasim/node.env"
 for unit in aurasim-node@ aurasim-spare aurasim-overseer; do
   [[ -f $root/usr/lib/systemd/system/$unit.service ]] || fail "there is no unit $unit"
@@ -109,9 +112,11 @@ grep -q '"bodies_lost": *0' "$root/var/lib/aurasim/report/summary.json" || fail 
 grep -q "aurasim-import" <<<"$said" || fail "import does not say what is missing"
 
 if compgen -G "$root/packages/aurasim-import_*.deb" >/dev/null; then
-  stage "import"
+  stage "import, too"
   apt install --no-install-recommends "/packages/$(cd "$root/packages" && ls aurasim-import_*.deb)"
-  offline aurasim import /models/arm.urdf --out /tmp/scene.yaml || fail "import arm.urdf"
+  brings "$before_kib"
+  # Its library writes a log into the home of whoever uses it.
+  offline env HOME=/tmp aurasim import /models/arm.urdf --out /tmp/scene.yaml || fail "import arm.urdf"
   [[ -s $root/tmp/scene.yaml ]] || fail "import has written nothing"
 fi
 

@@ -7,18 +7,19 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 # As Debian's own tools take it.
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 if("$ENV{DEBFULLNAME}" STREQUAL "" OR "$ENV{DEBEMAIL}" STREQUAL "")
-  set(CPACK_DEBIAN_PACKAGE_MAINTAINER "aurasim maintainers <aurasim@users.noreply.github.com>")
+  set(CPACK_DEBIAN_PACKAGE_MAINTAINER "aurasim maintainers <aurasim@aurasim.invalid>")
 endif()
 
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME aurasim)
+# The first line of each is its synopsis; that of the top-level CMakeLists.txt would be put before both.
 set(CPACK_DEBIAN_UNSPECIFIED_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION_SUMMARY}
- Each node owns one region of the world and runs Bullet for the bodies in it;
- nodes find each other and talk over DDS, on one machine or many, and hand
- bodies over before two of them can touch across a border. In deterministic
- mode the result has the same bits on one node and on many.
- .
- With a viewer for the browser, launch files and scenes, and systemd units for
- hosts of their own, which are not enabled.")
+Each node owns one region of the world and runs Bullet for the bodies in it;
+nodes find each other and talk over DDS, on one machine or many, and hand
+bodies over before two of them can touch across a border. In deterministic
+mode the result has the same bits on one node and on many.
+
+With a viewer for the browser, launch files and scenes, and systemd units for
+hosts of their own, which are not enabled.")
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS adduser)
 # The discovery server (dds.discovery: server), clocks that agree.
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "aurasim-import, fastdds-tools, chrony")
@@ -27,9 +28,10 @@ set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_CONTROL_EXTRA "${own}/conffiles;${own}/post
 
 set(CPACK_DEBIAN_IMPORT_PACKAGE_NAME aurasim-import)
 set(CPACK_DEBIAN_IMPORT_DESCRIPTION "models of other programs for aurasim
- URDF, SDF, MJCF and mesh files become scene files of aurasim, and its scenes
- SDF files, by the fields' own libraries. It is what `aurasim import` and
- `aurasim export` run.")
+URDF, SDF, MJCF and mesh files become scene files of aurasim, and its scenes
+SDF files, by the fields' own libraries. It is what `aurasim import` and
+`aurasim export` run.")
 set(CPACK_DEBIAN_IMPORT_PACKAGE_DEPENDS "aurasim (= ${CPACK_PACKAGE_VERSION})")
 
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PRE_BUILD_SCRIPTS ${own}/finish.cmake)
