@@ -45,10 +45,9 @@ def load_kubernetes(folder):
 def processes_of_compose(compose):
     processes = []
     for name, service in compose['services'].items():
-        networks = service.get('networks', {})
         probe = [word.replace('$$', '$') for word in service.get('healthcheck', {}).get('test', [])]
         processes.append(Process(name=name, image=service['image'], words=service['command'],
-                                 address=networks.get('world', {}).get('ipv4_address', ''),
+                                 address='*',
                                  probes={'healthcheck': probe[1:]} if probe else {}))
     return processes
 

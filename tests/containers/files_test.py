@@ -84,10 +84,9 @@ def check_compose(program, compose):
         if not process.probes:
             errors.append(f'{process.name} has no healthcheck')
     errors += check_regions(program, 'compose.yaml', processes)
-    nodes = [p.address for p in processes if p.words[0] == 'node']
-    for process in processes:
-        if files.set_value(process.words, 'dds.peers') != nodes:
-            errors.append(f'{process.name} has not the nodes as peers')
+    for name, service in compose['services'].items():
+        if service['networks'] != ['world']:
+            errors.append(f'{name} opens DDS to other networks than the world\'s')
     errors += check_viewer(program, processes, compose['services']['overseer'])
     return errors
 
@@ -271,7 +270,8 @@ def main():
         'an option that there is not': spoil_node(lambda words: words.append('--reigon')),
         'a key that there is not': spoil_node(lambda words: words.extend(['--set', 'dds.peer=[1.2.3.4]'])),
         'a region twice': spoil_node(lambda words: words.__setitem__(words.index('2'), '1')),
-        'another address': lambda c: c['services']['node-2']['networks']['world'].update(ipv4_address='10.73.20.99'),
+        'another network': lambda c: c['services']['node-2'].update(networks=['world', 'default']),
+        'a node that nobody hears': spoil_node(lambda words: words.__setitem__(-1, 'dds.interfaces=[127.0.0.1]')),
         'a node that begins anew': spoil_node(lambda words: words.remove('--or-spare')),
         'another port': lambda c: c['services']['overseer'].update(ports=['127.0.0.1:8080:8081']),
     }.items():
