@@ -103,7 +103,9 @@ def processes_of_kubernetes(objects, service_addresses):
                         environment[entry['name']] = entry['value']
                 mapped = [named(objects, 'ConfigMap', volume['configMap']['name'])
                           for volume in pod.get('volumes', []) if 'configMap' in volume]
-                behind = [s['metadata']['name'] for s in services_of(objects, template['metadata']['labels'])
+                labels = template['metadata']['labels'] | {
+                    'statefulset.kubernetes.io/pod-name': f'{workload["metadata"]["name"]}-{ordinal}'}
+                behind = [s['metadata']['name'] for s in services_of(objects, labels)
                           if s['spec'].get('clusterIP') != 'None']
                 processes.append(Process(
                     name=f'{workload["metadata"]["name"]}-{ordinal}', image=container['image'],

@@ -12,7 +12,7 @@ import tempfile
 
 import container_files as files
 
-SERVICES = {'aurasim-discovery': '10.96.0.10', 'aurasim-viewer': '10.96.0.11'}
+SERVICES = {'aurasim-discovery-0': '10.96.0.10', 'aurasim-discovery-1': '10.96.0.11', 'aurasim-viewer': '10.96.0.12'}
 INSTALLED = '/usr/share/aurasim'
 
 
@@ -117,11 +117,14 @@ def check_kubernetes(program, objects):
     except (files.UnknownVariable, KeyError) as error:
         return [f'kubernetes.yaml: nobody says what {error} is']
     errors = []
+    servers = [p for p in processes if p.image == 'aurasim-discovery']
+    if [files.value_of(p.words, '-i') for p in servers] != ['0', '1'] or not all(p.service for p in servers):
+        errors.append('the discovery servers have other numbers, or no Service leads to one')
     for process in processes:
         if process.image == 'aurasim':
             errors += check_words(program, process.name, process.words, process.config)
-            if files.set_value(process.words, 'dds.peers') != [SERVICES['aurasim-discovery']]:
-                errors.append(f'{process.name} does not ask the discovery server')
+            if files.set_value(process.words, 'dds.peers') != [SERVICES.get(server.service) for server in servers]:
+                errors.append(f'{process.name} does not ask the discovery servers, in the order of their numbers')
     errors += check_regions(program, 'kubernetes.yaml', [p for p in processes if p.image == 'aurasim'])
     errors += check_references(objects) + check_ports(program, objects, processes)
     return errors
@@ -149,7 +152,9 @@ def check_references(objects):
             for kind in ('readinessProbe', 'livenessProbe'):
                 if kind not in container:
                     errors.append(f'{name} has no {kind}')
-    templates = [w['spec']['template']['metadata']['labels'] for w in files.workloads(objects)]
+    templates = [w['spec']['template']['metadata']['labels'] | {
+                     'statefulset.kubernetes.io/pod-name': f'{w["metadata"]["name"]}-{ordinal}'}
+                 for w in files.workloads(objects) for ordinal in range(w['spec']['replicas'])]
     for item in objects:
         spec = item.get('spec', {})
         wanted = {'Service': lambda s: s['selector'], 'PodDisruptionBudget': lambda s: s['selector']['matchLabels'],
@@ -279,13 +284,15 @@ def main():
     of_kubernetes = functools.partial(check_kubernetes, program)
     for what, spoil in {
         'a variable that nobody sets': lambda o: container_of(o, 'StatefulSet', 'aurasim-node')['env'].pop(),
-        'a Service of another name': lambda o: files.named(o, 'Service', 'aurasim-node')['metadata'].update(name='x'),
+        'a Service of another name': lambda o: files.named(o, 'Service', 'aurasim-pods')['metadata'].update(name='x'),
         'replicas for other regions': lambda o: files.named(o, 'StatefulSet', 'aurasim-node')['spec'].update(replicas=3),
         'a path that there is not': lambda o: container_of(o, 'Deployment', 'aurasim-overseer')['livenessProbe'][
             'httpGet'].update(path='/health'),
         'labels that nobody has': lambda o: files.named(o, 'Service', 'aurasim-viewer')['spec']['selector'].update(role='x'),
-        'a port that nobody listens on': lambda o: container_of(o, 'Deployment', 'aurasim-discovery')['args'].__setitem__(
+        'a port that nobody listens on': lambda o: container_of(o, 'StatefulSet', 'aurasim-discovery')['args'].__setitem__(
             -1, '11812'),
+        'servers in another order': lambda o: files.named(o, 'Service', 'aurasim-discovery-0')['spec']['selector'].update(
+            {'statefulset.kubernetes.io/pod-name': 'aurasim-discovery-1'}),
     }.items():
         failures += expect_errors(of_kubernetes, objects, spoil, 'kubernetes.yaml: ' + what)
     print(f'{failures} failures')

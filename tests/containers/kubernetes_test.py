@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """What docs/containers/kubernetes.yaml starts, with network namespaces for Pods: one address each, no multicast, the
-discovery server behind an address that is translated (as kube-proxy does), each program as process 1, started again when it
+discovery servers behind addresses that are translated (as kube-proxy does), each program as process 1, started again when it
 ends, and asked by its probes. Not Kubernetes: its API, its scheduler and its images are not in it.
-    kubernetes_test.py SOURCE_DIR PROGRAM     about two minutes; exit code 77: not here (needs root, nft, fastdds-tools)"""
+    kubernetes_test.py SOURCE_DIR PROGRAM     about three minutes; exit code 77: not here (needs root, nft, conntrack,
+    fastdds-tools)"""
 
 import os
 import pathlib
@@ -16,9 +17,10 @@ import time
 
 import container_files as files
 
-SERVICES = {'aurasim-discovery': '10.96.0.10', 'aurasim-viewer': '10.96.0.11'}
+SERVICES = {'aurasim-discovery-0': '10.96.0.10', 'aurasim-discovery-1': '10.96.0.11', 'aurasim-viewer': '10.96.0.12'}
 KUBELET = '10.73.21.254'
 LAB = f'aurakube{os.getpid()}'
+BECOMES_SPARE = 'becomes a spare'
 
 
 def sh(*words, text=None):
@@ -86,6 +88,10 @@ class Pod:
             words = ['nsenter', '--target', str(self.pid()), '--pid', '--mount', '--net', *probe]
         return subprocess.run(words, capture_output=True, check=False, timeout=30).returncode == 0
 
+    def has_region(self):
+        """Its command line says which role it has now."""
+        return b'node' in pathlib.Path(f'/proc/{self.pid()}/cmdline').read_bytes().split(b'\0')
+
     def said(self):
         return self.log.read_text() if self.log.exists() else ''
 
@@ -101,7 +107,7 @@ class Cluster:
         objects = files.load_kubernetes(source / 'docs/containers')
         processes = files.processes_of_kubernetes(objects, SERVICES)
         self.pods = {p.name: Pod(self, p, i) for i, p in enumerate(processes)}
-        self.serve('aurasim-discovery-0')
+        self.serve()
 
     def ip(self, name, *words):
         sh('ip', '-n', f'{LAB}-{name}', *words)
@@ -115,9 +121,12 @@ class Cluster:
         sh('ip', '-n', netns, 'link', 'set', 'eth0', 'up')
         sh('ip', '-n', netns, 'route', 'add', 'default', 'via', KUBELET)
 
-    def serve(self, name):
-        """The Service of the discovery server leads to this Pod; nothing is multicast."""
-        address = self.pods[name].process.address
+    def serve(self):
+        """The Services of the discovery servers lead to their Pods; nothing is multicast."""
+        translated = [(SERVICES[pod.process.service], pod.process.address) for pod in self.pods.values()
+                      if pod.process.image == 'aurasim-discovery']
+        rules = '\n'.join(f'    ip daddr {service} udp dport {files.DISCOVERY_PORT} dnat to {pod}:{files.DISCOVERY_PORT};'
+                          for service, pod in translated)
         for pod in self.pods.values():
             sh('ip', 'netns', 'exec', pod.netns, 'nft', '-f', '-', text=f'''
 table ip kube
@@ -125,7 +134,7 @@ delete table ip kube
 table ip kube {{
   chain services {{
     type nat hook output priority -100;
-    ip daddr {SERVICES['aurasim-discovery']} udp dport {files.DISCOVERY_PORT} dnat to {address}:{files.DISCOVERY_PORT};
+{rules}
   }}
   chain unicast {{
     type filter hook output priority 0;
@@ -181,12 +190,26 @@ table ip kube {{
             subprocess.run(['ip', 'netns', 'delete', name], check=False)
 
 
+def replace(cluster, server, address):
+    """By a Pod of the same name: on another machine, so with another address."""
+    server.stop()
+    time.sleep(3)
+    server.process.words = [word.replace(server.process.address, address) for word in server.process.words]
+    sh('ip', '-n', server.netns, 'address', 'flush', 'dev', 'eth0')
+    sh('ip', '-n', server.netns, 'address', 'add', f'{address}/24', 'dev', 'eth0')
+    sh('ip', '-n', server.netns, 'route', 'replace', 'default', 'via', KUBELET)
+    server.process.address = address
+    server.start()
+    cluster.serve()
+
+
 def play(cluster):
     pods = cluster.pods
     nodes = [pods[f'aurasim-node-{i}'] for i in range(4)]
-    spare, overseer, server = (pods[f'aurasim-{name}-0'] for name in ('spare', 'overseer', 'discovery'))
-    # As they may: the nodes before the server that they need.
-    for pod in [*nodes, spare, overseer, server]:
+    spare, overseer = pods['aurasim-spare-0'], pods['aurasim-overseer-0']
+    servers = [pods[f'aurasim-discovery-{i}'] for i in range(2)]
+    # As they may: the nodes before the servers that they need.
+    for pod in [*nodes, spare, overseer, *servers]:
         pod.start()
     cluster.wait('the run goes on', cluster.runs)
     for pod in pods.values():
@@ -195,33 +218,29 @@ def play(cluster):
 
     nodes[2].send(signal.SIGKILL)
     cluster.wait('a node is killed: the spare takes its region over', lambda: 'takes over region 2' in spare.said())
-    cluster.wait('   and what is started in its place is a spare', lambda: 'becomes a spare' in nodes[2].said())
+    cluster.wait('   and what is started in its place is a spare', lambda: BECOMES_SPARE in nodes[2].said())
     cluster.wait('   and the run goes on', cluster.runs)
 
-    step = max(row[1] for row in cluster.rows().values())
-    server.stop()
-    time.sleep(25)  # longer than the leases of qos/hosts.xml
-    rows = cluster.rows()
-    cluster.expect('the discovery server is gone: nobody has ended', all(p.starts == 1 for p in nodes if p != nodes[2]))
-    server.process.words = [w.replace(server.process.address, '10.73.21.99') for w in server.process.words]
-    sh('ip', '-n', server.netns, 'address', 'flush', 'dev', 'eth0')
-    sh('ip', '-n', server.netns, 'address', 'add', '10.73.21.99/24', 'dev', 'eth0')
-    server.process.address = '10.73.21.99'
-    server.start()
-    cluster.serve('aurasim-discovery-0')
-    cluster.wait('it is back, with another address, and the run goes on',
-                 lambda: cluster.runs() and max(r[1] for r in cluster.rows().values()) > step + 25 * 30)
+    replace(cluster, servers[0], '10.73.21.99')
+    cluster.wait('a discovery server is replaced by one with another address, and the run goes on', cluster.runs)
 
-    nodes[1].send(signal.SIGTERM)  # as `kubectl delete pod`, or an update
-    cluster.wait('a node is told to leave: another Pod takes its region over',
-                 lambda: any('takes over region 1' in pod.said() for pod in pods.values()))
-    cluster.wait('   and it comes back as a spare', lambda: 'becomes a spare' in nodes[1].said())
-    cluster.wait('   and the run goes on', cluster.runs)
+    # As in `kubectl rollout restart`, or an update.
+    for pod in [spare, *nodes, overseer]:
+        before = pod.starts
+        pod.send(signal.SIGTERM)
+        cluster.wait(f'{pod.process.name} is told to leave: it is started again', lambda: pod.starts > before)
+        cluster.wait('   and the run goes on', cluster.runs)
 
-    nodes[0].send(signal.SIGSTOP)
-    cluster.expect('a node that hangs: its livenessProbe says no', not nodes[0].asks('livenessProbe'))
-    nodes[0].send(signal.SIGKILL)  # as the kubelet then does
-    cluster.wait('   and it comes back as a spare', lambda: 'becomes a spare' in nodes[0].said())
+    replace(cluster, servers[1], '10.73.21.98')
+    cluster.wait('the other server is replaced, too, and the run goes on', cluster.runs)
+
+    hung = next(pod for pod in [spare, *nodes] if pod.has_region())
+    hung.send(signal.SIGSTOP)
+    cluster.expect(f'{hung.process.name} hangs: its livenessProbe says no', not hung.asks('livenessProbe'))
+    before = hung.said().count(BECOMES_SPARE)
+    hung.send(signal.SIGKILL)  # as the kubelet then does
+    if hung in nodes:
+        cluster.wait('   and it comes back as a spare', lambda: hung.said().count(BECOMES_SPARE) > before)
     cluster.wait('   and the run goes on', cluster.runs)
     bodies = sum(row[2] for row in cluster.rows().values())
     cluster.expect(f'   with {bodies} bodies', bodies >= 100)
