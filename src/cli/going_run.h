@@ -14,8 +14,8 @@ namespace aurasim::cli {
 /// and those that have ended, are no run that goes on.
 bool goes_on(const std::map<core::RegionId, dds::SeenStatus>& statuses);
 
-/// Joins as `top` does, for some seconds where nobody is heard. Its DDS participant stays: who calls this becomes another
-/// program soon (cli/leave.h says why nobody says goodbye).
+/// Joins as `top` does, for some seconds where nobody is heard. Its DDS participant stays: who calls this becomes
+/// another program soon (cli/leave.h says why nobody says goodbye).
 bool a_run_goes_on(const config::Launch& launch, const std::string& as, core::RegionId region);
 
 }  // namespace aurasim::cli

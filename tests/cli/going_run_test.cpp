@@ -22,13 +22,13 @@ dds::SeenStatus lost(dds::SeenStatus seen) {
 TEST(GoingRun, NobodyIsNoRun) { EXPECT_FALSE(goes_on({})); }
 
 TEST(GoingRun, NodesThatWaitForEachOtherHaveNotBegun) {
-  EXPECT_FALSE(goes_on({{core::RegionId{0}, node_in(NodeState::kWaiting)},
-                        {core::RegionId{3}, node_in(NodeState::kStarting)}}));
+  EXPECT_FALSE(
+      goes_on({{core::RegionId{0}, node_in(NodeState::kWaiting)}, {core::RegionId{3}, node_in(NodeState::kStarting)}}));
 }
 
 TEST(GoingRun, OneNodeThatRunsIsEnough) {
-  EXPECT_TRUE(goes_on({{core::RegionId{0}, node_in(NodeState::kWaiting)},
-                       {core::RegionId{1}, node_in(NodeState::kRunning)}}));
+  EXPECT_TRUE(
+      goes_on({{core::RegionId{0}, node_in(NodeState::kWaiting)}, {core::RegionId{1}, node_in(NodeState::kRunning)}}));
 }
 
 TEST(GoingRun, WhoStandsBecauseOfADeathIsToBeHelped) {
