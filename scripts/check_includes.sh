@@ -2,6 +2,7 @@
 # Includes go one way:
 #   core, security <- physics, transport, config <- dds, node <- cut, overseer, experiment <- cli
 #   core, physics, config <- import <- cli
+#   client (what programs of others are linked with: knows none of the others) <- python, cli
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
 # Within a folder there is no circle: x.h and x.cpp are one unit, and no unit includes one that includes it, directly
 # or through others. (Not yet in config.)
@@ -26,7 +27,9 @@ awk '
     allow("overseer", below " overseer")
     allow("experiment", below " experiment")
     allow("import", "core physics config import")
-    allow("cli", below " overseer experiment import cli")
+    allow("client", "client")
+    allow("python", "python")
+    allow("cli", below " overseer experiment import client cli")
 
     wrap("physics", "BulletCollision BulletDynamics LinearMath bullet")
     wrap("dds", "fastdds fastrtps fastcdr")
@@ -34,6 +37,7 @@ awk '
     wrap("cli", "CLI")
     wrap("security", "openssl")
     wrap("overseer", "boost openssl")
+    wrap("python", "pybind11")
     wrap("import", "sdf ignition mujoco tinyxml2.h yaml-cpp assimp")
 
   }

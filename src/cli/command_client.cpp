@@ -152,6 +152,7 @@ bool CommandClient::ray_has_ended(UnderWay& under_way) {
   const bool late = Clock::now() >= under_way.deadline;
   if (!all_have_answered(under_way) && !late) return false;
   delivery.done = !under_way.answered.empty();
+  delivery.timed_out = !delivery.done;
   delivery.text = delivery.done ? "" : "no region has answered";
   return true;
 }
@@ -191,6 +192,7 @@ bool CommandClient::has_ended(UnderWay& under_way) {
     return true;
   }
   if (!delivery.text.empty()) return true;
+  delivery.timed_out = !under_way.accepted || !under_way.subject;
   delivery.text = !under_way.accepted ? fmt::format("no node has taken it: {} are alive, and {} listen",
                                                     live_nodes().size(), endpoint_.listeners())
                   : delivery.is_save  ? "some regions have not saved their parts"

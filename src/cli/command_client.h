@@ -18,7 +18,8 @@ namespace aurasim::cli {
 struct Delivery {
   std::uint64_t request = 0;
   bool done = false;
-  std::string text;  ///< why not, or what was done
+  bool timed_out = false;  ///< not done, and nobody has said why
+  std::string text;        ///< why not, or what was done
   core::Step at_step = 0;
   std::optional<core::ObjectRef> object;  ///< the new body or static; what the ray hit
   // Of a ray:

@@ -12,6 +12,7 @@ namespace aurasim::cli {
 /// Set by the command that was chosen; run after parsing.
 using Action = std::function<int()>;
 
+void add_agent(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);

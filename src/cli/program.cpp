@@ -85,6 +85,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_compare(*program, action);
   add_experiment(*program, action);
   add_mesh_loader(*program, action);
+  add_agent(*program, action);
   add_completion(*program, action);
   add_manual(*program, action);
   hide_empty_defaults(*program);

@@ -37,14 +37,16 @@ bool RunSteering::belongs(const dds::SeenStatus& seen) const {
 bool RunSteering::find_run(std::chrono::milliseconds time_out) {
   const auto deadline = Clock::now() + time_out;
   for (;;) {
-    const auto& statuses = control_.statuses();
-    std::size_t seen = 0;
-    for (const auto& [region, status] : statuses) seen += status.status.agreement == agreement_;
-    const bool any = std::any_of(statuses.begin(), statuses.end(), [this](const auto& s) { return belongs(s.second); });
-    if (any && seen >= launch_.regions.size() && control_.listeners() > 0) return true;
-    if (Clock::now() > deadline) return any;
+    if (is_complete()) return true;
+    if (Clock::now() > deadline) return is_there();
     control_.wait(50ms);
   }
+}
+
+bool RunSteering::is_complete() {
+  std::size_t seen = 0;
+  for (const auto& [region, status] : control_.statuses()) seen += status.status.agreement == agreement_;
+  return is_there() && seen >= launch_.regions.size() && control_.listeners() > 0;
 }
 
 bool RunSteering::is_there() {
@@ -104,6 +106,20 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   if (kind == Kind::kStep) command.at_step += count;
   const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * delay_s);
+  command.request = control_.send(command);
+  return command;
+}
+
+dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count) {
+  dds::RunCommand command;
+  command.kind = Kind::kStep;
+  command.count = count;
+  command.generation = generation;
+  command.at_step = from + count;
+  for (const auto& [region, seen] : control_.statuses()) {
+    if (belongs(seen)) command.run = seen.status.run;
+  }
+  command.epoch_ns = node::wall_clock_ns();
   command.request = control_.send(command);
   return command;
 }

@@ -30,7 +30,9 @@ class RunSteering {
   /// Waits until the statuses of all live regions of this launch have been seen; false at the time-out.
   bool find_run(std::chrono::milliseconds time_out);
 
-  /// By what has been seen so far: is any node of this launch alive; do all that are stand still?
+  /// By what has been seen so far: have all regions said something, and do they listen; is any node of this launch
+  /// alive; do all that are stand still?
+  bool is_complete();
   bool is_there();
   bool is_paused();
   /// False if they do not within that time.
@@ -39,6 +41,10 @@ class RunSteering {
   /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent. Throws
   /// SteeringRefused when the run cannot do that any more.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
+
+  /// Of a run that stands in state `from` of this generation: the next ones are due at once. For a client that waits
+  /// for each of them.
+  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count);
 
   /// Does every live node show the effect of `command`?
   bool has_taken_effect(const dds::RunCommand& command);

@@ -8,18 +8,17 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "cli/client_mesh.h"
 #include "cli/command_client.h"
 #include "cli/commands.h"
+#include "cli/drain.h"
 #include "cli/exit_code.h"
 #include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/run_steering.h"
-#include "config/convex_parts.h"
-#include "config/meshes.h"
+#include "cli/saved_parts.h"
 #include "core/limits.h"
-#include "core/mesh_hash.h"
-#include "cut/cut_file.h"
 
 namespace aurasim::cli {
 namespace {
@@ -75,18 +74,6 @@ core::Pose pose(const SendArguments& a) {
   return pose;
 }
 
-core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClient& client) {
-  std::variant<core::TriangleMesh, std::string> mesh =
-      config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)});
-  if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
-  if (use == core::MeshUse::kDecomposition) mesh = config::decompose(std::get<core::TriangleMesh>(mesh));
-  if (auto* why = std::get_if<std::string>(&mesh)) fail(fmt::format("{}: {}", file, *why));
-  const auto& triangles = std::get<core::TriangleMesh>(mesh);
-  const std::uint64_t hash = core::content_hash(triangles);
-  client.bring(hash, triangles);
-  return {hash, use};
-}
-
 core::ClientShape shape(const SendArguments& a, core::MeshUse use, CommandClient& client) {
   if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, client);
   if (a.size.size() == 3) return core::Box{vector(a.size) / 2};
@@ -133,27 +120,17 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
 nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The parts become the file that was asked for, if all of them are on this host.
-nlohmann::json put_together(const std::vector<std::string>& parts, const std::string& file) {
-  std::vector<std::filesystem::path> files(parts.begin(), parts.end());
-  if (!std::ranges::all_of(files, [](const auto& part) { return std::filesystem::exists(part); })) {
-    spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", file);
-    return {{"parts", parts}};
-  }
-  try {
-    cut::write_cut(file, cut::merge_cuts(files));
-  } catch (const std::exception& error) {
-    fail(error.what());
-  }
-  for (const std::filesystem::path& part : files) {
-    if (!std::filesystem::equivalent(part, file)) std::filesystem::remove(part);
-  }
-  return {{"file", file}, {"bytes", std::filesystem::file_size(file)}};
+nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::string& file) {
+  const PutTogether made = put_together(parts, file);
+  if (made.is_whole) return {{"file", file}, {"bytes", made.bytes}};
+  spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", file);
+  return {{"parts", parts}};
 }
 
 [[noreturn]] void print_delivery(const Delivery& delivery, const SendArguments& arguments) {
   if (!delivery.done) fail(delivery.text);
   nlohmann::json out = {{"step", delivery.at_step}};
-  if (delivery.is_save && !delivery.files.empty()) out.update(put_together(delivery.files, arguments.save_file));
+  if (delivery.is_save && !delivery.files.empty()) out.update(whole_or_parts(delivery.files, arguments.save_file));
   if (delivery.object)
     out[*delivery.object >= 0 ? "body" : "static"] = *delivery.object >= 0 ? *delivery.object : -1 - *delivery.object;
   if (delivery.is_ray) {
@@ -200,23 +177,14 @@ nlohmann::json put_together(const std::vector<std::string>& parts, const std::st
 
 /// Done when another process computes the region, and nobody waits any more.
 [[noreturn]] void drain(const SendArguments& arguments, dds::ControlBus& control) {
-  const core::RegionId region{arguments.region};
-  const auto node = control.statuses().find(region);
-  if (node == control.statuses().end() || !node->second.is_live())
-    fail(fmt::format("there is no region {}", arguments.region));
-  const std::uint64_t leaving = node->second.status.process;
-  control.send(about_process(Kind::kDrain, node->second.status.run, region, leaving));
+  Drain leaving(control, core::RegionId{arguments.region});
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
-  const auto computes = [](const auto& entry) {
-    const dds::NodeState state = entry.second.status.state;
-    return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
-  };
   while (std::chrono::steady_clock::now() < deadline) {
     control.wait(20ms);
-    const auto& statuses = control.statuses();
-    if (statuses.at(region).status.process == leaving || !std::ranges::all_of(statuses, computes)) continue;
-    const dds::Status& status = statuses.at(region).status;
-    fmt::print("drain: process {} has taken region {} over by step {}\n", status.pid, arguments.region, status.step);
+    const dds::Status* const successor = leaving.successor();
+    if (successor == nullptr) continue;
+    fmt::print("drain: process {} has taken region {} over by step {}\n", successor->pid, arguments.region,
+               successor->step);
     leave(0);
   }
   fail("nobody has taken the region over: is there a spare, or a launcher?");

@@ -22,50 +22,21 @@ namespace {
 
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
-constexpr auto kLookPeriod = 20ms;
 constexpr auto kOverlayPeriod = 200ms;
 constexpr auto kGrowPeriod = 2s;        // while a mesh is missing
 constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
-
-/// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
-WorldView::RegionState region_state(const dds::SeenStatus& seen) {
-  using State = WorldView::RegionState;
-  switch (seen.status.state) {
-    case dds::NodeState::kRunning:
-    case dds::NodeState::kPaused:
-    case dds::NodeState::kRecovering:
-    case dds::NodeState::kCutOff:
-      return seen.lost ? State::kDead : State::kLive;
-    case dds::NodeState::kFailed:
-      return State::kDead;
-    case dds::NodeState::kStarting:
-    case dds::NodeState::kWaiting:
-    case dds::NodeState::kSpare:
-    case dds::NodeState::kFinished:
-      return State::kAbsent;
-  }
-  return State::kAbsent;
-}
 
 }  // namespace
 
 Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
                    WebServer& web, CommandSink& sink)
-    : launch_(launch),
-      agreement_(launch.agreement()),
-      participant_(participant),
-      control_(control),
+    : participant_(participant),
       web_(web),
       sink_(sink),
-      observer_settings_{launch.regions.version(), static_cast<std::uint32_t>(launch.regions.size()),
-                         static_cast<std::uint32_t>(launch.scene.prototypes.size() + core::kRoomForClients)},
+      watch_(launch, participant, control),
       additions_reader_(participant),
       meshes_(participant),
-      scene_(launch.scene),
-      view_settings_{.region_count = launch.regions.size(),
-                     .unclaimed_patience = static_cast<core::Step>(3 * launch.time.step_hz)} {
-  replicas_.emplace(participant, observer_settings_);
-  view_.emplace(view_settings_);
+      scene_(launch.scene) {
   Hello hello;
   hello.scene = launch.scene.name;
   hello.step_s = launch.step_s();
@@ -77,10 +48,11 @@ Overseer::Overseer(const config::Launch& launch, dds::Participant& participant, 
 
 void Overseer::record(const std::filesystem::path& file) {
   recording_.emplace(file);
-  recording_began_s_ = now_s();
-  write_down(ChunkKind::kAbout, recorded_run_text({launch_.scene.name, launch_.step_s(), launch_.observe.tick_hz}));
+  recording_began_s_ = view_clock_s();
+  write_down(ChunkKind::kAbout, recorded_run_text({watch_.launch().scene.name, watch_.launch().step_s(),
+                                                   watch_.launch().observe.tick_hz}));
   write_down(ChunkKind::kScene, scene_text());
-  write_down(ChunkKind::kMap, map_message(launch_.regions));
+  write_down(ChunkKind::kMap, map_message(watch_.launch().regions));
 }
 
 /// A full disk ends the recording, not the overseer.
@@ -88,7 +60,7 @@ template <class Job>
 void Overseer::keep_recording(Job job) {
   if (!recording_) return;
   try {
-    job(*recording_, now_s() - recording_began_s_);
+    job(*recording_, view_clock_s() - recording_began_s_);
   } catch (const BadRecording& error) {
     spdlog::error("recording ends: {}", error.what());
     recording_.reset();
@@ -124,7 +96,7 @@ void Overseer::grow() {
     const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
     return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
   };
-  scene_ = launch_.scene;
+  scene_ = watch_.launch().scene;
   removed_statics_.clear();
   for (const core::Order& order : additions_->orders) {
     node::extend(scene_, order.action, mesh);
@@ -143,84 +115,32 @@ bool Overseer::has_all_meshes() {
   });
 }
 
-double Overseer::now_s() const { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
-
 void Overseer::turn() {
-  replicas_->wait(kRound);
-  look_at_nodes();
-  look_at_map();
-  for (core::Replica& replica : replicas_->take()) view_->accept(std::move(replica), now_s());
+  watch_.look(kRound);
+  if (watch_.take_change()) show_change();
   grow();
   compose_frames();
   serve_commands();
   publish_status();
 }
 
-/// The same regions under other processes: the world of the old ones is gone. Whoever takes a region over goes on with
-/// it in a later generation.
-bool Overseer::run_was_restarted() {
-  bool restarted = false;
-  for (const auto& [region, seen] : nodes_) {
-    const dds::Status& status = seen.status;
-    const auto [known, is_first] = pids_.try_emplace(region, status.pid);
-    const bool begins_anew = status.generation == 0 || status.generation < view_->generation();
-    if (known->second == status.pid || status.state == dds::NodeState::kSpare) continue;
-    known->second = status.pid;
-    restarted = restarted || begins_anew;
-  }
-  return restarted;
-}
-
-void Overseer::look_at_nodes() {
-  if (Clock::now() < next_look_) return;
-  next_look_ = Clock::now() + kLookPeriod;
-  nodes_.clear();
-  for (const auto& [region, seen] : control_.statuses()) {
-    if (is_of_this_run(seen) && core::value_of(region) < launch_.regions.size()) nodes_.emplace(region, seen);
-  }
-  if (run_was_restarted()) {
-    view_.emplace(view_settings_);
-    replicas_.emplace(participant_, observer_settings_);  // nodes give all that they have to whoever comes
-  }
-  for (const auto& [region, seen] : nodes_) view_->set_region(region, region_state(seen));
-}
-
-/// The run may get other regions or another scene while it goes on.
-void Overseer::look_at_map() {
-  const dds::WorldMap* newest = nullptr;
-  for (const auto& [version, map] : control_.maps()) {
-    const bool ours = map.agreement == agreement_ && map.generation > map_generation_;
-    if (ours && (newest == nullptr || map.generation > newest->generation)) newest = &map;
-  }
-  if (newest == nullptr) return;
-  map_generation_ = newest->generation;
-  try {
-    config::Launch changed = launch_;
-    if (newest->scene != launch_.scene.name) changed = config::with_scene(changed, newest->scene);
-    if (newest->map_version != launch_.regions.version()) changed = config::with_regions(changed, newest->regions);
-    launch_ = std::move(changed);
-  } catch (const config::BadConfig& error) {
-    return spdlog::error("the run has changed to what cannot be read here: {}", error.what());
-  }
-  observer_settings_.map_version = launch_.regions.version();
-  observer_settings_.prototype_count =
-      static_cast<std::uint32_t>(launch_.scene.prototypes.size() + core::kRoomForClients);
-  replicas_.emplace(participant_, observer_settings_);
+/// The run has got other regions or another scene.
+void Overseer::show_change() {
   overlays_.forget();
-  view_.emplace(view_settings_);
   scene_is_published_ = false;  // also when bodies of this generation have come before the map
-  web_.publish(Notice::kMap, map_message(launch_.regions));
-  write_down(ChunkKind::kMap, map_message(launch_.regions));
+  const std::string map = map_message(watch_.launch().regions);
+  web_.publish(Notice::kMap, map);
+  write_down(ChunkKind::kMap, map);
 }
 
 void Overseer::compose_frames() {
   bool any = false;
-  while (const WorldFrame* frame = view_->compose(now_s())) {
+  while (const WorldFrame* frame = watch_.view().compose(view_clock_s())) {
     any = true;
     if (!scene_is_published_ || frame->generation != published_generation_) {
       published_generation_ = frame->generation;
       scene_is_published_ = true;
-      scene_ = launch_.scene;
+      scene_ = watch_.launch().scene;
       removed_statics_.clear();
       publish_scene();
       grow();
@@ -234,10 +154,11 @@ void Overseer::compose_frames() {
 void Overseer::show_overlays() {
   next_overlays_ = Clock::now() + kOverlayPeriod;
   const Show wanted = web_.wanted();
-  overlays_.look(participant_, observer_settings_, wanted, scene_, *view_);
+  overlays_.look(participant_, watch_.observer_settings(), wanted, scene_, watch_.view());
   if (!wanted.auras && !wanted.links && !wanted.contacts) return;
-  const double ahead_s = (1 + launch_.aura.uncertainty) * launch_.lookahead() * launch_.step_s();
-  web_.show_overlays(overlays_.encode(*view_, ahead_s));
+  const double ahead_s =
+      (1 + watch_.launch().aura.uncertainty) * watch_.launch().lookahead() * watch_.launch().step_s();
+  web_.show_overlays(overlays_.encode(watch_.view(), ahead_s));
 }
 
 void Overseer::serve_commands() {
@@ -245,8 +166,8 @@ void Overseer::serve_commands() {
     auto* const request = std::get_if<Request>(&page_request);
     if (request == nullptr) continue;
     if (auto* ray = std::get_if<CastRay>(&request->command)) {
-      const double margin_m = launch_.tolerances.speed_m_s * kOldestView_s;
-      ray->regions = regions_for_ray({ray->from, ray->to}, launch_.regions, *view_, scene_, margin_m);
+      const double margin_m = watch_.launch().tolerances.speed_m_s * kOldestView_s;
+      ray->regions = regions_for_ray({ray->from, ray->to}, watch_.launch().regions, watch_.view(), scene_, margin_m);
     }
     sink_.submit(std::move(*request));
   }
@@ -256,14 +177,14 @@ void Overseer::serve_commands() {
 std::string Overseer::state_of_run() const {
   using State = dds::NodeState;
   const auto any = [&](State state) {
-    return std::any_of(nodes_.begin(), nodes_.end(), [&](const auto& entry) {
+    return std::any_of(watch_.nodes().begin(), watch_.nodes().end(), [&](const auto& entry) {
       return entry.second.status.state == state && (state == State::kFinished || !entry.second.lost);
     });
   };
   if (any(State::kRecovering)) return "recovering";
   if (any(State::kRunning)) return "running";
   if (any(State::kPaused)) return "paused";
-  if (any(State::kStarting) || any(State::kWaiting) || nodes_.empty()) return "starting";
+  if (any(State::kStarting) || any(State::kWaiting) || watch_.nodes().empty()) return "starting";
   return any(State::kFinished) ? "finished" : "lost";
 }
 
@@ -271,7 +192,7 @@ void Overseer::measure_hand_offs() {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - hand_offs_measured_).count();
   if (elapsed_s < 1) return;
   hand_offs_measured_ = Clock::now();
-  for (const auto& [region, seen] : nodes_) {
+  for (const auto& [region, seen] : watch_.nodes()) {
     HandOffs& known = hand_offs_[region];
     const std::uint64_t count = seen.status.hand_offs_out;
     known.per_s = count >= known.count ? static_cast<double>(count - known.count) / elapsed_s : 0;
@@ -284,10 +205,10 @@ RunStatus Overseer::status() {
   RunStatus status;
   status.state = state_of_run();
   status.clients = web_.counters().clients;
-  status.nodes = nodes_;
-  status.step = std::max<core::Step>(0, view_->stamp());
-  for (const auto& [region, seen] : nodes_) {
-    if (!seen.lost && seen.status.generation == view_->generation())
+  status.nodes = watch_.nodes();
+  status.step = std::max<core::Step>(0, watch_.view().stamp());
+  for (const auto& [region, seen] : watch_.nodes()) {
+    if (!seen.lost && seen.status.generation == watch_.view().generation())
       status.step = std::max(status.step, seen.status.step);
     if (!seen.lost) status.rate = seen.status.rate;
     status.hand_offs_per_s[region] = hand_offs_[region].per_s;
@@ -302,7 +223,7 @@ void Overseer::publish_status() {
   const std::string message = status_message(now);
   web_.publish(Notice::kStatus, message);
   write_down(ChunkKind::kStatus, message);
-  const ViewCounters& view = view_->counters();
+  const ViewCounters& view = watch_.view().counters();
   std::string text = node_metrics(now);
   const auto add = [&](const char* name, const char* help, std::uint64_t value) {
     text += fmt::format("# HELP aurasim_view_{0} {1}\n# TYPE aurasim_view_{0} counter\naurasim_view_{0} {2}\n", name,
@@ -311,11 +232,11 @@ void Overseer::publish_status() {
   add("frames_total", "Frames composed.", view.frames);
   add("incomplete_frames_total", "Frames composed without a region that is alive.", view.incomplete);
   add("lost_ticks_total", "Ticks of a region that never came.", view.gaps);
-  add("replicas_total", "Replicas received.", replicas_->received());
-  add("refused_replicas_total", "Replicas refused.", replicas_->refused());
+  add("replicas_total", "Replicas received.", watch_.replicas().received());
+  add("refused_replicas_total", "Replicas refused.", watch_.replicas().refused());
   text +=
       fmt::format("# HELP aurasim_view_bodies Bodies seen.\n# TYPE aurasim_view_bodies gauge\naurasim_view_bodies {}\n",
-                  view_->body_count());
+                  watch_.view().body_count());
   web_.set_metrics(std::move(text));
 }
 

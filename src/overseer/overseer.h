@@ -13,14 +13,13 @@
 
 #include "config/launch.h"
 #include "dds/control.h"
-#include "dds/replica_bus.h"
 #include "dds/scene_additions_bus.h"
 #include "overseer/commands.h"
 #include "overseer/overlay_view.h"
 #include "overseer/page_messages.h"
 #include "overseer/recording.h"
 #include "overseer/web_server.h"
-#include "overseer/world_view.h"
+#include "overseer/world_watch.h"
 
 namespace aurasim::overseer {
 
@@ -40,7 +39,6 @@ class Overseer {
  private:
   using Clock = std::chrono::steady_clock;
 
-  double now_s() const;
   void publish_scene();
   std::string scene_text() const;
   void grow();
@@ -49,10 +47,7 @@ class Overseer {
   void write_down(const WorldFrame& frame);
   template <class Job>
   void keep_recording(Job job);
-  bool is_of_this_run(const dds::SeenStatus& seen) const { return seen.status.agreement == agreement_; }
-  void look_at_nodes();
-  void look_at_map();
-  bool run_was_restarted();
+  void show_change();
   void compose_frames();
   void show_overlays();
   void serve_commands();
@@ -61,14 +56,10 @@ class Overseer {
   std::string state_of_run() const;
   void measure_hand_offs();
 
-  config::Launch launch_;  ///< as the run is now
-  std::uint64_t agreement_;
   dds::Participant& participant_;
-  dds::ControlBus& control_;
   WebServer& web_;
   CommandSink& sink_;
-  dds::ObserverSettings observer_settings_;
-  std::optional<dds::ReplicaReader> replicas_;
+  WorldWatch watch_;
   dds::SceneAdditionsReader additions_reader_;
   dds::MeshReader meshes_;
   core::Scene scene_;  ///< as it has grown
@@ -76,15 +67,10 @@ class Overseer {
   std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
   bool additions_are_shown_ = false;              ///< with balls where meshes are missing
   OverlayView overlays_;
-  ViewSettings view_settings_;
-  std::optional<WorldView> view_;
-  core::Generation map_generation_ = 0;
   core::Generation published_generation_ = 0;
   bool scene_is_published_ = true;  ///< that of published_generation_ and the newest map
   std::optional<RecordingWriter> recording_;
   double recording_began_s_ = 0;
-  std::map<core::RegionId, dds::SeenStatus> nodes_;
-  std::map<core::RegionId, std::uint32_t> pids_;
   struct HandOffs {
     std::uint64_t count = 0;
     double per_s = 0;
@@ -92,7 +78,6 @@ class Overseer {
   std::map<core::RegionId, HandOffs> hand_offs_;
   Clock::time_point hand_offs_measured_;
   Clock::time_point next_status_;
-  Clock::time_point next_look_;
   Clock::time_point next_overlays_;
 };
 

@@ -1,0 +1,35 @@
+// The process behind a client library (docs/client.md): speaks DDS for it, and ends with it.
+#pragma once
+
+#include <memory>
+
+#include "cli/agent/run_link.h"
+#include "client/message.h"
+
+namespace aurasim::cli::agent {
+
+class Agent {
+ public:
+  /// `socket`: to the client.
+  explicit Agent(int socket) : socket_(socket) {}
+
+  /// Answers until the client says that it closes, or has gone. Then nothing of what was launched runs any more, or it
+  /// is about to end.
+  void serve();
+
+ private:
+  client::Message answer(const client::Message& question, const Patience& patience);
+  client::Message answer_of_run(const std::string& what, const nlohmann::json& asked, const Patience& patience);
+  nlohmann::json open(const nlohmann::json& asked, const Patience& patience);
+  void begin_paused(const nlohmann::json& asked, const Patience& patience);
+  nlohmann::json act(const nlohmann::json& asked, const Patience& patience);
+  Delivery act_alone(core::Ask ask, const Patience& patience);
+  nlohmann::json close(const Patience& patience);
+  RunLink& run();
+
+  int socket_;
+  std::unique_ptr<RunLink> run_;
+  bool closing_ = false;
+};
+
+}  // namespace aurasim::cli::agent

@@ -1,0 +1,258 @@
+#include "cli/agent/run_link.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/drain.h"
+#include "cli/key_choice.h"
+#include "cli/launch_setup.h"
+
+namespace aurasim::cli::agent {
+namespace {
+
+using namespace std::chrono_literals;
+using Steer = dds::RunCommandKind;
+
+constexpr auto kRound = 2ms;
+constexpr auto kPatienceWithSilence = 5s;     ///< of all nodes, before the run has ended
+constexpr auto kPatienceWithAReader = 1s;     ///< that some node has not found
+constexpr auto kPatienceWithAPause = 10s;     ///< a world that goes back in a pause computes until it is where it stood
+constexpr auto kPatienceAmongStrangers = 3s;  ///< ours would have been heard as soon as they
+
+}  // namespace
+
+RunLink::RunLink(const config::Launch& launch, const std::optional<security::Member>& member)
+    : launch_(launch),
+      member_(member),
+      participant_(with_keys(dds_settings(launch), launch, member)),
+      control_(participant_,
+               {.agreement = launch.agreement(), .region_count = static_cast<std::uint32_t>(launch.regions.size())}),
+      steering_(launch_, control_),
+      client_(participant_, control_, launch.agreement()),
+      watch_(launch, participant_, control_) {}
+
+void RunLink::turn(std::chrono::milliseconds time_out) {
+  watch_.look(time_out);
+  while (watch_.view().compose(overseer::view_clock_s()) != nullptr) {
+  }
+  if (has_met_) look_for_the_end();
+}
+
+void RunLink::look_for_the_end() {
+  if (launched_ && !launched_->is_running()) {
+    throw Problem(Kind::kEnded, fmt::format("the run has ended, with exit code {}", launched_->exit_code()));
+  }
+  if (steering_.is_there()) {
+    alone_since_.reset();
+  } else if (!alone_since_) {
+    alone_since_ = Clock::now();
+  } else if (Clock::now() > *alone_since_ + kPatienceWithSilence) {
+    throw Problem(Kind::kEnded, "the run has ended: no node of it is there any more");
+  }
+}
+
+void RunLink::wait_until(const std::function<bool()>& condition, const Patience& patience, const std::string& what) {
+  while (!condition()) {
+    patience.check(what);
+    turn(kRound);
+  }
+}
+
+void RunLink::meet(const Patience& patience) {
+  const auto begin = Clock::now();
+  const auto computes = [this] {
+    const std::set<core::RegionId> live = live_regions();
+    return steering_.is_complete() &&
+           std::ranges::all_of(live,
+                               [this](core::RegionId region) {
+                                 const dds::NodeState state = nodes().at(region).status.state;
+                                 return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
+                               }) &&
+           !live.empty();
+  };
+  while (!computes()) {
+    if (launched_ && !launched_->is_running()) {
+      throw Problem(Kind::kLaunchFailed,
+                    fmt::format("the launcher has ended with exit code {}: {}", launched_->exit_code(), last_words()));
+    }
+    const bool among_strangers = !launched_ && !steering_.is_there() && !control_.strangers().empty();
+    if (among_strangers && Clock::now() > begin + kPatienceAmongStrangers) {
+      throw Problem(Kind::kRunDiffers,
+                    fmt::format("the run in DDS domain {} differs: give the same file and overrides as its nodes have",
+                                launch_.dds.domain));
+    }
+    if (patience.is_over() && steering_.is_there() && !launched_) break;  // some of its nodes may be gone
+    if (patience.is_over() && !launched_) {
+      throw Problem(Kind::kNoSuchRun,
+                    fmt::format("no run of {} in DDS domain {}", launch_.file.string(), launch_.dds.domain));
+    }
+    patience.check("the nodes have not begun");
+    turn(kRound);
+  }
+  has_met_ = true;
+}
+
+std::set<core::RegionId> RunLink::live_regions() {
+  std::set<core::RegionId> live;
+  for (const auto& [region, seen] : watch_.nodes()) {
+    if (seen.is_live()) live.insert(region);
+  }
+  return live;
+}
+
+bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
+
+/// As far as live nodes have said, whichever way. A status may be older than what is published.
+RunLink::Standing RunLink::farthest() {
+  Standing farthest;
+  for (const core::RegionId region : live_regions()) {
+    farthest.generation = std::max(farthest.generation, watch_.nodes().at(region).status.generation);
+  }
+  for (const core::RegionId region : live_regions()) {
+    const dds::Status& status = watch_.nodes().at(region).status;
+    if (status.generation == farthest.generation) farthest.step = std::max(farthest.step, status.step);
+    farthest.step = std::max(farthest.step, watch_.published(region, farthest.generation));
+  }
+  return farthest;
+}
+
+bool RunLink::all_have_published(const Standing& wanted) {
+  const std::set<core::RegionId> live = live_regions();
+  return !live.empty() && std::ranges::all_of(live, [&](core::RegionId region) {
+    return watch_.published(region, wanted.generation) >= wanted.step;
+  });
+}
+
+/// Nodes publish all that they have for a reader that has just come. False: some have not found this one.
+bool RunLink::collect(StandingState& state, const Patience& patience) {
+  dds::ReplicaReader reader(participant_, watch_.observer_settings());
+  const auto end = Clock::now() + kPatienceWithAReader;
+  while (!state.is_complete(live_regions())) {
+    patience.check("not all regions have published the state in which they stand");
+    if (Clock::now() > end) return false;
+    reader.wait(kRound);
+    for (core::Replica& replica : reader.take()) state.accept(std::move(replica));
+    turn(0ms);
+  }
+  return true;
+}
+
+WorldState RunLink::standing_state(const Patience& patience) {
+  for (;;) {
+    const Standing least = farthest();
+    StandingState state(least.generation, least.step);
+    if (!collect(state, patience)) continue;
+    stands_in_ = Standing{state.generation(), state.step()};
+    return {state.generation(), state.step(), true, state.bodies()};
+  }
+}
+
+/// Of a run that goes on.
+WorldState RunLink::seen_state(const Patience& patience) {
+  const auto all_are_seen = [this] {
+    const core::Generation generation = watch_.view().generation();
+    return watch_.view().stamp() >= 0 && std::ranges::all_of(live_regions(), [&](core::RegionId region) {
+             return watch_.is_whole(region, generation);
+           });
+  };
+  wait_until(all_are_seen, patience, "no state of all regions has been published");
+  const overseer::WorldView& view = watch_.view();
+  WorldState state{view.generation(), view.stamp(), false, {}};
+  view.for_each([&state](const overseer::ViewBody& body) {
+    core::ReplicaBody row{body.id,   body.epoch, body.host, body.prototype, body.asleep,
+                          body.p_WB, body.q_WB,  body.v_WB, body.w_WB};
+    state.bodies.push_back({row, body.under_way});
+  });
+  std::ranges::sort(state.bodies, {}, [](const WorldBody& body) { return body.row.id; });
+  return state;
+}
+
+WorldState RunLink::state(const Patience& patience) {
+  turn(0ms);
+  return stands() ? standing_state(patience) : seen_state(patience);
+}
+
+WorldState RunLink::pause(const Patience& patience) {
+  if (!stands()) {
+    const dds::RunCommand command = steering_.send(Steer::kPause);
+    wait_until([&] { return steering_.has_taken_effect(command); }, patience, "not every node shows the pause");
+  }
+  return standing_state(patience);
+}
+
+WorldState RunLink::step(std::int64_t count, const Patience& patience) {
+  const auto begin = Clock::now();
+  while (!stands()) {
+    patience.check("steps are for a run that is paused");
+    if (Clock::now() > begin + kPatienceWithAPause) {
+      throw Problem(Kind::kRefused, "steps are for a run that is paused");
+    }
+    turn(kRound);
+  }
+  const Standing said = farthest();  // somebody else may have moved it
+  if (!stands_in_ || stands_in_->generation != said.generation || stands_in_->step < said.step) {
+    standing_state(patience);
+  }
+  const Standing wanted{stands_in_->generation, stands_in_->step + count};
+  steering_.send_step(wanted.generation, stands_in_->step, count);
+  stands_in_.reset();
+  const auto is_there = [&] {  // or all have gone back meanwhile
+    return all_have_published(wanted) || (farthest().generation > wanted.generation && stands());
+  };
+  wait_until(is_there, patience, "not every region has come to that state");
+  return standing_state(patience);
+}
+
+void RunLink::steer(Steer kind, const Patience& patience) {
+  stands_in_.reset();
+  if (kind == Steer::kStop) has_met_ = false;  // its end is no error
+  const dds::RunCommand command = steering_.send(kind);
+  const auto has_ended = [&] { return launched_ && !launched_->is_running(); };
+  wait_until([&] { return steering_.has_taken_effect(command) || has_ended(); }, patience,
+             fmt::format("{} was sent, but not every node shows its effect", dds::name_of(kind)));
+  has_met_ = true;
+}
+
+void RunLink::wait_for_listeners(const Patience& patience) {
+  wait_until([this] { return client_.all_listen(); }, patience, "not every node hears this client");
+}
+
+std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Patience& patience) {
+  wait_for_listeners(patience);
+  const bool stood = stands();
+  bool changes = false;
+  std::map<std::uint64_t, std::size_t> places;
+  std::vector<Delivery> deliveries(commands.size());
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    changes = changes || core::changes_the_run(commands[i].ask);
+    places[client_.send(std::move(commands[i]))] = i;
+  }
+  while (!places.empty()) {
+    patience.check("no answer");
+    client_.wait(kRound);
+    turn(0ms);
+    for (Delivery& delivery : client_.take()) {
+      const auto place = places.find(delivery.request);
+      if (place == places.end()) continue;  // of a request that was given up
+      deliveries[place->second] = std::move(delivery);
+      places.erase(place);
+    }
+  }
+  if (changes) {
+    stands_in_.reset();
+    wait_until([&] { return steering_.is_there() && (!stood || stands()); }, patience, "the run does not go on");
+  }
+  return deliveries;
+}
+
+std::uint32_t RunLink::drain(core::RegionId region, const Patience& patience) {
+  Drain leaving(control_, region);
+  const dds::Status* successor = nullptr;
+  wait_until([&] { return (successor = leaving.successor()) != nullptr; }, patience,
+             "nobody has taken the region over: is there a spare, or a launcher?");
+  return successor->pid;
+}
+
+}  // namespace aurasim::cli::agent

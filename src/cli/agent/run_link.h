@@ -1,0 +1,93 @@
+// All that an agent has of a run: it sees it like a viewer, and steers it like `aurasim send`.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/agent/launched_run.h"
+#include "cli/agent/patience.h"
+#include "cli/agent/standing_state.h"
+#include "cli/command_client.h"
+#include "cli/run_steering.h"
+#include "overseer/world_watch.h"
+#include "security/key_store.h"
+
+namespace aurasim::cli::agent {
+
+/// The bodies of a state.
+struct WorldState {
+  core::Generation generation = 0;
+  core::Step step = 0;
+  bool exact = false;  ///< of this very state, bit by bit; else as far as they have been published
+  std::vector<WorldBody> bodies;
+};
+
+/// Used by one thread. Whatever waits throws Problem or Abandoned.
+class RunLink {
+ public:
+  /// Joins the DDS domain, and hears nobody yet.
+  RunLink(const config::Launch& launch, const std::optional<security::Member>& member);
+
+  /// A run that this process has started: once it has ended so has the link.
+  void own(std::unique_ptr<LaunchedRun> launched) { launched_ = std::move(launched); }
+  LaunchedRun* launched() { return launched_.get(); }
+
+  /// All nodes are there and compute, or stand.
+  void meet(const Patience& patience);
+  /// Takes what has come; as often as you like.
+  void turn(std::chrono::milliseconds time_out);
+
+  /// As the run is now.
+  const config::Launch& launch() const { return watch_.launch(); }
+  const std::optional<security::Member>& member() const { return member_; }
+  const std::map<core::RegionId, dds::SeenStatus>& nodes() const { return watch_.nodes(); }
+
+  WorldState state(const Patience& patience);
+  WorldState pause(const Patience& patience);
+  WorldState step(std::int64_t count, const Patience& patience);
+  /// resume, reset, stop.
+  void steer(dds::RunCommandKind kind, const Patience& patience);
+  /// In their order.
+  std::vector<Delivery> act(std::vector<core::Command> commands, const Patience& patience);
+  /// The process that has taken the region over.
+  std::uint32_t drain(core::RegionId region, const Patience& patience);
+  CommandClient& client() { return client_; }
+  void wait_for_listeners(const Patience& patience);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Standing {
+    core::Generation generation = 0;
+    core::Step step = 0;
+  };
+
+  void wait_until(const std::function<bool()>& condition, const Patience& patience, const std::string& what);
+  void look_for_the_end();
+  std::set<core::RegionId> live_regions();
+  Standing farthest();
+  bool stands();
+  bool all_have_published(const Standing& wanted);
+  WorldState standing_state(const Patience& patience);
+  bool collect(StandingState& state, const Patience& patience);
+  WorldState seen_state(const Patience& patience);
+
+  config::Launch launch_;  ///< as it was given
+  std::optional<security::Member> member_;
+  dds::Participant participant_;
+  dds::ControlBus control_;
+  RunSteering steering_;
+  CommandClient client_;
+  overseer::WorldWatch watch_;
+  std::unique_ptr<LaunchedRun> launched_;
+  std::optional<Standing> stands_in_;  ///< as all regions have shown; nothing: not known
+  bool has_met_ = false;
+  std::optional<Clock::time_point> alone_since_;
+};
+
+}  // namespace aurasim::cli::agent

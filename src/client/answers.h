@@ -1,0 +1,22 @@
+// What the agent's answers mean, as the library's types.
+#pragma once
+
+#include <aurasim/client.h>
+
+#include "client/message.h"
+
+namespace aurasim::client {
+
+/// Its columns lie one after the other in the message's body. Throws Error if they do not fit.
+Bodies bodies_of(const Message& answer);
+RunInfo info_of(const nlohmann::json& head);
+std::vector<NodeStatus> nodes_of(const nlohmann::json& head);
+Acknowledgement acknowledgement_of(const nlohmann::json& head);
+RayHit ray_hit_of(const nlohmann::json& head);
+SavedWorld saved_world_of(const nlohmann::json& head);
+
+/// JSON has no infinite numbers: a side that is null is infinite.
+nlohmann::json box_json(const std::array<double, 4>& box);
+std::vector<double> box_of(const nlohmann::json& json);
+
+}  // namespace aurasim::client

@@ -1,0 +1,193 @@
+#include "client/connection.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <map>
+#include <utility>
+
+#include <aurasim/errors.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace aurasim::client {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kLookEvery = 100ms;
+constexpr auto kGrace = 20s;  ///< the agent ends a request itself when its time is over
+constexpr auto kPatienceWithItsEnd = 10s;
+constexpr off_t kLongestLastWords_B = 4000;
+
+template <class Kind>
+[[noreturn]] void raise(const std::string& what) {
+  throw Kind(what);
+}
+
+[[noreturn]] void raise_as(const std::string& kind, const std::string& what) {
+  static const std::map<std::string, void (*)(const std::string&)> kinds = {{"bad_file", raise<BadFile>},
+                                                                            {"no_such_run", raise<NoSuchRun>},
+                                                                            {"run_differs", raise<RunDiffers>},
+                                                                            {"launch_failed", raise<LaunchFailed>},
+                                                                            {"timed_out", raise<TimedOut>},
+                                                                            {"refused", raise<Refused>},
+                                                                            {"ended", raise<Ended>},
+                                                                            {"no_program", raise<NoProgram>}};
+  const auto found = kinds.find(kind);
+  if (found != kinds.end()) found->second(what);
+  throw Error(what);
+}
+
+/// Also of what is no number, or infinite.
+Connection::Seconds bounded(Connection::Seconds time_out) {
+  constexpr Connection::Seconds longest(1e8);
+  return time_out.count() >= 0 ? std::min(time_out, longest) : Connection::Seconds(0);
+}
+
+Clock::time_point after(Connection::Seconds time_out) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(bounded(time_out));
+}
+
+/// Its default way with signals, whatever ours is; a process group of its own, for our Ctrl-C is not meant for it.
+class SpawnAttributes {
+ public:
+  SpawnAttributes() {
+    ::posix_spawnattr_init(&attributes_);
+    sigset_t usual, none;
+    sigemptyset(&usual);
+    sigemptyset(&none);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) sigaddset(&usual, signal);
+    ::posix_spawnattr_setsigdefault(&attributes_, &usual);
+    ::posix_spawnattr_setsigmask(&attributes_, &none);
+    ::posix_spawnattr_setpgroup(&attributes_, 0);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+  }
+  ~SpawnAttributes() { ::posix_spawnattr_destroy(&attributes_); }
+  SpawnAttributes(const SpawnAttributes&) = delete;
+  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_{};
+};
+
+}  // namespace
+
+Connection::Connection(const std::string& program, const std::string& log, std::function<bool()> interrupted)
+    : interrupted_(std::move(interrupted)), owner_(::getpid()) {
+  log_ = log.empty() ? ::memfd_create("aurasim", MFD_CLOEXEC)
+                     : ::open(log.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (log_ < 0) throw Error("cannot write the log " + log);
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    ::close(log_);
+    throw Error("cannot open a pair of sockets");
+  }
+  socket_ = ends[0];
+  start(program, ends[1]);
+  ::close(ends[1]);
+  if (pid_ > 0) return;
+  ::close(socket_);
+  ::close(log_);
+  throw NoProgram("cannot start " + program);
+}
+
+void Connection::start(const std::string& program, int socket) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, socket, STDIN_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, log_, STDOUT_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, log_, STDERR_FILENO);
+  const SpawnAttributes attributes;
+  std::string path = program, command = "agent";
+  std::array<char*, 3> words = {path.data(), command.data(), nullptr};
+  if (::posix_spawn(&pid_, path.c_str(), &actions, attributes.get(), words.data(), environ) != 0) pid_ = 0;
+  ::posix_spawn_file_actions_destroy(&actions);
+}
+
+Connection::~Connection() {
+  if (::getpid() == owner_) {
+    end(Clock::now() + kPatienceWithItsEnd);
+  } else if (socket_ >= 0) {
+    ::close(socket_);
+  }
+  ::close(log_);
+}
+
+Message Connection::ask(Message question, Seconds time_out) {
+  if (!is_open()) throw Ended("this world is closed");
+  const std::uint64_t request = ++requests_;
+  question.head["request"] = request;
+  question.head["time_out_s"] = bounded(time_out).count();
+  try {
+    write_message(socket_, question);
+    Message answer = read_answer(request, after(time_out) + kGrace);
+    if (answer.head.contains("error")) raise_as(answer.head.value("error", ""), answer.head.value("what", ""));
+    return answer;
+  } catch (const ConnectionLost&) {
+    const std::string words = last_words();
+    end(Clock::now());
+    throw Ended("the agent has ended" + (words.empty() ? "" : ". Its last words: " + words));
+  }
+}
+
+/// That of an earlier question, which was given up, is passed over.
+Message Connection::read_answer(std::uint64_t request, Clock::time_point deadline) {
+  while (Clock::now() < deadline) {
+    std::optional<Message> answer = read_message(socket_, Clock::now() + kLookEvery);
+    if (answer && answer->head.value("request", std::uint64_t{0}) == request) return std::move(*answer);
+    if (!answer && interrupted_ && interrupted_()) throw Interrupted("interrupted");
+  }
+  throw ConnectionLost("the agent is silent");
+}
+
+int Connection::close(Seconds time_out) {
+  if (!is_open()) return 0;
+  int exit_code = 0;
+  try {
+    const std::function<bool()> until_then = std::exchange(interrupted_, {});
+    exit_code = ask({{{"do", "close"}}, {}}, time_out).head.value("exit_code", 0);
+  } catch (const Error&) {
+  }
+  end(Clock::now() + kPatienceWithItsEnd);
+  return exit_code;
+}
+
+/// It ends by itself when it sees that we are gone, and what it has started ends with it.
+void Connection::end(Clock::time_point deadline) {
+  if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+  if (pid_ <= 0) return;
+  while (::waitpid(pid_, nullptr, WNOHANG) == 0) {
+    if (Clock::now() >= deadline) {
+      ::kill(pid_, SIGKILL);
+      while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+      }
+      break;
+    }
+    const timespec nap{0, 2'000'000};
+    ::nanosleep(&nap, nullptr);
+  }
+  pid_ = 0;
+}
+
+std::string Connection::last_words() const {
+  const off_t size = ::lseek(log_, 0, SEEK_END);
+  const off_t from = std::max<off_t>(0, size - kLongestLastWords_B);
+  std::string words(static_cast<std::size_t>(std::max<off_t>(0, size - from)), '\0');
+  const ssize_t got = ::pread(log_, words.data(), words.size(), from);
+  words.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  while (!words.empty() && words.back() == '\n') words.pop_back();
+  return words;
+}
+
+}  // namespace aurasim::client

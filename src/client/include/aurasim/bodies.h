@@ -1,0 +1,67 @@
+// What is known of the bodies and nodes of a run, as arrays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace aurasim::client {
+
+/// All bodies of one state, by columns: row i of each is of the same body. n rows, ascending by id. World frame.
+struct Bodies {
+  std::int64_t step = 0;         ///< number of the state
+  double time_s = 0;             ///< simulated, since state 0
+  std::uint32_t generation = 0;  ///< counts resets, other scenes and other regions
+  /// All regions have published this very state. False while the run goes on: then it is the newest that all had
+  /// published, and what has moved by less than 0.1 mm may be older.
+  bool exact = false;
+
+  std::vector<std::uint64_t> ids;         ///< n
+  std::vector<double> positions;          ///< n x 3: x y z, m
+  std::vector<float> rotations;           ///< n x 4: quaternion w x y z
+  std::vector<float> linear_velocities;   ///< n x 3, m/s
+  std::vector<float> angular_velocities;  ///< n x 3, rad/s
+  std::vector<std::uint32_t> regions;     ///< n: which hosts it
+  std::vector<std::uint32_t> epochs;      ///< n: how often it has changed host
+  std::vector<std::uint32_t> prototypes;  ///< n: index into RunInfo::prototypes; those from there on are clients'
+  std::vector<std::uint8_t> asleep;       ///< n: 1: does not move
+  /// n: 1: its last host has handed it over, and the next has not published it yet. Its row is of the state in which it
+  /// left: this one, or up to RunInfo::lookahead - 1 states older.
+  std::vector<std::uint8_t> under_way;
+
+  std::size_t size() const { return ids.size(); }
+};
+
+/// What a node says of itself, as `aurasim top` shows it.
+struct NodeStatus {
+  std::uint32_t region = 0;
+  std::string state;  ///< starting, waiting, running, paused, finished, failed, recovering, spare, cut off, lost
+  std::uint32_t pid = 0;
+  std::int64_t step = 0;
+  std::uint32_t generation = 0;
+  std::uint64_t bodies = 0, awake = 0, foreign_auras = 0;
+  std::uint64_t hand_offs_out = 0, hand_offs_in = 0;
+  std::uint64_t violations = 0;  ///< broken promises since the start
+  std::uint32_t redos = 0;       ///< how often states were put back and computed again
+  double frame_ms_p50 = 0, frame_ms_p99 = 0;
+  double real_time_factor = 0, rate = 1;
+  std::vector<double> box;          ///< x0 y0 x1 y1 of its region, m; infinite sides
+  std::vector<std::uint32_t> dead;  ///< regions that it holds for dead
+  std::string text;                 ///< what is wrong, if something is
+};
+
+struct RunInfo {
+  std::string file;                          ///< launch file, absolute
+  std::string scene;                         ///< its name, as the run is now
+  std::string key;                           ///< whose key is used; empty: an open run
+  std::uint32_t domain = 0;                  ///< of DDS
+  double step_s = 0;                         ///< simulated time of a step
+  double tick_hz = 0;                        ///< how often states are published while it runs
+  std::int32_t lookahead = 0;                ///< K, in steps
+  std::string sync;                          ///< free_running, bounded, deterministic
+  std::vector<std::string> prototypes;       ///< names of the scene's kinds of bodies
+  std::vector<std::vector<double>> regions;  ///< x0 y0 x1 y1 of each, m; infinite sides
+};
+
+}  // namespace aurasim::client

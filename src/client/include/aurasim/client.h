@@ -1,0 +1,201 @@
+// Drive a world from your program: join a run or launch one, see its bodies, act, step it in lock-step.
+//
+//   aurasim::client::World world = aurasim::client::World::launch("demo", {.paused = true});
+//   const auto ball = world.spawn({.shape = aurasim::client::Shape::sphere(0.5), .position = {0, 0, 10}});
+//   for (int i = 0; i < 100; ++i) {
+//     const aurasim::client::Bodies bodies = world.step();
+//     ...
+//   }
+//
+// DDS is spoken by a process of its own, `aurasim agent`, that each World starts and that ends with it, however this
+// program ends. docs/client.md.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <aurasim/bodies.h>
+#include <aurasim/errors.h>
+
+namespace aurasim::client {
+
+using Vec3 = std::array<double, 3>;
+using Quaternion = std::array<double, 4>;  ///< w x y z; need not be of length 1
+using Seconds = std::chrono::duration<double>;
+
+inline constexpr Seconds kUsualTimeOut{60};
+
+struct ConnectOptions {
+  std::vector<std::string> overrides = {};  ///< "key.path=value", as --set: the same as the run's nodes have
+  std::string as = {};                      ///< in a run with keys, a name of dds.security; empty: the first operator
+  Seconds time_out{15};                     ///< for the nodes to be found
+  std::string program = {};                 ///< `aurasim`; empty: $AURASIM_PROGRAM, beside this library, in $PATH
+  std::string log = {};                     ///< file for the words of the processes that are started; empty: none
+  /// Asked now and then while a call waits; if true the call ends with Interrupted.
+  std::function<bool()> interrupted = {};
+};
+
+struct LaunchOptions {
+  std::vector<std::string> overrides = {};
+  std::string as = {};
+  Seconds time_out{60};  ///< for all nodes to have begun
+  std::string program = {};
+  std::string log = {};
+  std::function<bool()> interrupted = {};
+  bool paused = false;      ///< stands in state 0; with `load`, soon after the state that was saved
+  std::string load = {};    ///< a saved world to go on from
+  std::string report = {};  ///< folder for what the nodes record
+  std::string saves = {};   ///< folder for the nodes' parts of saved worlds; empty: `saves`
+  int spares = 0;           ///< processes that wait to take over the region of a node that dies
+};
+
+/// Of a new body or static.
+struct AURASIM_API Shape {
+  enum class Kind : std::uint8_t { kNone, kSphere, kBox, kCapsule, kMesh };
+  Kind kind = Kind::kNone;
+  Vec3 size = {};         ///< box: side lengths, m
+  double radius_m = 0;    ///< sphere, capsule
+  double height_m = 0;    ///< capsule along z, between the centres of its caps
+  std::string file = {};  ///< mesh: OBJ, STL or glTF
+  bool in_parts = false;  ///< mesh of a body: its convex parts; otherwise its hull
+
+  static Shape sphere(double radius_m);
+  static Shape box(const Vec3& size);
+  static Shape capsule(double radius_m, double height_m);
+  static Shape mesh(std::string file, bool in_parts = false);
+};
+
+struct NewBody {
+  std::string prototype = {};  ///< one of the scene's kinds of bodies; or else
+  Shape shape = {};
+  double mass_kg = 1;  ///< of a shape
+  Vec3 position = {};  ///< m
+  Quaternion rotation = {1, 0, 0, 0};
+  Vec3 linear_velocity = {};   ///< m/s
+  Vec3 angular_velocity = {};  ///< rad/s
+};
+
+struct NewStatic {
+  Shape shape = {};
+  Vec3 position = {};
+  Quaternion rotation = {1, 0, 0, 0};
+};
+
+/// What became of an act.
+struct Acknowledgement {
+  std::int64_t step = 0;               ///< the first state that shows its effect
+  std::optional<std::uint64_t> body;   ///< that was made
+  std::optional<std::uint32_t> fixed;  ///< static that was made
+  std::string text;                    ///< for people
+};
+
+struct RayHit {
+  bool hit = false;
+  bool complete = true;  ///< all regions have answered: there is nothing nearer
+  std::int64_t step = 0;
+  std::optional<std::uint64_t> body;
+  std::optional<std::uint32_t> fixed;
+  Vec3 position = {};
+  Vec3 normal = {};
+  double distance_m = 0;
+};
+
+struct SavedWorld {
+  std::int64_t step = 0;
+  std::string file;                ///< the whole world; empty: the parts are on other hosts
+  std::vector<std::string> parts;  ///< else
+};
+
+/// Used by one thread at a time. Every call throws one of errors.h, at the latest soon after its time-out. Where it
+/// says `at_step`: not before that state; 0: as soon as possible.
+///
+/// An act in a running world returns when its effect has been seen; in a paused one, or with `at_step`, when it is
+/// certain to come: in the state that it says.
+class AURASIM_API World {
+ public:
+  /// Joins a run that was started elsewhere. `file`: its launch file, or the name of a shipped one.
+  static World connect(const std::string& file, const ConnectOptions& options = {});
+  /// Starts one on this host: it ends when this World is closed, or this program ends.
+  static World launch(const std::string& file, const LaunchOptions& options = {});
+
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  /// Ends what it has started: a run that was launched ends in one state on all nodes and writes its report. Returns
+  /// the launcher's exit code; 0 where none was launched, and when closed before.
+  int close(Seconds time_out = Seconds{30});
+  bool closed() const;
+  /// Of the agent; 0: closed.
+  int agent_pid() const;
+
+  // Sense.
+  RunInfo info(Seconds time_out = kUsualTimeOut);
+  std::vector<NodeStatus> nodes(Seconds time_out = kUsualTimeOut);
+  /// In a paused run the state in which it stands; else the newest that all regions have published.
+  Bodies bodies(Seconds time_out = kUsualTimeOut);
+  /// What is first on the way from a point to another, m? All regions are asked.
+  RayHit ray(const Vec3& from, const Vec3& to, Seconds time_out = kUsualTimeOut);
+
+  // Steer. All nodes do so in one state.
+  /// Returns the bodies of the state in which all stand.
+  Bodies pause(Seconds time_out = kUsualTimeOut);
+  /// Computes `count` states of a paused run; returns the bodies of the last one, once all regions have published it.
+  Bodies step(std::int64_t count = 1, Seconds time_out = kUsualTimeOut);
+  void resume(Seconds time_out = kUsualTimeOut);
+  /// The scene, or the saved world that it was launched with, begins anew, and runs.
+  void reset(Seconds time_out = kUsualTimeOut);
+  void stop(Seconds time_out = kUsualTimeOut);
+  /// Simulated seconds per second, 0.01 to 10.
+  Acknowledgement set_rate(double rate, Seconds time_out = kUsualTimeOut);
+  /// Begins anew with another scene beside the launch file's. In a paused run all stand in its state 0.
+  Acknowledgement set_scene(const std::string& name, Seconds time_out = kUsualTimeOut);
+  /// One box for each region, x0 y0 x1 y1, m; infinite sides allowed.
+  Acknowledgement set_regions(const std::vector<std::array<double, 4>>& boxes, Seconds time_out = kUsualTimeOut);
+  /// The region's node leaves, and another process takes it over. Returns that one's number.
+  std::uint32_t drain(std::uint32_t region, Seconds time_out = kUsualTimeOut);
+
+  // Keep.
+  /// Of a paused run: the newest state that is certain, at most about a second older.
+  SavedWorld save(const std::string& file, Seconds time_out = kUsualTimeOut);
+  /// Goes on from a saved world in the nodes' folder of saves.
+  Acknowledgement load(const std::string& name, Seconds time_out = kUsualTimeOut);
+  /// Goes back to the newest earlier state that is kept.
+  Acknowledgement back(Seconds time_out = kUsualTimeOut);
+
+  // Act.
+  Acknowledgement spawn(const NewBody& body, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  Acknowledgement add_static(const NewStatic& fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  Acknowledgement remove_body(std::uint64_t body, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  Acknowledgement remove_static(std::uint32_t fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// N s, at a point (m) or the centre of mass. World frame.
+  Acknowledgement impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point = {},
+                          std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// m/s and rad/s; without a spin it stays as it is.
+  Acknowledgement set_velocity(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular = {},
+                               std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// One for each body, asked for together: at most 300 between two states. `impulses`: n x 3. Throws Refused with the
+  /// first reason if any is refused; the others act.
+  std::vector<Acknowledgement> impulses(const std::vector<std::uint64_t>& bodies, const std::vector<double>& impulses,
+                                        std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// Likewise. `linear`: n x 3.
+  std::vector<Acknowledgement> set_velocities(const std::vector<std::uint64_t>& bodies,
+                                              const std::vector<double>& linear, std::int64_t at_step = 0,
+                                              Seconds time_out = kUsualTimeOut);
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "0.1.0", of this library.
+AURASIM_API const char* version();
+
+}  // namespace aurasim::client

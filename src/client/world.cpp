@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <utility>
+
+#include <aurasim/client.h>
+
+#include "client/answers.h"
+#include "client/connection.h"
+#include "client/program_file.h"
+
+namespace aurasim::client {
+namespace {
+
+using nlohmann::json;
+
+json shape_json(const Shape& shape) {
+  switch (shape.kind) {
+    case Shape::Kind::kNone:
+      return nullptr;
+    case Shape::Kind::kSphere:
+      return {{"radius", shape.radius_m}};
+    case Shape::Kind::kBox:
+      return {{"size", shape.size}};
+    case Shape::Kind::kCapsule:
+      return {{"radius", shape.radius_m}, {"height", shape.height_m}};
+    case Shape::Kind::kMesh:
+      return {{"mesh", shape.file}, {"in_parts", shape.in_parts}};
+  }
+  return nullptr;
+}
+
+json impulse_json(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point) {
+  return {{"kind", "impulse"}, {"body", body}, {"J", impulse}, {"p", point ? json(*point) : json(nullptr)}};
+}
+
+json velocity_json(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular) {
+  return {{"kind", "velocity"}, {"body", body}, {"v", linear}, {"w", angular ? json(*angular) : json(nullptr)}};
+}
+
+/// Row i of an array of n x 3.
+Vec3 row(const std::vector<double>& array, std::size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
+
+void check_rows(std::size_t bodies, std::size_t numbers) {
+  if (numbers != 3 * bodies) {
+    throw Error("found " + std::to_string(bodies) + " bodies and " + std::to_string(numbers) +
+                " numbers, allowed: three for each body");
+  }
+}
+
+}  // namespace
+
+struct World::Impl {
+  Impl(const std::string& program, const std::string& log, std::function<bool()> interrupted)
+      : connection(program_file(program), log, std::move(interrupted)) {}
+
+  json ask(json head, Seconds time_out) { return connection.ask({std::move(head), {}}, time_out).head; }
+  Bodies ask_bodies(json head, Seconds time_out) { return bodies_of(connection.ask({std::move(head), {}}, time_out)); }
+
+  /// All of them together; in their order.
+  std::vector<Acknowledgement> act(json asks, std::int64_t at_step, Seconds time_out) {
+    const json head = ask({{"do", "act"}, {"asks", std::move(asks)}, {"at", at_step}}, time_out);
+    std::vector<Acknowledgement> done;
+    std::string refused;
+    for (const json& one : head.value("acts", json::array())) {
+      if (one.contains("refused") && refused.empty()) refused = one.value("refused", "");
+      done.push_back(acknowledgement_of(one));
+    }
+    if (!refused.empty()) throw Refused(refused);
+    return done;
+  }
+  Acknowledgement act_one(json ask, std::int64_t at_step, Seconds time_out) {
+    const std::vector<Acknowledgement> done = act(json::array({std::move(ask)}), at_step, time_out);
+    if (done.empty()) throw Error("the agent has not answered");
+    return done.front();
+  }
+
+  Connection connection;
+};
+
+Shape Shape::sphere(double radius_m) { return {.kind = Kind::kSphere, .radius_m = radius_m}; }
+Shape Shape::box(const Vec3& size) { return {.kind = Kind::kBox, .size = size}; }
+Shape Shape::capsule(double radius_m, double height_m) {
+  return {.kind = Kind::kCapsule, .radius_m = radius_m, .height_m = height_m};
+}
+Shape Shape::mesh(std::string file, bool in_parts) {
+  return {.kind = Kind::kMesh, .file = std::move(file), .in_parts = in_parts};
+}
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+World::~World() {
+  if (impl_) close();
+}
+
+World World::connect(const std::string& file, const ConnectOptions& options) {
+  World world(std::make_unique<Impl>(options.program, options.log, options.interrupted));
+  world.impl_->ask(
+      {{"do", "connect"}, {"protocol", kAgentProtocol}, {"file", file}, {"set", options.overrides}, {"as", options.as}},
+      options.time_out);
+  return world;
+}
+
+World World::launch(const std::string& file, const LaunchOptions& options) {
+  World world(std::make_unique<Impl>(options.program, options.log, options.interrupted));
+  world.impl_->ask({{"do", "launch"},
+                    {"protocol", kAgentProtocol},
+                    {"file", file},
+                    {"set", options.overrides},
+                    {"as", options.as},
+                    {"paused", options.paused},
+                    {"load", options.load},
+                    {"report", options.report},
+                    {"saves", options.saves},
+                    {"spares", options.spares}},
+                   options.time_out);
+  return world;
+}
+
+int World::close(Seconds time_out) { return impl_->connection.close(time_out); }
+bool World::closed() const { return !impl_->connection.is_open(); }
+int World::agent_pid() const { return impl_->connection.pid(); }
+
+RunInfo World::info(Seconds time_out) { return info_of(impl_->ask({{"do", "info"}}, time_out)); }
+std::vector<NodeStatus> World::nodes(Seconds time_out) { return nodes_of(impl_->ask({{"do", "nodes"}}, time_out)); }
+Bodies World::bodies(Seconds time_out) { return impl_->ask_bodies({{"do", "bodies"}}, time_out); }
+RayHit World::ray(const Vec3& from, const Vec3& to, Seconds time_out) {
+  return ray_hit_of(impl_->ask({{"do", "ray"}, {"from", from}, {"to", to}}, time_out));
+}
+
+Bodies World::pause(Seconds time_out) { return impl_->ask_bodies({{"do", "pause"}}, time_out); }
+Bodies World::step(std::int64_t count, Seconds time_out) {
+  return impl_->ask_bodies({{"do", "step"}, {"count", count}}, time_out);
+}
+void World::resume(Seconds time_out) { impl_->ask({{"do", "resume"}}, time_out); }
+void World::reset(Seconds time_out) { impl_->ask({{"do", "reset"}}, time_out); }
+void World::stop(Seconds time_out) { impl_->ask({{"do", "stop"}}, time_out); }
+Acknowledgement World::set_rate(double rate, Seconds time_out) {
+  return impl_->act_one({{"kind", "rate"}, {"rate", rate}}, 0, time_out);
+}
+Acknowledgement World::set_scene(const std::string& name, Seconds time_out) {
+  return impl_->act_one({{"kind", "scene"}, {"name", name}}, 0, time_out);
+}
+Acknowledgement World::set_regions(const std::vector<std::array<double, 4>>& boxes, Seconds time_out) {
+  json list = json::array();
+  for (const auto& box : boxes) list.push_back(box_json(box));
+  return impl_->act_one({{"kind", "regions"}, {"boxes", std::move(list)}}, 0, time_out);
+}
+std::uint32_t World::drain(std::uint32_t region, Seconds time_out) {
+  return impl_->ask({{"do", "drain"}, {"region", region}}, time_out).value("pid", 0U);
+}
+
+SavedWorld World::save(const std::string& file, Seconds time_out) {
+  return saved_world_of(impl_->ask({{"do", "save"}, {"file", file}}, time_out));
+}
+Acknowledgement World::load(const std::string& name, Seconds time_out) {
+  return impl_->act_one({{"kind", "load"}, {"name", name}}, 0, time_out);
+}
+Acknowledgement World::back(Seconds time_out) { return impl_->act_one({{"kind", "back"}}, 0, time_out); }
+
+Acknowledgement World::spawn(const NewBody& body, std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one({{"kind", "spawn"},
+                         {"prototype", body.prototype},
+                         {"shape", shape_json(body.shape)},
+                         {"mass", body.mass_kg},
+                         {"p", body.position},
+                         {"q", body.rotation},
+                         {"v", body.linear_velocity},
+                         {"w", body.angular_velocity}},
+                        at_step, time_out);
+}
+Acknowledgement World::add_static(const NewStatic& fixed, std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one(
+      {{"kind", "static"}, {"shape", shape_json(fixed.shape)}, {"p", fixed.position}, {"q", fixed.rotation}}, at_step,
+      time_out);
+}
+Acknowledgement World::remove_body(std::uint64_t body, std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one({{"kind", "remove"}, {"body", body}}, at_step, time_out);
+}
+Acknowledgement World::remove_static(std::uint32_t fixed, std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one({{"kind", "remove"}, {"static", fixed}}, at_step, time_out);
+}
+Acknowledgement World::impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point,
+                               std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one(impulse_json(body, impulse, point), at_step, time_out);
+}
+Acknowledgement World::set_velocity(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular,
+                                    std::int64_t at_step, Seconds time_out) {
+  return impl_->act_one(velocity_json(body, linear, angular), at_step, time_out);
+}
+
+std::vector<Acknowledgement> World::impulses(const std::vector<std::uint64_t>& bodies,
+                                             const std::vector<double>& impulses, std::int64_t at_step,
+                                             Seconds time_out) {
+  check_rows(bodies.size(), impulses.size());
+  json asks = json::array();
+  for (std::size_t i = 0; i < bodies.size(); ++i) asks.push_back(impulse_json(bodies[i], row(impulses, i), {}));
+  return impl_->act(std::move(asks), at_step, time_out);
+}
+
+std::vector<Acknowledgement> World::set_velocities(const std::vector<std::uint64_t>& bodies,
+                                                   const std::vector<double>& linear, std::int64_t at_step,
+                                                   Seconds time_out) {
+  check_rows(bodies.size(), linear.size());
+  json asks = json::array();
+  for (std::size_t i = 0; i < bodies.size(); ++i) asks.push_back(velocity_json(bodies[i], row(linear, i), {}));
+  return impl_->act(std::move(asks), at_step, time_out);
+}
+
+const char* version() { return AURASIM_VERSION; }
+
+}  // namespace aurasim::client

@@ -1,0 +1,229 @@
+"""Drive an aurasim world from Python: join a run or launch one, see its bodies as numpy arrays, act, step it.
+
+    import aurasim
+
+    with aurasim.World.launch("demo", set={"dds.domain": 7}, paused=True) as world:
+        ball = world.spawn(aurasim.Shape.sphere(0.5), position=(0, 0, 10), mass=3)
+        for _ in range(60):
+            bodies = world.step()
+        print(bodies.time, bodies.positions[bodies.ids == ball.body])
+
+Lengths in m, times in s, masses in kg, angles in rad, the world's frame; rotations are quaternions w x y z. Every call
+raises one of the errors below, at the latest soon after its `timeout` (s). docs/client.md has the rest.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import weakref
+from typing import Any, Iterable, Mapping, Sequence, Union
+
+import numpy as np
+
+from ._aurasim import (  # noqa: F401
+    Acknowledgement,
+    BadFile,
+    Bodies,
+    Ended,
+    Error,
+    LaunchFailed,
+    NodeStatus,
+    NoProgram,
+    NoSuchRun,
+    RayHit,
+    Refused,
+    RunDiffers,
+    RunInfo,
+    SavedWorld,
+    Shape,
+    TimedOut,
+    __version__,
+)
+from ._aurasim import World as _World
+
+__all__ = [
+    "Acknowledgement", "BadFile", "Bodies", "Ended", "Error", "LaunchFailed", "NodeStatus", "NoProgram", "NoSuchRun",
+    "RayHit", "Refused", "RunDiffers", "RunInfo", "SavedWorld", "Shape", "TimedOut", "World", "__version__",
+]
+
+Overrides = Union[Mapping[str, Any], Iterable[str]]
+Vector = Sequence[float]
+
+_ORIGIN = (0.0, 0.0, 0.0)
+_UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+_open_worlds: weakref.WeakSet[World] = weakref.WeakSet()
+
+
+def _override_texts(overrides: Overrides) -> list[str]:
+    """As --set takes them; JSON is YAML."""
+    if not isinstance(overrides, Mapping):
+        return [str(text) for text in overrides]
+    return [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overrides.items()]
+
+
+def _path(path: str | os.PathLike[str] | None) -> str:
+    return "" if path is None else os.fspath(path)
+
+
+class World:
+    """A run: `World.connect` joins one, `World.launch` starts one. Close it, or use it in a `with` block."""
+
+    def __init__(self, world: _World) -> None:
+        self._world = world
+        _open_worlds.add(self)
+
+    @classmethod
+    def connect(cls, file: str | os.PathLike[str], *, set: Overrides = (), key: str = "", program: str = "",
+                log: str = "", timeout: float = 15.0) -> World:
+        """Joins a run that was started elsewhere. `file` and `set` as its nodes have them; `key`: a name of
+        dds.security; `program`: `aurasim`; `log`: file for the words of the processes that are started."""
+        return cls(_World.connect(os.fspath(file), _override_texts(set), key, program, log, timeout))
+
+    @classmethod
+    def launch(cls, file: str | os.PathLike[str], *, set: Overrides = (), paused: bool = False,
+               load: str | os.PathLike[str] | None = None, report: str | os.PathLike[str] | None = None,
+               saves: str | os.PathLike[str] | None = None, spares: int = 0, key: str = "", program: str = "",
+               log: str = "", timeout: float = 60.0) -> World:
+        """Starts a run on this host, which ends when this World is closed or this program ends. `paused`: it stands in
+        state 0; with `load`, a saved world, soon after the state that was saved. `report`: folder for what the nodes
+        record; `saves`: folder for their parts of saved worlds."""
+        return cls(_World.launch(os.fspath(file), _override_texts(set), key, program, log, timeout, paused,
+                                 _path(load), _path(report), _path(saves), spares))
+
+    def close(self, timeout: float = 30.0) -> int:
+        """Ends what it has started. Returns the launcher's exit code, 0 if there is none."""
+        return self._world.close(timeout)
+
+    @property
+    def closed(self) -> bool:
+        return self._world.closed()
+
+    @property
+    def agent_pid(self) -> int:
+        """Of the process that speaks DDS for this World; 0: closed."""
+        return self._world.agent_pid()
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    # Sense.
+
+    def info(self, timeout: float = 60.0) -> RunInfo:
+        return self._world.info(timeout)
+
+    def nodes(self, timeout: float = 60.0) -> list[NodeStatus]:
+        """What each node says of itself, by region."""
+        return self._world.nodes(timeout)
+
+    def bodies(self, timeout: float = 60.0) -> Bodies:
+        """In a paused run the state in which it stands; else the newest that all regions have published."""
+        return self._world.bodies(timeout)
+
+    def ray(self, start: Vector, end: Vector, timeout: float = 60.0) -> RayHit:
+        """What is first on the way from `start` to `end`?"""
+        return self._world.ray(start, end, timeout)
+
+    # Steer.
+
+    def pause(self, timeout: float = 60.0) -> Bodies:
+        """Returns the bodies of the state in which all regions stand."""
+        return self._world.pause(timeout)
+
+    def step(self, count: int = 1, timeout: float = 60.0) -> Bodies:
+        """Computes `count` states of a paused run; returns the bodies of the last, once all regions have published
+        it."""
+        return self._world.step(count, timeout)
+
+    def resume(self, timeout: float = 60.0) -> None:
+        self._world.resume(timeout)
+
+    def reset(self, timeout: float = 60.0) -> None:
+        """The scene, or the saved world that it was launched with, begins anew, and runs."""
+        self._world.reset(timeout)
+
+    def stop(self, timeout: float = 60.0) -> None:
+        """Ends the run."""
+        self._world.stop(timeout)
+
+    def set_rate(self, rate: float, timeout: float = 60.0) -> Acknowledgement:
+        """Simulated seconds per second, 0.01 to 10."""
+        return self._world.set_rate(rate, timeout)
+
+    def set_scene(self, name: str, timeout: float = 60.0) -> Acknowledgement:
+        """Begins anew with another scene beside the launch file's; a paused run stands in its state 0."""
+        return self._world.set_scene(name, timeout)
+
+    def set_regions(self, boxes: Sequence[Vector], timeout: float = 60.0) -> Acknowledgement:
+        """x0 y0 x1 y1 of each region; infinite sides allowed."""
+        return self._world.set_regions(boxes, timeout)
+
+    def drain(self, region: int, timeout: float = 60.0) -> int:
+        """The region's node leaves, and another process takes it over. Returns that one's number."""
+        return self._world.drain(region, timeout)
+
+    # Keep.
+
+    def save(self, file: str | os.PathLike[str], timeout: float = 60.0) -> SavedWorld:
+        """Keeps the world in a file. Of a paused run: the newest state that is certain."""
+        return self._world.save(os.path.abspath(file), timeout)
+
+    def load(self, name: str, timeout: float = 60.0) -> Acknowledgement:
+        """Goes on from a saved world in the nodes' folder of saves."""
+        return self._world.load(name, timeout)
+
+    def back(self, timeout: float = 60.0) -> Acknowledgement:
+        """Goes back to the newest earlier state that is kept."""
+        return self._world.back(timeout)
+
+    # Act. `at`: not before that state. In a paused run, or with `at`, a call returns when the act is certain to come,
+    # in the state that it says; else when it has been seen.
+
+    def spawn(self, kind: str | Shape, *, position: Vector = _ORIGIN, rotation: Vector = _UPRIGHT,
+              linear_velocity: Vector = _ORIGIN, angular_velocity: Vector = _ORIGIN, mass: float = 1.0, at: int = 0,
+              timeout: float = 60.0) -> Acknowledgement:
+        """A new body: one of the scene's kinds (RunInfo.prototypes), or a shape with a mass."""
+        name, shape = (kind, Shape.sphere(0)) if isinstance(kind, str) else ("", kind)
+        return self._world.spawn(name, shape, mass, position, rotation, linear_velocity, angular_velocity, at, timeout)
+
+    def add_static(self, shape: Shape, *, position: Vector = _ORIGIN, rotation: Vector = _UPRIGHT, at: int = 0,
+                   timeout: float = 60.0) -> Acknowledgement:
+        """A new static, on every node."""
+        return self._world.add_static(shape, position, rotation, at, timeout)
+
+    def remove_body(self, body: int, *, at: int = 0, timeout: float = 60.0) -> Acknowledgement:
+        return self._world.remove_body(body, at, timeout)
+
+    def remove_static(self, fixed: int, *, at: int = 0, timeout: float = 60.0) -> Acknowledgement:
+        return self._world.remove_static(fixed, at, timeout)
+
+    def impulse(self, body: int, impulse: Vector, *, point: Vector | None = None, at: int = 0,
+                timeout: float = 60.0) -> Acknowledgement:
+        """N s, at a point or the centre of mass."""
+        return self._world.impulse(body, impulse, point, at, timeout)
+
+    def set_velocity(self, body: int, linear: Vector, angular: Vector | None = None, *, at: int = 0,
+                     timeout: float = 60.0) -> Acknowledgement:
+        """m/s and rad/s; without a spin that stays as it is."""
+        return self._world.set_velocity(body, linear, angular, at, timeout)
+
+    def impulses(self, bodies: np.ndarray, impulses: np.ndarray, *, at: int = 0,
+                 timeout: float = 60.0) -> list[Acknowledgement]:
+        """n ids, n x 3: at most 300 between two states. Raises Refused with the first reason if any is refused; the
+        others act."""
+        return self._world.impulses(bodies, impulses, at, timeout)
+
+    def set_velocities(self, bodies: np.ndarray, linear: np.ndarray, *, at: int = 0,
+                       timeout: float = 60.0) -> list[Acknowledgement]:
+        """Likewise; n x 3."""
+        return self._world.set_velocities(bodies, linear, at, timeout)
+
+
+@atexit.register
+def _close_all() -> None:
+    for world in list(_open_worlds):
+        world.close()

@@ -1,0 +1,275 @@
+"""A whole run by its client: joining and launching, steering, keeping, errors, and what is left when a client dies."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import aurasim
+from client_fixture import GENEROUS_S, WorldTest, command_line, launch_file, processes_of_domain, wait_until
+
+
+class Steering(WorldTest):
+    def test_what_is_seen_of_a_run(self):
+        world = self.launch(paused=False)
+        info = world.info()
+        self.assertEqual((info.scene, info.domain, info.key, len(info.regions)),
+                         ("corner_stacks", self.domain.number, "", 4))
+        self.assertAlmostEqual(info.step_s, 1 / 60)
+        self.assertTrue(info.prototypes)
+        self.assertEqual(info.regions[0][0], float("-inf"))
+        nodes = world.nodes()
+        self.assertEqual([node.region for node in nodes], [0, 1, 2, 3])
+        self.assertEqual({node.state for node in nodes}, {"running"})
+        bodies = world.bodies()
+        self.assertFalse(bodies.exact)
+        n = len(bodies)
+        self.assertGreater(n, 100)
+        self.assertEqual(bodies.positions.shape, (n, 3))
+        self.assertEqual(bodies.rotations.shape, (n, 4))
+        self.assertEqual(bodies.ids.dtype, np.uint64)
+        self.assertEqual(bodies.asleep.dtype, np.bool_)
+        self.assertTrue((np.diff(bodies.ids.astype(np.int64)) > 0).all())
+        np.testing.assert_allclose(np.linalg.norm(bodies.rotations, axis=1), 1, atol=1e-5)
+        self.assertFalse(bodies.positions.flags.writeable)
+        self.assertAlmostEqual(bodies.time, bodies.step / 60)
+
+    def test_arrays_outlive_their_world(self):
+        world = self.launch()
+        positions = world.bodies().positions
+        world.close()
+        self.assertTrue(np.isfinite(positions).all())
+
+    def test_pause_step_resume_reset(self):
+        world = self.launch(paused=False)
+        paused = world.pause()
+        self.assertTrue(paused.exact)
+        self.assertEqual(world.bodies().step, paused.step)
+        self.assertEqual(world.step(5).step, paused.step + 5)
+        self.assertEqual({node.state for node in world.nodes()}, {"paused"})
+        world.resume()
+        self.assertTrue(wait_until(lambda: world.bodies().step > paused.step + 10))
+        world.reset()
+        self.assertGreater(world.pause().generation, paused.generation)
+
+    def test_two_clients_of_one_run(self):
+        first = self.launch()
+        second = self.connect()
+        stood = first.step(3)
+        self.assertEqual(second.bodies().step, stood.step)
+        self.assertEqual(second.step(2).step, stood.step + 2)
+        self.assertEqual(first.step().step, stood.step + 3)
+
+    def test_the_rest_of_what_send_can_ask_for(self):
+        world = self.launch()
+        fixed = world.add_static(aurasim.Shape.box((4, 4, 1)), position=(10, 10, 0.5))
+        self.assertIsNotNone(fixed.fixed)
+        world.step(fixed.step - world.bodies().step)
+        hit = world.ray((10, 10, 20), (10, 10, -1))
+        self.assertTrue(hit.hit and hit.complete)
+        self.assertEqual(hit.fixed, fixed.fixed)
+        self.assertAlmostEqual(hit.distance, 19, delta=0.01)
+        gone = world.remove_static(fixed.fixed)
+        world.step(gone.step - world.bodies().step)
+        self.assertNotEqual(world.ray((10, 10, 20), (10, 10, -1)).fixed, fixed.fixed)
+        world.set_rate(0.5)
+        self.assertTrue(wait_until(lambda: {node.rate for node in world.nodes()} == {0.5}))
+        world.set_rate(1)
+        inf = float("inf")
+        world.set_regions([(-inf, -inf, 5, 0), (5, -inf, inf, 0), (-inf, 0, 5, inf), (5, 0, inf, inf)])
+        self.assertEqual(world.info().regions[0][2], 5)
+        self.assertTrue(world.bodies().exact)
+        world.set_scene("tower")
+        self.assertEqual((world.bodies().step, world.info().scene), (0, "tower"))
+
+    def test_a_region_changes_its_process(self):
+        world = self.launch(paused=False)
+        before = world.nodes()[2].pid
+        after = world.drain(2)
+        self.assertNotEqual(before, after)
+        self.assertTrue(wait_until(lambda: world.nodes()[2].pid == after))
+
+    def test_a_world_is_saved_and_gone_on_from(self):
+        world = self.launch(paused=False, time__sync="deterministic")
+        self.assertTrue(wait_until(lambda: world.bodies().step > 100))
+        file = self.folder / "world.cut"
+        saved = world.save(file)
+        self.assertEqual(saved.file, str(file))
+        self.assertTrue(file.exists())
+        world.close()
+        again = self.launch(load=file, time__sync="deterministic", regions__count=1)
+        stood = again.bodies()
+        self.assertGreaterEqual(stood.step, saved.step)
+        self.assertLess(stood.step, saved.step + 600)
+
+    def test_a_launched_run_writes_its_report(self):
+        world = self.launch(report=self.folder / "report")
+        world.step(10)
+        self.assertEqual(world.close(), 0)
+        self.assertTrue((self.folder / "report" / "summary.json").exists())
+        self.assertTrue(world.closed)
+
+
+class Errors(WorldTest):
+    def test_a_file_or_a_set_that_is_wrong(self):
+        with self.assertRaisesRegex(aurasim.BadFile, "nowhere.yaml"):
+            aurasim.World.connect(self.folder / "nowhere.yaml")
+        with self.assertRaisesRegex(aurasim.BadFile, "time.step_hz"):
+            aurasim.World.launch(launch_file("demo"), set=self.overrides(time__step_hz=-3))
+        with self.assertRaises(ValueError):
+            aurasim.World.launch(launch_file("demo"), set=["no.such.key=1"])
+
+    def test_no_run_and_a_run_that_differs(self):
+        with self.assertRaises(aurasim.NoSuchRun):
+            self.connect(timeout=2)
+        self.launch(paused=False)
+        with self.assertRaises(aurasim.RunDiffers):
+            self.connect(time__substeps=4)
+        with self.assertRaisesRegex(aurasim.LaunchFailed, "exit code 3"):
+            self.launch(time__substeps=4)
+
+    def test_a_load_that_does_not_fit(self):
+        (self.folder / "no.cut").write_text("this is no world")
+        with self.assertRaisesRegex(aurasim.LaunchFailed, "no.cut"):
+            self.launch(load=self.folder / "no.cut")
+
+    def test_what_is_refused_says_why(self):
+        world = self.launch()
+        nan = float("nan")
+        with self.assertRaisesRegex(aurasim.Refused, "finite"):
+            world.spawn(aurasim.Shape.sphere(0.5), position=(0, nan, 5))
+        with self.assertRaisesRegex(aurasim.Refused, "finite"):
+            world.impulses(world.bodies().ids[:2], np.array([[0, 0, 1], [0, nan, 0]]))
+        with self.assertRaises(aurasim.Refused):
+            world.spawn("no such kind", position=(0, 0, 5))
+        with self.assertRaises(aurasim.Refused):
+            world.spawn(aurasim.Shape.sphere(-1), position=(0, 0, 5))
+        with self.assertRaises(aurasim.Refused):
+            world.set_rate(1e30)
+        with self.assertRaises(aurasim.Refused):
+            world.set_scene("no_such_scene")
+        with self.assertRaisesRegex(aurasim.Refused, "no_mesh.obj"):
+            world.spawn(aurasim.Shape.mesh(str(self.folder / "no_mesh.obj")))
+        with self.assertRaises(aurasim.Refused):
+            world.step(0)
+        with self.assertRaisesRegex(aurasim.Refused, "region 17"):
+            world.drain(17)
+        with self.assertRaises(ValueError):
+            world.impulses(np.arange(3), np.zeros((2, 3)))
+        self.assertEqual(world.step().step, 1)
+
+    def test_steps_are_for_a_run_that_is_paused(self):
+        world = self.launch(paused=False)
+        with self.assertRaisesRegex(aurasim.Refused, "paused"):
+            world.step()
+
+    def test_a_time_out_ends_the_call_and_not_the_world(self):
+        world = self.launch()
+        with self.assertRaises(aurasim.TimedOut):
+            world.step(600, timeout=0.5)
+        self.assertTrue(wait_until(lambda: {node.state for node in world.nodes()} == {"paused"}))
+        self.assertEqual(world.bodies().step, 600)
+        self.assertEqual(world.step().step, 601)
+
+    def test_ctrl_c_ends_the_call_and_not_the_world(self):
+        world = self.launch()
+        threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            world.step(600)
+        self.assertTrue(wait_until(lambda: {node.state for node in world.nodes()} == {"paused"}))
+        self.assertEqual(world.step().step, 601)
+
+    def test_after_the_end(self):
+        world = self.launch()
+        world.close()
+        with self.assertRaises(aurasim.Ended):
+            world.step()
+        stopped = self.launch(paused=False)
+        stopped.stop()
+        with self.assertRaises(aurasim.Ended):
+            for _ in range(1000):
+                stopped.bodies()
+                time.sleep(0.02)
+
+    def test_an_agent_that_dies(self):
+        world = self.launch(paused=False)
+        os.kill(world.agent_pid, signal.SIGKILL)
+        with self.assertRaises(aurasim.Ended):
+            world.bodies()
+        self.assertTrue(wait_until(lambda: not processes_of_domain(self.domain.number)), "its run ends with it")
+
+    def test_no_program(self):
+        with self.assertRaises(aurasim.NoProgram):
+            aurasim.World.connect(launch_file("demo"), program=str(self.folder / "aurasim"))
+
+
+class KilledClients(WorldTest):
+    def start_client(self, body):
+        """A program that prints a line, and then sleeps."""
+        script = textwrap.dedent(body).format(file=str(launch_file("demo")), overrides=self.overrides())
+        client = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(client.stdout.close)
+        self.addCleanup(client.wait)
+        self.addCleanup(client.kill)
+        line = client.stdout.readline().split()
+        self.assertTrue(line)
+        return client, [int(word) for word in line]
+
+    def test_a_run_ends_with_the_program_that_has_launched_it(self):
+        client, (agent,) = self.start_client("""
+            import aurasim, time
+            world = aurasim.World.launch({file!r}, set={overrides!r}, timeout=90)
+            print(world.agent_pid, flush=True)
+            time.sleep(600)
+        """)
+        self.assertGreaterEqual(len(processes_of_domain(self.domain.number)), 5)
+        client.kill()
+        self.assertTrue(wait_until(lambda: not command_line(agent)))
+        self.assertTrue(wait_until(lambda: not processes_of_domain(self.domain.number)))
+
+    def test_in_the_middle_of_a_step_too(self):
+        client, (agent,) = self.start_client("""
+            import aurasim, os, time
+            world = aurasim.World.launch({file!r}, set={overrides!r}, timeout=90, paused=True)
+            print(world.agent_pid, flush=True)
+            world.step(6000)
+        """)
+        client.kill()
+        self.assertTrue(wait_until(lambda: not command_line(agent)))
+        self.assertTrue(wait_until(lambda: not processes_of_domain(self.domain.number)))
+
+    def test_a_run_that_others_have_started_goes_on(self):
+        world = self.launch(paused=False)
+        client, (agent,) = self.start_client("""
+            import aurasim, time
+            world = aurasim.World.connect({file!r}, set={overrides!r}, timeout=90)
+            world.set_rate(1)
+            print(world.agent_pid, flush=True)
+            time.sleep(600)
+        """)
+        before = world.bodies().step
+        client.kill()
+        self.assertTrue(wait_until(lambda: not command_line(agent)))
+        self.assertTrue(wait_until(lambda: world.bodies().step > before + 120))
+        self.assertEqual({node.state for node in world.nodes()}, {"running"})
+        self.assertEqual({node.generation for node in world.nodes()}, {0}, "nobody has gone back")
+
+    def test_a_program_that_just_ends_leaves_nothing(self):
+        client, (agent,) = self.start_client("""
+            import aurasim
+            world = aurasim.World.launch({file!r}, set={overrides!r}, timeout=90)
+            print(world.agent_pid, flush=True)
+        """)
+        self.assertEqual(client.wait(GENEROUS_S), 0)
+        self.assertFalse(command_line(agent))
+        self.assertEqual(processes_of_domain(self.domain.number), [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
