@@ -25,6 +25,10 @@ packages_of_import=(
   # other programs' models: SDF and URDF, MJCF, what neither says of XML
   libsdformat-dev libmujoco-dev libtinyxml2-dev
 )
+packages_of_python=(
+  # the Python module, with numpy, and `pip install .` without network
+  pybind11-dev python3-dev python3-numpy python3-pip python3-wheel python3-venv
+)
 packages_of_tests=(
   # second builds in seconds, the format check, the Debian package
   ccache clang-format dpkg-dev
@@ -47,7 +51,7 @@ fail() {
 
 case ${1:-} in
   '')
-    packages+=("${packages_of_import[@]}" "${packages_of_tests[@]}")
+    packages+=("${packages_of_import[@]}" "${packages_of_python[@]}" "${packages_of_tests[@]}")
     # A node of another origin is as good (and brings an npm that Debian's would be in conflict with).
     command -v node >/dev/null || packages+=(nodejs)
     command -v npm >/dev/null || packages+=(npm)

@@ -30,7 +30,7 @@ class Steering(WorldTest):
         bodies = world.bodies()
         self.assertFalse(bodies.exact)
         n = len(bodies)
-        self.assertGreater(n, 100)
+        self.assertGreater(n, 50)
         self.assertEqual(bodies.positions.shape, (n, 3))
         self.assertEqual(bodies.rotations.shape, (n, 4))
         self.assertEqual(bodies.ids.dtype, np.uint64)
