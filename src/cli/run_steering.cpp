@@ -110,16 +110,14 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   return command;
 }
 
-dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count) {
+dds::RunCommand RunSteering::send_until(core::Generation generation, core::Step until) {
   dds::RunCommand command;
-  command.kind = Kind::kStep;
-  command.count = count;
+  command.kind = Kind::kPause;
   command.generation = generation;
-  command.at_step = from + count;
+  command.at_step = until;
   for (const auto& [region, seen] : control_.statuses()) {
     if (belongs(seen)) command.run = seen.status.run;
   }
-  command.epoch_ns = node::wall_clock_ns();
   command.request = control_.send(command);
   return command;
 }

@@ -42,9 +42,10 @@ class RunSteering {
   /// SteeringRefused when the run cannot do that any more.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
-  /// Of a run that stands in state `from` of this generation: the next ones are due at once. For a client that waits
-  /// for each of them.
-  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count);
+  /// Of a run that stands: all go on at once, and stand again in state `until` of this generation. For a client that
+  /// waits for each state. (A step says how many: a node that has followed the others before it hears of it would do so
+  /// many more.)
+  dds::RunCommand send_until(core::Generation generation, core::Step until);
 
   /// Does every live node show the effect of `command`?
   bool has_taken_effect(const dds::RunCommand& command);
