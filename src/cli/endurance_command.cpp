@@ -16,7 +16,7 @@
 namespace aurasim::cli {
 namespace {
 
-void print(const experiment::Endured& so_far, std::chrono::steady_clock::time_point begin) {
+void print_line(const experiment::Endured& so_far, std::chrono::steady_clock::time_point begin) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const nlohmann::ordered_json row = {{"hours", so_far.hours},
                                       {"state", so_far.state},
@@ -47,7 +47,7 @@ int run_endurance(const FileArguments& files, experiment::EndurancePlan plan) {
   });
   const auto begin = std::chrono::steady_clock::now();
   const experiment::Endured end = experiment::endure(
-      launch, plan, [begin](const experiment::Endured& so_far) { print(so_far, begin); }, stop);
+      launch, plan, [begin](const experiment::Endured& so_far) { print_line(so_far, begin); }, stop);
   return static_cast<int>(end.failure.empty() ? ExitCode::kOk : ExitCode::kFailed);
 }
 

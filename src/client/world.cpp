@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <aurasim/client.h>
@@ -12,6 +12,9 @@ namespace {
 
 using nlohmann::json;
 
+/// This program may have gone to another folder since the agent was started.
+std::string absolute(const std::string& file) { return std::filesystem::absolute(file).string(); }
+
 json shape_json(const Shape& shape) {
   switch (shape.kind) {
     case Shape::Kind::kNone:
@@ -23,7 +26,7 @@ json shape_json(const Shape& shape) {
     case Shape::Kind::kCapsule:
       return {{"radius", shape.radius_m}, {"height", shape.height_m}};
     case Shape::Kind::kMesh:
-      return {{"mesh", shape.file}, {"in_parts", shape.in_parts}};
+      return {{"mesh", absolute(shape.file)}, {"in_parts", shape.in_parts}};
   }
   return nullptr;
 }
@@ -151,7 +154,7 @@ std::uint32_t World::drain(std::uint32_t region, Seconds time_out) {
 }
 
 SavedWorld World::save(const std::string& file, Seconds time_out) {
-  return saved_world_of(impl_->ask({{"do", "save"}, {"file", file}}, time_out));
+  return saved_world_of(impl_->ask({{"do", "save"}, {"file", absolute(file)}}, time_out));
 }
 Acknowledgement World::load(const std::string& name, Seconds time_out) {
   return impl_->act_one({{"kind", "load"}, {"name", name}}, 0, time_out);

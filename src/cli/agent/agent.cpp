@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -26,7 +27,7 @@ using client::Message;
 using nlohmann::json;
 using Steer = dds::RunCommandKind;
 
-constexpr auto kRound = 20ms;
+constexpr auto kLookEvery = 20ms;
 
 Message failure(Kind kind, const std::string& what) { return {{{"error", name_of(kind)}, {"what", what}}, {}}; }
 
@@ -54,28 +55,35 @@ std::vector<std::string> launch_words(const json& asked, const std::string& file
 void Agent::serve() {
   try {
     while (!closing_) {
-      std::optional<Message> question = client::read_message(socket_, Patience::Clock::now() + kRound);
-      if (!question) {
-        try {
-          if (run_) run_->turn(0ms);
-        } catch (const Problem&) {
-          // It is told when it is asked.
-        }
-        continue;
-      }
-      const Patience patience(socket_, question->head.value("time_out_s", 0.0));
-      try {
-        Message said = answer(*question, patience);
-        said.head["request"] = question->head.value("request", std::uint64_t{0});
-        client::write_message(socket_, said);
-      } catch (const Abandoned&) {
-        continue;
+      const std::optional<Message> question = client::read_message(socket_, Patience::Clock::now() + kLookEvery);
+      if (question) {
+        reply(*question);
+      } else {
+        look();
       }
     }
   } catch (const client::ConnectionLost&) {
     spdlog::info("the client has gone");
   }
   if (run_ && run_->launched() != nullptr) run_->launched()->ask_to_stop();
+}
+
+void Agent::look() {
+  try {
+    if (run_) run_->turn(0ms);
+  } catch (const Problem&) {
+    // It is told when somebody asks.
+  }
+}
+
+void Agent::reply(const Message& question) {
+  try {
+    Message said = answer(question, Patience(socket_, question.head.value("time_out_s", 0.0)));
+    said.head["request"] = question.head.value("request", std::uint64_t{0});
+    client::write_message(socket_, said);
+  } catch (const Abandoned&) {
+    // Nobody waits for it any more.
+  }
 }
 
 /// Whatever goes wrong is told.
@@ -110,7 +118,7 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return state(run().step(count, patience));
   }
   if (what == "info") return {info_json(run()), {}};
-  if (what == "nodes") return run().turn(0ms), Message{nodes_json(run().nodes()), {}};
+  if (what == "nodes") return {nodes_json(run().nodes()), {}};
   if (what == "act") return {act(asked, patience), {}};
   if (what == "ray") {
     return {ray_json(act_alone(core::Ray{vector_of(asked, "from"), vector_of(asked, "to"), {}}, patience)), {}};
@@ -120,9 +128,12 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return {save_json(act_alone(core::Save{std::filesystem::path(file).filename().string()}, patience), file), {}};
   }
   if (what == "drain") return {{{"pid", run().drain(core::RegionId{asked.value("region", 0U)}, patience)}}, {}};
-  if (what == "resume") return run().steer(Steer::kResume, patience), Message{json::object(), {}};
-  if (what == "reset") return run().steer(Steer::kReset, patience), Message{json::object(), {}};
-  if (what == "stop") return run().steer(Steer::kStop, patience), Message{json::object(), {}};
+  static const std::map<std::string, Steer> steering = {
+      {"resume", Steer::kResume}, {"reset", Steer::kReset}, {"stop", Steer::kStop}};
+  if (const auto kind = steering.find(what); kind != steering.end()) {
+    run().steer(kind->second, patience);
+    return {json::object(), {}};
+  }
   throw Problem(Kind::kRefused, "nothing is called '" + what + "'");
 }
 

@@ -18,6 +18,8 @@ class Agent {
   void serve();
 
  private:
+  void look();
+  void reply(const client::Message& question);
   client::Message answer(const client::Message& question, const Patience& patience);
   client::Message answer_of_run(const std::string& what, const nlohmann::json& asked, const Patience& patience);
   nlohmann::json open(const nlohmann::json& asked, const Patience& patience);
