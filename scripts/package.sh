@@ -25,15 +25,15 @@ done
 
 install_packages() {
   scripts/setup.sh --demo
-  # What setup.sh installs for `aurasim import`, and what finds the libraries that the programs are linked with.
-  local packages_of_import as_root=()
-  eval "$(sed -n '/^packages_of_import=(/,/^)/p' scripts/setup.sh)"
-  packages_of_import+=(dpkg-dev ccache)
-  ! dpkg-query --show "${packages_of_import[@]}" >/dev/null 2>&1 || return 0
+  # What setup.sh installs for `aurasim import` and Python, and what finds the libraries that programs are linked with.
+  local packages_of_import packages_of_python more as_root=()
+  eval "$(sed -nE '/^packages_of_(import|python)=\(/,/^\)/p' scripts/setup.sh)"
+  more=("${packages_of_import[@]}" "${packages_of_python[@]}" dpkg-dev ccache)
+  ! dpkg-query --show "${more[@]}" >/dev/null 2>&1 || return 0
   [[ $EUID -eq 0 ]] || as_root=(sudo)
   "${as_root[@]}" apt-get -q update
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 install --yes \
-    --no-install-recommends "${packages_of_import[@]}"
+    --no-install-recommends "${more[@]}"
 }
 
 [[ -z $setup ]] || install_packages

@@ -1,5 +1,6 @@
 # What `cpack` makes Debian packages of, beside what CMakeLists.txt installs. The programs and all that they need are one
-# package, aurasim; aurasim-import is another, for its libraries: a node's host, or its container, does without.
+# package, aurasim. What a node's host, or its container, does without are others: aurasim-import, for its libraries,
+# libaurasim-dev (src/client) and python3-aurasim (src/python).
 install(FILES ${PROJECT_SOURCE_DIR}/docs/systemd/aurasim-node@.service ${PROJECT_SOURCE_DIR}/docs/systemd/aurasim-spare.service
               ${PROJECT_SOURCE_DIR}/docs/systemd/aurasim-overseer.service ${PROJECT_SOURCE_DIR}/docs/systemd/node.env
   DESTINATION share/aurasim/systemd)

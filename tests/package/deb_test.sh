@@ -120,6 +120,16 @@ if compgen -G "$root/packages/aurasim-import_*.deb" >/dev/null; then
   [[ -s $root/tmp/scene.yaml ]] || fail "import has written nothing"
 fi
 
+if compgen -G "$root/packages/python3-aurasim_*.deb" >/dev/null; then
+  stage "driven by a program"
+  apt install --no-install-recommends "/packages/$(cd "$root/packages" && ls libaurasim-dev_*.deb)" \
+    "/packages/$(cd "$root/packages" && ls python3-aurasim_*.deb)"
+  brings "$before_kib"
+  offline setpriv --reuid=aurasim --regid=aurasim --clear-groups bash -c 'cd /var/lib/aurasim &&
+    python3 /usr/share/doc/aurasim/examples/lockstep.py' || fail "lockstep.py"
+  [[ -f $root/usr/include/aurasim/client.h && -L $root/usr/lib/libaurasim_client.so ]] || fail "libaurasim-dev"
+fi
+
 stage "installed once more: what the host's owner has written stays"
 echo "LAUNCH=tower" >"$root/etc/aurasim/node.env"
 apt install --reinstall --no-install-recommends "/packages/$(cd "$root/packages" && ls aurasim_*.deb)"
@@ -132,7 +142,7 @@ apt remove aurasim
 
 stage "purged"
 rm -f "$root/tmp/scene.yaml"
-apt purge aurasim 'aurasim-import*'
+apt purge aurasim 'aurasim-import*' 'libaurasim*' 'python3-aurasim*'
 apt autoremove --purge
 inventory >"$work/after"
 diff "$work/before" "$work/after" || fail "something stays behind, or is gone"

@@ -1,4 +1,4 @@
-# Read by cpack (CPACK_PROJECT_CONFIG_FILE, see ../packaging.cmake): two packages, and what is Debian's about them.
+# Read by cpack (CPACK_PROJECT_CONFIG_FILE, see ../packaging.cmake): the packages, and what is Debian's about them.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY OFF)
@@ -32,6 +32,24 @@ URDF, SDF, MJCF and mesh files become scene files of aurasim, and its scenes
 SDF files, by the fields' own libraries. It is what `aurasim import` and
 `aurasim export` run.")
 set(CPACK_DEBIAN_IMPORT_PACKAGE_DEPENDS "aurasim (= ${CPACK_PACKAGE_VERSION})")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libaurasim-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ programs that drive a world of aurasim
+A library, its headers and find_package(aurasim): join or launch a run, see
+its bodies, act, and step the world in lock-step with a program.")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "aurasim (= ${CPACK_PACKAGE_VERSION})")
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-aurasim)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Python programs that drive a world of aurasim
+The module `aurasim`: join or launch a run, see its bodies as numpy arrays,
+act, and step the world in lock-step with a program.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "aurasim (= ${CPACK_PACKAGE_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+
+# A wheel is made by pip (src/python).
+list(REMOVE_ITEM CPACK_COMPONENTS_ALL wheel)
 
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PRE_BUILD_SCRIPTS ${own}/finish.cmake)
