@@ -5,8 +5,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/horizon.h"
 #include "core/make_aura.h"
 #include "node/local_origin.h"
+#include "node/setpoint_record.h"
 #include "physics/solver_names.h"
 
 namespace aurasim::cli {
@@ -73,6 +75,9 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.is_continuous();
   setup.physics.threads = threads_of(launch, 1);
+  setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
+  setup.control = launch.control_rules();
+  if (!launch.control.replay.empty()) setup.recorded = node::read_setpoints(launch.control.replay);
   if (launch.physics.origin == config::Origin::kRegion) {
     setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
   }

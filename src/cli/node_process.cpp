@@ -121,6 +121,7 @@ ExitCode NodeProcess::meet_and_run() {
   transport_.emplace(participant_, transport_settings());
   observers_.emplace(launch_, participant_, options_.region);
   command_server_.emplace(launch_, participant_, options_.region, options_.saves);
+  programs_.emplace(participant_);
   served_map_ = launch_.regions.version();
   checkpoints_.emplace(participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
@@ -219,6 +220,7 @@ void NodeProcess::begin_with(const node::StepReport& report) {
 void NodeProcess::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     note_faults(report);
+    unbearable_setpoints_ += report.unbearable;
     if (!report.put_back_from) recorded_ = std::max(recorded_, report.step);
     const auto times = frame_times_.find(report.step);
     if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : node::FrameTimes{});
@@ -247,8 +249,10 @@ void NodeProcess::run_until_end() {
     save_parts();
     reset_if_due();
     change_if_due();
+    hear_programs();
     if (!wait_until_due()) continue;
     look_for_deaths();
+    hear_programs();
     compute_step();
     plan_checkpoint();
   }

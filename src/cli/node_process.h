@@ -25,6 +25,7 @@
 #include "dds/control.h"
 #include "dds/dds_transport.h"
 #include "dds/participant.h"
+#include "dds/setpoint_bus.h"
 #include "node/node.h"
 #include "node/pacer.h"
 #include "node/recorder.h"
@@ -154,6 +155,7 @@ class NodeProcess {
   void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
+  void hear_programs();
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
@@ -200,6 +202,7 @@ class NodeProcess {
   std::optional<dds::DdsTransport> transport_;   ///< once the domain is known to be free
   std::optional<ReplicaPublisher> observers_;    ///< likewise
   std::optional<CommandServer> command_server_;  ///< likewise
+  std::optional<dds::SetpointReader> programs_;  ///< likewise
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
   core::Step saved_last_ = 0;               ///< state of the last save that nobody has asked for, on the lead
@@ -253,11 +256,13 @@ class NodeProcess {
   Window window_;
   double wait_ms_ = 0;
   std::map<core::Step, node::FrameTimes> frame_times_;  ///< of states that are not recorded yet
-  core::Step hurry_until_ = 0;       ///< somebody waits for this state: no slower than in real time until then
-  std::size_t refusals_noted_ = 0;   ///< of the protocol's
-  std::uint64_t broken_bodies_ = 0;  ///< taken out here since the start
-  std::string fault_;                ///< the last one, for people
-  std::string waiting_;              ///< whom for, if it takes long
+  core::Step hurry_until_ = 0;      ///< somebody waits for this state: no slower than in real time until then
+  std::size_t refusals_noted_ = 0;  ///< of the protocol's
+  std::uint64_t unheard_setpoints_ = 0, unbearable_setpoints_ = 0;  ///< since the start
+  bool says_late_ = false, says_refused_ = false;                   ///< of setpoints, once
+  std::uint64_t broken_bodies_ = 0;                                 ///< taken out here since the start
+  std::string fault_;                                               ///< the last one, for people
+  std::string waiting_;                                             ///< whom for, if it takes long
   std::optional<std::chrono::steady_clock::time_point> waiting_since_;
   std::chrono::steady_clock::time_point computed_at_;  ///< the last state
   std::chrono::steady_clock::time_point began_;

@@ -70,6 +70,7 @@ RunInfo info_of(const json& head) {
   info.tick_hz = head.value("tick_hz", 0.0);
   info.lookahead = head.value("lookahead", 0);
   info.sync = head.value("sync", "");
+  info.joints = head.value("joints", std::vector<std::string>{});
   info.prototypes = head.value("prototypes", std::vector<std::string>{});
   for (const json& box : head.value("regions", json::array())) info.regions.push_back(box_of(box));
   return info;
@@ -91,6 +92,9 @@ std::vector<NodeStatus> nodes_of(const json& head) {
     node.hand_offs_in = said.value("hand_offs_in", std::uint64_t{0});
     node.violations = said.value("violations", std::uint64_t{0});
     node.redos = said.value("redos", 0U);
+    node.setpoints_heard = said.value("setpoints_heard", std::uint64_t{0});
+    node.setpoints_late = said.value("setpoints_late", std::uint64_t{0});
+    node.setpoints_refused = said.value("setpoints_refused", std::uint64_t{0});
     node.frame_ms_p50 = said.value("frame_ms_p50", 0.0);
     node.frame_ms_p99 = said.value("frame_ms_p99", 0.0);
     node.real_time_factor = said.value("real_time_factor", 0.0);

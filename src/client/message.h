@@ -12,7 +12,7 @@
 namespace aurasim::client {
 
 /// Changes with every change of what is said.
-inline constexpr int kAgentProtocol = 1;
+inline constexpr int kAgentProtocol = 2;
 
 struct Message {
   nlohmann::json head;

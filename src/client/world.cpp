@@ -210,6 +210,33 @@ std::vector<Acknowledgement> World::set_velocities(const std::vector<std::uint64
   return impl_->act(std::move(asks), at_step, time_out);
 }
 
+std::int64_t World::control(const Control& control, std::int64_t at_step, Seconds time_out) {
+  Message message;
+  message.head = {{"do", "control"}, {"at", at_step}};
+  const auto add = [&message](const auto& array) {
+    message.body.append(reinterpret_cast<const char*>(array.data()), array.size() * sizeof(array[0]));
+  };
+  const std::pair<const char*, const BodyVectors*> lists[] = {{"forces", &control.forces},
+                                                              {"torques", &control.torques},
+                                                              {"velocities", &control.velocities},
+                                                              {"spins", &control.spins}};
+  for (const auto& [name, list] : lists) {
+    if (!list->values.empty()) check_rows(list->bodies.size(), list->values.size());
+    message.head[name] = {list->bodies.size(), !list->values.empty()};
+    add(list->bodies), add(list->values);
+  }
+  const JointDrives& drives = control.drives;
+  if (!drives.drives.empty() && drives.drives.size() != drives.joints.size()) {
+    throw Error("found " + std::to_string(drives.joints.size()) + " joints and " +
+                std::to_string(drives.drives.size()) + " drives, allowed: one for each joint, or none");
+  }
+  message.head["drives"] = {drives.joints.size(), !drives.drives.empty()};
+  add(drives.joints);
+  static_assert(sizeof(JointDrive) == 6 * sizeof(double));
+  add(drives.drives);
+  return impl_->connection.ask(std::move(message), time_out).head.value("step", std::int64_t{0});
+}
+
 const char* version() { return AURASIM_VERSION; }
 
 }  // namespace aurasim::client

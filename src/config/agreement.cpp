@@ -207,6 +207,11 @@ void add_settings(const Launch& launch, Digest& d) {
   d.add(launch.aura.uncertainty);
   d.bytes(static_cast<std::uint64_t>(launch.survival.on_death));
   d.bytes(static_cast<std::uint64_t>(launch.checkpoint_steps()));
+  const core::ControlRules control = launch.control_rules();
+  d.bytes(static_cast<std::uint64_t>(control.late));
+  d.bytes(static_cast<std::uint64_t>(control.on_silence));
+  d.bytes(static_cast<std::uint64_t>(control.silence));
+  d.bytes(launch.control.replay_content);
 }
 
 void add_world(const Launch& launch, Digest& d) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -65,6 +67,28 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   fields.close();
 }
 
+/// FNV-1a. Nothing: there is no such file.
+std::optional<std::uint64_t> hash_of_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !std::filesystem::is_regular_file(file)) return std::nullopt;
+  std::uint64_t hash = 1469598103934665603ull;
+  for (char c = 0; in.get(c);) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return hash;
+}
+
+void read_control(const Field& field, const std::filesystem::path& folder, Control& control) {
+  if (!field.given()) return;
+  const Fields fields(field);
+  control_keys().read_members(fields, control);
+  if (const Field f = fields["replay"]; f.given()) {
+    if (const auto name = f.text()) control.replay = (folder / *name).lexically_normal();
+    const std::optional<std::uint64_t> content = hash_of_file(control.replay);
+    if (!content) f.refuse(fmt::format("setpoints.csv of an earlier run ({} is none)", control.replay.string()));
+    control.replay_content = content.value_or(0);
+  }
+  fields.close();
+}
+
 /// Whether the files are there is asked where they are used: hosts that only have nodes need no key of the viewer.
 void read_overseer(const Field& field, const std::filesystem::path& folder, Overseer& overseer) {
   if (!field.given()) return;
@@ -123,6 +147,7 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
   apply_preset(fields["physics"], launch);
   launch_keys().read_members(fields, launch);
   read_dds(fields["dds"], launch.file.parent_path(), launch.dds);
+  read_control(fields["control"], launch.file.parent_path(), launch.control);
   read_overseer(fields["overseer"], launch.file.parent_path(), launch.overseer);
   if (fields.given()) read_scene_of(fields["scene"], of_scene, {.is_known = true, .layout = layout}, launch, errors);
   fields.close();
@@ -141,6 +166,10 @@ bool Launch::redoes() const {
 core::Step Launch::checkpoint_steps() const {
   if (survival.on_death != OnDeath::kRecover || regions.size() == 1) return 0;
   return std::max<core::Step>(1, std::llround(survival.checkpoint_s * time.step_hz));
+}
+
+core::ControlRules Launch::control_rules() const {
+  return {control.late, control.on_silence, std::max<core::Step>(1, std::llround(control.silence_s * time.step_hz))};
 }
 
 int Launch::lookahead() const {

@@ -13,6 +13,7 @@
 #include "core/aura.h"
 #include "core/region_map.h"
 #include "core/scene.h"
+#include "core/setpoint.h"
 #include "core/sync_mode.h"
 
 namespace aurasim::config {
@@ -87,6 +88,15 @@ struct Survival {
   double patience_s = 20;   ///< so long the others wait for somebody who takes the region over, before one of them does
 };
 
+/// Of programs that steer bodies and joints.
+struct Control {
+  core::LateSetpoint late = core::LateSetpoint::kNextState;
+  core::OnSilence on_silence = core::OnSilence::kHold;
+  double silence_s = 0.5;            ///< simulated; a program that says nothing for longer has fallen silent
+  std::filesystem::path replay;      ///< setpoints.csv of an earlier run, absolute once read; empty: none
+  std::uint64_t replay_content = 0;  ///< hash of it
+};
+
 struct Observe {
   double tick_hz = 20;
 };
@@ -127,6 +137,7 @@ struct Launch {
   Physics physics;
   Dds dds;
   Observe observe;
+  Control control;
   Overseer overseer;
   Survival survival;
 
@@ -137,6 +148,7 @@ struct Launch {
   bool redoes() const;
   /// So many states lie between two that can be gone back to; 0: nobody goes back.
   core::Step checkpoint_steps() const;
+  core::ControlRules control_rules() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;
   /// Likewise of what decides about bits on any map: the scene, and how physics computes it. A saved world has it.

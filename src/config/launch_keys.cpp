@@ -184,6 +184,30 @@ const KeysOf<Observe>& observe_keys() {
   return keys;
 }
 
+const KeysOf<Control>& control_keys() {
+  static const KeysOf<Control> keys(
+      "control", "Of programs that steer bodies and joints (docs/client.md).",
+      {
+          optional("late", &Control::late,
+                   choice<core::LateSetpoint>(
+                       {{"next", core::LateSetpoint::kNextState}, {"drop", core::LateSetpoint::kDropped}}),
+                   "what comes too late for the state that it names takes effect in the next one, or not at all; it is "
+                   "counted either way"),
+          optional("silence", &Control::silence_s, number(Range::from_to(0.001, 1e6), "s"),
+                   "simulated; a program of which nothing has been heard for longer has fallen silent"),
+          optional("on_silence", &Control::on_silence,
+                   choice<core::OnSilence>({{"hold", core::OnSilence::kHold},
+                                            {"zero", core::OnSilence::kZero},
+                                            {"last", core::OnSilence::kLast}}),
+                   "hold: what it has steered stops: no force and no speed, and drives keep their positions; zero: all "
+                   "is let go of; last: as it said last, for ever"),
+          optional("replay", text("a file"),
+                   "setpoints.csv of an earlier run's report, relative to this file: takes effect in the same states")
+              .otherwise("none"),
+      });
+  return keys;
+}
+
 const KeysOf<Survival>& survival_keys() {
   static const KeysOf<Survival> keys(
       "survival", "What becomes of the run when one of its nodes dies.",
@@ -255,6 +279,7 @@ const KeysOf<Launch>& launch_keys() {
           optional("dds", map(dds_keys), "how nodes find each other"),
           optional("survival", &Launch::survival, survival_keys, "what happens when a node dies"),
           optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
+          optional("control", map(control_keys), "programs that steer bodies and joints"),
           optional("overseer", map(overseer_keys), "the viewer's server"),
       });
   return keys;

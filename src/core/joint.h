@@ -24,6 +24,17 @@ struct JointMotor {
   double max_impulse = 0;  ///< in 1/240 s: N m s or N s
 };
 
+/// What drives the turn of a hinge or the way of a slider: effort = stiffness (position - q) + damping (speed - dq/dt)
+/// + effort, at most max_effort either way. Solved implicitly, so stiff drives are stable.
+struct JointDrive {
+  double position = 0;                                          ///< rad or m, from the initial pose
+  double speed = 0;                                             ///< rad/s or m/s
+  double stiffness = 0;                                         ///< N m/rad or N/m
+  double damping = 0;                                           ///< N m s/rad or N s/m
+  double effort = 0;                                            ///< N m or N
+  double max_effort = std::numeric_limits<double>::infinity();  ///< N m or N
+};
+
 /// Holds the two origins together; turns freely.
 struct BallJoint {};
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 namespace aurasim::core {
 namespace {
@@ -45,6 +46,19 @@ void append(std::vector<SavedMesh>& to, std::vector<SavedMesh> from) {
   }
 }
 
+/// Of several nodes, all of which hear the same; where one has heard it too late for its state, others may not have.
+void append(std::vector<Setpoints>& to, const std::vector<Setpoints>& from) {
+  const auto place = [](const Setpoints& one) { return std::tuple(one.client, one.sequence, one.at_step); };
+  to.insert(to.end(), from.begin(), from.end());
+  std::ranges::stable_sort(to, {}, place);
+  const auto is_said = [&](const Setpoints& one, const Setpoints& other) {
+    return one.client == other.client && one.sequence == other.sequence &&
+           (one.sequence != 0 || one.at_step == other.at_step);
+  };
+  const auto copies = std::ranges::unique(to, is_said);
+  to.erase(copies.begin(), copies.end());
+}
+
 void refuse_twins(const WorldCut& cut) {
   std::vector<BodyId> ids;
   for (const BodyRecord& body : cut.bodies.bodies) ids.push_back(body.id);
@@ -72,6 +86,7 @@ WorldCut merge(std::vector<WorldCut> parts) {
     append(whole.orders, part->orders);
     append(whole.shapes, part->shapes);
     append(whole.meshes, std::move(part->meshes));
+    append(whole.setpoints, part->setpoints);
     whole.last_order = std::max(whole.last_order, part->last_order);
   }
   std::ranges::sort(whole.bodies.bodies, {}, &BodyRecord::id);

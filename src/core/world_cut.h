@@ -7,6 +7,7 @@
 
 #include "core/body_state.h"
 #include "core/order.h"
+#include "core/setpoint.h"
 
 namespace aurasim::core {
 
@@ -39,6 +40,7 @@ struct WorldCut {
   std::uint64_t last_order = 0;  ///< the sequence number of the newest, also of what has been left out
   std::vector<SavedShape> shapes;
   std::vector<SavedMesh> meshes;
+  std::vector<Setpoints> setpoints;  ///< in effect in this state, or in those of clusters under way, and later
 };
 
 /// The whole from the parts of all regions. Throws std::invalid_argument when they are not of one state, or when two of

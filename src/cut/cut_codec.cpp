@@ -27,7 +27,7 @@ constexpr std::size_t kMostOfHeader = 64 << 10;
 constexpr std::size_t kOrdersAtOnce = 1000;
 
 /// What follows the header, each with its length.
-enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShape, kMesh };
+enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShape, kMesh, kSetpoints };
 
 void put_number(std::string& out, std::uint32_t number) {
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(number >> (8 * i) & 0xff));
@@ -195,6 +195,9 @@ void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::World
       cut.meshes.push_back({named.hash, std::move(named.mesh)});
       return;
     }
+    case Piece::kSetpoints:
+      cut.setpoints.push_back(sound(wire.setpoints(octets(bytes)), "its setpoints"));
+      return;
     case Piece::kEnd:
       return;
   }
@@ -222,6 +225,7 @@ std::string encode(const SavedWorld& world) {
   for (const core::SavedShape& shape : cut.shapes) put(bytes, Piece::kShape, encode_shape(shape));
   for (const core::SavedMesh& mesh : cut.meshes)
     put(bytes, Piece::kMesh, wire.of(dds::NamedMesh{mesh.hash, mesh.mesh}));
+  for (const core::Setpoints& setpoints : cut.setpoints) put(bytes, Piece::kSetpoints, wire.of(setpoints));
   bytes.push_back(static_cast<char>(Piece::kEnd));
   return std::string(kMagic, kMagicBytes) + compressed(bytes);
 }

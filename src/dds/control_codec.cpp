@@ -76,6 +76,9 @@ void encode_counts(const Status& status, wire::NodeStatus& out) {
   out.late_collisions(status.late_collisions);
   out.missed_collisions(status.missed_collisions);
   out.redos(status.redos);
+  out.setpoints_heard(status.setpoints_heard);
+  out.setpoints_late(status.setpoints_late);
+  out.setpoints_refused(status.setpoints_refused);
   fill(out.listens_to(), status.listens_to, [](const core::Listened& who) { return value_of(who.region); });
   fill(out.listens_since(), status.listens_to, [](const core::Listened& who) { return who.since; });
   fill(out.listens_by(), status.listens_to,
@@ -94,6 +97,9 @@ void decode_counts(const wire::NodeStatus& in, Status& status) {
   status.late_collisions = in.late_collisions();
   status.missed_collisions = in.missed_collisions();
   status.redos = in.redos();
+  status.setpoints_heard = in.setpoints_heard();
+  status.setpoints_late = in.setpoints_late();
+  status.setpoints_refused = in.setpoints_refused();
   for (std::size_t i = 0; i < in.listens_to().size(); ++i) {
     core::Listened& who = status.listens_to.emplace_back();
     who.region = core::RegionId{in.listens_to()[i]};

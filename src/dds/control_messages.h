@@ -74,6 +74,9 @@ struct Status {
   std::uint64_t late_collisions = 0;    ///< since the start, as the node itself can see them (node/collision_watch.h)
   std::uint64_t missed_collisions = 0;  ///< likewise
   std::uint32_t redos = 0;              ///< how often this generation has been put back and computed again
+  std::uint64_t setpoints_heard = 0;    ///< since the start: messages of programs
+  std::uint64_t setpoints_late = 0;     ///< that came after their state had been computed here
+  std::uint64_t setpoints_refused = 0;  ///< not understood, too many, too far ahead; and what a body cannot bear
   std::vector<core::Listened> listens_to;  ///< and they to it, by region
   Durations frame;
   Durations physics;

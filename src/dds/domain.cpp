@@ -45,6 +45,7 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"orders", "aurasim::wire::AuraBatch"},
     {"cluster_graph", "aurasim::wire::ClusterGraph"},
     {"checkpoint", "aurasim::wire::Checkpoint"},
+    {"control", "aurasim::wire::Setpoints"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.

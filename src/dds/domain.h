@@ -40,9 +40,10 @@ enum class TopicId : std::uint8_t {
   kShape,
   kOrders,
   kClusterGraph,
-  kCheckpoint
+  kCheckpoint,
+  kControl
 };
-inline constexpr std::size_t kTopicCount = 14;
+inline constexpr std::size_t kTopicCount = 15;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 

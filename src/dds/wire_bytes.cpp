@@ -38,10 +38,12 @@ struct WireBytes::Samples {
   wire::Migration migration;
   wire::MigrationAck ack;
   wire::MeshShape mesh;
+  wire::Setpoints setpoints;
   wire::AuraBatchPubSubType aura_type;
   wire::MigrationPubSubType migration_type;
   wire::MigrationAckPubSubType ack_type;
   wire::MeshShapePubSubType mesh_type;
+  wire::SetpointsPubSubType setpoints_type;
 };
 
 WireBytes::WireBytes() {
@@ -70,6 +72,11 @@ std::vector<std::uint8_t> WireBytes::of(const NamedMesh& mesh) {
   return serialized(samples_->mesh_type, samples_->mesh);
 }
 
+std::vector<std::uint8_t> WireBytes::of(const core::Setpoints& setpoints) {
+  encode(setpoints, 0, samples_->setpoints);
+  return serialized(samples_->setpoints_type, samples_->setpoints);
+}
+
 Decoded<core::AuraBatch> WireBytes::aura(std::span<const std::uint8_t> bytes, const Expected& expected) {
   if (!deserialize(samples_->aura_type, bytes, samples_->aura)) return WireError::kMalformed;
   return decode(samples_->aura, expected);
@@ -83,6 +90,11 @@ Decoded<core::HandOff> WireBytes::hand_off(std::span<const std::uint8_t> bytes, 
 Decoded<NamedMesh> WireBytes::mesh(std::span<const std::uint8_t> bytes) {
   if (!deserialize(samples_->mesh_type, bytes, samples_->mesh)) return WireError::kMalformed;
   return decode(samples_->mesh, {});
+}
+
+Decoded<core::Setpoints> WireBytes::setpoints(std::span<const std::uint8_t> bytes) {
+  if (!deserialize(samples_->setpoints_type, bytes, samples_->setpoints)) return WireError::kMalformed;
+  return decode(samples_->setpoints, {});
 }
 
 }  // namespace aurasim::dds

@@ -9,6 +9,7 @@
 
 #include "dds/codec.h"
 #include "dds/command_codec.h"
+#include "dds/setpoint_codec.h"
 
 namespace aurasim::dds {
 
@@ -23,10 +24,12 @@ class WireBytes {
   std::vector<std::uint8_t> of(const core::HandOff& hand_off);
   std::vector<std::uint8_t> of(const core::HandOffAck& ack, std::uint64_t map_version);
   std::vector<std::uint8_t> of(const NamedMesh& mesh);
+  std::vector<std::uint8_t> of(const core::Setpoints& setpoints);
 
   Decoded<core::AuraBatch> aura(std::span<const std::uint8_t> bytes, const Expected& expected);
   Decoded<core::HandOff> hand_off(std::span<const std::uint8_t> bytes, const Expected& expected);
   Decoded<NamedMesh> mesh(std::span<const std::uint8_t> bytes);
+  Decoded<core::Setpoints> setpoints(std::span<const std::uint8_t> bytes);
 
  private:
   struct Samples;

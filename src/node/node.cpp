@@ -45,6 +45,8 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
       world_(scene_, setup.physics),
       watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_),
       first_own_shape_(scene.shapes.size()) {
+  world_.controls().use(setup.control);
+  for (const core::Setpoints& recorded : setup_.recorded) world_.controls().recall(recorded);
   protocol_.emplace(setup.protocol, map, *clearance_);
 }
 
@@ -115,6 +117,7 @@ void Node::note_removals() {
   report_.removals = world_.take_removed();
   for (const std::uint64_t request : world_.take_applied()) report_.applied.push_back({request, current_step(), {}});
   report_.declined = world_.take_declined();
+  report_.unbearable = world_.take_unbearable();
 }
 
 void Node::take_mail() {
@@ -175,6 +178,8 @@ void Node::clear_report() {
   report_.orders.clear();
   report_.applied.clear();
   report_.declined.clear();
+  report_.effects = {};
+  report_.unbearable = 0;
 }
 
 const StepReport& Node::step() {
@@ -189,6 +194,7 @@ const StepReport& Node::step() {
   save_if_due();
   if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
   forget_cuts();
+  forget_setpoints();
   if (setup_.protocol.aura.redo) order_redo();
   hold(report_);
   return report_;
@@ -210,6 +216,7 @@ void Node::compute_step() {
     announce_births(n);
     world_.step();
     note_removals();
+    note_effects();
   }
   finish_state();
 }
@@ -332,6 +339,7 @@ void Node::release(std::span<const core::Departure> departures) {
 }
 
 void Node::hand_over(const core::Departure& departure, core::ClusterState cluster) {
+  note_left_behind(cluster);
   for (const core::BodyRecord& body : cluster.bodies) {
     HandOffRow& row = report_.departures.emplace_back();
     row.stamp = current_step();

@@ -39,6 +39,8 @@ struct Cut {
 struct NodeSetup {
   core::ProtocolSettings protocol;
   physics::Settings physics;
+  core::ControlRules control;
+  std::vector<core::Setpoints> recorded;  ///< of an earlier run, to be heard in their states
   bool hash_states = true;
   PhaseClock clock = PhaseClock::kWall;
 };
@@ -79,6 +81,13 @@ struct Applied {
   std::optional<core::ObjectRef> object;  ///< the body that it has made
 };
 
+/// What has been in effect on bodies and joints hosted here, from a state on that each names: what has changed, and all
+/// that is in effect on those that have come. On those that have left nothing is, unless their next host says so.
+struct Effects {
+  std::vector<core::BodyEffect> bodies;
+  std::vector<core::JointEffect> joints;
+};
+
 /// Seconds spent in the phases of one step, by NodeSetup::clock.
 struct Durations {
   double physics_s = 0;    ///< apply, step, snapshot, release
@@ -105,6 +114,8 @@ struct StepReport {
   std::vector<core::Order> orders;          ///< received
   std::vector<Applied> applied;             ///< requests that were applied here
   std::vector<physics::Declined> declined;  ///< and those that bodies here could not bear
+  Effects effects;
+  std::uint64_t unbearable = 0;  ///< setpoints that would have made a body faster than may be
   std::vector<HandOffRow> departures;
   std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
   std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
@@ -174,6 +185,8 @@ class Node {
   /// What has become of a client's request, if it has been ordered, here or elsewhere: as far as is known here, and not
   /// longer than orders are kept. Null: nothing is known. Not of orders about the run as a whole.
   const core::Order* ordered(std::uint64_t request) const;
+  /// A program's word. Takes effect wherever the bodies are by then.
+  core::Heard hear(const core::Setpoints& setpoints);
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }
   /// As it has grown.
   const core::Scene& scene() const { return scene_; }
@@ -204,6 +217,9 @@ class Node {
  private:
   void take_mail();
   void note_removals();
+  void note_effects();
+  void note_left_behind(const core::ClusterState& cluster);
+  void forget_setpoints();
   void clear_report();
   void host_initial_bodies();
   std::vector<core::BodyRecord> initial_bodies();

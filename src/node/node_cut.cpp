@@ -66,6 +66,7 @@ core::WorldCut Node::orders_now(const core::WorldCut& earlier) const {
 /// order has been given out.
 void Node::add_orders(core::WorldCut& part, core::Step after) const {
   part.last_order = protocol_->last_order();
+  part.setpoints = world_.controls().since(after);
   const core::Order* const newest = newest_spawn();
   std::size_t shape = first_own_shape_;
   for (const core::Order& order : orders_) {

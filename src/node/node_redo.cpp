@@ -148,6 +148,7 @@ void Node::go_back_to(const Cut& cut) {
   next_injection_ = cut.next_injection;
   std::uint32_t nth = 0;
   for (const core::Adoption& adoption : cut.joining) adopt(adoption, nth++);
+  note_effects();
 }
 
 /// Keeps a report until its state is confirmed. A redo may go back farther than to what has been confirmed: the same
@@ -209,6 +210,9 @@ std::span<const StepReport> Node::finish(core::Step last) {
   for (const StepReport& later : held_) {
     std::ranges::copy_if(later.arrivals, std::back_inserter(rest.arrivals),
                          [last](const HandOffRow& row) { return row.stamp <= last; });
+    const auto is_of_the_run = [last](const auto& effect) { return effect.step <= last; };
+    std::ranges::copy_if(later.effects.bodies, std::back_inserter(rest.effects.bodies), is_of_the_run);
+    std::ranges::copy_if(later.effects.joints, std::back_inserter(rest.effects.joints), is_of_the_run);
   }
   release_hashes(last, rest);
   if (!rest.arrivals.empty() || !rest.hash.empty()) confirmed_.push_back(std::move(rest));

@@ -162,6 +162,13 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
 
 /// The scene grows as it had, and later states get what was ordered for them.
 void Node::heed_saved() {
+  for (const core::Setpoints& said : begun_with_->setpoints) {
+    const auto is_unknown = [&](const core::JointSetpoint& joint) {
+      return core::value_of(joint.id) >= scene_.joints.size();
+    };
+    if (std::ranges::any_of(said.joints, is_unknown)) refuse("setpoints are of a joint that the scene has not");
+    world_.controls().recall(said);
+  }
   OrderCheck check_order(scene_);
   for (const core::Order& order : begun_with_->orders) check_order.look(order);
   const MeshSource from_saved = [this, others = meshes_](const core::MeshRef& mesh) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "node/csv.h"
+#include "node/setpoint_record.h"
 
 namespace aurasim::node {
 namespace {
@@ -69,6 +70,7 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region, s
       births_(folder_ / "births.csv", "region,body,birth_step\n", up_to(after, 2)),
       removals_(folder_ / "removals.csv", "region,body,removed_step\n", up_to(after, 2)),
       hashes_(folder_ / "state_hash.csv", "step,hash\n", up_to(after, 0)),
+      setpoints_(folder_ / kSetpointsFile, std::string(kSetpointsHeader), up_to(after, 1)),
       flushed_(after.value_or(0)) {}
 
 void Recorder::write(const StepReport& r, const FrameTimes& times) {
@@ -99,6 +101,8 @@ void Recorder::write(const StepReport& r, const FrameTimes& times) {
 void Recorder::write_settling(const StepReport& report) {
   if (end_) return;
   write_hand_offs(report);
+  for (const core::BodyEffect& effect : report.effects.bodies) setpoints_.add("{}", setpoint_row(region_, effect));
+  for (const core::JointEffect& effect : report.effects.joints) setpoints_.add("{}", setpoint_row(region_, effect));
   for (const HashPart& part : report.hash) hashes_.add("{},{:016x}\n", part.step, part.sum);
 }
 
@@ -137,7 +141,8 @@ void Recorder::write_violations(const StepReport& report) {
 }
 
 void Recorder::flush(core::Step step) {
-  for (RowFile* file : {&steps_, &collisions_, &migrations_, &violations_, &births_, &removals_, &hashes_}) {
+  for (RowFile* file :
+       {&steps_, &collisions_, &migrations_, &violations_, &births_, &removals_, &hashes_, &setpoints_}) {
     if (!file->flush()) return end_records(*file);
   }
   flushed_ = step;

@@ -73,7 +73,7 @@ class Recorder {
 
   core::RegionId region_;
   std::filesystem::path folder_;
-  RowFile steps_, collisions_, migrations_, violations_, births_, removals_, hashes_;
+  RowFile steps_, collisions_, migrations_, violations_, births_, removals_, hashes_, setpoints_;
   struct Redo {
     core::Step from = 0;
     core::Step to = 0;

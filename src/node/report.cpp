@@ -14,6 +14,7 @@
 #include "node/durations.h"
 #include "node/recorder.h"
 #include "node/row_file.h"
+#include "node/setpoint_record.h"
 #include "node/thrashing.h"
 
 namespace aurasim::node {
@@ -56,7 +57,7 @@ class Merge {
   Merge(const std::filesystem::path& folder, const RunFacts& facts) : folder_(folder), facts_(facts) {}
 
   Accounts run() {
-    for (const char* name : {"steps.csv", "collisions.csv", "migrations.csv", "violations.csv"}) {
+    for (const char* name : {"steps.csv", "collisions.csv", "migrations.csv", "violations.csv", kSetpointsFile}) {
       if (!join(name)) give_up(name);
     }
     read_nodes();

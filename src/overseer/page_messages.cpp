@@ -157,6 +157,12 @@ std::string node_metrics(const RunStatus& status) {
       [](const Seen& s) { return s.status.missed_collisions; });
   add("redos_total", "counter", "How often the run has been put back and computed again.",
       [](const Seen& s) { return s.status.redos; });
+  add("setpoints_heard_total", "counter", "Messages of programs that steer bodies and joints.",
+      [](const Seen& s) { return s.status.setpoints_heard; });
+  add("setpoints_late_total", "counter", "Those that came after their state had been computed.",
+      [](const Seen& s) { return s.status.setpoints_late; });
+  add("setpoints_refused_total", "counter", "Those that were refused, and setpoints that no body can bear.",
+      [](const Seen& s) { return s.status.setpoints_refused; });
   add("frame_p50_ms", "gauge", "Median frame time of the last second.",
       [](const Seen& s) { return s.status.frame.p50_ms; });
   add("frame_p99_ms", "gauge", "99th percentile of the frame time.",

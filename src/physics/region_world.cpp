@@ -71,6 +71,7 @@ void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
   take_removed();
   take_applied();
   take_declined();
+  take_unbearable();
 }
 
 void RegionWorld::schedule(const core::Order& order) {
@@ -99,6 +100,13 @@ std::vector<Declined> RegionWorld::take_declined() {
   declined.insert(declined.end(), on_the_way.begin(), on_the_way.end());
   return declined;
 }
+
+std::uint64_t RegionWorld::take_unbearable() {
+  return impl_->simulation.take_unbearable() + impl_->scratch.take_unbearable();
+}
+
+core::ControlLog& RegionWorld::controls() { return impl_->timeline.controls(); }
+const core::ControlLog& RegionWorld::controls() const { return impl_->timeline.controls(); }
 
 RayHit RegionWorld::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {
   return impl_->simulation.cast(from_W, to_W);

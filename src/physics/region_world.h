@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/control_log.h"
 #include "core/ids.h"
 #include "core/order.h"
 #include "core/scene.h"
@@ -68,6 +69,12 @@ class RegionWorld {
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();
   std::vector<Declined> take_declined();
+  /// Since the last call: setpoints that would have made a body here faster than may be, and were not obeyed.
+  std::uint64_t take_unbearable();
+
+  /// What programs want of bodies, here or elsewhere.
+  core::ControlLog& controls();
+  const core::ControlLog& controls() const;
 
   /// The nearest body or static between two points, in the present state.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;

@@ -18,6 +18,8 @@ std::vector<Declined> ScratchWorld::take_declined() {
   return simulation_ ? simulation_->take_declined() : std::vector<Declined>{};
 }
 
+std::uint64_t ScratchWorld::take_unbearable() { return simulation_ ? simulation_->take_unbearable() : 0; }
+
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                                           const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
   if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, timeline_);

@@ -23,6 +23,7 @@ class ScratchWorld {
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();
   std::vector<Declined> take_declined();
+  std::uint64_t take_unbearable();
 
  private:
   const core::Scene* scene_;

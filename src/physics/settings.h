@@ -37,6 +37,8 @@ struct Settings {
   /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
   /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
   core::Vec3 p_WO = core::Vec3::Zero();
+  /// So far ahead others act upon what they are told of a body: for that long a force may take it off its path.
+  double foresight_s = 0.2;
   /// An impulse or a velocity of a client that would make a body faster is not obeyed.
   double top_speed_m_s = core::limits::kFastestBody_m_s;
 };

@@ -233,10 +233,13 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 void Simulation::step() {
   world_.first_contacts().clear();
   apply_orders(step_ + 1);
+  heed_setpoints(step_ + 1);
   for (int i = 0; i < settings_.looks(); ++i) {
+    push();
     world_.step(settings_.step_s / settings_.looks());
     joints_.remove_broken(world_);
   }
+  stop_pushing();
   ++step_;
   collect_collisions();
   take_out_what_broke();
@@ -270,6 +273,7 @@ const core::Snapshot& Simulation::snapshot() {
     for (const HostedBody& body : table_.bodies()) {
       core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
       if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
+      state.coming_kick_m_s += coming_push(body);
       state.awake = state.awake || state.coming_kick_m_s > 0;
     }
     list_contacts();

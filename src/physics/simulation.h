@@ -53,6 +53,7 @@ class Simulation {
   std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
   std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
   std::vector<Declined> take_declined() { return std::exchange(declined_, {}); }
+  std::uint64_t take_unbearable() { return std::exchange(unbearable_, 0); }
 
   /// The nearest body or static on the way from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
@@ -67,6 +68,11 @@ class Simulation {
   void show_statics(core::Step n);
   void wake_around(const btRigidBody& changing);
   double coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const;
+  void heed_setpoints(core::Step n);
+  bool heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value);
+  void push();
+  void stop_pushing();
+  double coming_push(const HostedBody& body) const;
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
   int rank_of(core::BodyId id) const;
@@ -100,6 +106,12 @@ class Simulation {
   std::vector<Removal> removed_;
   std::vector<std::uint64_t> applied_;
   std::vector<Declined> declined_;
+  struct Push {
+    btRigidBody* body;
+    btVector3 force, torque;  ///< N, N m
+  };
+  std::vector<Push> pushed_;      ///< in the state that is computed
+  std::uint64_t unbearable_ = 0;  ///< setpoints that were not obeyed
 
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

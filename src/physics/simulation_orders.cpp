@@ -5,6 +5,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "physics/awaken.h"
 #include "physics/breakdown.h"
 #include "physics/bullet_convert.h"
 #include "physics/prefetch.h"
@@ -16,13 +17,6 @@ namespace {
 /// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
 /// lets those fall that rested on it.
 constexpr double kShove_m_s = 2;
-
-/// Also a body that had fallen asleep starts anew. One that is never to sleep stays so.
-void wake(btRigidBody& body) {
-  if (body.getActivationState() == DISABLE_DEACTIVATION || body.getActivationState() == DISABLE_SIMULATION) return;
-  body.forceActivationState(ACTIVE_TAG);
-  body.setDeactivationTime(0);
-}
 
 /// Do the boxes around two objects come within 10 cm of each other?
 bool near(const btRigidBody& a, const btRigidBody& b) {
@@ -111,7 +105,7 @@ void Simulation::apply_orders(core::Step n) {
 }
 
 void Simulation::kick(btRigidBody& body, const core::Order& order) {
-  wake(body);
+  awaken(body);
   if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
     body.applyImpulse(to_bullet(impulse->J_W), arm_of(*impulse, body, frame_));
   } else if (const auto* velocity = std::get_if<core::SetVelocity>(&order.action)) {
@@ -139,7 +133,7 @@ void Simulation::take_out(const Removal& removal) {
     for (const auto& [one, other] :
          {std::pair(manifold.getBody0(), manifold.getBody1()), std::pair(manifold.getBody1(), manifold.getBody0())}) {
       if (one == gone && other->getUserIndex() >= 0)
-        wake(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
+        awaken(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
     }
   });
   const std::uint64_t severed = severed_contacts_;
@@ -167,7 +161,7 @@ void Simulation::show_statics(core::Step n) {
 
 void Simulation::wake_around(const btRigidBody& changing) {
   for (HostedBody& body : table_.bodies()) {
-    if (body.born && near(*body.rigid, changing)) wake(*body.rigid);
+    if (body.born && near(*body.rigid, changing)) awaken(*body.rigid);
   }
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }

@@ -1,5 +1,5 @@
-// What orders do to a world, and when: shared by a region's world and the scratch world in which late bodies make up
-// steps, so that both apply them alike.
+// What orders and programs do to a world, and when: shared by a region's world and the scratch world in which late
+// bodies make up steps, so that both apply them alike.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/control_log.h"
 #include "core/order.h"
 
 namespace aurasim::physics {
@@ -31,6 +32,9 @@ class Timeline {
 
   void forget_before(core::Step step);
 
+  const core::ControlLog& controls() const { return controls_; }
+  core::ControlLog& controls() { return controls_; }
+
  private:
   struct Life {
     std::uint32_t index = 0;
@@ -41,6 +45,7 @@ class Timeline {
 
   std::vector<Life> lives_;          ///< of statics that come or go, ascending index
   std::vector<core::Order> orders_;  ///< ascending (at_step, sequence)
+  core::ControlLog controls_;
 };
 
 }  // namespace aurasim::physics

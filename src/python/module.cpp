@@ -104,6 +104,9 @@ void add_reports(py::module_& m) {
       .def_readonly("hand_offs_in", &NodeStatus::hand_offs_in)
       .def_readonly("violations", &NodeStatus::violations)
       .def_readonly("redos", &NodeStatus::redos)
+      .def_readonly("setpoints_heard", &NodeStatus::setpoints_heard)
+      .def_readonly("setpoints_late", &NodeStatus::setpoints_late)
+      .def_readonly("setpoints_refused", &NodeStatus::setpoints_refused)
       .def_readonly("frame_ms_p50", &NodeStatus::frame_ms_p50)
       .def_readonly("frame_ms_p99", &NodeStatus::frame_ms_p99)
       .def_readonly("real_time_factor", &NodeStatus::real_time_factor)
@@ -125,6 +128,7 @@ void add_reports(py::module_& m) {
       .def_readonly("lookahead", &RunInfo::lookahead)
       .def_readonly("sync", &RunInfo::sync)
       .def_readonly("prototypes", &RunInfo::prototypes)
+      .def_readonly("joints", &RunInfo::joints)
       .def_readonly("regions", &RunInfo::regions);
   py::class_<Acknowledgement>(m, "Acknowledgement")
       .def_readonly("step", &Acknowledgement::step)
@@ -279,6 +283,28 @@ void add_acting(PyWorld& world) {
                                const std::optional<Vec3>& angular, Step at, double t) {
     return w.with([&](World& o) { return o.set_velocity(body, linear, angular, at, Seconds(t)); });
   });
+  using MaybeVectors = std::optional<std::pair<Ids, std::optional<Rows>>>;
+  using Joints = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+  using MaybeDrives = std::optional<std::pair<Joints, std::optional<Rows>>>;
+  world.def("control",
+            [](SharedWorld& w, const MaybeVectors& forces, const MaybeVectors& torques, const MaybeVectors& velocities,
+               const MaybeVectors& spins, const MaybeDrives& drives, Step at, double t) {
+              const auto vectors = [](const MaybeVectors& given) {
+                if (!given) return BodyVectors{};
+                return BodyVectors{ids_of(given->first),
+                                   given->second ? rows_of(given->first, *given->second) : std::vector<double>{}};
+              };
+              Control control{vectors(forces), vectors(torques), vectors(velocities), vectors(spins), {}};
+              if (drives) {
+                const auto& [joints, rows] = *drives;
+                control.drives.joints.assign(joints.data(), joints.data() + joints.size());
+                for (py::ssize_t i = 0; rows && i < rows->shape(0); ++i) {
+                  const double* const d = rows->data(i, 0);
+                  control.drives.drives.push_back({d[0], d[1], d[2], d[3], d[4], d[5]});
+                }
+              }
+              return w.with([&](World& o) { return o.control(control, at, Seconds(t)); });
+            });
   world.def("impulses", [](SharedWorld& w, const Ids& ids, const Rows& rows, Step at, double t) {
     const std::vector<double> values = rows_of(ids, rows);
     const std::vector<std::uint64_t> bodies = ids_of(ids);

@@ -47,9 +47,10 @@ Grants grants_of_node(const std::string& region) {
                       {"shape", {kWorld}},
                       {"checkpoint", {to_any, kWorld}}};
   // Whom it listens to changes with the bodies (docs/decisions/0003), so it may listen to all.
-  grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
-                       {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
-                       {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here}};
+  grants.subscribes = {
+      {"aura", {kEveryRegion}},  {"migration", to_it},      {"migration_ack", to_it}, {"node_status", {kEveryRegion}},
+      {"region_map", {kWorld}},  {"run_control", {kWorld}}, {"command", {kWorld}},    {"shape", {kWorld}},
+      {"checkpoint", kept_here}, {"control", {kWorld}}};
   return grants;
 }
 
@@ -66,7 +67,7 @@ std::vector<Grant> what_viewers_see() {
 
 Grants grants_of_operator() {
   Grants grants;
-  grants.publishes = {{"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}};
+  grants.publishes = {{"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}};
   grants.subscribes = what_viewers_see();
   grants.subscribes.push_back({"command_reply", {kWorld}});
   grants.subscribes.push_back({"run_control", {kWorld}});
@@ -77,7 +78,7 @@ Grants grants_of_recorder() {
   Grants grants;
   for (const char* topic :
        {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key",
-        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint"}) {
+        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint", "control"}) {
     grants.subscribes.push_back({topic, {"*"}});
   }
   return grants;

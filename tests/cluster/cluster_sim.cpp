@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "cluster/wire_check.h"
+#include "core/horizon.h"
+#include "node/setpoint_record.h"
 #include "node/thrashing.h"
 
 namespace aurasim::test {
@@ -32,6 +34,9 @@ ClusterSim::ClusterSim(const core::Scene& scene, const ClusterOptions& options)
     setup.physics.substeps = options_.aura.substeps;
     setup.physics.solver = options_.solver;
     setup.protocol.aura.looks_once = setup.physics.looks_once();
+    setup.physics.foresight_s =
+        setup.physics.step_s * core::horizon::announcing(options_.aura.lookahead, core::horizon::kMostHops);
+    setup.recorded = options_.recorded;
     setup.physics.friction_directions = options_.friction_directions;
     setup.physics.solver_iterations = options_.solver_iterations;
     setup.physics.top_speed_m_s = options_.aura.top_speed_m_s;
@@ -129,6 +134,9 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
   for (const node::HashPart& part : report.hash) {
     if (part.step < static_cast<Step>(outcome_.hash.size()))
       outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
+  }
+  for (const core::BodyEffect& effect : report.effects.bodies) {
+    outcome_.effects.push_back(node::as_heard_again(effect));
   }
   for (const physics::Removal& removal : report.removals) {
     removed_.insert(removal.body);

@@ -45,6 +45,7 @@ struct ClusterOptions {
   core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often
   std::optional<Crash> crash;
   std::optional<LinkCut> cut;
+  std::vector<core::Setpoints> recorded;  ///< of an earlier run
   std::vector<std::pair<core::Step, core::Action>>
       orders;                  ///< given to region 0 before state 0, by the state they name
   bool over_the_wire = false;  ///< what the wire would refuse arrives as a refusal
@@ -73,6 +74,7 @@ struct Outcome {
   double slowest_s = 0;                                               ///< virtual time at the end
   std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
   std::vector<physics::Collision> contacts;                           ///< first contacts
+  std::vector<core::Setpoints> effects;                               ///< of setpoints, as recorded
   std::vector<std::uint64_t> hash;                                    ///< by step; only complete without a crash
 };
 

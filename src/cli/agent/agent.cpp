@@ -12,6 +12,7 @@
 
 #include "cli/agent/answers.h"
 #include "cli/agent/asks.h"
+#include "cli/agent/setpoints.h"
 #include "cli/key_choice.h"
 #include "cli/version.h"
 #include "config/shipped_files.h"
@@ -93,6 +94,9 @@ Message Agent::answer(const Message& question, const Patience& patience) {
     const std::string what = asked.value("do", "");
     if (what == "connect" || what == "launch") return {open(asked, patience), {}};
     if (what == "close") return {close(patience), {}};
+    if (what == "control") {
+      return {{{"step", run().control(setpoints_of(question, run().launch().scene), patience)}}, {}};
+    }
     return answer_of_run(what, asked, patience);
   } catch (const Problem& problem) {
     return failure(problem.kind(), problem.what());

@@ -110,6 +110,9 @@ json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes) {
                    {"hand_offs_in", status.hand_offs_in},
                    {"violations", v.speed + v.latency + v.frame + v.promise + v.span},
                    {"redos", status.redos},
+                   {"setpoints_heard", status.setpoints_heard},
+                   {"setpoints_late", status.setpoints_late},
+                   {"setpoints_refused", status.setpoints_refused},
                    {"frame_ms_p50", status.frame.p50_ms},
                    {"frame_ms_p99", status.frame.p99_ms},
                    {"real_time_factor", status.real_time_factor},
@@ -123,7 +126,8 @@ json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes) {
 
 json info_json(const RunLink& run) {
   const config::Launch& launch = run.launch();
-  json prototypes = json::array(), regions = json::array();
+  json prototypes = json::array(), regions = json::array(), joints = json::array();
+  for (const core::JointSpec& joint : launch.scene.joints) joints.push_back(joint.name);
   for (const core::Prototype& prototype : launch.scene.prototypes) prototypes.push_back(prototype.name);
   for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
     regions.push_back(box_json(launch.regions.region(core::RegionId{r})));
@@ -137,6 +141,7 @@ json info_json(const RunLink& run) {
           {"lookahead", launch.lookahead()},
           {"sync", name_of(launch.time.sync)},
           {"prototypes", std::move(prototypes)},
+          {"joints", std::move(joints)},
           {"regions", std::move(regions)}};
 }
 

@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 using Steer = dds::RunCommandKind;
 
 constexpr auto kRound = 2ms;
+constexpr auto kStillHereEvery = 20ms;
 constexpr auto kPatienceWithSilence = 5s;     ///< of all nodes, before the run has ended
 constexpr auto kPatienceWithAReader = 1s;     ///< that some node has not found
 constexpr auto kPatienceWithAPause = 10s;     ///< a world that goes back in a pause computes until it is where it stood
@@ -38,6 +39,41 @@ void RunLink::turn(std::chrono::milliseconds time_out) {
   while (watch_.view().compose(overseer::view_clock_s()) != nullptr) {
   }
   if (has_met_) look_for_the_end();
+  say_still_here();
+}
+
+/// Else the nodes would hold its client for dead. It acts nowhere, whatever happens to be late.
+void RunLink::say_still_here() {
+  if (!setpoints_ || Clock::now() < said_last_ + kStillHereEvery) return;
+  said_last_ = Clock::now();
+  core::Setpoints word;
+  word.generation = farthest().generation;
+  setpoints_->send(std::move(word));
+}
+
+/// A run that computes many states at once might be through with them before it hears another word.
+void RunLink::say_still_here_until(const Standing& wanted, const Patience& patience) {
+  if (!setpoints_) return;
+  const core::Step apart = std::max<core::Step>(1, launch().control_rules().silence / 2);
+  for (core::Step step = stands_in_->step + 1; step <= wanted.step; step += apart) {
+    core::Setpoints word;
+    word.generation = wanted.generation;
+    word.at_step = step;
+    setpoints_->send(std::move(word));
+  }
+  wait_until([this] { return setpoints_->is_known(); }, patience, "not every node has heard what it is to do");
+}
+
+core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience) {
+  if (!setpoints_) setpoints_.emplace(participant_);
+  wait_until([this] { return setpoints_->listeners() >= live_regions().size(); }, patience,
+             "not every node hears this client");
+  if (setpoints.at_step == 0 && stands()) setpoints.at_step = known_standing(patience).step + 1;
+  setpoints.generation = farthest().generation;
+  said_last_ = Clock::now();
+  const core::Step at_step = setpoints.at_step;
+  setpoints_->send(std::move(setpoints));
+  return at_step;
 }
 
 void RunLink::look_for_the_end() {
@@ -182,6 +218,15 @@ WorldState RunLink::pause(const Patience& patience) {
   return standing_state(patience);
 }
 
+/// Of a run that stands.
+const RunLink::Standing& RunLink::known_standing(const Patience& patience) {
+  const Standing said = farthest();  // somebody else may have moved it
+  if (!stands_in_ || stands_in_->generation != said.generation || stands_in_->step < said.step) {
+    standing_state(patience);
+  }
+  return *stands_in_;
+}
+
 WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   const auto begin = Clock::now();
   while (!stands()) {
@@ -191,11 +236,9 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
     }
     turn(kRound);
   }
-  const Standing said = farthest();  // somebody else may have moved it
-  if (!stands_in_ || stands_in_->generation != said.generation || stands_in_->step < said.step) {
-    standing_state(patience);
-  }
+  known_standing(patience);
   const Standing wanted{stands_in_->generation, stands_in_->step + count};
+  say_still_here_until(wanted, patience);
   steering_.send_until(wanted.generation, wanted.step);
   stands_in_.reset();
   const auto is_there = [&] {  // or all have gone back meanwhile

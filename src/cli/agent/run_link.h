@@ -15,6 +15,7 @@
 #include "cli/agent/standing_state.h"
 #include "cli/command_client.h"
 #include "cli/run_steering.h"
+#include "dds/setpoint_bus.h"
 #include "overseer/world_watch.h"
 #include "security/key_store.h"
 
@@ -53,6 +54,9 @@ class RunLink {
   WorldState step(std::int64_t count, const Patience& patience);
   /// resume, reset, stop.
   void steer(dds::RunCommandKind kind, const Patience& patience);
+  /// Tells all nodes. Returns the state from which on it has effect; 0: as soon as all can know of it. In a run that
+  /// stands that is the next state, if none is named.
+  core::Step control(core::Setpoints setpoints, const Patience& patience);
   /// In their order.
   std::vector<Delivery> act(std::vector<core::Command> commands, const Patience& patience);
   /// The process that has taken the region over.
@@ -76,6 +80,9 @@ class RunLink {
   WorldState standing_state(const Patience& patience);
   bool collect(StandingState& state, const Patience& patience);
   WorldState seen_state(const Patience& patience);
+  const Standing& known_standing(const Patience& patience);
+  void say_still_here();
+  void say_still_here_until(const Standing& wanted, const Patience& patience);
 
   config::Launch launch_;  ///< as it was given
   std::optional<security::Member> member_;
@@ -84,6 +91,8 @@ class RunLink {
   RunSteering steering_;
   CommandClient client_;
   overseer::WorldWatch watch_;
+  std::optional<dds::SetpointWriter> setpoints_;  ///< once it has steered anything
+  Clock::time_point said_last_;                   ///< that it is still here
   std::unique_ptr<LaunchedRun> launched_;
   std::optional<Standing> stands_in_;  ///< as all regions have shown; nothing: not known
   bool has_met_ = false;

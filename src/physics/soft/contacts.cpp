@@ -92,7 +92,10 @@ btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& spa
 
 btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gravity) const {
   if (object.isStaticObject() || !object.isActive()) return {0, 0, 0};
-  return step_s_ * (btRigidBody::upcast(&object)->getLinearVelocity() + gravity * (step_s_ / 2));
+  const btRigidBody& body = *btRigidBody::upcast(&object);
+  btVector3 pull = gravity;
+  if (!body.getTotalForce().isZero()) pull += body.getInvMass() * body.getTotalForce();
+  return step_s_ * (body.getLinearVelocity() + pull * (step_s_ / 2));
 }
 
 void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,

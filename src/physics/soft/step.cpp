@@ -40,8 +40,30 @@ btQuaternion turn_by(btVector3 v) {
   return q;
 }
 
+/// What the forces on it make of its velocities in a second.
+struct Pushed {
+  btVector3 v{0, 0, 0}, w{0, 0, 0};
+  bool any = false;
+};
+Pushed pushed(const btRigidBody& body) {
+  if (body.getTotalForce().isZero() && body.getTotalTorque().isZero()) return {};
+  return {body.getInvMass() * body.getTotalForce(), body.getInvInertiaTensorWorld() * body.getTotalTorque(), true};
+}
+
+void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s);
+
+/// A torque acts one half before the turn, and one after.
+void fly_pushed(btRigidBody& body, const btVector3& gravity, btScalar step_s, const Pushed& push) {
+  const btVector3 half = push.w * (step_s / 2);
+  body.clearForces();
+  body.setAngularVelocity(body.getAngularVelocity() + half);
+  fly(body, gravity + push.v, step_s);
+  body.setAngularVelocity(body.getAngularVelocity() + half);
+}
+
 /// On the parabola, and as a free body turns.
 void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
+  if (const Pushed push = pushed(body); push.any) return fly_pushed(body, gravity, step_s, push);
   const btTransform& start = body.getWorldTransform();
   const btVector3 v = body.getLinearVelocity();
   const btVector3 p = start.getOrigin() + step_s * (v + gravity * (step_s / 2));
@@ -78,6 +100,11 @@ struct SoftStep::Impl {
     btQuaternion q{0, 0, 0, 1};
     btVector3 v{0, 0, 0}, w{0, 0, 0};
   };
+  /// A mover, and what its velocities gain in each substep.
+  struct PushedMover {
+    std::size_t mover;
+    Real v[3], w[3];
+  };
 
   bool is_held(int user_index) const {
     const auto place = static_cast<std::size_t>(user_index);
@@ -94,6 +121,7 @@ struct SoftStep::Impl {
   void hold(int user_index);
   void take_in(std::size_t i);
   void take_in_row(std::size_t row);
+  void take_in_pushes();
   void show(std::size_t i) const;
   void prefetch_after(std::size_t i) const;
   void run(const soft::Worker& worker);
@@ -110,6 +138,7 @@ struct SoftStep::Impl {
   std::vector<soft::Tumblers> tumblers;  ///< by row
   std::vector<SoftInertia> inertias;     ///< as movers
   std::vector<Body> bodies;              ///< as movers
+  std::vector<PushedMover> pushes;       ///< ascending mover
   SoftPatches patches;
   SoftJoints joints;
 };
@@ -154,6 +183,19 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<cons
     const auto [first, last] = worker.share(tumblers.size());
     for (std::size_t row = first; row < last; ++row) take_in_row(row);
   });
+  take_in_pushes();
+}
+
+void SoftStep::Impl::take_in_pushes() {
+  pushes.clear();
+  for (std::size_t i = 1; i < held.size() && held[i] != nullptr; ++i) {
+    const Pushed push = pushed(*held[i]);
+    if (!push.any) continue;
+    PushedMover& mover = pushes.emplace_back();
+    mover.mover = i;
+    soft::from_bullet(push.v * btScalar(h_s), mover.v);
+    soft::from_bullet(push.w * btScalar(h_s), mover.w);
+  }
 }
 
 void SoftStep::Impl::take_in_row(std::size_t row) {
@@ -205,6 +247,10 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
   for (int s = 0; s < substeps; ++s) {
     for (std::size_t i = std::max<std::size_t>(1, first_row * soft::kLanes); i < last_row * soft::kLanes; ++i) {
       for (int k = 0; k < 3; ++k) movers[i].v[k] += fall[k];
+    }
+    for (const PushedMover& push : pushes) {
+      if (push.mover < first_row * soft::kLanes || push.mover >= last_row * soft::kLanes) continue;
+      for (int k = 0; k < 3; ++k) movers[push.mover].v[k] += push.v[k], movers[push.mover].w[k] += push.w[k];
     }
     worker.wait();
     patches.warm_start(movers.data(), worker);

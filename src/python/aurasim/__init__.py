@@ -18,7 +18,7 @@ import atexit
 import json
 import os
 import weakref
-from typing import Any, Iterable, Mapping, Sequence, Union
+from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -50,6 +50,8 @@ __all__ = [
 
 Overrides = Union[Mapping[str, Any], Iterable[str]]
 Vector = Sequence[float]
+Vectors = Tuple[np.ndarray, Union[np.ndarray, None]]
+Numbers = Union[float, Sequence[float], np.ndarray]
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -72,6 +74,7 @@ class World:
 
     def __init__(self, world: _World) -> None:
         self._world = world
+        self._numbers: dict[str, int] | None = None
         _open_worlds.add(self)
 
     @classmethod
@@ -210,6 +213,37 @@ class World:
                      timeout: float = 60.0) -> Acknowledgement:
         """m/s and rad/s; without a spin that stays as it is."""
         return self._world.set_velocity(body, linear, angular, at, timeout)
+
+    def control(self, *, forces: Vectors | None = None, torques: Vectors | None = None,
+                velocities: Vectors | None = None, spins: Vectors | None = None, at: int = 0,
+                timeout: float = 60.0) -> int:
+        """Steers bodies: for each quantity (n ids, n x 3 array) in N, N m, m/s, rad/s, world frame; (ids, None) lets go
+        of them. What is said holds until something else is said, wherever the bodies are hosted. Returns at once, with
+        the first state that shows it: in a paused run by itself the next one; else 0, which is lookahead + 1 states
+        after each node has heard of it."""
+        return self._world.control(forces, torques, velocities, spins, None, at, timeout)
+
+    def drive(self, joints: Sequence[str | int], *, position: Numbers = 0.0, speed: Numbers = 0.0,
+              stiffness: Numbers = 0.0, damping: Numbers = 0.0, effort: Numbers = 0.0, max_effort: Numbers = np.inf,
+              at: int = 0, timeout: float = 60.0) -> int:
+        """Drives hinges and sliders, by name or number (RunInfo.joints): effort = stiffness (position - q) +
+        damping (speed - dq/dt) + effort, at most max_effort either way. One number for all or one for each; rad, N m
+        or m, N. Like control()."""
+        columns = (position, speed, stiffness, damping, effort, max_effort)
+        numbers = np.stack([np.broadcast_to(np.asarray(c, float), (len(joints),)) for c in columns], axis=1)
+        return self._world.control(None, None, None, None, (self._joints(joints, timeout), numbers), at, timeout)
+
+    def release_joints(self, joints: Sequence[str | int], *, at: int = 0, timeout: float = 60.0) -> int:
+        """They have the drives of the scene again."""
+        return self._world.control(None, None, None, None, (self._joints(joints, timeout), None), at, timeout)
+
+    def _joints(self, joints: Sequence[str | int], timeout: float) -> np.ndarray:
+        if any(isinstance(joint, str) for joint in joints) and self._numbers is None:
+            self._numbers = {name: number for number, name in enumerate(self.info(timeout).joints)}
+        unknown = [joint for joint in joints if isinstance(joint, str) and joint not in self._numbers]
+        if unknown:
+            raise Refused(f"no joint is called {unknown[0]!r}")
+        return np.array([self._numbers[j] if isinstance(j, str) else j for j in joints], np.uint32)
 
     def impulses(self, bodies: np.ndarray, impulses: np.ndarray, *, at: int = 0,
                  timeout: float = 60.0) -> list[Acknowledgement]:

@@ -42,8 +42,11 @@ struct NodeStatus {
   std::uint32_t generation = 0;
   std::uint64_t bodies = 0, awake = 0, foreign_auras = 0;
   std::uint64_t hand_offs_out = 0, hand_offs_in = 0;
-  std::uint64_t violations = 0;  ///< broken promises since the start
-  std::uint32_t redos = 0;       ///< how often states were put back and computed again
+  std::uint64_t violations = 0;         ///< broken promises since the start
+  std::uint32_t redos = 0;              ///< how often states were put back and computed again
+  std::uint64_t setpoints_heard = 0;    ///< messages of World::control
+  std::uint64_t setpoints_late = 0;     ///< those that came after their state had been computed
+  std::uint64_t setpoints_refused = 0;  ///< those that were refused, and what no body can bear
   double frame_ms_p50 = 0, frame_ms_p99 = 0;
   double real_time_factor = 0, rate = 1;
   std::vector<double> box;          ///< x0 y0 x1 y1 of its region, m; infinite sides
@@ -61,6 +64,7 @@ struct RunInfo {
   std::int32_t lookahead = 0;                ///< K, in steps
   std::string sync;                          ///< free_running, bounded, deterministic
   std::vector<std::string> prototypes;       ///< names of the scene's kinds of bodies
+  std::vector<std::string> joints;           ///< names of the scene's joints; their numbers are places in this list
   std::vector<std::vector<double>> regions;  ///< x0 y0 x1 y1 of each, m; infinite sides
 };
 

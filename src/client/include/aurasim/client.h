@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -93,6 +94,39 @@ struct Acknowledgement {
   std::optional<std::uint64_t> body;   ///< that was made
   std::optional<std::uint32_t> fixed;  ///< static that was made
   std::string text;                    ///< for people
+};
+
+/// For some bodies: n ids, and n x 3 numbers, world frame. Without numbers they are let go of.
+struct BodyVectors {
+  std::vector<std::uint64_t> bodies;
+  std::vector<double> values;
+};
+
+/// effort = stiffness (position - q) + damping (speed - dq/dt) + effort, at most max_effort either way, where q is how
+/// far a hinge has turned (rad), or a slider moved (m), from where it was in state 0.
+struct JointDrive {
+  double position = 0;                                          ///< rad or m
+  double speed = 0;                                             ///< rad/s or m/s
+  double stiffness = 0;                                         ///< N m/rad or N/m
+  double damping = 0;                                           ///< N m s/rad or N s/m
+  double effort = 0;                                            ///< N m or N
+  double max_effort = std::numeric_limits<double>::infinity();  ///< N m or N
+};
+
+/// For some joints, by their places in RunInfo::joints: a drive for each. Without drives they have the scene's again.
+struct JointDrives {
+  std::vector<std::uint32_t> joints;
+  std::vector<JointDrive> drives;
+};
+
+/// What is wanted of bodies and joints: holds until something else is said, or this World is gone (`control` of the
+/// launch file).
+struct Control {
+  BodyVectors forces = {};      ///< N, at the centre of mass
+  BodyVectors torques = {};     ///< N m
+  BodyVectors velocities = {};  ///< m/s, held
+  BodyVectors spins = {};       ///< rad/s, held
+  JointDrives drives = {};
 };
 
 struct RayHit {
@@ -180,6 +214,11 @@ class AURASIM_API World {
   /// m/s and rad/s; without a spin it stays as it is.
   Acknowledgement set_velocity(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular = {},
                                std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// Steers bodies and joints, wherever they are hosted by then. Returns at once, with the first state that shows it.
+  /// In a paused run that is by itself the next state, else (0) lookahead + 1 states after each node has heard of it;
+  /// what comes after its state has been computed is late (NodeStatus::setpoints_late). Throws Refused, and nothing
+  /// acts, for an unknown body or joint, or a number that is not finite or beyond 1e9.
+  std::int64_t control(const Control& control, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   /// One for each body, asked for together: at most 300 between two states. `impulses`: n x 3. Throws Refused with the
   /// first reason if any is refused; the others act.
   std::vector<Acknowledgement> impulses(const std::vector<std::uint64_t>& bodies, const std::vector<double>& impulses,

@@ -1,0 +1,33 @@
+// What a node hears of programs that steer bodies and joints (topic control).
+#include <spdlog/spdlog.h>
+
+#include "cli/node_process.h"
+
+namespace aurasim::cli {
+
+/// Before each state, and often in between: what has come by then takes effect in it. Every node hears everything.
+void NodeProcess::hear_programs() {
+  for (const core::Setpoints& said : programs_->take(generation_)) {
+    switch (node_->hear(said)) {
+      case core::Heard::kInTime:
+        break;
+      case core::Heard::kLate:
+        ++status_.setpoints_late;
+        if (!std::exchange(says_late_, true)) {
+          spdlog::warn("setpoints for state {} have come in state {}; how many are late is counted", said.at_step,
+                       node_->current_step());
+        }
+        break;
+      case core::Heard::kRefused:
+        ++unheard_setpoints_;
+        break;
+    }
+    ++status_.setpoints_heard;
+  }
+  status_.setpoints_refused = programs_->refused() + unheard_setpoints_ + unbearable_setpoints_;
+  if (status_.setpoints_refused > 0 && !std::exchange(says_refused_, true)) {
+    spdlog::warn("setpoints were refused: not understood, too many, too far ahead, or more than a body can bear");
+  }
+}
+
+}  // namespace aurasim::cli

@@ -1,0 +1,131 @@
+// The setpoints of programs, as one node has heard them: what is in effect in which state. Every node hears all of them,
+// so a body's setpoints need not travel with it, and a state that is computed again, or made up later, has the same.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/setpoint.h"
+
+namespace aurasim::core {
+
+enum class Heard : std::uint8_t {
+  kInTime,
+  kLate,     ///< its state had been computed; the rules say what becomes of it
+  kRefused,  ///< too far ahead, too many, or a joint that is not there
+};
+
+class ControlLog {
+ public:
+  void use(const ControlRules& rules) { rules_ = rules; }
+  const ControlRules& rules() const { return rules_; }
+
+  /// `computed`: the newest state here. `notice`: so many states later what names no state takes effect.
+  Heard hear(const Setpoints& setpoints, Step computed, Step notice, std::size_t joint_count);
+  /// Takes effect in its state, whatever has been computed.
+  void recall(const Setpoints& setpoints);
+
+  bool empty() const { return bodies_.empty() && joints_.empty(); }
+
+  /// visit(id, quantity, value, is_new) for what is in effect on bodies in state `step`, ascending (id, quantity).
+  /// `is_new`: it was not in the state before. Then also for what is let go of, without value.
+  template <class Visit>
+  void for_each_body(Step step, Visit&& visit) const {
+    for (const BodyTrack& track : bodies_) visit_track(track, step, [&](const auto& value, bool is_new) {
+        visit(track.key.first, track.key.second, value, is_new);
+      });
+  }
+  /// visit(id, drive, is_new): likewise for joints.
+  template <class Visit>
+  void for_each_joint(Step step, Visit&& visit) const {
+    for (const JointTrack& track : joints_)
+      visit_track(track, step, [&](const auto& value, bool is_new) { visit(track.key, value, is_new); });
+  }
+  /// What is in effect on one body in state `step`, and what is known to come: visit(quantity, value).
+  template <class Visit>
+  void for_each_ahead(BodyId id, Step step, Visit&& visit) const {
+    auto track = std::ranges::lower_bound(bodies_, std::pair(id, Quantity{}), {}, &BodyTrack::key);
+    for (; track != bodies_.end() && track->key.first == id; ++track) {
+      if (const auto value = in_effect(*track, step)) visit(track->key.second, *value);
+      for (auto entry = track->entries.rbegin(); entry != track->entries.rend() && entry->from > step; ++entry) {
+        if (entry->value) visit(track->key.second, *entry->value);
+      }
+    }
+  }
+  std::optional<Vec3> in_effect(BodyId id, Quantity quantity, Step step) const;
+  std::optional<JointDrive> in_effect(JointId id, Step step) const;
+
+  /// What is in effect from state `step` on, as messages for a node that knows nothing, in order.
+  std::vector<Setpoints> since(Step step) const;
+  /// States before this one are never computed again.
+  void forget_before(Step step);
+
+ private:
+  template <class Value>
+  struct Entry {
+    Step from = 0;
+    std::uint64_t client = 0;
+    std::uint64_t sequence = 0;
+    std::optional<Value> value;
+  };
+  template <class Key, class Value>
+  struct Track {
+    Key key;
+    std::vector<Entry<Value>> entries;  ///< ascending (from, client, sequence)
+  };
+  using BodyTrack = Track<std::pair<BodyId, Quantity>, Vec3>;
+  using JointTrack = Track<JointId, JointDrive>;
+
+  template <class Key, class Value>
+  void add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry);
+  template <class Key, class Value>
+  void forget_before(std::vector<Track<Key, Value>>& tracks, Step step);
+  void note_word(std::uint64_t client, Step from);
+  bool is_silent(std::uint64_t client, Step step) const;
+  std::optional<Vec3> in_silence(const Vec3& value, Quantity quantity) const;
+  std::optional<JointDrive> in_silence(const JointDrive& value) const;
+
+  /// The newest of state `step` or before; null: none.
+  template <class Key, class Value>
+  static const Entry<Value>* newest(const Track<Key, Value>& track, Step step) {
+    const auto later = std::ranges::upper_bound(track.entries, step, {}, &Entry<Value>::from);
+    return later == track.entries.begin() ? nullptr : &*(later - 1);
+  }
+  template <class Value>
+  bool is_silenced(const Entry<Value>& entry, Step step) const {
+    return entry.value && rules_.on_silence != OnSilence::kLast && is_silent(entry.client, step);
+  }
+  std::optional<Vec3> value_of(const BodyTrack& track, const Entry<Vec3>& entry, bool silenced) const {
+    return silenced ? in_silence(*entry.value, track.key.second) : entry.value;
+  }
+  std::optional<JointDrive> value_of(const JointTrack&, const Entry<JointDrive>& entry, bool silenced) const {
+    return silenced ? in_silence(*entry.value) : entry.value;
+  }
+  template <class AnyTrack>
+  auto in_effect(const AnyTrack& track, Step step) const -> decltype(value_of(track, track.entries.front(), false)) {
+    const auto* const entry = newest(track, step);
+    if (entry == nullptr) return std::nullopt;
+    return value_of(track, *entry, is_silenced(*entry, step));
+  }
+  template <class AnyTrack, class Visit>
+  void visit_track(const AnyTrack& track, Step step, Visit&& visit) const {
+    const auto* const entry = newest(track, step);
+    if (entry == nullptr) return;
+    const bool silenced = is_silenced(*entry, step);
+    const bool is_new = entry->from == step || silenced != is_silenced(*entry, step - 1);
+    const auto value = value_of(track, *entry, silenced);
+    if (value || is_new) visit(value, is_new);
+  }
+
+  ControlRules rules_;
+  std::vector<BodyTrack> bodies_;                      ///< ascending key
+  std::vector<JointTrack> joints_;                     ///< ascending key
+  std::map<std::uint64_t, std::vector<Step>> words_;   ///< by client: states that it has said something for, ascending
+  std::size_t entries_ = 0;
+};
+
+}  // namespace aurasim::core

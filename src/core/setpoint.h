@@ -1,0 +1,74 @@
+// What a program wants of bodies and joints from a state on, until it says otherwise (docs/decisions/0026-setpoints.md).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/ids.h"
+#include "core/joint.h"
+
+namespace aurasim::core {
+
+/// Of a body, in the world's frame.
+enum class Quantity : std::uint8_t {
+  kForce,     ///< N, at the centre of mass
+  kTorque,    ///< N m
+  kVelocity,  ///< m/s: the body has it before each state is computed
+  kSpin,      ///< rad/s: likewise
+};
+inline constexpr int kQuantities = 4;
+
+struct BodySetpoint {
+  BodyId id{};
+  Quantity quantity{};
+  std::optional<Vec3> value;  ///< nothing: lets go of it
+};
+
+struct JointSetpoint {
+  JointId id{};
+  std::optional<JointDrive> drive;  ///< nothing: the joint has the scene's own again
+};
+
+/// All that one program says for one state. Without entries: it is still there, and what it has said goes on.
+struct Setpoints {
+  std::uint64_t client = 0;    ///< random number of the program; kRecordedClient: it is read from a record
+  std::uint64_t sequence = 0;  ///< 1, 2, ...: of two for one state the later one counts
+  Generation generation = 0;
+  Step at_step = 0;  ///< the first state that shows the effect; 0: as soon as all can know of it in time
+  std::vector<BodySetpoint> bodies;
+  std::vector<JointSetpoint> joints;
+};
+
+/// Never falls silent.
+inline constexpr std::uint64_t kRecordedClient = 0;
+
+/// What has been in effect on a body or joint from a state on, where it was hosted.
+struct BodyEffect {
+  Step step = 0;
+  BodySetpoint setpoint;
+};
+struct JointEffect {
+  Step step = 0;
+  JointSetpoint setpoint;
+};
+
+/// For a state that has been computed already.
+enum class LateSetpoint : std::uint8_t { kNextState, kDropped };
+
+/// What becomes of the setpoints of a program that says nothing any more.
+enum class OnSilence : std::uint8_t {
+  kHold,  ///< stop: no force, torque or effort, no speed; drives keep their positions
+  kZero,  ///< let go of everything
+  kLast,  ///< as if it went on
+};
+
+/// What all nodes of a run agree on about setpoints.
+struct ControlRules {
+  LateSetpoint late = LateSetpoint::kNextState;
+  OnSilence on_silence = OnSilence::kHold;
+  Step silence = 30;  ///< states without a word of it after which a program has fallen silent
+};
+
+}  // namespace aurasim::core

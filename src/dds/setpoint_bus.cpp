@@ -1,0 +1,95 @@
+#include "dds/setpoint_bus.h"
+
+#include <algorithm>
+
+#include "dds/random_id.h"
+#include "dds/rate_limit.h"
+#include "dds/setpoint_codec.h"
+#include "dds/typed_endpoints.h"
+
+namespace aurasim::dds {
+namespace {
+
+/// Of one program: four messages for each of 240 states a second.
+constexpr double kMessagesASecond = 1000, kMessagesAtOnce = 4000;
+/// Of one message: both fit into a datagram of 64 kB.
+constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
+
+}  // namespace
+
+struct SetpointReader::Impl {
+  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kControl), wakeup) {}
+
+  Wakeup wakeup;
+  TypedReader<wire::Setpoints> reader;
+  RateLimit<ProcessPrefix> rates{kMessagesASecond, kMessagesAtOnce};
+  std::uint64_t too_many = 0;
+};
+
+SetpointReader::SetpointReader(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+
+SetpointReader::~SetpointReader() = default;
+
+std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
+  std::vector<core::Setpoints> taken;
+  const auto now = std::chrono::steady_clock::now();
+  impl_->wakeup.clear();
+  impl_->reader.take_each({}, [&](core::Setpoints&& setpoints, const Origin& origin) {
+    if (setpoints.generation != generation) return;
+    const bool is_a_program = setpoints.client != core::kRecordedClient;
+    if (!is_a_program || !impl_->rates.allows(origin.writer.guidPrefix, now)) {
+      ++impl_->too_many;
+      return;
+    }
+    taken.push_back(std::move(setpoints));
+  });
+  return taken;
+}
+
+std::uint64_t SetpointReader::refused() const { return impl_->too_many + impl_->reader.refused().total(); }
+
+struct SetpointWriter::Impl {
+  explicit Impl(Participant& participant_in)
+      : participant(participant_in), writer(participant.domain(), in_world(TopicId::kControl), wakeup) {}
+
+  void write(const core::Setpoints& setpoints) {
+    if (writer.send(setpoints, std::uint64_t{0}) == WriteResult::kFailed) {
+      throw DdsError("cannot send setpoints: topic control does not take them");
+    }
+  }
+
+  Participant& participant;
+  std::uint64_t client = draw_id();
+  std::uint64_t sequence = 0;
+  Wakeup wakeup;
+  TypedWriter<wire::Setpoints> writer;
+};
+
+SetpointWriter::SetpointWriter(Participant& participant) : impl_(std::make_unique<Impl>(participant)) {}
+
+SetpointWriter::~SetpointWriter() = default;
+
+void SetpointWriter::send(core::Setpoints setpoints) {
+  impl_->participant.progress();
+  const std::vector<core::BodySetpoint> bodies = std::move(setpoints.bodies);
+  const std::vector<core::JointSetpoint> joints = std::move(setpoints.joints);
+  std::size_t body = 0, joint = 0;
+  do {
+    const std::size_t next_body = std::min(bodies.size(), body + kBodiesAtOnce);
+    const std::size_t next_joint = std::min(joints.size(), joint + (body == next_body ? kJointsAtOnce : 0));
+    setpoints.client = impl_->client;
+    setpoints.sequence = ++impl_->sequence;
+    setpoints.bodies.assign(bodies.begin() + static_cast<std::ptrdiff_t>(body),
+                            bodies.begin() + static_cast<std::ptrdiff_t>(next_body));
+    setpoints.joints.assign(joints.begin() + static_cast<std::ptrdiff_t>(joint),
+                            joints.begin() + static_cast<std::ptrdiff_t>(next_joint));
+    body = next_body, joint = next_joint;
+    impl_->write(setpoints);
+  } while (body < bodies.size() || joint < joints.size());
+}
+
+bool SetpointWriter::is_known() { return impl_->writer.all_acknowledged(); }
+
+std::size_t SetpointWriter::listeners() const { return impl_->writer.foreign_reader_count(); }
+
+}  // namespace aurasim::dds

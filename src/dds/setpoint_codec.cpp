@@ -1,0 +1,105 @@
+#include "dds/setpoint_codec.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "aurasim.h"
+#include "core/limits.h"
+#include "dds/columns.h"
+#include "dds/header_check.h"
+
+namespace aurasim::dds {
+namespace {
+
+constexpr std::uint8_t kLetsGo = 16;
+constexpr std::size_t kDriveNumbers = 6;
+constexpr std::size_t kMaxEffort = 5;
+
+void put_drive(const core::JointDrive& drive, double* out) {
+  const double numbers[kDriveNumbers] = {drive.position, drive.speed,  drive.stiffness,
+                                         drive.damping,  drive.effort, drive.max_effort};
+  std::ranges::copy(numbers, out);
+}
+
+bool is_drive(const double* drive) {
+  for (std::size_t i = 0; i < kMaxEffort; ++i) {
+    if (!(std::abs(drive[i]) <= core::limits::kHardestPush)) return false;
+  }
+  return drive[2] >= 0 && drive[3] >= 0 && drive[kMaxEffort] >= 0;  // stiffness, damping; false for NaN
+}
+
+std::optional<WireError> check_rows(const wire::Setpoints& in, const Expected& expected) {
+  const std::size_t bodies = in.body().size(), joints = in.joint().size();
+  if (bodies + joints > core::limits::kMostSetpoints) return WireError::kTooLarge;
+  if (!same_rows(bodies, {{in.quantity().size()}, {in.value().size(), 3}}) ||
+      !same_rows(joints, {{in.let_go().size()}, {in.drive().size(), kDriveNumbers}})) {
+    return WireError::kLength;
+  }
+  if (!all_finite(in.value())) return WireError::kNotFinite;
+  const auto is_quantity = [](std::uint8_t q) { return (q & ~kLetsGo) < core::kQuantities; };
+  if (!std::ranges::all_of(in.quantity(), is_quantity) ||
+      !std::ranges::all_of(in.let_go(), [](std::uint8_t x) { return x <= 1; })) {
+    return WireError::kEnum;
+  }
+  if (!all_within(in.value(), core::limits::kHardestPush) || !all_body_ids(in.body()) ||
+      !all_below(in.joint(), expected.joint_count)) {
+    return WireError::kRange;
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double* const drive = &in.drive()[i * kDriveNumbers];
+    if (std::any_of(drive, drive + kDriveNumbers, [](double x) { return std::isnan(x); })) return WireError::kNotFinite;
+    if (!is_drive(drive)) return WireError::kRange;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::Setpoints& out) {
+  out.sender(setpoints.client);
+  out.version(kProtocolVersion);
+  out.generation(setpoints.generation);
+  out.stamp(setpoints.at_step);
+  out.map_version(map_version);
+  out.sequence_number(setpoints.sequence);
+  fill(out.body(), setpoints.bodies, [](const auto& body) { return core::value_of(body.id); });
+  fill(out.quantity(), setpoints.bodies, [](const auto& body) {
+    return static_cast<std::uint8_t>(static_cast<std::uint8_t>(body.quantity) | (body.value ? 0 : kLetsGo));
+  });
+  fill_wide<3>(out.value(), setpoints.bodies, [](const auto& body, double* to) {
+    put_vector(body.value.value_or(core::Vec3::Zero()), to);
+  });
+  fill(out.joint(), setpoints.joints, [](const auto& joint) { return core::value_of(joint.id); });
+  fill(out.let_go(), setpoints.joints, [](const auto& joint) { return std::uint8_t{!joint.drive}; });
+  fill_wide<kDriveNumbers>(out.drive(), setpoints.joints, [](const auto& joint, double* to) {
+    put_drive(joint.drive.value_or(core::JointDrive{}), to);
+  });
+}
+
+Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expected) {
+  if (const auto error = check_header(in, expected)) return *error;
+  if (in.stamp() < 0) return WireError::kRange;
+  if (const auto error = check_rows(in, expected)) return *error;
+  core::Setpoints setpoints;
+  setpoints.client = in.sender();
+  setpoints.sequence = in.sequence_number();
+  setpoints.generation = in.generation();
+  setpoints.at_step = in.stamp();
+  setpoints.bodies.resize(in.body().size());
+  for (std::size_t i = 0; i < setpoints.bodies.size(); ++i) {
+    core::BodySetpoint& body = setpoints.bodies[i];
+    body.id = core::BodyId{in.body()[i]};
+    body.quantity = static_cast<core::Quantity>(in.quantity()[i] & ~kLetsGo);
+    if ((in.quantity()[i] & kLetsGo) == 0) body.value = vector_at(in.value(), i);
+  }
+  setpoints.joints.resize(in.joint().size());
+  for (std::size_t i = 0; i < setpoints.joints.size(); ++i) {
+    core::JointSetpoint& joint = setpoints.joints[i];
+    joint.id = core::JointId{in.joint()[i]};
+    const double* const d = &in.drive()[i * kDriveNumbers];
+    if (in.let_go()[i] == 0) joint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
+  }
+  return setpoints;
+}
+
+}  // namespace aurasim::dds

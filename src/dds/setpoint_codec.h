@@ -1,0 +1,16 @@
+// core/setpoint.h as a wire type, and back. As in codec.h.
+#pragma once
+
+#include "core/setpoint.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class Setpoints;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::Setpoints& out);
+Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expected);
+
+}  // namespace aurasim::dds

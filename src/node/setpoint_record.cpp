@@ -1,0 +1,125 @@
+#include "node/setpoint_record.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "node/csv.h"
+
+namespace aurasim::node {
+namespace {
+
+constexpr std::array<std::string_view, core::kQuantities> kQuantityNames = {"force", "torque", "velocity", "spin"};
+constexpr std::string_view kDrive = "drive";
+constexpr std::size_t kColumns = 10, kFirstNumber = 4;
+
+std::string row(core::RegionId region, core::Step step, std::string_view what, std::uint64_t id,
+                const std::vector<double>& numbers) {
+  std::string text = fmt::format("{},{},{},{}", core::value_of(region), step, what, id);
+  for (std::size_t i = 0; i < kColumns - kFirstNumber; ++i) {
+    text += i < numbers.size() ? fmt::format(",{}", numbers[i]) : ",";
+  }
+  return text + '\n';
+}
+
+std::optional<double> finite_or_infinite(std::string_view cell) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size() || value != value) return {};
+  return value;
+}
+
+/// Of two for one state what says something comes last.
+std::uint64_t sequence_of(bool says_something) { return says_something ? 2 : 1; }
+
+std::optional<core::BodyEffect> body_effect(std::string_view what, core::Step step, std::uint64_t id,
+                                            const std::vector<double>& numbers) {
+  const auto name = std::ranges::find(kQuantityNames, what);
+  if (name == kQuantityNames.end() || (!numbers.empty() && numbers.size() != 3)) return {};
+  core::BodyEffect effect{step, {core::BodyId{id}, static_cast<core::Quantity>(name - kQuantityNames.begin()), {}}};
+  if (!numbers.empty()) effect.setpoint.value = core::Vec3(numbers[0], numbers[1], numbers[2]);
+  return effect;
+}
+
+std::optional<core::JointEffect> joint_effect(core::Step step, std::uint64_t id, const std::vector<double>& numbers) {
+  if (!numbers.empty() && numbers.size() != 6) return {};
+  core::JointEffect effect{step, {core::JointId{static_cast<std::uint32_t>(id)}, {}}};
+  if (!numbers.empty()) {
+    effect.setpoint.drive =
+        core::JointDrive{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+  }
+  return effect;
+}
+
+/// Nothing: no row of setpoints.
+std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells) {
+  if (cells.size() != kColumns) return {};
+  const auto step = finite_or_infinite(cells[1]), id = finite_or_infinite(cells[3]);
+  if (!step || !id || *step < 1 || *id < 0 || *step > 1e15 || *id > 1e18) return {};
+  std::vector<double> numbers;
+  for (std::size_t i = kFirstNumber; i < kColumns && !cells[i].empty(); ++i) {
+    const std::optional<double> one = finite_or_infinite(cells[i]);
+    if (!one) return {};
+    numbers.push_back(*one);
+  }
+  const auto at = static_cast<core::Step>(*step);
+  if (cells[2] == kDrive) {
+    const auto effect = joint_effect(at, static_cast<std::uint64_t>(*id), numbers);
+    return effect ? std::optional(as_heard_again(*effect)) : std::nullopt;
+  }
+  const auto effect = body_effect(cells[2], at, static_cast<std::uint64_t>(*id), numbers);
+  return effect ? std::optional(as_heard_again(*effect)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect) {
+  const core::BodySetpoint& body = effect.setpoint;
+  std::vector<double> numbers;
+  if (body.value) numbers = {body.value->x(), body.value->y(), body.value->z()};
+  return row(region, effect.step, kQuantityNames.at(static_cast<std::size_t>(body.quantity)), core::value_of(body.id),
+             numbers);
+}
+
+std::string setpoint_row(core::RegionId region, const core::JointEffect& effect) {
+  std::vector<double> numbers;
+  if (const auto& d = effect.setpoint.drive) {
+    numbers = {d->position, d->speed, d->stiffness, d->damping, d->effort, d->max_effort};
+  }
+  return row(region, effect.step, kDrive, core::value_of(effect.setpoint.id), numbers);
+}
+
+core::Setpoints as_heard_again(const core::BodyEffect& effect) {
+  return {core::kRecordedClient, sequence_of(effect.setpoint.value.has_value()), 0, effect.step, {effect.setpoint}, {}};
+}
+
+core::Setpoints as_heard_again(const core::JointEffect& effect) {
+  return {core::kRecordedClient, sequence_of(effect.setpoint.drive.has_value()), 0, effect.step, {}, {effect.setpoint}};
+}
+
+std::vector<core::Setpoints> read_setpoints(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!std::getline(in, line) || line + '\n' != kSetpointsHeader) {
+    throw std::runtime_error(fmt::format("{}: this is no record of setpoints", file.string()));
+  }
+  std::vector<core::Setpoints> all;
+  std::vector<std::string_view> cells;
+  for (std::size_t number_of_line = 2; std::getline(in, line); ++number_of_line) {
+    split_cells(line, cells);
+    const std::optional<core::Setpoints> read = read_row(cells);
+    if (!read) {
+      throw std::runtime_error(fmt::format("{}:{}: no row of setpoints: {}", file.string(), number_of_line, line));
+    }
+    all.push_back(*read);
+  }
+  return all;
+}
+
+}  // namespace aurasim::node
