@@ -25,6 +25,8 @@ declare -A measures=(
     src/cli/launcher.cpp idl qos launch_configs scripts/recovery.py scripts/recovery_cost.py"
   [docs/security_cost.md]="$uncounted src/config src/dds src/security src/cli/node_process* src/cli/launcher.cpp idl qos
     launch_configs scripts/security_cost.py"
+  [docs/control_cost.md]="$uncounted src/dds src/client src/cli/agent src/cli/node_process* idl qos tests/bench/control_client.cpp
+    scripts/control_cost.py"
   # Of core, what physics computes with; the compiler and its flags are in the line itself.
   [docs/speed.md]="src/core/body_state.h src/core/scene.* src/core/joint.h src/core/limits.h src/physics src/experiment/speed src/config/presets.h tests/bench/peers
     launch_configs/scenes/columns_rain.yaml launch_configs/scenes/ragdoll_stairs.yaml src/experiment/stability/piles.cpp

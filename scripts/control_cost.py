@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""What it costs to steer 1,000 bodies: balls that roll over four regions, left alone and with a torque on each of them, 60
+times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/control_cost.md."""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import tempfile
+import time
+
+from report_parts import machine_line, measured_line, table
+
+TEXT = """# What steering costs: measured
+
+{measured}
+
+Written by `scripts/control_cost.sh`; do not edit. {machine}.
+
+{bodies} balls that roll over four regions of one host, `deterministic`, {seconds} s paced by the clock: *left alone*; beside a
+client that only looks on ([`World.connect`](client.md)); and with a torque on each ball, said anew 60 times a second by that
+client. {repeats} times each by turns; medians of the runs, of the nodes' frames while the client was there.
+
+{costs}
+Setpoints that came late: {late} of {heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state
+for {bodies} of them, to each node, in {messages} messages. Slowest frames (p99) with the torques against the client alone: {more}.
+"""
+
+KINDS = ("left alone", "looked at", "steered")
+
+
+def scene(folder, bodies):
+    side = int(bodies**0.5 + 0.999)
+    rows = "\n".join(f"  - {{prototype: ball, position: [{1.3 * (i % side - side / 2):.2f}, {1.3 * (i // side - side / 2):.2f}, 0.4]}}"
+                     for i in range(bodies))
+    (folder / "balls.yaml").write_text(f"""name: balls
+shapes: {{ball: {{sphere: {{radius: 0.4}}}}}}
+prototypes: {{ball: {{shape: ball, mass: 1, can_sleep: false}}}}
+statics: [{{name: ground, shape: {{plane: {{}}}}}}]
+bodies:
+{rows}
+""")
+    file = folder / "launch.yaml"
+    file.write_text("scene: balls.yaml\nregions: {layout: grid, rows: 2, columns: 2, cell: [30, 30]}\n"
+                    "time: {sync: deterministic}\n")
+    return file
+
+
+def frames(folder, first):
+    """Of all nodes, in ms, from a state on."""
+    times = []
+    for line in (folder / "steps.csv").read_text().splitlines()[1:]:
+        cells = line.split(",")
+        if int(cells[1]) >= first:
+            times.append(float(cells[2]))
+    times.sort()
+    return {"p50": times[len(times) // 2], "p99": times[int(len(times) * 0.99)]}
+
+
+def one_run(options, file, kind):
+    with tempfile.TemporaryDirectory() as temporary:
+        report = pathlib.Path(temporary) / "report"
+        steps = int(60 * (options.seconds + 8))
+        run = subprocess.Popen([options.program, "launch", str(file), "--headless", "--steps", str(steps), "--report",
+                                str(report), "--set", f"dds.domain={options.domain}"], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+        time.sleep(3)
+        said = {}
+        if kind != "left alone":
+            bodies = options.bodies if kind == "steered" else 0
+            client = subprocess.run([options.client, str(file), str(options.domain), str(bodies), str(options.seconds)],
+                                    capture_output=True, text=True, check=True, timeout=options.seconds + 120)
+            said = json.loads(client.stdout)
+        if run.wait(options.seconds + 120) != 0:
+            raise RuntimeError("the run has failed")
+        summary = json.loads((report / "summary.json").read_text())
+        return {"kind": kind, **frames(report, 300), "real_time_factor": summary["real_time_factor"], **said}
+
+
+def measure(options):
+    with tempfile.TemporaryDirectory() as temporary, (options.out / "runs.jsonl").open("w") as out:
+        file = scene(pathlib.Path(temporary), options.bodies)
+        for repeat in range(options.repeats):
+            for kind in KINDS:
+                row = {"repeat": repeat, **one_run(options, file, kind)}
+                out.write(json.dumps(row) + "\n")
+                print(json.dumps(row), flush=True)
+
+
+def write(options):
+    rows = [json.loads(line) for line in (options.out / "runs.jsonl").read_text().splitlines()]
+
+    def of(kind, key):
+        return statistics.median(row[key] for row in rows if row["kind"] == kind)
+
+    wanted = [("real-time factor", "real_time_factor"), ("frame p50, ms", "p50"), ("p99", "p99")]
+    costs = table(["", *KINDS], [[name, *[f"{of(kind, key):.3g}" for kind in KINDS]] for name, key in wanted])
+    steered = [row for row in rows if row["kind"] == "steered"]
+    text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=options.bodies,
+                       seconds=options.seconds, repeats=len(steered), costs=costs,
+                       late=sum(row["late"] for row in steered), heard=sum(row["heard"] for row in steered),
+                       refused=sum(row["refused"] for row in steered), per_step=33 * options.bodies,
+                       messages=-(-options.bodies // 800),
+                       more=f"{100 * (of('steered', 'p99') / of('looked at', 'p99') - 1):+.0f}%")
+    pathlib.Path("docs/control_cost.md").write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default="build/release/aurasim")
+    parser.add_argument("--client", default="build/release/control_client")
+    parser.add_argument("--bodies", type=int, default=1000)
+    parser.add_argument("--seconds", type=int, default=20)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--domain", type=int, default=75)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/control_cost"))
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    measure(options)
+    write(options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# What it costs to steer 1,000 bodies, 60 times a second, by one client. Writes docs/control_cost.md. About 8 minutes on 2
+# cores, where nothing else runs.
+#   scripts/control_cost.sh [--repeats N=5] [--domain N=75] [--out DIR=build/control_cost]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out=build/control_cost arguments=("$@")
+while [[ ${1:-} == --* ]]; do
+  [[ $1 != --out ]] || out=$2
+  shift 2
+done
+
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/control_cost.md "$out" double control_client
+/usr/bin/python3 scripts/control_cost.py "${arguments[@]}"
+echo "written: docs/control_cost.md" >&2
