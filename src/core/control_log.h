@@ -1,5 +1,6 @@
-// The setpoints of programs, as one node has heard them: what is in effect in which state. Every node hears all of them,
-// so a body's setpoints need not travel with it, and a state that is computed again, or made up later, has the same.
+// The setpoints of programs, as one node has heard them: what is in effect in which state. Every node hears all of
+// them, so a body's setpoints need not travel with it, and a state that is computed again, or made up later, has the
+// same.
 #pragma once
 
 #include <algorithm>
@@ -35,9 +36,9 @@ class ControlLog {
   /// `is_new`: it was not in the state before. Then also for what is let go of, without value.
   template <class Visit>
   void for_each_body(Step step, Visit&& visit) const {
-    for (const BodyTrack& track : bodies_) visit_track(track, step, [&](const auto& value, bool is_new) {
-        visit(track.key.first, track.key.second, value, is_new);
-      });
+    for (const BodyTrack& track : bodies_)
+      visit_track(track, step,
+                  [&](const auto& value, bool is_new) { visit(track.key.first, track.key.second, value, is_new); });
   }
   /// visit(id, drive, is_new): likewise for joints.
   template <class Visit>
@@ -122,9 +123,9 @@ class ControlLog {
   }
 
   ControlRules rules_;
-  std::vector<BodyTrack> bodies_;                      ///< ascending key
-  std::vector<JointTrack> joints_;                     ///< ascending key
-  std::map<std::uint64_t, std::vector<Step>> words_;   ///< by client: states that it has said something for, ascending
+  std::vector<BodyTrack> bodies_;                     ///< ascending key
+  std::vector<JointTrack> joints_;                    ///< ascending key
+  std::map<std::uint64_t, std::vector<Step>> words_;  ///< by client: states that it has said something for, ascending
   std::size_t entries_ = 0;
 };
 

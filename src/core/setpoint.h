@@ -1,4 +1,5 @@
-// What a program wants of bodies and joints from a state on, until it says otherwise (docs/decisions/0026-setpoints.md).
+// What a program wants of bodies and joints from a state on, until it says otherwise
+// (docs/decisions/0026-setpoints.md).
 #pragma once
 
 #include <cstdint>

@@ -129,6 +129,7 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
       TypeSupport(new GuardedType<wire::ClusterGraphPubSubType>()),
       TypeSupport(new GuardedType<wire::CheckpointPubSubType>()),
+      TypeSupport(new GuardedType<wire::SetpointsPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

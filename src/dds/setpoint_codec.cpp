@@ -66,9 +66,8 @@ void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::S
   fill(out.quantity(), setpoints.bodies, [](const auto& body) {
     return static_cast<std::uint8_t>(static_cast<std::uint8_t>(body.quantity) | (body.value ? 0 : kLetsGo));
   });
-  fill_wide<3>(out.value(), setpoints.bodies, [](const auto& body, double* to) {
-    put_vector(body.value.value_or(core::Vec3::Zero()), to);
-  });
+  fill_wide<3>(out.value(), setpoints.bodies,
+               [](const auto& body, double* to) { put_vector(body.value.value_or(core::Vec3::Zero()), to); });
   fill(out.joint(), setpoints.joints, [](const auto& joint) { return core::value_of(joint.id); });
   fill(out.let_go(), setpoints.joints, [](const auto& joint) { return std::uint8_t{!joint.drive}; });
   fill_wide<kDriveNumbers>(out.drive(), setpoints.joints, [](const auto& joint, double* to) {

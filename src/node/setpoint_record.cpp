@@ -51,8 +51,7 @@ std::optional<core::JointEffect> joint_effect(core::Step step, std::uint64_t id,
   if (!numbers.empty() && numbers.size() != 6) return {};
   core::JointEffect effect{step, {core::JointId{static_cast<std::uint32_t>(id)}, {}}};
   if (!numbers.empty()) {
-    effect.setpoint.drive =
-        core::JointDrive{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+    effect.setpoint.drive = core::JointDrive{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
   }
   return effect;
 }

@@ -20,7 +20,8 @@ inline constexpr std::string_view kSetpointsHeader = "region,step,what,id,x0,x1,
 std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect);
 std::string setpoint_row(core::RegionId region, const core::JointEffect& effect);
 
-/// For a node of another run. Where one host has let go of a body and the next says what is in effect on it, that counts.
+/// For a node of another run. Where one host has let go of a body and the next says what is in effect on it, that
+/// counts.
 core::Setpoints as_heard_again(const core::BodyEffect& effect);
 core::Setpoints as_heard_again(const core::JointEffect& effect);
 

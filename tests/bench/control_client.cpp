@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   const std::size_t wanted = std::strtoul(argv[3], nullptr, 10);
   const double seconds = std::strtod(argv[4], nullptr);
   try {
-    World world = World::connect(argv[1], {.overrides = {"dds.domain=" + std::string(argv[2])}, .time_out = Seconds(60)});
+    World world =
+        World::connect(argv[1], {.overrides = {"dds.domain=" + std::string(argv[2])}, .time_out = Seconds(60)});
     std::vector<std::uint64_t> ids = world.bodies().ids;
     if (ids.size() > wanted) ids.resize(wanted);
     auto next = std::chrono::steady_clock::now();
@@ -46,8 +47,8 @@ int main(int argc, char** argv) {
     for (const NodeStatus& node : world.nodes()) {
       heard += node.setpoints_heard, late += node.setpoints_late, refused += node.setpoints_refused;
     }
-    std::printf("{\"bodies\": %zu, \"ticks\": %d, \"heard\": %lu, \"late\": %lu, \"refused\": %lu}\n", ids.size(), ticks,
-                static_cast<unsigned long>(heard), static_cast<unsigned long>(late),
+    std::printf("{\"bodies\": %zu, \"ticks\": %d, \"heard\": %lu, \"late\": %lu, \"refused\": %lu}\n", ids.size(),
+                ticks, static_cast<unsigned long>(heard), static_cast<unsigned long>(late),
                 static_cast<unsigned long>(refused));
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

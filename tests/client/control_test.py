@@ -98,6 +98,23 @@ class Live(WorldTest):
         world.control(forces=(steered, None))
         return named
 
+    def assert_same_again(self, live, regions):
+        """From its record, on so many nodes."""
+        expected = hashes(live)
+        again = self.folder / f"again_{regions}"
+        layout = {"regions.count": 1} if regions == 1 else {
+            "regions": "{layout: grid, rows: 3, columns: 3, cell: [14, 14]}"}
+        words = [os.environ["AURASIM_PROGRAM"], "launch", str(launch_file("demo")), "--headless", "--steps",
+                 str(max(expected)), "--report", str(again)]
+        for key, value in {**self.overrides(time__sync="deterministic", time__pace="none"), **layout,
+                           "control.replay": str(live / "setpoints.csv")}.items():
+            words += ["--set", f"{key}={value}"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
+        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
+        found = hashes(again)
+        differ = [step for step in expected if found.get(step) != expected[step]]
+        self.assertEqual(differ, [], f"{regions} regions: {len(differ)} of {len(expected)} states")
+
     def test_a_record_gives_the_same_bits_on_any_number_of_nodes(self):
         live = self.folder / "live"
         world = self.launch(paused=False, report=live, time__sync="deterministic")
@@ -106,23 +123,20 @@ class Live(WorldTest):
         world.close()
         self.assertGreater(named, 20)
         self.assertGreater(sum(node.hand_offs_out for node in nodes), 0)
-        rows = setpoint_rows(live)
-        self.assertGreater(len(rows), 20 * named)
-        expected = hashes(live)
+        self.assertGreater(len(setpoint_rows(live)), 20 * named)
         for regions in (1, 9):
-            again = self.folder / f"again_{regions}"
-            layout = {"regions.count": 1} if regions == 1 else {
-                "regions": "{layout: grid, rows: 3, columns: 3, width: 14, height: 14}"}
-            words = [str(program()), "launch", str(launch_file("demo")), "--headless", "--steps", str(max(expected)),
-                     "--report", str(again)]
-            for key, value in {**self.overrides(time__sync="deterministic", time__pace="none"), **layout,
-                               "control.replay": str(live / "setpoints.csv")}.items():
-                words += ["--set", f"{key}={value}"]
-            done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
-            self.assertEqual(done.returncode, 0, done.stderr[-2000:])
-            found = hashes(again)
-            differ = [step for step in expected if found.get(step) != expected[step]]
-            self.assertEqual(differ, [], f"{regions} regions: {len(differ)} of {len(expected)} states")
+            self.assert_same_again(live, regions)
+
+    def test_a_death_changes_nothing_of_it(self):
+        live = self.folder / "live"
+        world = self.launch(paused=False, report=live, time__sync="deterministic")
+        self.steer(world, 150)
+        os.kill(world.nodes()[2].pid, signal.SIGKILL)
+        generation = world.bodies().generation
+        self.assertTrue(wait_until(lambda: world.bodies().generation > generation), "nobody has taken the region over")
+        self.steer(world, 150)
+        world.close()
+        self.assert_same_again(live, 1)
 
     def test_what_names_no_state_is_never_late_and_what_names_a_past_one_is(self):
         world = self.launch(paused=False)
@@ -189,10 +203,6 @@ class Live(WorldTest):
             steering.wait()
             steering.stdout.close()
         self.assertTrue(wait_until(lambda: speed() < 0.3))
-
-
-def program():
-    return os.environ["AURASIM_PROGRAM"]
 
 
 if __name__ == "__main__":

@@ -24,8 +24,7 @@ constexpr Step kSteps = 200, kFirst = 20, kEvery = 3;
 
 ClusterOptions options_for(int rows, int columns, int seed, bool redo) {
   ClusterOptions options;
-  options.map =
-      core::RegionMap::grid(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns), kCell, kCell);
+  options.map = core::RegionMap::grid(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns), kCell, kCell);
   options.seed = static_cast<std::uint64_t>(seed);
   options.sync = core::SyncMode::kDeterministic;
   options.aura.lookahead = 1 + seed % 3;
@@ -160,15 +159,15 @@ TEST(Control, APushIsForeseenByTheNeighbours) {
   }
   ClusterOptions options = options_for(1, 2, 1, false);
   options.sync = core::SyncMode::kBounded;
-  const std::vector<core::Setpoints> words = {{1,
-                                               1,
-                                               0,
-                                               60,
-                                               {{BodyId{1}, Quantity::kForce, Vec3(20, 0, 0)},
-                                                {BodyId{2}, Quantity::kForce, Vec3(-20, 0, 0)}},
-                                               {}},
-                                              {1, 2, 0, 80, {}, {}},
-                                              {1, 3, 0, 100, {}, {}}};
+  const std::vector<core::Setpoints> words = {
+      {1,
+       1,
+       0,
+       60,
+       {{BodyId{1}, Quantity::kForce, Vec3(20, 0, 0)}, {BodyId{2}, Quantity::kForce, Vec3(-20, 0, 0)}},
+       {}},
+      {1, 2, 0, 80, {}, {}},
+      {1, 3, 0, 100, {}, {}}};
   const Outcome o = run(scene, options, words, 1, options.aura.lookahead + 2, options.aura.lookahead + 1);
   EXPECT_EQ(o.late + o.missed, 0u);
   EXPECT_EQ(o.violations, 0u);

@@ -94,7 +94,10 @@ class Silence : public testing::TestWithParam<Silent> {};
 TEST_P(Silence, IsWhatTheLaunchFileSays) {
   ControlLog log;
   log.use({LateSetpoint::kNextState, GetParam().rule, 30});
-  log.recall({1, 1, 0, 10,
+  log.recall({1,
+              1,
+              0,
+              10,
               {{kBody, Quantity::kForce, Vec3(5, 0, 0)}, {kBody, Quantity::kVelocity, Vec3(2, 0, 0)}},
               {{kJoint, JointDrive{0.5, 3, 100, 10, 4, 50}}}});
   log.recall({1, 2, 0, 20, {}, {}});  // a word is enough
@@ -133,7 +136,8 @@ TEST(ControlLog, ForgetsWhatIsOver) {
 
 TEST(ControlLog, TellsAnotherOneWhatIsInEffectSinceAState) {
   ControlLog log;
-  for (Step step = 1; step <= 100; step += 3) log.recall(force(1, static_cast<std::uint64_t>(step), step, double(step)));
+  for (Step step = 1; step <= 100; step += 3)
+    log.recall(force(1, static_cast<std::uint64_t>(step), step, double(step)));
   ControlLog other;
   for (const Setpoints& one : log.since(50)) other.recall(one);
   for (Step step = 50; step <= 140; ++step) EXPECT_EQ(force_in(other, step), force_in(log, step)) << step;
