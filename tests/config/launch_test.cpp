@@ -39,6 +39,21 @@ TEST(LaunchFile, FilesOfTlsAreBesideItAndNotLookedForHere) {
   EXPECT_EQ(launch.overseer.tls->key, launch.file.parent_path().parent_path() / "k.pem");
 }
 
+TEST(LaunchFile, SaysWhatBecomesOfPrograms) {
+  const Workspace workspace;
+  const core::ControlRules usual = workspace.launch(kSmallLaunch).control_rules();
+  EXPECT_EQ(usual.late, core::LateSetpoint::kNextState);
+  EXPECT_EQ(usual.on_silence, core::OnSilence::kHold);
+  EXPECT_EQ(usual.silence, 30);
+  workspace.write("setpoints.csv", "region,step,what,id,x0,x1,x2,x3,x4,x5\n");
+  const Launch launch = workspace.launch(
+      std::string(kSmallLaunch) + "control: {late: drop, silence: 2, on_silence: last, replay: setpoints.csv}\n");
+  EXPECT_EQ(launch.control_rules().late, core::LateSetpoint::kDropped);
+  EXPECT_EQ(launch.control_rules().on_silence, core::OnSilence::kLast);
+  EXPECT_EQ(launch.control_rules().silence, 120);
+  EXPECT_EQ(launch.control.replay, launch.file.parent_path() / "setpoints.csv");
+}
+
 TEST(LaunchFile, TheDefaultsAreThePresetBalanced) {
   const Launch launch = Workspace().launch(kSmallLaunch);
   EXPECT_EQ(launch.physics.solver, preset_named("balanced").solver);

@@ -53,6 +53,9 @@ SavedWorld world_of(std::size_t bodies) {
                       {{~0ULL, core::MeshUse::kTriangles}, mesh},
                       {{3, core::MeshUse::kDecomposition}, compound}};
   world.cut.meshes = {{1, mesh}, {3, mesh}};
+  world.cut.setpoints = {
+      {7, 1, 0, 119, {{core::BodyId{2}, core::Quantity::kForce, core::Vec3(1.0 / 3, 0, -2)}}, {}},
+      {core::kRecordedClient, 2, 0, 130, {{core::BodyId{2}, core::Quantity::kSpin, {}}}, {{core::JointId{0}, {}}}}};
   return world;
 }
 
@@ -68,6 +71,14 @@ void expect_same(const SavedWorld& a, const SavedWorld& b) {
   EXPECT_EQ(a.part, b.part);
   EXPECT_EQ(a.parts, b.parts);
   EXPECT_EQ(a.cut.step, b.cut.step);
+  ASSERT_EQ(a.cut.setpoints.size(), b.cut.setpoints.size());
+  for (std::size_t i = 0; i < a.cut.setpoints.size(); ++i) {
+    const core::Setpoints &x = a.cut.setpoints[i], &y = b.cut.setpoints[i];
+    EXPECT_EQ(std::tuple(x.client, x.sequence, x.at_step), std::tuple(y.client, y.sequence, y.at_step));
+    ASSERT_EQ(x.bodies.size(), y.bodies.size());
+    EXPECT_EQ(x.bodies[0].value, y.bodies[0].value);
+    EXPECT_EQ(x.joints.size(), y.joints.size());
+  }
   EXPECT_EQ(a.cut.births_known, b.cut.births_known);
   EXPECT_EQ(a.cut.last_order, b.cut.last_order);
   EXPECT_TRUE(same(a.cut.bodies, b.cut.bodies));

@@ -80,7 +80,8 @@ TEST(AViewer, SeesTheWorldAndNotHowItIsHandedOver) {
   for (const char* topic : {"region_map", "orders", "shape"}) {
     EXPECT_TRUE(may_read(Role::kViewer, 0, topic, "world")) << topic;
   }
-  for (const char* topic : {"migration", "migration_ack", "checkpoint", "command", "command_reply", "run_control"}) {
+  for (const char* topic :
+       {"migration", "migration_ack", "checkpoint", "command", "control", "command_reply", "run_control"}) {
     for (const char* partition : {"world", "region/*", "region/1/to/2", "*"}) {
       EXPECT_FALSE(may_read(Role::kViewer, 0, topic, partition)) << topic << " " << partition;
     }
@@ -91,6 +92,7 @@ TEST(OnlyOperators, AskSomethingOfTheWorld) {
   for (int i = 0; i < kRoleCount; ++i) {
     const Role role = static_cast<Role>(i);
     EXPECT_EQ(may_say(role, 0, "command", "world"), role == Role::kOperator) << name_of(role);
+    EXPECT_EQ(may_say(role, 0, "control", "world"), role == Role::kOperator) << name_of(role);
     // Nodes tell meshes again that a saved world has brought.
     const bool is_node = role == Role::kRegion || role == Role::kSpare;
     EXPECT_EQ(may_say(role, 0, "shape", "world"), is_node || role == Role::kOperator) << name_of(role);
