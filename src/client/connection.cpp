@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "client/last_words.h"
+
 extern char** environ;
 
 namespace aurasim::client {
@@ -135,7 +137,7 @@ Message Connection::ask(Message question, Seconds time_out) {
     if (answer.head.contains("error")) raise_as(answer.head.value("error", ""), answer.head.value("what", ""));
     return answer;
   } catch (const ConnectionLost&) {
-    const std::string words = last_words();
+    const std::string words = last_words(log_, kLongestLastWords_B);
     end(Clock::now());
     throw Ended("the agent has ended" + (words.empty() ? "" : ". Its last words: " + words));
   }
@@ -178,16 +180,6 @@ void Connection::end(Clock::time_point deadline) {
     ::nanosleep(&nap, nullptr);
   }
   pid_ = 0;
-}
-
-std::string Connection::last_words() const {
-  const off_t size = ::lseek(log_, 0, SEEK_END);
-  const off_t from = std::max<off_t>(0, size - kLongestLastWords_B);
-  std::string words(static_cast<std::size_t>(std::max<off_t>(0, size - from)), '\0');
-  const ssize_t got = ::pread(log_, words.data(), words.size(), from);
-  words.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  while (!words.empty() && words.back() == '\n') words.pop_back();
-  return words;
 }
 
 }  // namespace aurasim::client

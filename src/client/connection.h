@@ -35,7 +35,6 @@ class Connection {
   void start(const std::string& program, int socket);
   Message read_answer(std::uint64_t request, std::chrono::steady_clock::time_point deadline);
   void end(std::chrono::steady_clock::time_point deadline);
-  std::string last_words() const;
 
   std::function<bool()> interrupted_;
   pid_t owner_;  ///< a child of ours has a copy of this, and must leave the agent alone

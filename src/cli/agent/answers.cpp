@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/saved_parts.h"
+#include "experiment/conditions.h"
 
 namespace aurasim::cli::agent {
 namespace {
@@ -48,18 +49,6 @@ void add_object(json& to, const std::optional<core::ObjectRef>& object) {
 
 [[noreturn]] void refuse(const Delivery& delivery) {
   throw Problem(delivery.timed_out ? Kind::kTimedOut : Kind::kRefused, delivery.text);
-}
-
-const char* name_of(core::SyncMode sync) {
-  switch (sync) {
-    case core::SyncMode::kFreeRunning:
-      return "free_running";
-    case core::SyncMode::kBounded:
-      return "bounded";
-    case core::SyncMode::kDeterministic:
-      return "deterministic";
-  }
-  return "";
 }
 
 }  // namespace
@@ -139,7 +128,7 @@ json info_json(const RunLink& run) {
           {"step_s", launch.step_s()},
           {"tick_hz", launch.observe.tick_hz},
           {"lookahead", launch.lookahead()},
-          {"sync", name_of(launch.time.sync)},
+          {"sync", experiment::name_of(launch.time.sync)},
           {"prototypes", std::move(prototypes)},
           {"joints", std::move(joints)},
           {"regions", std::move(regions)}};

@@ -1,16 +1,15 @@
 #include "cli/agent/launched_run.h"
 
-#include <algorithm>
 #include <csignal>
 #include <ctime>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "cli/launch_setup.h"
 #include "cli/spawn.h"
+#include "client/last_words.h"
 
 namespace aurasim::cli::agent {
 namespace {
@@ -57,15 +56,9 @@ int LaunchedRun::stop(std::chrono::steady_clock::time_point deadline) {
 
 std::string last_words() {
   const int file = ::open("/proc/self/fd/2", O_RDONLY | O_CLOEXEC);
-  struct ::stat about {};
-  std::string words;
-  if (file >= 0 && ::fstat(file, &about) == 0 && S_ISREG(about.st_mode)) {
-    words.resize(static_cast<std::size_t>(std::min<off_t>(about.st_size, kLongestLastWords_B)));
-    const ssize_t got = ::pread(file, words.data(), words.size(), about.st_size - static_cast<off_t>(words.size()));
-    words.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  }
-  if (file >= 0) ::close(file);
-  while (!words.empty() && words.back() == '\n') words.pop_back();
+  if (file < 0) return {};
+  std::string words = client::last_words(file, kLongestLastWords_B);
+  ::close(file);
   return words;
 }
 
