@@ -11,11 +11,6 @@ namespace {
 
 const std::filesystem::path kMeshes = std::filesystem::path(AURASIM_SOURCE_DIR) / "tests/config/meshes";
 
-core::Shape shape_of(const std::string& text) {
-  const Workspace workspace;
-  return workspace.scene("shapes: {it: " + text + "}\n").shapes.at(0).shape;
-}
-
 core::TriangleMesh mesh_of(const std::string& file, const std::string& rest = "") {
   return std::get<core::TriangleMesh>(shape_of("{mesh: {file: " + (kMeshes / file).string() + rest + "}}"));
 }

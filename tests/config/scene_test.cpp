@@ -3,11 +3,6 @@
 namespace aurasim::config {
 namespace {
 
-core::Shape shape_of(const std::string& text) {
-  const Workspace workspace;
-  return workspace.scene("shapes: {it: " + text + "}\n").shapes.at(0).shape;
-}
-
 core::InitialBody body_of(const std::string& rest) {
   const Workspace workspace;
   return workspace

@@ -89,6 +89,12 @@ class Workspace {
   std::filesystem::path folder_;
 };
 
+/// The shape that these words of a scene file make.
+inline core::Shape shape_of(const std::string& text) {
+  const Workspace workspace;
+  return workspace.scene("shapes: {it: " + text + "}\n").shapes.at(0).shape;
+}
+
 /// A bad file and all that must be said about it, in order. Each expected text is the beginning of one error.
 struct BadCase {
   const char* name;

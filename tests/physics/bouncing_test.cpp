@@ -11,8 +11,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kGravity = 9.81;
-
 core::Scene scene_of_bouncing(const core::Shape& shape, double restitution) {
   core::Scene scene = scene_of(shape);
   scene.materials[0] = {};

@@ -11,8 +11,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kGravity = 9.81;
-
 /// Bodies of `shape` that never sleep on ground of the same material; `friction` is that of the pair.
 core::Scene scene_with(const core::Shape& shape, double friction) {
   core::Scene scene = scene_of(shape);

@@ -64,7 +64,7 @@ core::Scene scene_of_creatures(std::vector<std::vector<BodyId>>& creatures) {
   return scene;
 }
 
-struct Travels {
+struct CreatureTravels {
   ClusterState cluster;
   Step stamp = 0;
 };
@@ -98,14 +98,14 @@ class JointHandOff : public ::testing::TestWithParam<int> {
 
   /// A hand-off of each creature in one of 20 steps, up to two steps late. Says in which state bits first differ.
   Step run_random(Step steps, const std::function<void(ClusterState&)>& spoil = {}) {
-    std::vector<std::optional<Travels>> travels(creatures.size());
+    std::vector<std::optional<CreatureTravels>> travels(creatures.size());
     std::vector<Step> arrival(creatures.size());
     std::vector<int> to(creatures.size());
     for (Step now = 0; now < steps; ++now) {
       for (std::size_t i = 0; i < creatures.size(); ++i) {
         if (!travels[i] && random() % 20 == 0) {
           to[i] = 1 - host_of(i);
-          travels[i] = Travels{worlds[1 - to[i]].release(creatures[i]), now};
+          travels[i] = CreatureTravels{worlds[1 - to[i]].release(creatures[i]), now};
           arrival[i] = now + static_cast<Step>(random() % 3);
           if (spoil) spoil(travels[i]->cluster);
           ++hand_offs;

@@ -19,7 +19,7 @@ constexpr int kPiles = 6;
 constexpr int kBodies = 9;  // in each pile
 constexpr Step kSteps = 1500;
 
-struct Travels {
+struct PileTravels {
   core::ClusterState cluster;
   Step stamp = 0;
   Step arrival = 0;
@@ -28,7 +28,7 @@ struct Travels {
 struct Pile {
   std::vector<BodyId> ids;
   int host = 0;
-  std::optional<Travels> travels;
+  std::optional<PileTravels> travels;
 };
 
 class ManyHandOffs : public ::testing::TestWithParam<std::tuple<int, Ground>> {
@@ -50,7 +50,7 @@ class ManyHandOffs : public ::testing::TestWithParam<std::tuple<int, Ground>> {
 
   void maybe_depart(Pile& pile, Step now) {
     if (pile.travels || random() % 100 != 0) return;
-    pile.travels = Travels{worlds[pile.host].release(pile.ids), now, now + static_cast<Step>(random() % 3)};
+    pile.travels = PileTravels{worlds[pile.host].release(pile.ids), now, now + static_cast<Step>(random() % 3)};
     pile.host = 1 - pile.host;
     ++hand_offs;
   }

@@ -16,6 +16,9 @@ namespace aurasim::physics::testing {
 enum Kind { kSphere, kBox, kCapsule, kCylinder, kHull, kCompound, kKinds };
 inline const char* const kKindNames[] = {"Sphere", "Box", "Capsule", "Cylinder", "Hull", "Compound"};
 
+/// What pulls down in the scenes below, in m/s^2.
+inline constexpr double kGravity = 9.81;
+
 enum class Ground { kPlane, kMesh };
 
 /// One prototype of 1 kg for each kind, and the ground at z = 0.
