@@ -10,7 +10,7 @@
 #include "cluster/cluster_sim.h"
 #include "cluster/scenes.h"
 
-namespace aurasim::test {
+namespace aurasim::test::steered {
 namespace {
 
 using core::BodyId;
@@ -178,4 +178,4 @@ TEST(Control, APushIsForeseenByTheNeighbours) {
 INSTANTIATE_TEST_SUITE_P(Redo, SteeredCluster, testing::Bool());
 
 }  // namespace
-}  // namespace aurasim::test
+}  // namespace aurasim::test::steered

@@ -13,7 +13,6 @@ using core::Quantity;
 using core::Step;
 using core::Vec3;
 
-constexpr double kStep = 1.0 / 60;
 constexpr BodyId kBody{1};
 
 class Pushed : public ::testing::TestWithParam<Solver> {
