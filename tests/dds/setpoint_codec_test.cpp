@@ -9,7 +9,7 @@
 #include "aurasim.h"
 #include "dds/wire_bytes.h"
 
-namespace aurasim::dds::setpoint_codec {
+namespace aurasim::dds {
 namespace {
 
 using core::BodyId;
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
-}  // namespace aurasim::dds::setpoint_codec
+}  // namespace aurasim::dds
