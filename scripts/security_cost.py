@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
 """What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns, and open beside an
-overseer that is left alone or attacked. Writes DIR/runs.jsonl and docs/security_cost.md."""
+overseer that is left alone, with idle processors and busy ones, or attacked. Writes DIR/runs.jsonl and docs/security_cost.md."""
 import argparse
 import contextlib
+import ctypes
 import hashlib
 import json
 import os
 import pathlib
+import platform
 import resource
 import socket
 import statistics
+import struct
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -31,16 +35,22 @@ until all have gone back and compute, with the launcher's new process, and with 
 
 {costs}
 
-The same open run beside `aurasim overseer`, which nobody asks for anything, or which `tests/web/attack.mjs` does all at once
-to that it has to stand: 500 connections that drip, floods of requests, messages, pings and of what is none, frames of 100 MB.
-The attack has what the others leave of the processors, as if it came from another host; the overseer runs beside the nodes.
+The same open run beside `aurasim overseer`. *Left alone*: nobody asks it for anything. *Attacked*: `tests/web/attack.mjs` does
+all at once to it that it has to stand: 500 connections that drip, floods of requests, messages, pings and of what is none,
+frames of 100 MB. The attack has what the others leave of the processors, as if it came from another host; the overseer runs
+beside the nodes. *Left alone, busy*: nobody attacks, but two processes compute without end, one scheduled as the thread that
+serves the overseer's pages (nice 10, slices of 0.1 ms), one as the attack. What the nodes lose there they lose to processors
+that do something else as well, hyperthreads among them; what an attack costs is what it adds to that.
 
 {attacked}
 {verdict}
 """
 
 KINDS = {"open": [], "keys": ["--secure"]}
-OVERSEERS = ("left alone", "attacked")
+OVERSEERS = ("left alone", "left alone, busy", "attacked")
+
+PAGE_NICENESS, PAGE_SLICE_NS = 10, 100_000  # src/overseer/give_way.cpp
+SCHED_SETATTR = {"x86_64": 314, "aarch64": 274}[platform.machine()]
 
 
 def seconds_of_children():
@@ -87,15 +97,37 @@ def only_on_idle_processors():
     os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
 
 
+def as_threads_for_pages():
+    """sched_setattr(2): size, policy, flags, nice, priority, runtime, deadline, period."""
+    attributes = struct.pack("=IIQiIQQQ", 48, 0, 0, PAGE_NICENESS, 0, PAGE_SLICE_NS, 0, 0)
+    if ctypes.CDLL(None, use_errno=True).syscall(SCHED_SETATTR, 0, attributes, 0) != 0:
+        raise OSError(ctypes.get_errno(), "sched_setattr")
+
+
+def computes_without_end(preexec_fn):
+    return process([sys.executable, "-c", "while True: pass"], preexec_fn=preexec_fn)
+
+
 @contextlib.contextmanager
-def overseer(case, is_attacked):
+def beside_overseer(kind, port):
+    with contextlib.ExitStack() as stack:
+        if kind == "attacked":
+            attack = ["node", "tests/web/attack.mjs", f"http://127.0.0.1:{port}/", "--seconds", "600"]
+            stack.enter_context(process(attack, preexec_fn=only_on_idle_processors))
+        if kind == "left alone, busy":
+            for scheduling in (as_threads_for_pages, only_on_idle_processors):
+                stack.enter_context(computes_without_end(scheduling))
+        yield
+
+
+@contextlib.contextmanager
+def overseer(case, kind):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     with process([case.options.program, "overseer", case.file, "--port", str(port), *case.own]) as served:
         wait_for_port(port)
-        attack = ["node", "tests/web/attack.mjs", f"http://127.0.0.1:{port}/", "--seconds", "600"]
-        with process(attack, preexec_fn=only_on_idle_processors) if is_attacked else contextlib.nullcontext():
+        with beside_overseer(kind, port):
             yield
             if served.poll() is not None:
                 raise RuntimeError(f"the overseer has ended with {served.returncode}")
@@ -145,7 +177,7 @@ def measure(options):
                       "launcher_s": back_s(case, words), "spare_s": back_s(case, [*words, "--spares", "1"])})
             for kind in OVERSEERS:
                 keep({"kind": kind, "repeat": repeat,
-                      **whole_run(case, [], lambda: overseer(case, kind == "attacked"))})
+                      **whole_run(case, [], lambda: overseer(case, kind))})
 
 
 def write(options):
