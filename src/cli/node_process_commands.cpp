@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/hold.h"
 #include "cli/node_process.h"
 
 namespace aurasim::cli {
@@ -59,18 +60,18 @@ void NodeProcess::obey(const dds::RunCommand& command) {
     case Kind::kTake:
       break;
     case Kind::kPause:
-      hold_at_ = command.at_step;
+      hold_at_ = holds_at_after(command, hold_at_);
       hurry_until_ = std::max(hurry_until_, command.at_step);
       break;
     case Kind::kStep:
       if (hold_at_) {
-        pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
-        hold_at_ = *hold_at_ + command.count;
+        pacer_.set_epoch(first_state_of(command), command.epoch_ns, command.clock_ahead, node::read_clocks());
+        hold_at_ = holds_at_after(command, hold_at_);
       }
       break;
     case Kind::kResume:
       if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
-      hold_at_.reset();
+      hold_at_ = holds_at_after(command, hold_at_);
       break;
     case Kind::kReset:
       reset_ = command;

@@ -19,6 +19,9 @@ using Kind = dds::RunCommandKind;
 /// Long enough for a command to reach every node.
 constexpr double kNoticeS = 0.3;
 
+/// In which a step shows in the nodes' statuses.
+constexpr auto kUntilShown = 1s;
+
 }  // namespace
 
 dds::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId region, std::uint64_t process) {
@@ -103,21 +106,32 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   const auto notice = static_cast<core::Step>(std::ceil(kNoticeS * launch_.time.step_hz * rate)) +
                       core::horizon::command_notice(launch_.lookahead());
   if (running) command.at_step += notice;
-  if (kind == Kind::kStep) command.at_step += count;
+  if (kind == Kind::kStep) {
+    command.at_step = std::max(command.at_step, stepped_to(command.generation)) + count;
+    last_step_ = {command.generation, command.at_step, Clock::now()};
+  }
   const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * delay_s);
   command.request = control_.send(command);
   return command;
 }
 
-dds::RunCommand RunSteering::send_until(core::Generation generation, core::Step until) {
+/// By the last step: who presses the key twice means two, and the statuses may not show the first one yet.
+core::Step RunSteering::stepped_to(core::Generation generation) const {
+  const bool is_news = last_step_.generation == generation && Clock::now() < last_step_.sent + kUntilShown;
+  return is_news ? last_step_.until : 0;
+}
+
+dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count) {
   dds::RunCommand command;
-  command.kind = Kind::kPause;
+  command.kind = Kind::kStep;
+  command.count = count;
   command.generation = generation;
-  command.at_step = until;
+  command.at_step = from + count;
   for (const auto& [region, seen] : control_.statuses()) {
     if (belongs(seen)) command.run = seen.status.run;
   }
+  command.epoch_ns = node::wall_clock_ns();
   command.request = control_.send(command);
   return command;
 }

@@ -42,10 +42,9 @@ class RunSteering {
   /// SteeringRefused when the run cannot do that any more.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
-  /// Of a run that stands: all go on at once, and stand again in state `until` of this generation. For a client that
-  /// waits for each state. (A step says how many: a node that has followed the others before it hears of it would do so
-  /// many more.)
-  dds::RunCommand send_until(core::Generation generation, core::Step until);
+  /// Of a run that stands in state `from` of this generation: the next ones are due at once. For a client that waits
+  /// for each of them.
+  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count);
 
   /// Does every live node show the effect of `command`?
   bool has_taken_effect(const dds::RunCommand& command);
@@ -54,13 +53,21 @@ class RunSteering {
   bool wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out);
 
  private:
+  struct Step {
+    core::Generation generation = 0;
+    core::Step until = 0;
+    std::chrono::steady_clock::time_point sent;
+  };
+
   std::set<std::uint32_t> dead_regions();
+  core::Step stepped_to(core::Generation generation) const;
   bool belongs(const dds::SeenStatus& seen) const;
   bool shows(const dds::Status& status, const dds::RunCommand& command) const;
 
   const config::Launch& launch_;
   std::uint64_t agreement_;
   dds::ControlBus& control_;
+  Step last_step_;
 };
 
 }  // namespace aurasim::cli

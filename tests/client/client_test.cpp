@@ -104,7 +104,7 @@ TEST_F(Client, AWaitIsGivenUpWhenTheCallerSaysSo) {
       launch_file("demo"),
       {.overrides = overrides(), .time_out = kGenerous, .interrupted = [&] { return enough; }, .paused = true});
   enough = true;
-  EXPECT_THROW(world.step(20000), Interrupted);
+  EXPECT_THROW(world.step(6000), Interrupted);
   enough = false;
   EXPECT_FALSE(world.nodes().empty());
 }

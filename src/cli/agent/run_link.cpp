@@ -239,7 +239,7 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   known_standing(patience);
   const Standing wanted{stands_in_->generation, stands_in_->step + count};
   say_still_here_until(wanted, patience);
-  steering_.send_until(wanted.generation, wanted.step);
+  steering_.send_step(wanted.generation, stands_in_->step, count);
   stands_in_.reset();
   const auto is_there = [&] {  // or all have gone back meanwhile
     return all_have_published(wanted) || (farthest().generation > wanted.generation && stands());
