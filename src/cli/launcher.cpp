@@ -62,7 +62,7 @@ ExitCode Launcher::run() {
     hear_commands();
     end_silent_nodes();
     collect_exits();
-    if (!stopping_) keep_spares();
+    if (!stopping_ && all_go_on()) keep_spares();
     if (has_to_stop() && !stopping_) {
       stopping_ = true;
       stop_all();
@@ -124,6 +124,18 @@ void Launcher::start_nodes() {
     children_.push_back(child);
   }
   keep_spares();
+}
+
+/// No region waits for its node. Whoever comes in a recovery takes time from those who are waited for: it has to meet
+/// all of them, and with keys that is more work than the recovery.
+bool Launcher::all_go_on() {
+  return std::ranges::all_of(children_, [this](const Child& child) {
+    if (!child.running) return true;
+    const dds::SeenStatus* const seen = said_by(child);
+    if (seen == nullptr || child.successor != 0) return !has_begun_;
+    const dds::NodeState state = seen->status.state;
+    return state != dds::NodeState::kRecovering && state != dds::NodeState::kSpare;
+  });
 }
 
 void Launcher::keep_spares() {

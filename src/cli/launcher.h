@@ -76,6 +76,7 @@ class Launcher {
   void replace(Child& child);
   pid_t successor_of(const Child& child);
   std::vector<std::string> words_for(const char* command) const;
+  bool all_go_on();
   void keep_spares();
   core::Step farthest_step();
   void look_at_nodes();
