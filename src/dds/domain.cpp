@@ -88,6 +88,7 @@ Domain::Domain(const Settings& settings)
   switch_intraprocess_delivery_off();
   set_type_tables_up();
   if (settings.keys) refusals_.emplace(settings.tell_refusal);
+  const auto closed = guard_->delivery().close();
   participant_.reset(
       DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos, this, StatusMask::none()));
   if (participant_ == nullptr) {

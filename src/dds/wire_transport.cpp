@@ -94,6 +94,7 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
 }
 
 void WireTransport::shutdown() {
+  descriptor_.guard->delivery().open();  // or who closes the sockets waits for those who read from them
   if (descriptor_.line != nullptr) descriptor_.line->stop();
   low_level_transport_->shutdown();
 }

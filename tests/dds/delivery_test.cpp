@@ -70,5 +70,24 @@ TEST(Delivery, OfWhatIsAloneIsOneAtATime) {
   for (std::thread& thread : threads) thread.join();
 }
 
+TEST(Delivery, WhatComesWhileItIsClosedWaits) {
+  Delivery delivery;
+  std::atomic<int> seen = 0;
+  auto closed = delivery.close();
+  std::vector<std::thread> sockets;
+  for (int i = 0; i < 3; ++i) {
+    sockets.emplace_back([&delivery, &seen, i] {
+      const auto held = delivery.begin(i == 0);
+      ++seen;
+    });
+  }
+  std::this_thread::sleep_for(50ms);
+  EXPECT_EQ(seen, 0);
+  closed.reset();
+  for (std::thread& socket : sockets) socket.join();
+  EXPECT_EQ(seen, 3);
+  const auto held = delivery.begin(true);  // and nothing waits any more
+}
+
 }  // namespace
 }  // namespace aurasim::dds
