@@ -7,15 +7,11 @@
 #include <utility>
 
 #include "dds/random_id.h"
-#include "dds/rate_limit.h"
+#include "dds/rations.h"
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 namespace {
-
-/// Of one client, rays or all the rest: more than any page sends.
-constexpr double kCommandsASecond = 500;
-constexpr double kCommandsAtOnce = 1000;
 
 /// Of requests that a node remembers: more than all clients together have under way.
 constexpr std::size_t kRemembered = 1U << 16U;
@@ -68,7 +64,7 @@ struct CommandServerEndpoint::Impl {
   TypedWriter<wire::CommandReply> replies;
   Requests requests;
   std::uint64_t too_many = 0;
-  RateLimit<ProcessPrefix> rays{kCommandsASecond, kCommandsAtOnce}, others{kCommandsASecond, kCommandsAtOnce};
+  RateLimit<ProcessPrefix> rays{kWordsASecond, kWordsAtOnce}, others{kWordsASecond, kWordsAtOnce};
 };
 
 CommandServerEndpoint::CommandServerEndpoint(Participant& participant, core::RegionId region, std::uint64_t map_version)
@@ -87,6 +83,7 @@ std::vector<core::Command> CommandServerEndpoint::take() {
     auto& limit = std::holds_alternative<core::Ray>(command.ask) ? impl_->rays : impl_->others;
     if (!limit.allows(origin.writer.guidPrefix, now)) {  // who asks again may be heard
       ++impl_->too_many;
+      impl_->commands.ration(origin, words_of_ration());
       return;
     }
     if (impl_->requests.add(command.request)) {

@@ -13,7 +13,7 @@
 #include "dds/endpoints.h"
 #include "dds/node_roster.h"
 #include "dds/random_id.h"
-#include "dds/rate_limit.h"
+#include "dds/rations.h"
 
 namespace aurasim::dds {
 
@@ -69,6 +69,7 @@ struct ControlBus::Impl {
   std::string problem_with(const RunCommand& command, const Origin& origin) const;
   void judge(HeardCommand heard, std::vector<RunCommand>& commands);
   bool remember(std::uint64_t request, const Guid& sender);
+  bool is_too_much(const Origin& origin);
 
   Participant& participant;
   ControlSettings settings;
@@ -91,6 +92,7 @@ struct ControlBus::Impl {
   std::vector<HeardCommand> waiting;           ///< of nodes, if it is they who have said it
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
   RateLimit<Guid> against_statuses{1, 1};
+  RateLimit<ProcessPrefix> asked{kWordsASecond, kWordsAtOnce};
   WireErrors refused;
 };
 
@@ -147,6 +149,12 @@ bool ControlBus::Impl::remember(std::uint64_t request, const Guid& sender) {
     requests.erase(request_sequence.front());
     request_sequence.pop_front();
   }
+  return true;
+}
+
+bool ControlBus::Impl::is_too_much(const Origin& origin) {
+  if (asked.allows(origin.writer.guidPrefix, std::chrono::steady_clock::now())) return false;
+  command_reader->ration(origin, words_of_ration());
   return true;
 }
 
@@ -283,6 +291,7 @@ std::vector<RunCommand> ControlBus::take_commands() {
   expected.map_version = impl_->settings.map_version;
   Origin origin;
   while (impl_->command_reader->take(&impl_->command, &origin)) {
+    if (impl_->is_too_much(origin)) continue;
     auto decoded = decode(impl_->command, expected);
     if (const auto* error = std::get_if<WireError>(&decoded)) {
       impl_->refused.add(*error);

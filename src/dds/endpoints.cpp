@@ -198,6 +198,10 @@ void Reader::refuse_from(const Origin& origin, const std::string& what) {
   domain_.speakers().refuse(origin.writer, fmt::format("{}: {}", reader_->get_topicdescription()->get_name(), what));
 }
 
+void Reader::ration(const Origin& origin, const std::string& what) {
+  domain_.speakers().ration(origin.writer, fmt::format("{}: {}", reader_->get_topicdescription()->get_name(), what));
+}
+
 std::vector<std::string> Reader::partitions() const { return subscriber_->get_qos().partition().names(); }
 
 }  // namespace aurasim::dds

@@ -93,6 +93,8 @@ class Reader {
   void refuse_from(const Origin& origin, WireError error);
   /// Likewise: it is not its to say.
   void refuse_from(const Origin& origin, const std::string& what);
+  /// It is more than its sender is given: `what` says how much that is.
+  void ration(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }
   /// As the QoS says.

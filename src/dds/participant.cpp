@@ -1,9 +1,12 @@
 #include "dds/participant.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "dds/datagram_guard.h"
 #include "dds/domain.h"
+#include "dds/security_log.h"
 
 namespace aurasim::dds {
 
@@ -37,6 +40,9 @@ std::vector<std::string> Participant::take_said() {
                                    "kept for it"
                                  : "asks for more to be sent again than it is given";
     said.push_back(fmt::format("process {} {}", text_of(process_of(process)), what));
+  }
+  if (settings_.keys) {
+    for (std::string& text : said) text = SecurityLog::instance().with_name_of_process(std::move(text));
   }
   return said;
 }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
@@ -29,6 +30,9 @@ constexpr auto kSayAgain = std::chrono::minutes(1);
 constexpr auto kWindow = std::chrono::seconds(10);
 constexpr std::uint64_t kMostInWindow = 30;
 constexpr std::size_t kLongestClaim = 128;
+
+/// A number is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the participant, then what of it is meant.
+constexpr std::size_t kPrefix = 12 * 3 - 1;
 
 /// Warnings but for those of kReasons are of no use: dozens a second while two participants meet.
 bool is_about_security(const std::string& category, const std::string& message) {
@@ -156,13 +160,20 @@ void SecurityLog::hear(const std::string& message, const std::string& category) 
 }
 
 std::string SecurityLog::with_names(std::string message) const {
-  // A number is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the participant, then what of it is meant.
-  constexpr std::size_t kPrefix = 12 * 3 - 1;
   const std::size_t bar = message.find('|');
   if (bar == std::string::npos || bar < kPrefix) return message;
   const auto name = names_.find(message.substr(bar - kPrefix, kPrefix));
   if (name != names_.end()) message.insert(bar - kPrefix, fmt::format("[{}] ", name->second));
   return message;
+}
+
+std::string SecurityLog::with_name_of_process(std::string text) const {
+  constexpr std::string_view kBefore = "process ";
+  if (!text.starts_with(kBefore) || text.size() < kBefore.size() + kPrefix) return text;
+  const std::lock_guard lock(mutex_);
+  const auto name = names_.find(text.substr(kBefore.size(), kPrefix));
+  if (name != names_.end()) text.insert(kBefore.size() + kPrefix, fmt::format(" [{}]", name->second));
+  return text;
 }
 
 std::vector<std::string> SecurityLog::worth_saying(const std::string& text) {

@@ -37,6 +37,8 @@ class SecurityLog {
 
   /// Who a participant says it is: nothing is proved yet.
   void note(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
+  /// "process 01.0f...": the name of that one is put behind its number.
+  std::string with_name_of_process(std::string text) const;
   /// It could not prove it. Fast DDS has logged the reason just before.
   void refused(const eprosima::fastrtps::rtps::GUID_t& participant);
   /// An entry of Fast DDS's log about security.

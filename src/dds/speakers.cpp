@@ -133,6 +133,14 @@ void Speakers::refuse(const Guid& writer, const std::string& what) {
   shun_locked(writer.guidPrefix, fmt::format("it has been refused {} times, lastly: {}", count, what));
 }
 
+void Speakers::ration(const Guid& writer, const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  ++refused_;
+  if (rationed_.size() >= kMostProcesses || !rationed_.emplace(writer.guidPrefix, what).second) return;
+  say_locked(fmt::format("process {} says more than it is given, and what is over is dropped: {}",
+                         text_of(writer.guidPrefix), what));
+}
+
 void Speakers::shun(const ProcessPrefix& process, const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (!is_node_locked(process)) shun_locked(process, why);

@@ -48,6 +48,9 @@ class Speakers {
   /// What `writer` has said was not its to say, or cannot be. A process of no node is not listened to any more after
   /// kPatience of them. Of one that was a node, the last words may come late: they are not told.
   void refuse(const Guid& writer, const std::string& what);
+  /// `writer` has said more than it is given; what is over is dropped. Counted, and told once of each process and
+  /// topic, but nobody is shut out for it: who asks for much at once has done nothing else wrong.
+  void ration(const Guid& writer, const std::string& what);
   /// It is not listened to from now on, unless it is a node's.
   void shun(const ProcessPrefix& process, const std::string& why);
   bool shuns(const ProcessPrefix& process) const;
@@ -76,6 +79,7 @@ class Speakers {
   std::deque<ProcessPrefix> former_;  ///< nodes until others took their regions over, oldest first
   std::map<ProcessPrefix, std::uint64_t> refused_of_;
   std::set<ProcessPrefix> shunned_;
+  std::set<std::pair<ProcessPrefix, std::string>> rationed_;
   std::uint64_t refused_ = 0;
   std::vector<std::string> said_;
 };

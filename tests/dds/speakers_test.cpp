@@ -96,6 +96,17 @@ TEST_F(WhoMaySpeak, WhoIsRefusedTooOftenIsNotListenedToAnyMore) {
   EXPECT_EQ(speakers_.refused(), Speakers::kPatience + 199);
 }
 
+TEST_F(WhoMaySpeak, WhoSaysMoreThanItIsGivenIsNamedOnceForEachTopicAndNotShutOut) {
+  for (int i = 0; i < 1000; ++i) {
+    speakers_.ration(endpoint(kStranger), "command: 500 a second");
+    speakers_.ration(endpoint(kStranger), "run_control: 500 a second");
+  }
+  EXPECT_FALSE(speakers_.shuns(endpoint(kStranger).guidPrefix));
+  EXPECT_EQ(speakers_.refused(), 2000U);
+  EXPECT_THAT(speakers_.take_said(),
+              ElementsAre(HasSubstr("dropped: command: 500"), HasSubstr("dropped: run_control")));
+}
+
 TEST_F(WhoMaySpeak, ANodeIsNeverShunned) {
   speakers_.set(RegionId{1}, endpoint(kNode).guidPrefix);
   refuse(kNode, 1000);

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "dds/command_bus.h"
+#include "dds/control.h"
 #include "dds/endpoints.h"
 #include "forged_permissions.h"
 #include "own_domain.h"
@@ -226,6 +228,43 @@ TEST_F(Attackers, OfRegion1DoNotSpeakAsRegion2) {
   EXPECT_EQ(node.auras->watch().writers().size(), 1U);
   EXPECT_TRUE(node.has_refused("CN=region-1", "region/2 partition not found in rule"))
       << ::testing::PrintToString(node.refusals());
+}
+
+TEST_F(Attackers, WhoAreOperatorsAreGivenNoMoreThanAnybodyElse) {
+  Participant node(settings_for(keys_of("region-2"))), desk(settings_for(keys_of("desk")));
+  CommandServerEndpoint server(node, core::RegionId{2}, 7);
+  CommandClientEndpoint client(desk);
+  ControlBus control(node, {.region_count = 3}), steering(desk, {.region_count = 3});
+  ASSERT_TRUE(wait_until([&] { return client.listeners() == 1 && steering.listeners() == 1; }));
+  std::size_t commands = 0, words = 0, sent = 0;
+  std::string said;
+  const auto both_are_named = [&said] {
+    return said.find("command: 500 a second") != std::string::npos &&
+           said.find("run_control: 500 a second") != std::string::npos;
+  };
+  const auto begin = Clock::now();
+  while (!both_are_named() && Clock::now() < begin + kGenerous) {
+    for (int i = 0; i < 50; ++i, ++sent) {
+      core::Command command;
+      command.ask = core::SetRate{0.5};
+      client.send(command, 0);
+      RunCommand pause;
+      pause.kind = RunCommandKind::kPause;
+      steering.send(pause);
+      commands += server.take().size();
+      words += control.take_commands().size();
+    }
+    for (const std::string& text : node.take_said()) said += text + "\n";
+  }
+  const double given = 1000 + 500 * std::chrono::duration<double>(Clock::now() - begin).count();
+  EXPECT_TRUE(both_are_named()) << said << sent << " sent";
+  EXPECT_NE(said.find("CN=desk"), std::string::npos) << said;
+  EXPECT_LE(static_cast<double>(commands), given);
+  EXPECT_LE(static_cast<double>(words), given);
+  EXPECT_GE(commands, 500U);
+  EXPECT_GE(words, 500U);
+  EXPECT_GT(node.refused_of_strangers(), 0U);
+  EXPECT_EQ(said.find("not listened to"), std::string::npos) << said;
 }
 
 }  // namespace

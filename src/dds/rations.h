@@ -1,0 +1,18 @@
+// How much one process may ask of a run, on command (rays, and all the rest) and on run_control: more than any page or
+// client sends. With keys an operator has no more: a key may be in wrong hands, and a program out of hand.
+#pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "dds/rate_limit.h"
+
+namespace aurasim::dds {
+
+inline constexpr double kWordsASecond = 500;
+inline constexpr double kWordsAtOnce = 1000;
+
+inline std::string words_of_ration() { return fmt::format("{:g} a second, {:g} at once", kWordsASecond, kWordsAtOnce); }
+
+}  // namespace aurasim::dds
