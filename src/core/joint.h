@@ -13,7 +13,7 @@
 
 namespace aurasim::core {
 
-/// Radians or metres, low <= high.
+/// Radians or metres, low <= high. Of hinges and of ways along an axis one of them may be infinite.
 struct JointLimits {
   double low = 0;
   double high = 0;
@@ -25,28 +25,54 @@ struct JointMotor {
 };
 
 /// What drives the turn of a hinge or the way of a slider: effort = stiffness (position - q) + damping (speed - dq/dt)
-/// + effort, at most max_effort either way. Solved implicitly, so stiff drives are stable.
+/// + effort, at most max_effort either way. Solved implicitly, so stiff drives are stable. Units: rad or m, N m/rad or
+/// N/m, N m s/rad or N s/m, N m or N.
 struct JointDrive {
-  double position = 0;                                          ///< rad or m, from the initial pose
-  double speed = 0;                                             ///< rad/s or m/s
-  double stiffness = 0;                                         ///< N m/rad or N/m
-  double damping = 0;                                           ///< N m s/rad or N s/m
-  double effort = 0;                                            ///< N m or N
-  double max_effort = std::numeric_limits<double>::infinity();  ///< N m or N
+  double position = 0;
+  double speed = 0;
+  double stiffness = 0;
+  double damping = 0;
+  double effort = 0;
+  double max_effort = std::numeric_limits<double>::infinity();
+
+  bool operator==(const JointDrive&) const = default;
+};
+
+/// What a hinge or slider has of its own, whoever drives it; solved implicitly, too. Units as of a drive.
+struct JointResistance {
+  double stiffness = 0;  ///< towards `rest`
+  double rest = 0;
+  double damping = 0;
+  double friction = 0;  ///< Coulomb's: an effort
+
+  bool operator==(const JointResistance&) const = default;
+};
+
+/// Where a hinge or slider is, of a from b: 0 as the bodies are placed in the scene. Rad, rad/s, N m, or m, m/s, N.
+struct JointMotion {
+  double position = 0;
+  double speed = 0;
+  double effort = 0;  ///< of its drive or motor, in the last substep
 };
 
 /// Holds the two origins together; turns freely.
-struct BallJoint {};
+struct BallJoint {
+  double damping = 0;  ///< N m s/rad
+};
 
 /// Turns about the z axis of J.
 struct HingeJoint {
-  std::optional<JointLimits> limits;  ///< within [-pi, pi]
+  std::optional<JointLimits> limits;  ///< of the angle, which goes on beyond half a turn
   std::optional<JointMotor> motor;
+  JointResistance resistance = {};
+  std::optional<JointDrive> drive = {};  ///< without a motor
 };
 
 /// Slides along the z axis of J and does not turn.
 struct SliderJoint {
   std::optional<JointLimits> limits;
+  JointResistance resistance = {};
+  std::optional<JointDrive> drive = {};
 };
 
 /// Neither moves nor turns.
@@ -55,8 +81,9 @@ struct FixedJoint {};
 /// One degree of freedom of a spring.
 struct SpringAxis {
   std::optional<JointLimits> limits;  ///< free without; low = high locks it
-  double stiffness = 0;               ///< N/m or N m/rad, towards 0
+  double stiffness = 0;               ///< N/m or N m/rad, towards `rest`
   double damping = 0;                 ///< N s/m or N m s/rad
+  double rest = 0;                    ///< m or rad
 };
 
 /// Three translations along the axes of J, then three rotations: about x, then y, then z as they lie by then.

@@ -79,6 +79,9 @@ struct Prototype {
   std::uint32_t material = 0;  ///< index in Scene::materials
   double mass_kg = 1;
   bool can_sleep = true;
+  /// Moments of inertia about the centre of mass along the axes of the body, kg m^2. Nothing: of mass spread evenly.
+  std::optional<Vec3> inertia = {};
+  bool collides = true;  ///< false: it touches nothing, and rays pass through it; joints move it
 };
 
 /// A body that is there in state 0.

@@ -1,8 +1,7 @@
 #include "physics/constraints.h"
 
+#include <algorithm>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
@@ -12,6 +11,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/driven_constraint.h"
 
 namespace aurasim::physics {
 namespace {
@@ -19,17 +19,6 @@ namespace {
 using core::Pose;
 using core::Quat;
 using core::Vec3;
-
-Pose frame_in(const Pose& X_WB, const Pose& X_WJ) {
-  const Quat q_BW = X_WB.q_WB.normalized().conjugate();
-  return {q_BW * (X_WJ.p_WB - X_WB.p_WB), q_BW * X_WJ.q_WB.normalized()};
-}
-
-const core::InitialBody& body_of(const core::JointSpec& joint, core::BodyId id, const core::Scene& scene) {
-  if (const core::InitialBody* body = core::find_body(scene, id)) return *body;
-  throw std::invalid_argument("joint \"" + joint.name + "\" binds body " + std::to_string(core::value_of(id)) +
-                              ", which is not there in state 0");
-}
 
 /// Bullet's sliders slide along x.
 btTransform with_x_along_z(const Pose& X_BJ) {
@@ -39,20 +28,21 @@ btTransform with_x_along_z(const Pose& X_BJ) {
 
 class Maker {
  public:
-  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b, double times)
-      : frames_(frames), a_(a), b_(b), times_(times) {}
+  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b, double substep_s)
+      : frames_(frames), a_(a), b_(b), substep_s_(substep_s), times_(substep_s / kImpulseTime_s) {}
 
   std::unique_ptr<btTypedConstraint> operator()(const core::BallJoint&) const {
-    return std::make_unique<btPoint2PointConstraint>(a_, b_, to_bullet(frames_.X_AJ.p_WB),
-                                                     to_bullet(frames_.X_BJ.p_WB));
+    return std::make_unique<Driven<btPoint2PointConstraint>>(substep_s_, a_, b_, to_bullet(frames_.X_AJ.p_WB),
+                                                             to_bullet(frames_.X_BJ.p_WB));
   }
 
   std::unique_ptr<btTypedConstraint> operator()(const core::HingeJoint& joint) const {
-    auto hinge = std::make_unique<btHingeConstraint>(a_, b_, to_bullet(frames_.X_AJ), to_bullet(frames_.X_BJ));
+    auto hinge = std::make_unique<Driven<btHingeConstraint>>(substep_s_, a_, b_, to_bullet(frames_.X_AJ),
+                                                             to_bullet(frames_.X_BJ));
     constexpr btScalar kSoftness = btScalar(0.9);
     constexpr btScalar kBias = btScalar(0.3);
     constexpr btScalar kBounce = 0;  // Bullet's default, 1, makes every joint a rattle
-    if (joint.limits) {
+    if (joint.limits && is_within_half_a_turn(*joint.limits)) {
       hinge->setLimit(scalar(joint.limits->low), scalar(joint.limits->high), kSoftness, kBias, kBounce);
     }
     if (joint.motor)
@@ -62,8 +52,8 @@ class Maker {
 
   std::unique_ptr<btTypedConstraint> operator()(const core::SliderJoint& joint) const {
     constexpr bool kAsSeenFromA = false;
-    auto slider = std::make_unique<btSliderConstraint>(a_, b_, with_x_along_z(frames_.X_AJ),
-                                                       with_x_along_z(frames_.X_BJ), kAsSeenFromA);
+    auto slider = std::make_unique<Driven<btSliderConstraint>>(substep_s_, a_, b_, with_x_along_z(frames_.X_AJ),
+                                                               with_x_along_z(frames_.X_BJ), kAsSeenFromA);
     slider->setLowerLinLimit(scalar(joint.limits ? joint.limits->low : 1));  // low > high: free
     slider->setUpperLinLimit(scalar(joint.limits ? joint.limits->high : -1));
     slider->setLowerAngLimit(0);
@@ -83,12 +73,13 @@ class Maker {
       const core::SpringAxis& axis = joint.axes[static_cast<std::size_t>(i)];
       const core::JointLimits of_a = axis.limits.value_or(core::JointLimits{1, -1});  // low > high: free
       const core::JointLimits limits = i >= 3 && axis.limits ? core::JointLimits{-of_a.high, -of_a.low} : of_a;
-      spring->setLimit(i, scalar(limits.low), scalar(limits.high));
+      constexpr double kFarthest = 1e9;  // Bullet multiplies by how far it is
+      spring->setLimit(i, scalar(std::max(limits.low, -kFarthest)), scalar(std::min(limits.high, kFarthest)));
       if (axis.stiffness == 0 && axis.damping == 0) continue;
       spring->enableSpring(i, true);
       spring->setStiffness(i, scalar(axis.stiffness));
       spring->setDamping(i, scalar(axis.damping));
-      spring->setEquilibriumPoint(i, 0);
+      spring->setEquilibriumPoint(i, scalar(i >= 3 ? 0 - axis.rest : axis.rest));
     }
     return spring;
   }
@@ -97,21 +88,16 @@ class Maker {
   const JointFrames& frames_;
   btRigidBody& a_;
   btRigidBody& b_;
+  double substep_s_;
   double times_;  ///< the impulses of kImpulseTime_s
 };
 
 }  // namespace
 
-JointFrames frames_of(const core::JointSpec& joint, const core::Scene& scene, const Vec3& p_WO) {
-  if (joint.b == joint.a) throw std::invalid_argument("joint \"" + joint.name + "\" binds a body to itself");
-  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{p_WO, Quat::Identity()};
-  return {frame_in(body_of(joint, joint.a, scene).pose, joint.X_WJ), frame_in(X_WB, joint.X_WJ)};
-}
-
 std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
                                                    btRigidBody& a, btRigidBody& b, double substep_s) {
   const double times = substep_s / kImpulseTime_s;
-  auto constraint = std::visit(Maker(frames, a, b, times), joint.kind);
+  auto constraint = std::visit(Maker(frames, a, b, substep_s), joint.kind);
   if (joint.break_impulse < static_cast<double>(SIMD_INFINITY)) {
     constraint->setBreakingImpulseThreshold(scalar(times * joint.break_impulse));
   }

@@ -88,9 +88,14 @@ DynamicsWorld::~DynamicsWorld() {
   while (objects.size() > 0) bullet_->world->removeCollisionObject(objects[objects.size() - 1]);
 }
 
-void DynamicsWorld::insert(btRigidBody& body, int rank) {
+void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
   bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
   bullet_->world->addRigidBody(&body);
+  if (!collides) {  // of no group, and with none; what has been paired with it is not any more
+    btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
+    proxy->m_collisionFilterGroup = proxy->m_collisionFilterMask = 0;
+    bullet_->pairs.remove_pairs_of(std::span(&proxy, 1), bullet_->dispatcher);
+  }
   bullet_->world->updateSingleAabb(&body);  // with the margin: of a sleeper this is not done again
 }
 

@@ -24,8 +24,8 @@ class DynamicsWorld {
   ~DynamicsWorld();
 
   /// `rank` > 0 is the same in every world and fixes which one of a pair is body0. Nothing else may depend on the
-  /// order of insertion, but insert in the order of ranks all the same.
-  void insert(btRigidBody& body, int rank);
+  /// order of insertion, but insert in the order of ranks all the same. Unless it `collides`, it touches nothing.
+  void insert(btRigidBody& body, int rank, bool collides = true);
   /// With all contacts.
   void remove(std::span<btRigidBody* const> bodies);
 

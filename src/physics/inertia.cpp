@@ -111,4 +111,9 @@ Vec3 inertia_diagonal(const core::Shape& shape, double mass_kg) {
   return mass_kg / m.volume * (Vec3::Constant(squares.sum()) - squares);
 }
 
+core::Vec3 inertia_of(const core::Prototype& prototype, const core::Scene& scene) {
+  const Vec3 spread = inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg);  // or throws
+  return prototype.inertia.value_or(spread);
+}
+
 }  // namespace aurasim::physics

@@ -11,4 +11,7 @@ namespace aurasim::physics {
 /// like the sphere around it. Throws std::invalid_argument for planes and triangle meshes.
 core::Vec3 inertia_diagonal(const core::Shape& shape, double mass_kg);
 
+/// Its own, or else that of mass spread evenly over its shape.
+core::Vec3 inertia_of(const core::Prototype& prototype, const core::Scene& scene);
+
 }  // namespace aurasim::physics

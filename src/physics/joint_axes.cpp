@@ -1,8 +1,15 @@
 #include "physics/joint_axes.h"
 
+#include <cmath>
 #include <initializer_list>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <variant>
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "physics/bullet_convert.h"
 
 namespace aurasim::physics {
 namespace {
@@ -11,11 +18,15 @@ class Maker {
  public:
   Maker(JointAxes& joint, double times) : joint_(joint), times_(times) {}
 
-  void operator()(const core::BallJoint&) const { hold({0, 1, 2}); }
+  void operator()(const core::BallJoint& ball) const {
+    hold({0, 1, 2});
+    joint_.ball_damping = ball.damping;
+  }
 
   void operator()(const core::HingeJoint& hinge) const {
     hold({0, 1, 2, 3, 4});
     limit(5, hinge.limits);
+    leave(5, hinge);
     if (!hinge.motor) return;
     joint_.has_motor = true;
     joint_.motor_rad_s = hinge.motor->speed;
@@ -25,6 +36,7 @@ class Maker {
   void operator()(const core::SliderJoint& slider) const {
     hold({0, 1, 3, 4, 5});
     limit(2, slider.limits);
+    leave(2, slider);
   }
 
   void operator()(const core::FixedJoint&) const { hold({0, 1, 2, 3, 4, 5}); }
@@ -35,6 +47,7 @@ class Maker {
       limit(i, spring.axes[i].limits);
       joint_.axes[i].stiffness = spring.axes[i].stiffness;
       joint_.axes[i].damping = spring.axes[i].damping;
+      joint_.axes[i].rest = spring.axes[i].rest;
     }
   }
 
@@ -46,6 +59,12 @@ class Maker {
     if (!limits) return;
     joint_.axes[i].is_held = true;
     joint_.axes[i].low = limits->low, joint_.axes[i].high = limits->high;
+  }
+  template <class Joint>
+  void leave(std::size_t i, const Joint& joint) const {
+    joint_.own = i;
+    joint_.resistance = joint.resistance;
+    joint_.drive = joint.drive;
   }
 
   JointAxes& joint_;
@@ -61,6 +80,47 @@ JointAxes axes_of(const core::JointSpec& joint, const JointFrames& frames, doubl
   axes.break_impulse = times * joint.break_impulse;
   std::visit(Maker(axes, times), joint.kind);
   return axes;
+}
+
+bool JointAxes::is_driven() const {
+  return drive && (drive->stiffness > 0 || drive->damping > 0 || drive->effort != 0);
+}
+
+bool JointAxes::counts_turns() const {
+  if (own != 5u) return false;
+  const Axis& turn = axes[5];
+  const bool is_wide = turn.is_held && (turn.low < -std::numbers::pi || turn.high > std::numbers::pi);
+  return is_wide || resistance.stiffness > 0 || (drive && drive->stiffness > 0);
+}
+
+ImplicitPull pull_of(const core::JointDrive& drive, double substep_s) {
+  return {drive.position, substep_s * drive.stiffness, substep_s * (drive.damping * drive.speed + drive.effort),
+          substep_s * (drive.damping + substep_s * drive.stiffness), substep_s * drive.max_effort};
+}
+
+ImplicitPull pull_of(const core::JointResistance& resistance, double substep_s) {
+  return {resistance.rest, substep_s * resistance.stiffness, 0,
+          substep_s * (resistance.damping + substep_s * resistance.stiffness), std::numeric_limits<double>::infinity()};
+}
+
+core::JointMotion measure(const JointAxes& joint, const btRigidBody& a, const btRigidBody& b) {
+  const btTransform X_WJ_a = a.getWorldTransform() * to_bullet(joint.frames.X_AJ);
+  const btTransform X_WJ_b = b.getWorldTransform() * to_bullet(joint.frames.X_BJ);
+  core::JointMotion motion;
+  if (joint.own == 5u) {
+    const btVector3 x_a = X_WJ_a.getBasis().getColumn(0);
+    motion.position = std::atan2(static_cast<double>(x_a.dot(X_WJ_b.getBasis().getColumn(1))),
+                                 static_cast<double>(x_a.dot(X_WJ_b.getBasis().getColumn(0))));
+    const btVector3 w = a.getAngularVelocity() - b.getAngularVelocity();
+    motion.speed = static_cast<double>(w.dot(X_WJ_a.getBasis().getColumn(2)));
+  } else {
+    const btVector3 along = X_WJ_b.getBasis().getColumn(2), p_J = X_WJ_a.getOrigin();
+    motion.position = static_cast<double>(along.dot(p_J - X_WJ_b.getOrigin()));
+    const btVector3 v_a = a.getVelocityInLocalPoint(p_J - a.getWorldTransform().getOrigin());
+    const btVector3 v_b = b.getVelocityInLocalPoint(p_J - b.getWorldTransform().getOrigin());
+    motion.speed = static_cast<double>(along.dot(v_a - v_b));
+  }
+  return motion;
 }
 
 }  // namespace aurasim::physics

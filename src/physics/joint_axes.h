@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
-#include "physics/constraints.h"
+#include "physics/joint_frames.h"
+
+class btRigidBody;
 
 namespace aurasim::physics {
 
@@ -13,19 +16,49 @@ struct JointAxes {
   struct Axis {
     bool is_held = false;  ///< between these, m or rad
     double low = 0, high = 0;
-    double stiffness = 0, damping = 0;  ///< as core::SpringAxis
+    double stiffness = 0, damping = 0, rest = 0;  ///< as core::SpringAxis
   };
 
   JointFrames frames;
   bool b_is_first = false;  ///< in Bullet's constraint
   std::array<Axis, 6> axes;
-  bool has_motor = false;    ///< about z
+  bool has_motor = false;    ///< about z, unless there is a drive
   double motor_rad_s = 0;    ///< of a
   double motor_impulse = 0;  ///< N m s in a substep, at most
   double break_impulse = 0;  ///< N s or N m s in a substep
+  double ball_damping = 0;   ///< as core::BallJoint
+
+  // Of hinges and sliders:
+  std::optional<std::size_t> own;  ///< the axis that they leave: 2 or 5
+  core::JointResistance resistance;
+  std::optional<core::JointDrive> drive;
+  double position = 0;       ///< as the bodies are, rad or m, with all its turns
+  double turns_rad = 0;      ///< what of them the angle of the six axes leaves out
+  double drive_impulse = 0;  ///< of drive or motor in the last substep
+
+  /// Whether its drive pushes at all.
+  bool is_driven() const;
+  /// Whether it matters how often a hinge has turned.
+  bool counts_turns() const;
 };
 
 /// Impulses as in make_constraint().
 JointAxes axes_of(const core::JointSpec& joint, const JointFrames& frames, double substep_s);
+
+/// A spring with a damper in a substep, solved implicitly: its impulse is stiffness (position - q) + steady - give
+/// dq/dt, q as the substep begins and dq/dt as it ends; at most `most` either way.
+struct ImplicitPull {
+  double position = 0;   ///< rad or m
+  double stiffness = 0;  ///< N m s/rad or N s/m
+  double steady = 0;     ///< N m s or N s
+  double give = 0;       ///< N m s^2/rad or N s^2/m
+  double most = 0;       ///< N m s or N s
+};
+ImplicitPull pull_of(const core::JointDrive& drive, double substep_s);
+ImplicitPull pull_of(const core::JointResistance& resistance, double substep_s);
+
+/// How a hinge or slider of a constraint between these bodies stands and moves; of a hinge the angle is within half a
+/// turn. Without its effort.
+core::JointMotion measure(const JointAxes& joint, const btRigidBody& a, const btRigidBody& b);
 
 }  // namespace aurasim::physics

@@ -1,16 +1,29 @@
 #include "physics/joint_table.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <tuple>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include "physics/bullet_convert.h"
 
 namespace aurasim::physics {
 namespace {
 
 // Columns of a joint's values: whether it is broken, and the impulse of its last solve (N s or N m s), which Bullet
-// reports but does not start from.
+// reports but does not start from. If they are not 0, or what comes after them is there: how often a hinge has turned,
+// and the last impulse of its drive. If it is not the scene that says it: the drive; max_effort is -1 if infinite.
 constexpr std::size_t kBroken = 0;
 constexpr std::size_t kImpulse = 1;
-constexpr std::uint32_t kValues = 2;
+constexpr std::size_t kTurns = 2;
+constexpr std::size_t kDriveImpulse = 3;
+constexpr std::size_t kDrive = 4;
+constexpr std::size_t kFewValues = 2, kMoreValues = 4, kAllValues = 10;
+constexpr double kLargest = 1e12;  ///< of a drive
+
+constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 bool is_here(const BodyTable& bodies, core::BodyId id) { return bodies.find(id) != nullptr; }
 
@@ -24,11 +37,41 @@ bool has(const core::ClusterState& cluster, core::BodyId id) {
                             [](const auto& a, const auto& b) { return a.id < b.id; });
 }
 
+double bounded(double x) { return std::isnan(x) ? 0 : std::clamp(x, -kLargest, kLargest); }
+
+core::JointDrive bounded(const core::JointDrive& d) {
+  const double most = d.max_effort >= 0 && d.max_effort <= kLargest ? d.max_effort : core::JointDrive{}.max_effort;
+  return {.position = bounded(d.position),
+          .speed = bounded(d.speed),
+          .stiffness = std::max(bounded(d.stiffness), 0.0),
+          .damping = std::max(bounded(d.damping), 0.0),
+          .effort = bounded(d.effort),
+          .max_effort = most};
+}
+
+/// As the scene has it.
+std::optional<core::JointDrive> drive_in(const core::JointSpec& joint) {
+  if (const auto* hinge = std::get_if<core::HingeJoint>(&joint.kind)) return hinge->drive;
+  if (const auto* slider = std::get_if<core::SliderJoint>(&joint.kind)) return slider->drive;
+  return std::nullopt;
+}
+
+/// Who may sleep starts anew.
+void wake(btRigidBody& body) {
+  if (body.isStaticObject() || body.getActivationState() == DISABLE_DEACTIVATION ||
+      body.getActivationState() == DISABLE_SIMULATION)
+    return;
+  body.forceActivationState(ACTIVE_TAG);
+  body.setDeactivationTime(0);
+}
+
 }  // namespace
 
 JointTable::JointTable(const core::Scene& scene, const Settings& settings)
     : scene_(&scene),
       substep_s_(settings.step_s / settings.substeps),
+      look_s_(settings.step_s / settings.looks()),
+      is_soft_(settings.looks_once()),
       ground_(std::make_unique<btRigidBody>(0, nullptr, nullptr)) {
   entries_.resize(scene.joints.size());
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
@@ -49,11 +92,42 @@ void JointTable::restore(const core::ClusterState& cluster, const BodyTable& bod
   for (const core::JointRecord& record : cluster.joints) {
     const std::size_t place = core::value_of(record.id);
     const std::size_t end = std::size_t{record.first_value} + record.value_count;
-    if (place >= entries_.size() || record.value_count != kValues || end > cluster.joint_values.size()) continue;
+    const bool is_whole = record.value_count == kFewValues || record.value_count == kMoreValues ||
+                          (record.value_count == kAllValues && place < entries_.size() && entries_[place].axes.own);
+    if (place >= entries_.size() || !is_whole || end > cluster.joint_values.size()) continue;
     const core::JointSpec& joint = scene_->joints[place];
     if (!is_here(bodies, joint.a) && !(joint.b && is_here(bodies, *joint.b))) continue;
-    if (cluster.joint_values[record.first_value + kBroken] != 0) entries_[place].broken = true;
+    read_values(std::span(cluster.joint_values).subspan(record.first_value, record.value_count), entries_[place]);
   }
+}
+
+void JointTable::read_values(std::span<const double> values, Entry& entry) const {
+  if (values[kBroken] != 0) entry.broken = true;
+  if (values.size() < kMoreValues) return;
+  entry.axes.turns_rad = kTurn_rad * values[kTurns];
+  entry.axes.drive_impulse = values[kDriveImpulse];
+  if (values.size() < kAllValues) return;
+  const auto drive = values.subspan(kDrive);
+  entry.axes.drive = bounded(core::JointDrive{drive[0], drive[1], drive[2], drive[3], drive[4], drive[5]});
+  entry.driven_anew = true;
+}
+
+std::size_t JointTable::value_count(const Entry& entry) const {
+  if (entry.driven_anew) return kAllValues;
+  return entry.axes.turns_rad != 0 || entry.axes.drive_impulse != 0 ? kMoreValues : kFewValues;
+}
+
+void JointTable::write_values(const Entry& entry, std::span<double> values) const {
+  values[kBroken] = entry.broken ? 1 : 0;
+  values[kImpulse] = entry.constraint ? static_cast<double>(entry.constraint->internalGetAppliedImpulse()) : 0;
+  if (values.size() < kMoreValues) return;
+  values[kTurns] = std::round(entry.axes.turns_rad / kTurn_rad);
+  values[kDriveImpulse] = entry.axes.drive_impulse;
+  if (values.size() < kAllValues) return;
+  const core::JointDrive& drive = *entry.axes.drive;
+  const double most = std::isinf(drive.max_effort) ? -1 : drive.max_effort;
+  const double columns[] = {drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, most};
+  std::ranges::copy(columns, values.subspan(kDrive).begin());
 }
 
 void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world) {
@@ -66,6 +140,8 @@ void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& wo
     if (a == nullptr || b == nullptr) continue;
     entry.constraint = make_constraint(joint, entry.axes.frames, *a, *b, substep_s_);
     entry.constraint->setUserConstraintPtr(&entry.axes);
+    if (!is_soft_) entry.constraint->internalSetAppliedImpulse(scalar(entry.axes.drive_impulse));
+    if (entry.axes.own) measure_again(entry, 0);
     world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
     connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
   }
@@ -83,24 +159,66 @@ void JointTable::disconnect(const core::ClusterState& leaving, BodyTable& bodies
       const core::JointSpec& joint = scene_->joints[core::value_of(id)];
       Entry& entry = entries_[core::value_of(id)];
       if (entry.constraint) disconnect(entry, world);
-      if (!stays(joint.a) && !(joint.b && stays(*joint.b))) entry.broken = false;  // for others to know
+      if (!stays(joint.a) && !(joint.b && stays(*joint.b))) forget(id);  // for others to know
     }
   }
   std::erase_if(connected_, [this](core::JointId id) { return !entries_[core::value_of(id)].constraint; });
 }
 
-void JointTable::remove_broken(DynamicsWorld& world) {
+/// A hinge is where its angle says, give or take whole turns: in the turn that is nearest to where its speed takes it.
+void JointTable::measure_again(Entry& entry, double since_s) {
+  JointAxes& axes = entry.axes;
+  const JointMotion now = measure(axes, entry.constraint->getRigidBodyA(), entry.constraint->getRigidBodyB());
+  if (!std::isfinite(now.position) || !std::isfinite(now.speed)) return;  // of what is breaking down
+  if (axes.own == 5u && since_s > 0) {
+    axes.turns_rad = kTurn_rad * std::round((axes.position + since_s * now.speed - now.position) / kTurn_rad);
+  }
+  axes.position = now.position + axes.turns_rad;
+  entry.speed = now.speed;
+  if (is_soft_) return;  // which has told
+  const bool is_pushed = axes.drive ? axes.is_driven() : axes.has_motor;
+  axes.drive_impulse = is_pushed ? static_cast<double>(entry.constraint->internalGetAppliedImpulse()) : 0;
+}
+
+void JointTable::finish_look(DynamicsWorld& world) {
   std::erase_if(connected_, [&](core::JointId id) {
     Entry& entry = entries_[core::value_of(id)];
-    if (entry.constraint->isEnabled()) return false;
+    if (entry.constraint->isEnabled()) {
+      if (entry.axes.own) measure_again(entry, look_s_);
+      return false;
+    }
     entry.broken = true;
     disconnect(entry, world);
     return true;
   });
 }
 
-void JointTable::forget_broken() {
-  for (Entry& entry : entries_) entry.broken = false;
+void JointTable::forget(core::JointId id) {
+  Entry& entry = entries_[core::value_of(id)];
+  if (entry.driven_anew) entry.axes.drive = drive_in(scene_->joints[core::value_of(id)]);
+  entry.broken = entry.driven_anew = false;
+  entry.axes.position = entry.axes.turns_rad = entry.axes.drive_impulse = entry.speed = 0;
+}
+
+void JointTable::forget() {
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) forget(core::JointId{i});
+}
+
+void JointTable::drive(core::JointId id, const core::JointDrive& drive) {
+  Entry& entry = entries_.at(core::value_of(id));
+  const core::JointDrive wanted = bounded(drive);
+  if (!entry.axes.own || entry.broken || (entry.driven_anew && entry.axes.drive == wanted)) return;
+  entry.axes.drive = wanted;
+  entry.driven_anew = true;
+  if (!entry.constraint) return;
+  wake(entry.constraint->getRigidBodyA());
+  wake(entry.constraint->getRigidBodyB());
+}
+
+std::optional<JointMotion> JointTable::motion(core::JointId id) const {
+  const Entry& entry = entries_.at(core::value_of(id));
+  if (!entry.axes.own || !entry.constraint) return std::nullopt;
+  return JointMotion{entry.axes.position, entry.speed, entry.axes.drive_impulse / substep_s_};
 }
 
 std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
@@ -114,11 +232,10 @@ std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
   for (const core::JointId id : joints) {
     const core::JointSpec& joint = scene_->joints[core::value_of(id)];
     const Entry& entry = entries_[core::value_of(id)];
-    cluster.joints.push_back({id, static_cast<std::uint32_t>(cluster.joint_values.size()), kValues});
-    cluster.joint_values.resize(cluster.joint_values.size() + kValues);
-    double* const values = &cluster.joint_values[cluster.joints.back().first_value];
-    values[kBroken] = entry.broken ? 1 : 0;
-    values[kImpulse] = entry.constraint ? static_cast<double>(entry.constraint->internalGetAppliedImpulse()) : 0;
+    const auto first = static_cast<std::uint32_t>(cluster.joint_values.size());
+    cluster.joints.push_back({id, first, static_cast<std::uint32_t>(value_count(entry))});
+    cluster.joint_values.resize(first + value_count(entry));
+    write_values(entry, std::span(cluster.joint_values).subspan(first));
     if (entry.constraint && joint.b && !(has(cluster, joint.a) && has(cluster, *joint.b))) ++across;
   }
   return across;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -19,6 +20,8 @@
 
 namespace aurasim::physics {
 
+using core::JointMotion;
+
 class JointTable {
  public:
   /// The scene outlives the table; so do the body table and the world that its functions are given, always the same.
@@ -30,10 +33,18 @@ class JointTable {
   void connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world);
   /// Takes the joints of bodies out that are about to leave.
   void disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world);
-  /// After each substep: joints that broke in it are gone for good.
-  void remove_broken(DynamicsWorld& world);
-  /// While there are no bodies: those that come say which are broken.
-  void forget_broken();
+  /// After each look: joints that broke in it are gone for good, and hinges are seen to turn.
+  void finish_look(DynamicsWorld& world);
+  /// While there are no bodies: those that come say what is known of their joints.
+  void forget();
+
+  /// From the next step on, instead of what has driven the joint so far, for as long as it is not broken; it goes with
+  /// the bodies wherever they go. For hinges and sliders of bodies that are here; of other joints nothing is done.
+  /// Numbers beyond 1e12 either way count as that, no number as 0; max_effort as infinite.
+  void drive(core::JointId id, const core::JointDrive& drive);
+  /// Of a hinge or slider that holds bodies here. How often a hinge has turned is counted from the start on; one that
+  /// turns by more than half a turn in a step beyond what its speed says is seen wrongly.
+  std::optional<JointMotion> motion(core::JointId id) const;
 
   /// Adds the joints of the cluster's bodies to it, in order of id. Returns how many of them, being whole, also hold a
   /// body that is here and not in the cluster.
@@ -47,13 +58,22 @@ class JointTable {
     JointAxes axes;
     std::unique_ptr<btTypedConstraint> constraint;
     bool broken = false;
+    bool driven_anew = false;  ///< not by what the scene says
+    double speed = 0;          ///< of a hinge or slider, as the bodies are
   };
 
   const std::vector<core::JointId>& joints_of(core::BodyId body) const;
   void disconnect(Entry& entry, DynamicsWorld& world);
+  void read_values(std::span<const double> values, Entry& entry) const;
+  std::size_t value_count(const Entry& entry) const;
+  void write_values(const Entry& entry, std::span<double> values) const;
+  void measure_again(Entry& entry, double since_s);
+  void forget(core::JointId id);
 
   const core::Scene* scene_;
   double substep_s_;
+  double look_s_;
+  bool is_soft_;
   std::vector<Entry> entries_;                                              ///< as Scene::joints
   std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< asked by id only
   std::vector<core::JointId> connected_;                                    ///< ascending

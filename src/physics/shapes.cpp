@@ -149,8 +149,7 @@ void ShapeSet::extend(const core::Scene& scene) {
   std::vector<core::Vec3> inertias;
   std::vector<Built> built;
   for (std::size_t i = inertias_.size(); i < scene.prototypes.size(); ++i) {
-    const core::Prototype& prototype = scene.prototypes[i];
-    inertias.push_back(inertia_diagonal(scene.shapes.at(prototype.shape).shape, prototype.mass_kg));
+    inertias.push_back(inertia_of(scene.prototypes[i], scene));
   }
   for (std::size_t i = shapes_.size(); i < scene.shapes.size(); ++i) {
     built.push_back(std::visit(Built::Make{}, scene.shapes[i].shape));

@@ -103,7 +103,7 @@ int Simulation::rank_of(core::BodyId id) const {
 void Simulation::start_at(core::Step step) {
   assert(table_.size() == 0);
   step_ = step;
-  joints_.forget_broken();
+  joints_.forget();
   if (timeline_.statics_change()) show_statics(step);
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
@@ -148,7 +148,7 @@ void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
 void Simulation::insert_born() {
   for (HostedBody& body : table_.bodies()) {
     if (body.born || body.birth > step_) continue;
-    world_.insert(*body.rigid, rank_of(body.id));
+    world_.insert(*body.rigid, rank_of(body.id), scene_->prototypes[core::value_of(body.prototype)].collides);
     body.born = true;
     joints_.connect(body.id, table_, world_);
   }
@@ -237,7 +237,7 @@ void Simulation::step() {
   for (int i = 0; i < settings_.looks(); ++i) {
     push();
     world_.step(settings_.step_s / settings_.looks());
-    joints_.remove_broken(world_);
+    joints_.finish_look(world_);
   }
   stop_pushing();
   ++step_;

@@ -8,6 +8,7 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
+#include "physics/driven_constraint.h"
 #include "physics/friction_anchors.h"
 #include "physics/prefetch.h"
 
@@ -54,6 +55,13 @@ class Refined : public BulletSolver {
   using BulletSolver::BulletSolver;
 
  protected:
+  void convertJoints(btTypedConstraint** joints, int count, const btContactSolverInfo& info) override {
+    BulletSolver::convertJoints(joints, count, info);
+    for (int i = 0; i < this->m_tmpSolverNonContactConstraintPool.size(); ++i) {
+      let_give(this->m_tmpSolverNonContactConstraintPool[i]);
+    }
+  }
+
   void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override {
     // Bullet makes the rows of one manifold after the other.
     constexpr int kAtOnce = kPrefetchDistance / 2;
@@ -95,6 +103,15 @@ class DantzigSolver final : private Dantzig, public Refined<btMLCPSolver> {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   DantzigSolver() : Refined(&dantzig) {}
+
+ protected:
+  void createMLCPFast(const btContactSolverInfo& info) override {
+    Refined::createMLCPFast(info);
+    for (int i = 0; i < m_allConstraintPtrArray.size(); ++i) {
+      const btScalar give = give_of(*m_allConstraintPtrArray[i]);
+      if (give > 0) m_A.setElem(i, i, m_A(i, i) + give);
+    }
+  }
 };
 
 }  // namespace

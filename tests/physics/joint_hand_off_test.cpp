@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -55,12 +56,36 @@ std::vector<BodyId> place_creature(core::Scene& scene, double x, const Vec3& v_W
   return ids;
 }
 
+/// A box that drives: two wheels on hinges, of which one turns without end and one goes to and fro by a stiff drive,
+/// a cart with friction on a slider, and a clapper on a damped ball joint.
+std::vector<BodyId> place_machine(core::Scene& scene, double x) {
+  const std::uint64_t first = scene.bodies.size();
+  core::HingeJoint endless{core::JointLimits{-std::numeric_limits<double>::infinity(), 60}, {}};
+  endless.drive = core::JointDrive{.speed = 15, .damping = 0.5, .max_effort = 2};
+  core::HingeJoint stiff;
+  stiff.drive = core::JointDrive{.position = 9, .stiffness = 2000, .damping = 20, .max_effort = 5};
+  core::SliderJoint cart;
+  cart.resistance = {.stiffness = 40, .rest = 0.3, .damping = 0.2, .friction = 1};
+  const core::JointKind kinds[] = {endless, stiff, cart, core::BallJoint{0.05}};
+  place_body(scene, kBox, {x, 0, 3});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double angle = 1.5 * static_cast<double>(i);
+    const Vec3 outward(std::cos(angle), std::sin(angle), 0.2);
+    place_body(scene, static_cast<int>(i) % 3, Vec3(x, 0, 3) + outward);
+    add_joint(scene, kinds[i], scene.bodies.size() - 1, first, Vec3(x, 0, 3) + 0.5 * outward, outward.normalized());
+  }
+  std::vector<BodyId> ids;
+  for (std::uint64_t id = first; id < scene.bodies.size(); ++id) ids.push_back(BodyId{id});
+  return ids;
+}
+
 core::Scene scene_of_creatures(std::vector<std::vector<BodyId>>& creatures) {
   core::Scene scene = scene_of_all_shapes();
   for (int i = 0; i < 3; ++i) creatures.push_back(place_creature(scene, 30.0 * i, {2.0 - i, 1, -1}));
   // And one that hangs from the world.
   creatures.push_back(place_creature(scene, 90, {0, 0, 0}));
   add_joint(scene, core::BallJoint{}, value_of(creatures.back()[3]), {}, {90, 0.5, 5});
+  creatures.push_back(place_machine(scene, 120));
   return scene;
 }
 
@@ -142,6 +167,39 @@ TEST_P(JointHandOff, ChangesNoBit) {
   EXPECT_LT(broken, static_cast<int>(state.joints.size()) / 2);
 }
 
+/// As if they had been set while the world ran, on the hinges and sliders of machine and creatures.
+void drive_anew(ClusterState& all, const core::Scene& scene) {
+  ClusterState driven = all;
+  driven.joint_values.clear();
+  for (core::JointRecord& record : driven.joints) {
+    const core::JointKind& kind = scene.joints[value_of(record.id)].kind;
+    const bool is_driven =
+        std::holds_alternative<core::HingeJoint>(kind) || std::holds_alternative<core::SliderJoint>(kind);
+    std::vector<double> values(all.joint_values.begin() + record.first_value,
+                               all.joint_values.begin() + record.first_value + record.value_count);
+    if (is_driven) {
+      values.resize(4, 0);
+      values.insert(values.end(), {7, 1, 30, 2, 0.5, -1});
+    }
+    record.first_value = static_cast<std::uint32_t>(driven.joint_values.size());
+    record.value_count = static_cast<std::uint32_t>(values.size());
+    driven.joint_values.insert(driven.joint_values.end(), values.begin(), values.end());
+  }
+  all = std::move(driven);
+}
+
+TEST_P(JointHandOff, DrivesThatWereSetOnTheWayGoWithTheirBodies) {
+  for (RegionWorld* world : {&central, &worlds[0], &worlds[1]}) {
+    ClusterState all = world->peek_all();
+    drive_anew(all, scene);
+    world->put_back(0, all);
+  }
+  EXPECT_EQ(run_random(400), 0) << "after " << hand_offs << " hand-offs";
+  EXPECT_GT(hand_offs, 50);
+  const ClusterState state = central.peek(creatures.back());
+  EXPECT_EQ(std::ranges::count(state.joints, 10u, &core::JointRecord::value_count), 3);
+}
+
 TEST_P(JointHandOff, WithoutTheirValuesBrokenJointsWouldMend) {
   EXPECT_GT(run_random(1200,
                        [](ClusterState& cluster) {
@@ -159,6 +217,16 @@ TEST_P(JointHandOff, ValuesOfAnotherLengthOrOfAJointThatIsNotHereAreIgnored) {
                          cluster.joints.push_back({core::JointId{1}, 0xffff'ffff, 2});
                        }),
             0);
+}
+
+TEST_P(JointHandOff, ChangesNoBitOfTheSoftStepEither) {
+  Settings soft;
+  soft.solver = Solver::kSoftStep;
+  central = RegionWorld(scene, soft);
+  for (RegionWorld& world : worlds) world = RegionWorld(scene, soft);
+  central.add(initial_records(scene));
+  for (const auto& ids : creatures) put_in(worlds[random() % 2], ids);
+  EXPECT_EQ(run_random(600), 0) << "after " << hand_offs << " hand-offs";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, JointHandOff, ::testing::Range(1, 7));

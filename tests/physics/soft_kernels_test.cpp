@@ -98,7 +98,10 @@ TEST(SoftKernels, PatchesHaveTheSameBitsWithEverySetOfInstructions) {
 TEST(SoftKernels, JointsHaveTheSameBitsWithEverySetOfInstructions) {
   expect_same_bits<soft::JointBlock>([](const soft::Kernel& kernel, auto& blocks, auto& movers) {
     const unsigned all = (soft::kJointMotor << 1) - 1;
-    for (const unsigned what : {all, soft::kHeldAxis * 0b111, soft::kHeldAxis * 0b011111}) {
+    const unsigned own = soft::kJointDrive | soft::kJointSpring | soft::kJointFriction;
+    for (const unsigned what :
+         {all, soft::kHeldAxis * 0b111, soft::kHeldAxis * 0b011111, soft::kHeldAxis * 0b111 | soft::kDampedBall,
+          soft::kHeldAxis * 0b011111 | own | soft::kWholeTurns, soft::kHeldAxis * 0b111011 | own | soft::kSlides}) {
       kernel.look_at_joints(blocks.data(), blocks.size(), what, movers.data(), kSubstep_s);
       kernel.begin_joints(blocks.data(), blocks.size(), what, movers.data(), kSubstep_s);
       kernel.solve_joints(blocks.data(), blocks.size(), what, movers.data());

@@ -101,7 +101,7 @@ double energy(const core::Scene& scene, std::span<const core::BodyRecord> bodies
   double sum = 0;
   for (const core::BodyRecord& body : bodies) {
     const core::Prototype& prototype = scene.prototypes[core::value_of(body.prototype)];
-    const Vec3 inertia = physics::inertia_diagonal(scene.shapes[prototype.shape].shape, prototype.mass_kg);
+    const Vec3 inertia = physics::inertia_of(prototype, scene);
     const Vec3 w_B = body.R_WB.transpose() * body.w_WB;
     sum += 0.5 * prototype.mass_kg * body.v_WB.squaredNorm() + 0.5 * w_B.dot(inertia.cwiseProduct(w_B));
     sum -= prototype.mass_kg * scene.gravity.dot(body.p_WB);

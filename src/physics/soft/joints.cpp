@@ -17,12 +17,16 @@ namespace {
 using soft::Lanes;
 using soft::Real;
 
-const JointAxes& axes_of(btTypedConstraint& joint) {
-  return *static_cast<const JointAxes*>(joint.getUserConstraintPtr());
-}
+JointAxes& axes_of(btTypedConstraint& joint) { return *static_cast<JointAxes*>(joint.getUserConstraintPtr()); }
 
 unsigned what_of(const JointAxes& joint) {
-  unsigned what = joint.has_motor ? soft::kJointMotor : 0;
+  unsigned what = joint.has_motor && !joint.drive ? soft::kJointMotor : 0;
+  if (joint.is_driven()) what |= soft::kJointDrive;
+  if (joint.resistance.stiffness > 0 || joint.resistance.damping > 0) what |= soft::kJointSpring;
+  if (joint.resistance.friction > 0) what |= soft::kJointFriction;
+  if (joint.own == 2u) what |= soft::kSlides;
+  if (joint.counts_turns()) what |= soft::kWholeTurns;
+  if (joint.ball_damping > 0) what |= soft::kDampedBall;
   for (std::size_t i = 0; i < joint.axes.size(); ++i) {
     if (joint.axes[i].is_held) what |= soft::kHeldAxis << i;
     if (joint.axes[i].stiffness > 0 || joint.axes[i].damping > 0) what |= soft::kSpringAxis << i;
@@ -34,9 +38,29 @@ void set(Lanes (&to)[3], int lane, const btVector3& v) {
   for (int i = 0; i < 3; ++i) to[i][lane] = static_cast<Real>(v[i]);
 }
 
+/// Angles in a block are those without the whole turns that a joint has made by the start of the step.
+void set(soft::JointBlock::Pull& to, int lane, const ImplicitPull& from, double turns_rad) {
+  to.position[lane] = static_cast<Real>(from.position - turns_rad);
+  to.stiffness[lane] = static_cast<Real>(from.stiffness);
+  to.steady[lane] = static_cast<Real>(from.steady);
+  to.give[lane] = static_cast<Real>(from.give);
+  to.most[lane] = static_cast<Real>(from.most);
+}
+
+void set_own(soft::JointBlock& block, int lane, const JointAxes& axes, double substep_s) {
+  if (axes.drive) set(block.drive, lane, pull_of(*axes.drive, substep_s), axes.turns_rad);
+  set(block.spring, lane, pull_of(axes.resistance, substep_s), axes.turns_rad);
+  block.friction[lane] = static_cast<Real>(substep_s * axes.resistance.friction);
+  if (!axes.counts_turns()) return;
+  soft::JointBlock::Axis& turn = block.axes[5];
+  turn.x[lane] = static_cast<Real>(axes.position - axes.turns_rad);
+  turn.low[lane] = static_cast<Real>(axes.axes[5].low - axes.turns_rad);
+  turn.high[lane] = static_cast<Real>(axes.axes[5].high - axes.turns_rad);
+}
+
 }  // namespace
 
-SoftJoints::SoftJoints(Real substep_s) : h_s_(substep_s) {}
+SoftJoints::SoftJoints(double substep_s) : substep_s_(substep_s), h_s_(static_cast<Real>(substep_s)) {}
 
 void SoftJoints::add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second) {
   joints_.push_back({&joint, first, second, 0});
@@ -84,7 +108,10 @@ void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
     soft::JointBlock::Axis& to = block.axes[i];
     to.low[lane] = static_cast<Real>(from.low), to.high[lane] = static_cast<Real>(from.high);
     to.stiffness[lane] = static_cast<Real>(from.stiffness), to.damping[lane] = static_cast<Real>(from.damping);
+    to.rest[lane] = static_cast<Real>(from.rest);
   }
+  if (axes.own) set_own(block, lane, axes, substep_s_);
+  block.ball_give[lane] = static_cast<Real>(substep_s_ * axes.ball_damping);
   block.motor_rad_s[lane] = static_cast<Real>(axes.motor_rad_s);
   block.motor_impulse[lane] = static_cast<Real>(axes.motor_impulse);
   block.whole[lane] = 1;
@@ -113,10 +140,16 @@ void SoftJoints::finish() {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const soft::JointBlock& block = blocks_[layout_.block(i)];
     const int lane = layout_.lane(i);
-    Real last = (joints_[i].what & soft::kJointMotor) != 0 ? std::abs(block.motor_took[lane]) : 0;
+    JointAxes& axes = axes_of(*joints_[i].joint);
+    const unsigned what = joints_[i].what;
+    axes.drive_impulse = 0;
+    if ((what & soft::kJointMotor) != 0) axes.drive_impulse = static_cast<double>(block.motor_took[lane]);
+    if ((what & soft::kJointDrive) != 0) axes.drive_impulse = static_cast<double>(block.drive.impulse[lane]);
+    Real last = static_cast<Real>(std::abs(axes.drive_impulse));
+    if ((what & soft::kJointSpring) != 0) last = std::max(last, std::abs(block.spring.impulse[lane]));
+    if ((what & soft::kJointFriction) != 0) last = std::max(last, std::abs(block.rubbed[lane]));
     for (int axis = 0; axis < 6; ++axis) {
-      if ((joints_[i].what & soft::kHeldAxis << axis) != 0)
-        last = std::max(last, std::abs(block.axes[axis].impulse[lane]));
+      if ((what & soft::kHeldAxis << axis) != 0) last = std::max(last, std::abs(block.axes[axis].impulse[lane]));
     }
     joints_[i].joint->internalSetAppliedImpulse(last);
     if (std::max(last, block.took[lane]) >= block.breaks[lane]) joints_[i].joint->setEnabled(false);

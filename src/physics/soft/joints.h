@@ -18,10 +18,10 @@ namespace aurasim::physics {
 
 struct JointAxes;
 
-/// What of a joint is told with it, as its user pointer: const JointAxes*.
+/// What of a joint is told with it, and what it has been driven by is told there, as its user pointer: JointAxes*.
 class SoftJoints {
  public:
-  explicit SoftJoints(soft::Real substep_s);
+  explicit SoftJoints(double substep_s);
 
   void clear() { joints_.clear(); }
   /// Between two movers, as the joint names them. Those of an island in an order that follows from the island alone.
@@ -49,6 +49,7 @@ class SoftJoints {
 
   void fill(std::size_t at, std::span<const SoftInertia> inertias);
 
+  double substep_s_;
   soft::Real h_s_;
   std::vector<Joint> joints_;
   std::vector<unsigned> kinds_;  ///< what joints have, ascending

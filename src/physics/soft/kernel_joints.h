@@ -1,7 +1,7 @@
 // The joints' part of soft/kernel.h.
 #pragma once
 
-#include "physics/soft/kernel_vectors.h"
+#include "physics/soft/kernel_drives.h"
 
 namespace aurasim::physics::soft {
 namespace {
@@ -11,10 +11,6 @@ constexpr Real kErrorReduction = Real(0.2);
 
 constexpr unsigned kSprings = kSpringAxis * 0b111111, kShifts = (kHeldAxis | kSpringAxis) * 0b111;
 constexpr unsigned kTurns = ((kHeldAxis | kSpringAxis) * 0b111000) | kJointMotor;
-
-AURASIM_INLINE Lanes abs(const Lanes& a) { return a < Lanes{} ? -a : a; }
-AURASIM_INLINE Lanes inverse(const Lanes& a) { return a > Lanes{} ? all(1) / a : Lanes{}; }
-AURASIM_INLINE void set(Lanes (&to)[3], const Vec& v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
 /// By the polynomial of Cephes' atanf for arguments below tan(pi/8), to which it brings the others.
 AURASIM_INLINE Lanes arc_tangent(const Lanes& y, const Lanes& x) {
@@ -42,31 +38,6 @@ AURASIM_INLINE void turn_inertia(const Lanes (&m)[6], const Turned& t, Lanes (&t
   const Vec x = mul(m, rows[0]), y = mul(m, rows[1]), z = mul(m, rows[2]);
   to[0] = dot(rows[0], x), to[1] = dot(rows[0], y), to[2] = dot(rows[0], z);
   to[3] = dot(rows[1], y), to[4] = dot(rows[1], z), to[5] = dot(rows[2], z);
-}
-
-AURASIM_INLINE Lanes mass_along(const JointBlock& block, const Vec& n) {
-  const Vec a = cross(load(block.arm_a), n), b = cross(load(block.arm_b), n);
-  return inverse(block.inv_mass_a + block.inv_mass_b + dot(a, mul(block.inv_inertia_a, a)) +
-                 dot(b, mul(block.inv_inertia_b, b)));
-}
-
-AURASIM_INLINE Lanes mass_about(const JointBlock& block, const Vec& n) {
-  return inverse(dot(n, add(mul(block.inv_inertia_a, n), mul(block.inv_inertia_b, n))));
-}
-
-/// An impulse on a, and against b.
-AURASIM_INLINE void push_axis(Pair& p, const JointBlock& block, int axis, const Vec& n, const Lanes& impulse) {
-  if (axis < 3) {
-    push(p, block, mul(-impulse, n), load(block.arm_a), load(block.arm_b));
-  } else {
-    turn(p, block, mul(-impulse, n));
-  }
-}
-
-/// Of a from b.
-AURASIM_INLINE Lanes rate(const Pair& p, const JointBlock& block, int axis, const Vec& n) {
-  if (axis < 3) return -dot(speed(p, load(block.arm_a), load(block.arm_b)), n);
-  return dot(sub(p.w_a, p.w_b), n);
 }
 
 /// Held axes go back; limits are as contacts are, the nearer one.
@@ -112,6 +83,7 @@ AURASIM_INLINE Lanes took_most(const JointBlock& block, unsigned what) {
   for (int i = 0; i < 6; ++i) {
     if ((what & kHeldAxis << i) != 0) most = max(most, abs(block.axes[i].impulse));
   }
+  if ((what & kOwnRows) != 0) most = max(most, own_took_most(block, what));
   return (what & kJointMotor) != 0 ? max(most, abs(block.motor_took)) : most;
 }
 
@@ -134,11 +106,16 @@ void look_at_joints(JointBlock* blocks, std::size_t count, unsigned what, const 
     }
     if ((what & kTurns) != 0) {
       const Angles turned = angles(frame_a, frame_b);
+      const Lanes before = block.axes[5].x;
       for (int i = 0; i < 3; ++i) look_at_axis(block, 3 + i, turned.n[i], turned.x[i], h_s);
+      if ((what & kWholeTurns) != 0) {
+        look_at_axis(block, 5, turned.n[2], nearest_turn(turned.x[2], before), h_s);
+      }
     }
     for (int i = 0; i < 3 && (what & kShifts) != 0; ++i) {
       look_at_axis(block, i, frame_b[i], dot(apart, frame_b[i]), h_s);
     }
+    if ((what & kOwnRows) != 0) look_at_own(block, what);
   }
 }
 
@@ -148,7 +125,7 @@ AURASIM_INLINE Lanes spring(Pair& p, const JointBlock& block, int axis, Real h_s
   const Vec n = load(spring.n);
   const Lanes stiffness = min(spring.stiffness, spring.mass / (16 * h_s * h_s));
   const Lanes damping = min(spring.damping, spring.mass / h_s);
-  const Lanes impulse = -h_s * (stiffness * spring.x + damping * rate(p, block, axis, n));
+  const Lanes impulse = -h_s * (stiffness * (spring.x - spring.rest) + damping * rate(p, block, axis, n));
   push_axis(p, block, axis, n, impulse);
   return impulse;
 }
@@ -163,8 +140,10 @@ void begin_joints(JointBlock* blocks, std::size_t count, unsigned what, Mover* m
       axis.impulse = Lanes{};
       axis.mass = block.whole * axis.mass, axis.least = block.whole * axis.least, axis.most = block.whole * axis.most;
     }
-    if ((what & kSprings) == 0) continue;
+    if ((what & kOwnRows) != 0) begin_own(block, what);
+    if ((what & (kSprings | kDampedBall)) == 0) continue;
     Pair p = velocities(block, movers);
+    if ((what & kDampedBall) != 0) block.took = max(block.took, damp_ball(p, block));
     for (int i = 0; i < 6; ++i) {
       if ((what & kSpringAxis << i) != 0) block.took = max(block.took, abs(spring(p, block, i, h_s)));
     }
@@ -195,6 +174,7 @@ void solve_joints(JointBlock* blocks, std::size_t count, unsigned what, Mover* m
     JointBlock& block = blocks[k];
     Pair p = velocities(block, movers);
     if ((what & kJointMotor) != 0) solve_motor(p, block);
+    if ((what & kOwnRows) != 0) solve_own(p, block, what);
     for (int i = 5; i >= 0; --i) {
       if ((what & kHeldAxis << i) != 0) solve_axis(p, block, i);
     }

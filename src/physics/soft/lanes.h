@@ -71,6 +71,10 @@ struct alignas(64) Block {
 
 /// The bits of what joints have: axes that are held or limited, axes with springs, and a motor about the last.
 inline constexpr unsigned kHeldAxis = 1, kSpringAxis = 1 << 6, kJointMotor = 1 << 12;
+/// Along the axis that a hinge (the last) or a slider (the third) leaves: a drive, a spring with a damper, friction. Of
+/// a hinge whether whole turns count. Of a ball joint whether it is damped.
+inline constexpr unsigned kJointDrive = 1 << 13, kJointSpring = 1 << 14, kJointFriction = 1 << 15;
+inline constexpr unsigned kSlides = 1 << 16, kWholeTurns = 1 << 17, kDampedBall = 1 << 18;
 
 /// Joints of kLanes pairs of bodies. None shares a body that moves with another. What is measured is J of a from J of
 /// b: how far it is along the axes of b's, m, and the angles x, y, z of turns about x, then y, then z as they lie then,
@@ -78,7 +82,8 @@ inline constexpr unsigned kHeldAxis = 1, kSpringAxis = 1 << 6, kJointMotor = 1 <
 struct alignas(64) JointBlock {
   struct Axis {
     Lanes low, high;           ///< m or rad; the same: held
-    Lanes stiffness, damping;  ///< N/m and N s/m, or N m/rad and N m s/rad, towards 0
+    Lanes stiffness, damping;  ///< N/m and N s/m, or N m/rad and N m s/rad
+    Lanes rest;                ///< springs pull there, m or rad
     Lanes impulse;             ///< in this substep so far, N s or N m s
     // As the bodies are now:
     Lanes x;            ///< m or rad
@@ -86,6 +91,13 @@ struct alignas(64) JointBlock {
     Lanes mass;         ///< kg or kg m^2
     Lanes wanted;       ///< of a from b, m/s or rad/s
     Lanes least, most;  ///< impulses
+  };
+
+  /// As physics/joint_axes.h has it: impulse = pull - give * speed.
+  struct Pull {
+    Lanes position, stiffness, steady, give, most;
+    Lanes pull;     ///< N s or N m s
+    Lanes impulse;  ///< in this substep so far
   };
 
   std::uint32_t a[kLanes], b[kLanes];            ///< movers; 0 never moves
@@ -103,6 +115,15 @@ struct alignas(64) JointBlock {
   // As the bodies are now:
   Lanes inv_inertia_a[6], inv_inertia_b[6];
   Lanes arm_a[3], arm_b[3];  ///< where impulses act, from the centres of mass, m
+
+  // Along the axis that is left:
+  Pull drive, spring;
+  Lanes friction, rubbed;    ///< N s or N m s in a substep: at most, and in this one so far
+  Lanes ball_give;           ///< N m s^2/rad
+  Lanes own_mass;            ///< kg or kg m^2, as the bodies move that the held axes hold
+  Lanes own_push[3];         ///< an impulse of 1 on a, and against b
+  Lanes own_a[3], own_b[3];  ///< and what it turns them by
+  Lanes borne[6];            ///< and what each held axis takes of it
 };
 
 /// Who tumbles does so in turns of at most so much, if there are not more of them in a substep.

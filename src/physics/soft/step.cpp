@@ -92,7 +92,7 @@ struct SoftStep::Impl {
         h_s(static_cast<Real>(step_s / substeps)),
         substeps(substeps),
         patches(step_s, substeps),
-        joints(h_s) {}
+        joints(step_s / substeps) {}
 
   /// A mover's body at the start.
   struct Body {

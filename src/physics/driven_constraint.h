@@ -1,0 +1,55 @@
+// Bullet's joints with what drives and resists them (core/joint.h), as rows of their own.
+#pragma once
+
+#include <utility>
+
+#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btSolverConstraint.h>
+
+#include "physics/joint_axes.h"
+
+namespace aurasim::physics {
+
+/// Whether Bullet, which knows a hinge's angle only within half a turn, can hold these limits itself.
+bool is_within_half_a_turn(const core::JointLimits& limits);
+
+/// How many rows a joint has beyond Bullet's.
+int own_rows(const JointAxes& joint);
+/// Writes them from row `first` on, the drive's last.
+void write_own_rows(const JointAxes& joint, double substep_s, const btRigidBody& a, const btRigidBody& b, int first,
+                    btTypedConstraint::btConstraintInfo2& info);
+
+/// Bullet has no rows that give: one that should, by `give` (ImplicitPull), comes from getInfo2() with -give as its cfm.
+/// This makes the row that all of Bullet's solvers then solve rightly.
+void let_give(btSolverConstraint& row);
+/// What to add to the diagonal of the matrix of a direct solver for that row, 1/kg or 1/(kg m^2); 0 of any other.
+btScalar give_of(const btSolverConstraint& row);
+
+template <class Joint>
+class Driven final : public Joint {
+ public:
+  template <class... Arguments>
+  explicit Driven(double substep_s, Arguments&&... arguments)
+      : Joint(std::forward<Arguments>(arguments)...), substep_s_(substep_s) {}
+
+  void getInfo1(btTypedConstraint::btConstraintInfo1* info) override {
+    if constexpr (std::is_same_v<Joint, btHingeConstraint>) {
+      if (axes().drive) this->enableMotor(false);
+    }
+    Joint::getInfo1(info);
+    rows_of_bullet_ = info->m_numConstraintRows;
+    info->m_numConstraintRows += own_rows(axes());
+  }
+  void getInfo2(btTypedConstraint::btConstraintInfo2* info) override {
+    Joint::getInfo2(info);
+    write_own_rows(axes(), substep_s_, this->m_rbA, this->m_rbB, rows_of_bullet_, *info);
+  }
+
+ private:
+  const JointAxes& axes() { return *static_cast<const JointAxes*>(this->getUserConstraintPtr()); }
+
+  double substep_s_;
+  int rows_of_bullet_ = 0;
+};
+
+}  // namespace aurasim::physics
