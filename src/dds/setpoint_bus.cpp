@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "dds/random_id.h"
 #include "dds/rate_limit.h"
 #include "dds/setpoint_codec.h"
@@ -39,6 +41,7 @@ std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
     const bool is_a_program = setpoints.client != core::kRecordedClient;
     if (!is_a_program || !impl_->rates.allows(origin.writer.guidPrefix, now)) {
       ++impl_->too_many;
+      impl_->reader.ration(origin, fmt::format("{:g} a second, {:g} at once", kMessagesASecond, kMessagesAtOnce));
       return;
     }
     taken.push_back(std::move(setpoints));

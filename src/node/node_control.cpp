@@ -44,7 +44,7 @@ void Node::note_effects() {
   }
 }
 
-/// Its next host may have heard less.
+/// Its next host may have heard less. Drives of joints go along.
 void Node::note_left_behind(const core::ClusterState& cluster) {
   const core::ControlLog& controls = world_.controls();
   if (controls.empty()) return;
@@ -54,10 +54,6 @@ void Node::note_left_behind(const core::ClusterState& cluster) {
   };
   controls.for_each_body(n, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool) {
     if (value && has_left(id)) report_.effects.bodies.push_back({n + 1, {id, quantity, {}}});
-  });
-  controls.for_each_joint(n, [&](core::JointId id, const auto& drive, bool) {
-    const core::BodyId body = scene_.joints[core::value_of(id)].a;
-    if (drive && has_left(body)) report_.effects.joints.push_back({n + 1, {id, {}}});
   });
 }
 

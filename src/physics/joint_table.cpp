@@ -7,6 +7,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
+#include "physics/awaken.h"
 #include "physics/bullet_convert.h"
 
 namespace aurasim::physics {
@@ -56,13 +57,11 @@ std::optional<core::JointDrive> drive_in(const core::JointSpec& joint) {
   return std::nullopt;
 }
 
-/// Who may sleep starts anew.
-void wake(btRigidBody& body) {
-  if (body.isStaticObject() || body.getActivationState() == DISABLE_DEACTIVATION ||
-      body.getActivationState() == DISABLE_SIMULATION)
-    return;
-  body.forceActivationState(ACTIVE_TAG);
-  body.setDeactivationTime(0);
+void wake_both(btTypedConstraint* constraint) {
+  if (constraint == nullptr) return;
+  for (btRigidBody* body : {&constraint->getRigidBodyA(), &constraint->getRigidBodyB()}) {
+    if (!body->isStaticObject()) awaken(*body);
+  }
 }
 
 }  // namespace
@@ -210,9 +209,15 @@ void JointTable::drive(core::JointId id, const core::JointDrive& drive) {
   if (!entry.axes.own || entry.broken || (entry.driven_anew && entry.axes.drive == wanted)) return;
   entry.axes.drive = wanted;
   entry.driven_anew = true;
-  if (!entry.constraint) return;
-  wake(entry.constraint->getRigidBodyA());
-  wake(entry.constraint->getRigidBodyB());
+  wake_both(entry.constraint.get());
+}
+
+void JointTable::let_go(core::JointId id) {
+  Entry& entry = entries_.at(core::value_of(id));
+  if (!entry.driven_anew) return;
+  entry.axes.drive = drive_in(scene_->joints[core::value_of(id)]);
+  entry.driven_anew = false;
+  wake_both(entry.constraint.get());
 }
 
 std::optional<JointMotion> JointTable::motion(core::JointId id) const {

@@ -42,6 +42,8 @@ class JointTable {
   /// the bodies wherever they go. For hinges and sliders of bodies that are here; of other joints nothing is done.
   /// Numbers beyond 1e12 either way count as that, no number as 0; max_effort as infinite.
   void drive(core::JointId id, const core::JointDrive& drive);
+  /// Likewise: as the scene says again.
+  void let_go(core::JointId id);
   /// Of a hinge or slider that holds bodies here. How often a hinge has turned is counted from the start on; one that
   /// turns by more than half a turn in a step beyond what its speed says is seen wrongly.
   std::optional<JointMotion> motion(core::JointId id) const;

@@ -35,6 +35,14 @@ void Simulation::heed_setpoints(core::Step n) {
         snapshot_is_fresh_ = records_are_fresh_ = false;
         if (value && !heed(*body->rigid, quantity, *value)) ++unbearable_;
       });
+  controls.for_each_joint(n, [&](core::JointId id, const std::optional<core::JointDrive>& drive, bool is_new) {
+    if (!contains(scene_->joints[core::value_of(id)].a)) return;
+    if (drive) {
+      joints_.drive(id, *drive);
+    } else if (is_new) {
+      joints_.let_go(id);
+    }
+  });
 }
 
 bool Simulation::heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value) {

@@ -138,6 +138,9 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
   for (const core::BodyEffect& effect : report.effects.bodies) {
     outcome_.effects.push_back(node::as_heard_again(effect));
   }
+  for (const core::JointEffect& effect : report.effects.joints) {
+    outcome_.effects.push_back(node::as_heard_again(effect));
+  }
   for (const physics::Removal& removal : report.removals) {
     removed_.insert(removal.body);
     if (!removal.fault.empty()) outcome_.broken.push_back(removal);

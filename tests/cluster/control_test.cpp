@@ -56,8 +56,36 @@ std::vector<core::Setpoints> words_for(const core::Scene& scene, int seed) {
       body.id = scene.bodies[i].id, body.quantity = quantity;
       if (random() % 4 != 0) body.value = value;
     }
+    for (std::uint32_t i = 0; i < scene.joints.size(); ++i) {
+      core::JointSetpoint& joint = said.joints.emplace_back();
+      joint.id = core::JointId{i};
+      if (random() % 4 != 0) joint.drive = core::JointDrive{any(random), 3 * any(random), 40, 4, any(random), 30};
+    }
   }
   return words;
+}
+
+/// Pairs of boxes, each held by a hinge or a slider.
+void add_pairs(core::Scene& scene, int seed) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 7);
+  std::uniform_real_distribution<double> place(-kCell, kCell), speed(-5, 5);
+  std::uint64_t id = 5000;
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 p(place(random), place(random), 2.5 + 2 * i % 5), v(speed(random), speed(random), 0);
+    for (const double side : {-0.8, 0.8}) {
+      core::InitialBody& body = scene.bodies.emplace_back();
+      body.id = BodyId{id++};
+      body.prototype = core::PrototypeId{1};
+      body.pose.p_WB = p + Vec3(side, 0, 0);
+      body.v_WB = v;
+    }
+    core::JointSpec& joint = scene.joints.emplace_back();
+    joint.name = "pair";
+    if (i % 2 == 0) joint.kind = core::HingeJoint{};
+    if (i % 2 != 0) joint.kind = core::SliderJoint{core::JointLimits{-0.2, 0.6}};
+    joint.a = BodyId{id - 2}, joint.b = BodyId{id - 1};
+    joint.X_WJ.p_WB = p;
+  }
 }
 
 /// Each node hears a word in a state of its own, `early` to `latest` states before the word's.
@@ -111,7 +139,8 @@ class SteeredCluster : public testing::TestWithParam<bool> {};  ///< with redo
 TEST_P(SteeredCluster, HasTheSameEffectAsInOneWorld) {
   std::uint64_t hand_offs = 0;
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
-    const core::Scene scene = thrown_bodies(60, 2 * kCell, 2 * kCell, 6, static_cast<std::uint64_t>(seed));
+    core::Scene scene = thrown_bodies(40, 2 * kCell, 2 * kCell, 6, static_cast<std::uint64_t>(seed));
+    add_pairs(scene, seed);
     const ClusterOptions options = options_for(seed % 2 + 1, 2 + seed % 2, seed, GetParam());
     const std::vector<core::Setpoints> words = words_for(scene, seed);
     const Outcome many = run(scene, options, words, seed, 18, options.aura.lookahead + 2);
@@ -127,7 +156,8 @@ TEST_P(SteeredCluster, HasTheSameEffectAsInOneWorld) {
 /// With what was late, and heard on some nodes only by the time that it was for: the record says what came of it.
 TEST_P(SteeredCluster, IsTheSameAgainFromItsRecord) {
   for (int seed = 1; seed <= seeds_or(6); ++seed) {
-    const core::Scene scene = thrown_bodies(60, 2 * kCell, 2 * kCell, 6, static_cast<std::uint64_t>(seed));
+    core::Scene scene = thrown_bodies(40, 2 * kCell, 2 * kCell, 6, static_cast<std::uint64_t>(seed));
+    add_pairs(scene, seed);
     const ClusterOptions options = options_for(seed % 2 + 1, 2 + seed % 2, seed, GetParam());
     const Outcome live = run(scene, options, words_for(scene, seed), seed, 6, -4);
     ASSERT_FALSE(live.effects.empty());

@@ -221,9 +221,7 @@ TEST_P(Drives, ABodyWithMomentsOfItsOwnTurnsByThem) {
   run_seconds(1);
   Vec3 w = start;
   for (int i = 0; i < 100'000; ++i) {
-    const auto rate = [&](const Vec3& at) {
-      return Vec3(inertia.cwiseProduct(at).cross(at).cwiseQuotient(inertia));
-    };
+    const auto rate = [&](const Vec3& at) { return Vec3(inertia.cwiseProduct(at).cross(at).cwiseQuotient(inertia)); };
     const Vec3 middle = w + 0.5e-5 * rate(w);
     w += 1e-5 * rate(middle);
   }

@@ -141,8 +141,7 @@ TEST_P(JointTableTest, WhatIsNoNumberIsBounded) {
   for (const double value : state.joint_values) EXPECT_LE(std::abs(value), 1e12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, JointTableTest,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
+INSTANTIATE_TEST_SUITE_P(Solvers, JointTableTest, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 }  // namespace
 }  // namespace aurasim::physics::testing

@@ -28,7 +28,8 @@ AURASIM_INLINE Effect effect_of(const JointBlock& block, int axis) {
   return {n, cross(load(block.arm_a), n), cross(load(block.arm_b), n)};
 }
 AURASIM_INLINE Effect without(const Effect& e, const Lanes& times, const Effect& other) {
-  return {sub(e.push, mul(times, other.push)), sub(e.on_a, mul(times, other.on_a)), sub(e.on_b, mul(times, other.on_b))};
+  return {sub(e.push, mul(times, other.push)), sub(e.on_a, mul(times, other.on_a)),
+          sub(e.on_b, mul(times, other.on_b))};
 }
 
 /// What an impulse along the own axis does while the five held ones stay as fast as they are: they bear a share of it
