@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include "physics/awaken.h"
+#include "physics/awaken.h"
 #include "physics/bullet_convert.h"
 
 namespace aurasim::physics {
