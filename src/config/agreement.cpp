@@ -99,6 +99,9 @@ void add_things(const core::Scene& scene, Digest& d) {
     d.bytes(p.material);
     d.add(p.mass_kg);
     d.bytes(p.can_sleep);
+    d.bytes(p.inertia.has_value());
+    if (p.inertia) d.add(*p.inertia);
+    d.bytes(p.collides);
   }
 }
 
@@ -135,25 +138,38 @@ class JointDigest {
  public:
   explicit JointDigest(Digest& digest) : d_(digest) {}
 
-  void operator()(const core::BallJoint&) const {}
+  void operator()(const core::BallJoint& joint) const { d_.add(joint.damping); }
   void operator()(const core::FixedJoint&) const {}
   void operator()(const core::HingeJoint& joint) const {
-    add(joint.limits);
+    add_own(joint);
     d_.bytes(joint.motor.has_value());
     if (!joint.motor) return;
     d_.add(joint.motor->speed);
     d_.add(joint.motor->max_impulse);
   }
-  void operator()(const core::SliderJoint& joint) const { add(joint.limits); }
+  void operator()(const core::SliderJoint& joint) const { add_own(joint); }
   void operator()(const core::SpringJoint& joint) const {
     for (const core::SpringAxis& axis : joint.axes) {
       add(axis.limits);
       d_.add(axis.stiffness);
       d_.add(axis.damping);
+      d_.add(axis.rest);
     }
   }
 
  private:
+  template <class Joint>
+  void add_own(const Joint& joint) const {
+    add(joint.limits);
+    const core::JointResistance& own = joint.resistance;
+    for (const double value : {own.stiffness, own.rest, own.damping, own.friction}) d_.add(value);
+    d_.bytes(joint.drive.has_value());
+    const core::JointDrive drive = joint.drive.value_or(core::JointDrive{});
+    for (const double value :
+         {drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, drive.max_effort}) {
+      d_.add(value);
+    }
+  }
   void add(const std::optional<core::JointLimits>& limits) const {
     d_.bytes(limits.has_value());
     if (!limits) return;

@@ -40,8 +40,15 @@ const KeysOf<core::Prototype>& keys_of_prototype() {
       {
           shape_key("one that can move: no mesh, no heightfield, no plane"),
           required("mass", &Prototype::mass_kg, number(Range::above(0, 1e9), "kg"),
-                   "spread evenly over the shape; of a compound, about its origin"),
+                   "spread evenly over the shape, unless it has an `inertia`; of a compound, about its origin"),
+          optional(
+              "inertia", &Prototype::inertia, vec3("kg m^2", Range::above(0, 1e12)),
+              "[ixx, iyy, izz], moments of inertia about the centre of mass along the axes of the body; none above "
+              "the sum of the two others")
+              .otherwise("that of mass spread evenly over the shape"),
           material_key(),
+          optional("collides", &Prototype::collides, flag(),
+                   "whether it touches anything; without, it is moved by its joints alone, and rays pass through it"),
           optional("can_sleep", &Prototype::can_sleep, flag(),
                    "whether it is put to rest, and costs no more, when it has lain still for 2 s"),
       });
@@ -63,6 +70,14 @@ const KeysOf<core::InitialBody>& keys_of_body() {
   return keys;
 }
 
+constexpr double kRoundedMoments = 1e-9;  ///< relative: what a thin plate's may be off by
+
+/// No more than the two others together, as of any real body.
+void check_inertia(const Field& field, const std::optional<core::Vec3>& inertia) {
+  if (!inertia || 2 * inertia->maxCoeff() <= inertia->sum() * (1 + kRoundedMoments)) return;
+  field.refuse("three moments of inertia of which none is above the sum of the two others");
+}
+
 core::Material read_material(const std::string& name, const Field& field) {
   core::Material material{.name = name};
   keys_of_material().read(field, material);
@@ -82,9 +97,16 @@ core::Prototype read_prototype(const std::string& name, const Field& field, Scen
     }
   }
   keys_of_prototype().read_members(fields, prototype);
+  if (fields.given()) check_inertia(fields["inertia"], prototype.inertia);
   prototype.material = read_material_reference(fields["material"], draft).value_or(0);
   fields.close();
   return prototype;
+}
+
+/// By something of a file that is included.
+void refuse_taken(const std::string& name, const Names& names, const Field& blame) {
+  if (!names.index_of(name)) return;
+  blame.complain(fmt::format("found the name {} a second time, allowed: each name once", in_quotes(name)));
 }
 
 core::StaticBody read_static(const Field& field, std::size_t index, SceneDraft& draft) {
@@ -136,6 +158,7 @@ const KeyTable& body_keys() { return keys_of_body(); }
 void read_materials(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   for (const auto& [name, entry] : field.entries()) {
+    refuse_taken(name, draft.materials, entry);
     draft.scene.materials.push_back(read_material(name, entry));
     draft.materials.add(name);
   }
@@ -144,6 +167,7 @@ void read_materials(const Field& field, SceneDraft& draft) {
 void read_shapes(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   for (const auto& [name, entry] : field.entries()) {
+    refuse_taken(name, draft.shapes, entry);
     // A shape that could not be read has its name all the same, or every use of it would be one more error.
     draft.scene.shapes.push_back({name, read_shape(entry, draft.folder).value_or(core::Sphere{})});
     draft.shapes.add(name);
@@ -153,6 +177,7 @@ void read_shapes(const Field& field, SceneDraft& draft) {
 void read_prototypes(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   for (const auto& [name, entry] : field.entries()) {
+    refuse_taken(name, draft.prototypes, entry);
     draft.scene.prototypes.push_back(read_prototype(name, entry, draft));
     draft.prototypes.add(name);
   }

@@ -8,6 +8,12 @@ namespace aurasim::config {
 
 const KeysOf<core::JointSpec>& keys_of_joint();
 const KeysOf<core::JointMotor>& motor_keys();
+const KeysOf<core::BallJoint>& keys_of_ball();
+/// What a hinge or slider has along the axis that it leaves, without limits, and what drives it.
+const KeysOf<core::HingeJoint>& keys_of_hinge();
+const KeysOf<core::SliderJoint>& keys_of_slider();
+const KeysOf<core::JointDrive>& turning_drive_keys();
+const KeysOf<core::JointDrive>& sliding_drive_keys();
 /// Of an axis along which a spring lets move, and of one about which it lets turn.
 const KeysOf<core::SpringAxis>& sliding_axis_keys();
 const KeysOf<core::SpringAxis>& turning_axis_keys();

@@ -1,5 +1,6 @@
 #include "config/joints.h"
 
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -27,6 +28,27 @@ std::optional<JointLimits> read_limits(const Field& field, double unit) {
   return JointLimits{(*values)[0] * unit, (*values)[1] * unit};
 }
 
+/// The same, where a side may be `none`.
+std::optional<JointLimits> read_open_limits(const Field& field, double unit) {
+  if (!field.given()) return std::nullopt;
+  const std::vector<Field> sides = field.items();
+  if (sides.size() != 2) return std::nullopt;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const auto side = [unit](const Field& of, double none) -> std::optional<double> {
+    if (of.is_word("none")) return none;
+    const auto value = of.number();
+    return value ? std::optional(*value * unit) : std::nullopt;
+  };
+  const auto low = side(sides[0], -kNone), high = side(sides[1], kNone);
+  if (!low || !high) return std::nullopt;
+  if (*low > *high) {
+    field.refuse("[low, high] with low up to high");
+    return std::nullopt;
+  }
+  if (*low == -kNone && *high == kNone) return std::nullopt;
+  return JointLimits{*low, *high};
+}
+
 /// The joint's z axis points along it.
 core::Quat read_axis(const Field& field) {
   const Vec3 axis = field.given() ? field.vec3().value_or(Vec3::UnitZ()) : Vec3::UnitZ();
@@ -37,21 +59,30 @@ core::Quat read_axis(const Field& field) {
   return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis);
 }
 
-core::JointKind read_ball(const Fields&, core::Quat&) { return core::BallJoint{}; }
+core::JointKind read_ball(const Fields& fields, core::Quat&) {
+  core::BallJoint ball;
+  keys_of_ball().read_members(fields, ball);
+  return ball;
+}
 
 core::JointKind read_fixed(const Fields&, core::Quat&) { return core::FixedJoint{}; }
 
 core::JointKind read_hinge(const Fields& fields, core::Quat& q_WJ) {
   core::HingeJoint hinge;
   q_WJ = read_axis(fields["axis"]);
-  hinge.limits = read_limits(fields["limits_deg"], kDegree);
-  if (const Field motor = fields["motor"]; motor.given()) motor_keys().read(motor, hinge.motor.emplace());
+  hinge.limits = read_open_limits(fields["limits_deg"], kDegree);
+  keys_of_hinge().read_members(fields, hinge);
+  const Field motor = fields["motor"];
+  if (motor.given()) motor_keys().read(motor, hinge.motor.emplace());
+  if (motor.given() && hinge.drive) motor.complain("found a motor beside a drive, allowed: one of them");
   return hinge;
 }
 
 core::JointKind read_slider(const Fields& fields, core::Quat& q_WJ) {
   q_WJ = read_axis(fields["axis"]);
-  return core::SliderJoint{read_limits(fields["limits"], 1)};
+  core::SliderJoint slider{read_open_limits(fields["limits"], 1)};
+  keys_of_slider().read_members(fields, slider);
+  return slider;
 }
 
 core::SpringAxis read_spring_axis(const Field& field, bool turns) {
@@ -61,7 +92,7 @@ core::SpringAxis read_spring_axis(const Field& field, bool turns) {
     return axis;
   }
   const Fields fields(field);
-  axis.limits = turns ? read_limits(fields["limits_deg"], kDegree) : read_limits(fields["limits"], 1);
+  axis.limits = turns ? read_limits(fields["limits_deg"], kDegree) : read_open_limits(fields["limits"], 1);
   (turns ? turning_axis_keys() : sliding_axis_keys()).read_members(fields, axis);
   fields.close();
   return axis;

@@ -18,6 +18,8 @@ bodies: [{prototype: ball, position: [0, 0, 5], name: a}, {prototype: ball, posi
 joints:
   - {hinge: {limits_deg: [0, 1], motor: {speed: 1, max_impulse: 1}}, bodies: [a, b], break_impulse: 3}
   - {spring: {x: {stiffness: 1}}, bodies: [a]}
+  - {slider: {limits: [0, 1], drive: {stiffness: 1}}, bodies: [b]}
+  - {ball: {}, bodies: [b]}
 injectors:
   - {name: rain, seed: 1, rate: 1, count: 10, volume: {center: [0, 0, 9], size: [1, 1, 1]}, prototypes: [ball]}
 )";
@@ -85,6 +87,9 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "scene.prototypes.ball.mass=3",
                                             "scene.prototypes.ball.can_sleep=false",
                                             "scene.prototypes.ball.shape=pair",
+                                            "scene.prototypes.ball.inertia=[1, 1, 1]",
+                                            "scene.prototypes.ball.inertia=[1, 1, 2]",
+                                            "scene.prototypes.ball.collides=false",
                                             "scene.statics.0.name=floor",
                                             "scene.joints.0.bodies=[b, a]",
                                             "scene.joints.0.bodies=[a]",
@@ -96,6 +101,21 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
                                             "scene.joints.0.hinge.limits_deg=[0, 2]",
                                             "scene.joints.0.hinge.motor.speed=2",
                                             "scene.joints.0.hinge.motor.max_impulse=2",
+                                            "scene.joints.0.hinge.limits_deg=[none, 1]",
+                                            "scene.joints.0.hinge.stiffness=1",
+                                            "scene.joints.0.hinge.rest_deg=1",
+                                            "scene.joints.0.hinge.damping=1",
+                                            "scene.joints.0.hinge.friction=1",
+                                            "scene.joints.2.slider.limits=[0, none]",
+                                            "scene.joints.2.slider.rest=1",
+                                            "scene.joints.2.slider.drive.position=1",
+                                            "scene.joints.2.slider.drive.speed=1",
+                                            "scene.joints.2.slider.drive.stiffness=2",
+                                            "scene.joints.2.slider.drive.damping=1",
+                                            "scene.joints.2.slider.drive.effort=1",
+                                            "scene.joints.2.slider.drive.max_effort=1",
+                                            "scene.joints.3.ball.damping=1",
+                                            "scene.joints.1.spring.x.rest=1",
                                             "scene.joints.1.spring.x.stiffness=2",
                                             "scene.joints.1.spring.x.damping=2",
                                             "scene.joints.1.spring.y={}",

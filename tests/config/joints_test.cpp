@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 
 #include "config/workspace.h"
@@ -57,12 +58,45 @@ TEST(JointsInAScene, SlidersHaveLimitsInMetres) {
   EXPECT_EQ(std::get<core::SliderJoint>(spec.kind).limits->high, 2);
 }
 
+TEST(JointsInAScene, HingesAreDrivenAndResist) {
+  const core::JointSpec spec = joint(
+      "{hinge: {limits_deg: [none, 900], stiffness: 1, rest_deg: 90, damping: 2, friction: 3, drive: {position_deg: "
+      "180, "
+      "speed: 4, stiffness: 5, damping: 6, effort: -7, max_effort: 8}}, bodies: [left]}");
+  const auto& hinge = std::get<core::HingeJoint>(spec.kind);
+  EXPECT_TRUE(std::isinf(hinge.limits->low));
+  EXPECT_DOUBLE_EQ(hinge.limits->high, 5 * std::numbers::pi);
+  EXPECT_EQ(hinge.resistance, (core::JointResistance{1, std::numbers::pi / 2, 2, 3}));
+  EXPECT_EQ(hinge.drive, (core::JointDrive{std::numbers::pi, 4, 5, 6, -7, 8}));
+}
+
+TEST(JointsInAScene, SlidersAreDrivenAndResist) {
+  const core::JointSpec spec = joint(
+      "{slider: {limits: [0, none], stiffness: 1, rest: 0.5, damping: 2, friction: 3, drive: {position: 4}}, bodies: "
+      "[left]}");
+  const auto& slider = std::get<core::SliderJoint>(spec.kind);
+  EXPECT_EQ(slider.limits->low, 0);
+  EXPECT_TRUE(std::isinf(slider.limits->high));
+  EXPECT_EQ(slider.resistance, (core::JointResistance{1, 0.5, 2, 3}));
+  EXPECT_EQ(slider.drive, core::JointDrive{.position = 4});
+}
+
+TEST(JointsInAScene, BallsAreDamped) {
+  EXPECT_EQ(std::get<core::BallJoint>(joint("{ball: {damping: 2}, bodies: [left]}").kind).damping, 2);
+}
+
+TEST(JointsInAScene, LimitsOnNoSideAreNone) {
+  const core::JointSpec spec = joint("{slider: {limits: [none, none]}, bodies: [left]}");
+  EXPECT_FALSE(std::get<core::SliderJoint>(spec.kind).limits);
+}
+
 TEST(JointsInAScene, SpringsLockWhatTheyDoNotName) {
-  const core::JointSpec spec =
-      joint("{spring: {x: {stiffness: 5, damping: 6}, y: {}, rz: {limits_deg: [0, 180]}}, bodies: [left, right]}");
+  const core::JointSpec spec = joint(
+      "{spring: {x: {stiffness: 5, damping: 6, rest: 7}, y: {}, rz: {limits_deg: [0, 180]}}, bodies: [left, right]}");
   const auto& axes = std::get<core::SpringJoint>(spec.kind).axes;
   EXPECT_EQ(axes[0].stiffness, 5);
   EXPECT_EQ(axes[0].damping, 6);
+  EXPECT_EQ(axes[0].rest, 7);
   EXPECT_FALSE(axes[0].limits.has_value());
   EXPECT_FALSE(axes[1].limits.has_value());
   EXPECT_EQ(axes[2].limits->high, 0);
@@ -120,9 +154,25 @@ const std::vector<BadCase> kBadJoints = {
     {"LimitsTheWrongWayRound",
      with_bodies("joints:\n  - {hinge: {limits_deg: [5, -5]}, bodies: [left, right]}\n"),
      {"scene.yaml:10:26: joints[0].hinge.limits_deg: found a list of 2, allowed: [low, high]"}},
-    {"LimitsBeyondATurn",
-     with_bodies("joints:\n  - {hinge: {limits_deg: [0, 190]}, bodies: [left, right]}\n"),
-     {"scene.yaml:10:30: joints[0].hinge.limits_deg[1]: found \"190\", allowed: a number from -180 to 180"}},
+    {"LimitsBeyondAThousandTurns",
+     with_bodies("joints:\n  - {hinge: {limits_deg: [0, 1e6]}, bodies: [left, right]}\n"),
+     {"scene.yaml:10:30: joints[0].hinge.limits_deg[1]: found \"1e6\", allowed: a number from -360000 to 360000"}},
+    {"LimitsOfOneSide",
+     with_bodies("joints:\n  - {slider: {limits: [1]}, bodies: [left, right]}\n"),
+     {"scene.yaml:10:23: joints[0].slider.limits: found a list of 1, allowed: a list of 2 to 2"}},
+    {"SpringTurnsBeyondATurn",
+     with_bodies("joints:\n  - {spring: {rz: {limits_deg: [0, 190]}}, bodies: [left, right]}\n"),
+     {"scene.yaml:10:36: joints[0].spring.rz.limits_deg[1]: found \"190\", allowed: a number from -180 to 180"}},
+    {"MotorBesideADrive",
+     with_bodies("joints:\n  - {hinge: {motor: {speed: 1, max_impulse: 1}, drive: {}}, bodies: [left]}\n"),
+     {"scene.yaml:10:21: joints[0].hinge.motor: found a motor beside a drive, allowed: one of them"}},
+    {"DriveThatPushesBack",
+     with_bodies("joints:\n  - {slider: {drive: {stiffness: -1, max_effort: -2}}, bodies: [left]}\n"),
+     {"scene.yaml:10:34: joints[0].slider.drive.stiffness: found \"-1\", allowed: a number from 0",
+      "scene.yaml:10:50: joints[0].slider.drive.max_effort: found \"-2\", allowed: a number from 0"}},
+    {"SliderWithADriveInDegrees",
+     with_bodies("joints:\n  - {slider: {drive: {position_deg: 1}}, bodies: [left]}\n"),
+     {"scene.yaml:10:23: joints[0].slider.drive.position_deg: unknown key"}},
     {"MotorWithoutStrength",
      with_bodies("joints:\n  - {hinge: {motor: {speed: 1}}, bodies: [left]}\n"),
      {"scene.yaml:10:21: joints[0].hinge.motor.max_impulse: missing, allowed: a number from 0"}},

@@ -85,6 +85,17 @@ generators:
                                           testing::Pair(3, 30), testing::Pair(4, 50)));
 }
 
+TEST(SceneFile, BodiesMayHaveMomentsOfTheirOwnAndTouchNothing) {
+  const Workspace workspace;
+  const core::Scene scene = workspace.scene(R"(shapes: {ball: {sphere: {radius: 1}}}
+prototypes: {rotor: {shape: ball, mass: 2, inertia: [1, 2, 3], collides: false}, plain: {shape: ball, mass: 1}}
+)");
+  EXPECT_EQ(scene.prototypes[0].inertia, core::Vec3(1, 2, 3));
+  EXPECT_FALSE(scene.prototypes[0].collides);
+  EXPECT_FALSE(scene.prototypes[1].inertia);
+  EXPECT_TRUE(scene.prototypes[1].collides);
+}
+
 TEST(SceneFile, WhatNamesNoMaterialHasTheDefaultOne) {
   const Workspace workspace;
   const core::Scene scene = workspace.scene(R"(materials: {ice: {friction: 0}}
