@@ -182,6 +182,12 @@ core::BodyId next_free_id(const core::Scene& scene) {
   return core::BodyId{scene.bodies.empty() ? 0 : value_of(scene.bodies.back().id) + 1};
 }
 
+void check_ids(const Field& blame, const SceneDraft& draft) {
+  const std::uint64_t next = value_of(next_free_id(draft.scene));
+  if (static_cast<std::int64_t>(next) <= kLargestBodyId + 1) return;
+  blame.complain(fmt::format("found ids up to {}, allowed: at most {}", next - 1, kLargestBodyId));
+}
+
 /// One injector for each volume. They start one after the other, so that all of them together are evenly paced.
 void add_injectors(const core::Injector& whole, const std::vector<Volume>& volumes, SceneDraft& draft) {
   double share_so_far = 0;
@@ -231,11 +237,19 @@ void read_injectors(const Field& field, SceneDraft& draft) {
     }
     add_injectors(whole, volumes, draft);
     draft.injector_sources.resize(draft.scene.injectors.size(), source_of(item, whole.name));
-    if (static_cast<std::int64_t>(value_of(next_free_id(draft.scene))) > kLargestBodyId + 1) {
-      item.complain(fmt::format("found ids up to {}, allowed: at most {}", value_of(next_free_id(draft.scene)) - 1,
-                                kLargestBodyId));
-    }
+    check_ids(item, draft);
   }
+}
+
+void add_injector(core::Injector injector, const Field& blame, SceneDraft& draft) {
+  if (draft.scene.injectors.size() >= kMostInjectors) {
+    return blame.complain(fmt::format("found one more injector, allowed: {} in the whole scene", kMostInjectors));
+  }
+  injector.first_id = next_free_id(draft.scene);
+  draft.injected_bodies += injector.max_bodies;
+  draft.injector_sources.push_back(source_of(blame, injector.name));
+  draft.scene.injectors.push_back(std::move(injector));
+  check_ids(blame, draft);
 }
 
 }  // namespace aurasim::config

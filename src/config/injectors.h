@@ -12,4 +12,7 @@ const KeyTable& injector_keys();
 /// Ids of injected bodies follow those of the bodies: call after number_bodies().
 void read_injectors(const Field& field, SceneDraft& draft);
 
+/// One more, of which only the ids are left to say.
+void add_injector(core::Injector injector, const Field& blame, SceneDraft& draft);
+
 }  // namespace aurasim::config

@@ -2,6 +2,7 @@
 
 #include "config/bodies.h"
 #include "config/generators.h"
+#include "config/includes.h"
 #include "config/injectors.h"
 #include "config/joints.h"
 #include "config/keys_of.h"
@@ -26,6 +27,7 @@ const KeysOf<core::Scene>& scene_keys() {
                    "what injectors `per` region or boundary go by. launch: the regions of the launch file; a layout of "
                    "its own keeps the world the same on any number of nodes")
               .otherwise("none: `per` is refused"),
+          optional("include", list(0, kMostIncludes, map(include_keys)), "other scene files as parts of this one"),
           optional("materials", named("a map of materials by name", map(material_keys)), "surfaces, by name"),
           optional("shapes", named("a map of shapes by name", map(shape_keys)), "shapes, by name"),
           optional("prototypes", named("a map of prototypes by name", map(prototype_keys)), "kinds of bodies, by name"),
@@ -54,28 +56,48 @@ void read_scene_layout(const Field& field, const LaunchLayout& launch, SceneDraf
   draft.layout_is_wrong = !draft.layout;
 }
 
-SceneFile read_scene_map(const YamlNode& root, const std::filesystem::path& file, const LaunchLayout& launch,
-                         Errors& errors) {
-  static const Value kFile = map(scene_keys);
-  SceneDraft draft;
-  draft.folder = file.parent_path();
-  draft.scene.name = file.stem().string();
-  const Fields fields(Field(&root, root.place, "", kFile, true, errors));
-  scene_keys().read_members(fields, draft.scene);
-  read_scene_layout(fields["layout"], launch, draft);
-  read_materials(fields["materials"], draft);
-  read_shapes(fields["shapes"], draft);
-  read_prototypes(fields["prototypes"], draft);
-  read_statics(fields["statics"], draft);
-  read_bodies(fields["bodies"], draft);
-  read_generators(fields["generators"], draft);
-  read_joints(fields["joints"], draft);
-  number_bodies(draft);
-  number_joints(draft);
-  read_injectors(fields["injectors"], draft);
-  fields.close();
-  return {std::move(draft.scene), std::move(draft.body_sources), std::move(draft.injector_sources)};
-}
+/// Reads scene files, one within the other.
+class Reader {
+ public:
+  Reader(const LaunchLayout& launch, Errors& errors) : launch_(launch), errors_(errors) {}
+
+  SceneDraft read(const YamlNode& root, const std::filesystem::path& file, IncludeChain& chain, bool is_whole) {
+    static const Value kFile = map(scene_keys);
+    SceneDraft draft;
+    draft.folder = file.parent_path();
+    draft.scene.name = file.stem().string();
+    const Fields fields(Field(&root, root.place, "", kFile, true, errors_));
+    scene_keys().read_members(fields, draft.scene);
+    read_scene_layout(fields["layout"], launch_, draft);
+    std::vector<Included> includes = read_includes(
+        fields["include"], draft, chain,
+        [this](const std::filesystem::path& other, IncludeChain& onwards) { return read_part(other, onwards); });
+    take_over_kinds(includes, draft);
+    read_materials(fields["materials"], draft);
+    read_shapes(fields["shapes"], draft);
+    read_prototypes(fields["prototypes"], draft);
+    read_statics(fields["statics"], draft);
+    read_bodies(fields["bodies"], draft);
+    read_generators(fields["generators"], draft);
+    take_over_bodies(includes, draft);
+    read_joints(fields["joints"], draft);
+    take_over_joints(includes, draft);
+    if (is_whole) number_bodies(draft), number_joints(draft);
+    read_injectors(fields["injectors"], draft);
+    take_over_injectors(includes, draft);
+    fields.close();
+    return draft;
+  }
+
+ private:
+  SceneDraft read_part(const std::filesystem::path& file, IncludeChain& chain) {
+    const std::optional<YamlNode> root = read_yaml(file, errors_);
+    return root ? read(*root, file, chain, false) : SceneDraft{};
+  }
+
+  const LaunchLayout& launch_;
+  Errors& errors_;
+};
 
 }  // namespace
 
@@ -87,7 +109,9 @@ SceneFile read_scene_file(const std::filesystem::path& file, const std::vector<O
   if (!root) return {};
   for (const Override& change : overrides) apply_override(change, *root, errors);
   if (YamlNode* layout = root->find("layout")) settle_overridden_layout(*layout);
-  return read_scene_map(*root, file, launch, errors);
+  IncludeChain chain{.files = {std::filesystem::absolute(file).lexically_normal()}};
+  SceneDraft draft = Reader(launch, errors).read(*root, file, chain, true);
+  return {std::move(draft.scene), std::move(draft.body_sources), std::move(draft.injector_sources)};
 }
 
 core::Scene read_scene(const std::filesystem::path& file) {

@@ -17,7 +17,7 @@ std::string injector(const std::string& rest) {
 const std::vector<BadCase> kBadScenes = {
     {"UnknownKey",
      with_ball("bodys: []\n"),
-     {"scene.yaml:5:1: bodys: unknown key, allowed: name, gravity, layout, materials, shapes, prototypes"}},
+     {"scene.yaml:5:1: bodys: unknown key, allowed: name, gravity, layout, include, materials, shapes, prototypes"}},
     {"IsAList", "[1, 2]\n", {"scene.yaml:1:1: the file: found a list of 2, allowed: a map of name, gravity"}},
     {"GravityOfTwo", "gravity: [0, -9.81]\n", {"scene.yaml:1:10: gravity: found a list of 2, allowed: a list of 3"}},
     {"GravityAWord", "gravity: [0, 0, down]\n", {"scene.yaml:1:17: gravity[2]: found \"down\", allowed: a number"}},
@@ -97,6 +97,13 @@ const std::vector<BadCase> kBadScenes = {
     {"MassZero",
      "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 0}}\n",
      {"scene.yaml:1:57: prototypes.ball.mass: found \"0\", allowed: a number above 0"}},
+    {"InertiaOfNoBody",
+     "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 1, inertia: [1, 1, 3]}}\n",
+     {"scene.yaml:1:69: prototypes.ball.inertia: found a list of 3, allowed: three moments of inertia of which none is "
+      "above the sum of the two others"}},
+    {"InertiaZero",
+     "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 1, inertia: [0, 1, 1]}}\n",
+     {"scene.yaml:1:70: prototypes.ball.inertia[0]: found \"0\", allowed: a number above 0"}},
     {"MovingPlane",
      "prototypes: {ground: {shape: {plane: {}}, mass: 1}}\n",
      {"scene.yaml:1:30: prototypes.ground.shape: found a mesh, heightfield or plane, allowed: a shape that can move"}},

@@ -89,6 +89,7 @@ std::string sample_of(const Value& value) {
       return "true";
     case Value::Kind::kText:
       if (value.what == "a scene file") return "scene.yaml";
+      if (value.what == "another scene file") return "part.yaml";
       if (value.what == "an XML file") return "qos.xml";
       if (value.what == "a folder") return ".";
       return value.what == "a name" || value.what == "an address" ? "it" : "it.obj";
@@ -219,6 +220,7 @@ class EveryKey : public testing::TestWithParam<FileKind> {
  protected:
   EveryKey() {
     workspace_.write("qos.xml", "<dds/>");
+    workspace_.write("part.yaml", "{}");
     workspace_.write("it.obj", kTetrahedron);
   }
 
