@@ -57,6 +57,7 @@ within() {
 }
 online() { alone=() && within "$@"; }
 offline() { alone=(--net) && within "$@"; }
+as_user() { offline setpriv --reuid=aurasim --regid=aurasim --clear-groups env HOME=/var/lib/aurasim "$@"; }
 apt() { online apt-get -q -y -o Acquire::Retries=3 "$@" >"$work/apt.log" 2>&1 || { tail -n 20 "$work/apt.log"; fail "apt-get $*"; }; }
 
 # Every file but what belongs to apt, dpkg, caches and logs; every package and user.
@@ -103,8 +104,7 @@ offline man aurasim | grep "one world of rigid bodies" >/dev/null || fail "man a
   COMP_WORDS=($p lau) COMP_CWORD=1; _aurasim; echo -n "${COMPREPLY[*]} "; done') == "launch launch " ]] || fail "completion"
 # As the units run it: not as root, in the folder that systemd would make.
 online install -d -o aurasim -g aurasim /var/lib/aurasim
-# shellcheck disable=SC2016
-offline setpriv --reuid=aurasim --regid=aurasim --clear-groups bash -c 'cd /var/lib/aurasim
+as_user bash -c 'cd
   aurasim launch demo --headless --steps 300 --report report >said 2>&1 || { cat said; exit 1; }' || fail "launch demo"
 grep -o '"bodies_lost": *[0-9]*' "$root/var/lib/aurasim/report/summary.json"
 grep -q '"bodies_lost": *0' "$root/var/lib/aurasim/report/summary.json" || fail "bodies are lost"
@@ -125,9 +125,12 @@ if compgen -G "$root/packages/python3-aurasim_*.deb" >/dev/null; then
   apt install --no-install-recommends "/packages/$(cd "$root/packages" && ls libaurasim-dev_*.deb)" \
     "/packages/$(cd "$root/packages" && ls python3-aurasim_*.deb)"
   brings "$before_kib"
-  offline setpriv --reuid=aurasim --regid=aurasim --clear-groups bash -c 'cd /var/lib/aurasim &&
-    python3 /usr/share/doc/aurasim/examples/lockstep.py' || fail "lockstep.py"
+  as_user bash -c 'cd && python3 /usr/share/doc/aurasim/examples/lockstep.py' || fail "lockstep.py"
   [[ -f $root/usr/include/aurasim/client.h && -L $root/usr/lib/libaurasim_client.so ]] || fail "libaurasim-dev"
+  apt install --no-install-recommends cmake g++ make
+  as_user bash -c 'cd && cp -r /usr/share/doc/aurasim/examples . &&
+    cmake -S examples -B examples/build >/dev/null && cmake --build examples/build && examples/build/lockstep' || fail "lockstep.cpp"
+  apt purge cmake g++ make
 fi
 
 stage "installed once more: what the host's owner has written stays"
