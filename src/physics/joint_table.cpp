@@ -8,7 +8,6 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include "physics/awaken.h"
-#include "physics/awaken.h"
 #include "physics/bullet_convert.h"
 
 namespace aurasim::physics {

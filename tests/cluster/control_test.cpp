@@ -165,8 +165,9 @@ TEST_P(SteeredCluster, IsTheSameAgainFromItsRecord) {
     again.recorded = live.effects;
     const Outcome one = ClusterSim(scene, again).run(kSteps);
     // What nobody could foresee may have let two touch on two hosts: without a redo that is counted, not mended.
-    if (live.late + live.missed == 0) EXPECT_EQ(first_difference(live, one), kSteps + 1) << "seed " << seed;
-    if (GetParam()) EXPECT_EQ(live.late + live.missed, 0u);
+    const bool is_sound = live.late + live.missed == 0;
+    EXPECT_TRUE(is_sound || !GetParam());
+    EXPECT_TRUE(!is_sound || first_difference(live, one) > kSteps) << "seed " << seed;
   }
 }
 
