@@ -56,7 +56,8 @@ struct DynamicsWorld::Bullet {
   explicit Bullet(const Settings& settings)
       : solver(make_solver(settings.solver)),
         world((settings.looks_once() ? make_soft_world : make_stepper)(
-            {dispatcher, broadphase, *solver, configuration, first_contacts}, settings)) {}
+            {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses}, settings)),
+        sums_itself(settings.looks_once()) {}
 
   btDefaultCollisionConfiguration configuration;
   Dispatcher dispatcher{configuration};
@@ -64,7 +65,9 @@ struct DynamicsWorld::Bullet {
   btDbvtBroadphase broadphase{&pairs};
   std::unique_ptr<btConstraintSolver> solver;
   FirstContacts first_contacts;
+  ContactImpulses contact_impulses;
   std::unique_ptr<btDiscreteDynamicsWorld> world;
+  bool sums_itself;  ///< what presses
 };
 
 DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings)
@@ -116,6 +119,7 @@ void DynamicsWorld::disconnect(btTypedConstraint& joint) { bullet_->world->remov
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);
   bullet_->world->stepSimulation(dt, /*maxSubSteps=*/0, dt);
+  if (bullet_->contact_impulses.wanted() && !bullet_->sums_itself) bullet_->contact_impulses.look(manifolds());
 }
 
 std::span<btPersistentManifold* const> DynamicsWorld::manifolds() const { return manifolds_of(bullet_->dispatcher); }
@@ -140,5 +144,7 @@ void DynamicsWorld::cast(const btVector3& from, const btVector3& to, btCollision
 }
 
 FirstContacts& DynamicsWorld::first_contacts() { return bullet_->first_contacts; }
+
+ContactImpulses& DynamicsWorld::contact_impulses() { return bullet_->contact_impulses; }
 
 }  // namespace aurasim::physics

@@ -10,6 +10,7 @@
 
 #include "core/body_state.h"
 #include "physics/contact_cache.h"
+#include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
 #include "physics/settings.h"
 
@@ -46,6 +47,7 @@ class DynamicsWorld {
   void cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const;
 
   FirstContacts& first_contacts();
+  ContactImpulses& contact_impulses();
 
  private:
   struct Bullet;

@@ -133,6 +133,17 @@ std::span<const core::BodyRecord> RegionWorld::records() { return impl_->simulat
 
 const std::vector<Collision>& RegionWorld::collisions() const { return impl_->collisions; }
 
+void RegionWorld::watch_contacts(bool wanted) {
+  impl_->simulation.watch_contacts(wanted);
+  impl_->scratch.watch_contacts(wanted);
+}
+
+const std::vector<core::ContactImpulse>& RegionWorld::contact_impulses() const {
+  return impl_->simulation.contact_impulses();
+}
+
+std::vector<MadeUpContacts> RegionWorld::take_made_up_contacts() { return impl_->scratch.take_contacts(); }
+
 std::uint64_t RegionWorld::severed_contacts() const { return impl_->simulation.severed_contacts(); }
 
 }  // namespace aurasim::physics

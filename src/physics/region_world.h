@@ -96,6 +96,14 @@ class RegionWorld {
   /// before (their `step` is earlier). Ordered by (a, b, step).
   const std::vector<Collision>& collisions() const;
 
+  /// Whether what presses on what is summed up in the steps from now on. It changes no bit.
+  void watch_contacts(bool wanted);
+  /// Of the last step, if it was watched: of bodies that were here, those that have left since included. Ascending (a,
+  /// b). Of bodies that sleep, none.
+  const std::vector<core::ContactImpulse>& contact_impulses() const;
+  /// Likewise in the states that were made up for late clusters since the last call.
+  std::vector<MadeUpContacts> take_made_up_contacts();
+
   /// Contacts and joints that a release has cut so far: never more than 0 while clusters are whole.
   std::uint64_t severed_contacts() const;
 

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/body_state.h"
 #include "core/ids.h"
+#include "core/observation.h"
 #include "core/order.h"
 
 namespace aurasim::physics {
@@ -41,6 +43,12 @@ struct RayHit {
   core::Vec3 p_W = core::Vec3::Zero();
   core::Vec3 normal_W = core::Vec3::Zero();
   double distance_m = 0;
+};
+
+/// What has pressed on what in a state that was made up in a scratch world.
+struct MadeUpContacts {
+  core::Step step = 0;
+  std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
 };
 
 /// Tells a listener about states that were made up in a scratch world (docs/design.md, "The same bits"):

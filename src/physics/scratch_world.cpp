@@ -23,11 +23,13 @@ std::uint64_t ScratchWorld::take_unbearable() { return simulation_ ? simulation_
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                                           const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
   if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, timeline_);
+  simulation_->watch_contacts(watches_contacts_);
   simulation_->start_at(from);
   simulation_->join(cluster);
   while (simulation_->step_number() < to) {
     simulation_->step();
     collisions.insert(collisions.end(), simulation_->collisions().begin(), simulation_->collisions().end());
+    if (watches_contacts_) contacts_.push_back({simulation_->step_number(), simulation_->contact_impulses()});
     if (caught_up) caught_up(simulation_->step_number(), simulation_->records());
   }
   return simulation_->release(simulation_->body_ids());

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "physics/simulation.h"
@@ -20,6 +21,10 @@ class ScratchWorld {
   core::ClusterState catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                               const CatchUpListener& caught_up, std::vector<Collision>& collisions);
 
+  /// In states that are made up from now on.
+  void watch_contacts(bool wanted) { watches_contacts_ = wanted; }
+  std::vector<MadeUpContacts> take_contacts() { return std::exchange(contacts_, {}); }
+
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();
   std::vector<Declined> take_declined();
@@ -31,6 +36,8 @@ class ScratchWorld {
   std::shared_ptr<const ShapeSet> shapes_;
   const Timeline& timeline_;
   std::optional<Simulation> simulation_;
+  bool watches_contacts_ = false;
+  std::vector<MadeUpContacts> contacts_;
 };
 
 }  // namespace aurasim::physics

@@ -232,6 +232,7 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 
 void Simulation::step() {
   world_.first_contacts().clear();
+  world_.contact_impulses().clear();
   apply_orders(step_ + 1);
   heed_setpoints(step_ + 1);
   for (int i = 0; i < settings_.looks(); ++i) {
@@ -242,6 +243,7 @@ void Simulation::step() {
   stop_pushing();
   ++step_;
   collect_collisions();
+  collect_contact_impulses();
   take_out_what_broke();
   insert_born();
   snapshot_is_fresh_ = records_are_fresh_ = false;

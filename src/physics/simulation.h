@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/observation.h"
 #include "core/scene.h"
 #include "physics/body_table.h"
 #include "physics/bullet_convert.h"
@@ -49,6 +50,9 @@ class Simulation {
   std::span<const core::BodyRecord> records();
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
+  void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
+  /// Of the last step.
+  const std::vector<core::ContactImpulse>& contact_impulses() const { return contact_impulses_; }
 
   std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
   std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
@@ -86,6 +90,7 @@ class Simulation {
   struct Copies;
   Copies copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count) const;
   void collect_collisions();
+  void collect_contact_impulses();
   void list_contacts();
 
   const core::Scene* scene_;
@@ -103,6 +108,7 @@ class Simulation {
   core::Step step_ = 0;
   std::uint64_t severed_contacts_ = 0;
   std::vector<Collision> collisions_;
+  std::vector<core::ContactImpulse> contact_impulses_;
   std::vector<Removal> removed_;
   std::vector<std::uint64_t> applied_;
   std::vector<Declined> declined_;

@@ -7,6 +7,7 @@
 
 namespace aurasim::physics {
 
+class ContactImpulses;
 class FirstContacts;
 struct Settings;
 
@@ -17,6 +18,7 @@ struct WorldParts {
   btConstraintSolver& solver;
   btCollisionConfiguration& configuration;
   FirstContacts& first_contacts;
+  ContactImpulses& contact_impulses;
 };
 
 std::unique_ptr<btDiscreteDynamicsWorld> make_stepper(const WorldParts& parts, const Settings& settings);

@@ -201,6 +201,22 @@ void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
   }
 }
 
+void SoftPatches::begin_tally(bool wanted) {
+  tallies_ = wanted;
+  sums_.assign(wanted ? blocks_.size() : 0, Sums{});
+}
+
+/// Contacts start from the impulses of the substep before, so those at its end are all that has acted in it.
+void SoftPatches::tally(const soft::Worker& worker) {
+  if (!tallies_) return;
+  const auto [first, last] = worker.share(blocks_.size());
+  for (std::size_t i = first; i < last; ++i) {
+    for (int k = 0; k < soft::kMostPoints; ++k) sums_[i].of[k] += blocks_[i].points[k].impulse;
+  }
+}
+
+Real SoftPatches::tallied(std::size_t i, int point) const { return sums_[layout_.block(i)].of[point][layout_.lane(i)]; }
+
 /// The impulses of friction are the patch's. Each point has them, in the fields that Bullet keeps for a point that it
 /// finds again, so that they are still there when one of them is lost.
 void SoftPatches::remember(int threads) const {

@@ -35,6 +35,18 @@ class SoftPatches {
   void solve(soft::Mover* movers, const soft::Substep& substep, const soft::Worker& worker);
   void bounce(soft::Mover* movers, const soft::Worker& worker);
 
+  // What has pressed in all substeps, if that is wanted. Touches nothing that is computed.
+  /// After build().
+  void begin_tally(bool wanted);
+  /// By each worker, for its share, after each substep; of the last one after bounce().
+  void tally(const soft::Worker& worker);
+  std::size_t size() const { return patches_.size(); }
+  const SoftPatch& patch(std::size_t i) const { return *patches_[i]; }
+  std::uint32_t mover_a(std::size_t i) const { return layout_.a(i); }
+  std::uint32_t mover_b(std::size_t i) const { return layout_.b(i); }
+  /// Of a patch's point, N s.
+  soft::Real tallied(std::size_t i, int point) const;
+
   /// Writes the impulses into the manifolds, for the next step; into patches ahead of time, whether they have pressed.
   void remember(int threads) const;
 
@@ -43,6 +55,10 @@ class SoftPatches {
   struct Stiffness {
     Stiffness(soft::Real hertz, soft::Real substep_s);
     soft::Real rate_per_s, mass, impulse;
+  };
+
+  struct alignas(64) Sums {
+    soft::Lanes of[soft::kMostPoints];  ///< N s
   };
 
   soft::Real load(const SoftPatch& patch, soft::Real inv_mass, soft::Real gravity) const;
@@ -54,7 +70,9 @@ class SoftPatches {
   std::vector<SoftPatch*> patches_;       ///< as they came
   SoftLayout layout_;                     ///< by the number of points
   std::vector<soft::Block> blocks_;
-  bool bounces_ = false;  ///< any of them
+  bool tallies_ = false;
+  std::vector<Sums> sums_;  ///< by block
+  bool bounces_ = false;    ///< any of them
 };
 
 }  // namespace aurasim::physics

@@ -10,6 +10,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/contact_impulses.h"
 #include "physics/free_rotation.h"
 #include "physics/prefetch.h"
 #include "physics/soft/convert.h"
@@ -125,6 +126,7 @@ struct SoftStep::Impl {
   void show(std::size_t i) const;
   void prefetch_after(std::size_t i) const;
   void run(const soft::Worker& worker);
+  void tell(ContactImpulses& impulses) const;
 
   int threads;
   btScalar step_s;
@@ -265,8 +267,23 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers.data(), worker);
     substep.pushes = false;
     patches.solve(movers.data(), substep, worker);
+    if (s + 1 < substeps) patches.tally(worker);
   }
   patches.bounce(movers.data(), worker);
+  patches.tally(worker);
+}
+
+/// Where they pressed when the step began.
+void SoftStep::Impl::tell(ContactImpulses& impulses) const {
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const SoftPatch& patch = patches.patch(i);
+    const std::uint32_t a = patches.mover_a(i), b = patches.mover_b(i);
+    for (int k = 0; k < patch.count; ++k) {
+      const SoftPatch::Point& point = patch.points[static_cast<std::size_t>(k)];
+      const btVector3 p = a != 0 ? bodies[a].p + soft::to_bullet(point.r_a) : bodies[b].p + soft::to_bullet(point.r_b);
+      impulses.add(patch.a, patch.b, p, soft::to_bullet(patch.normal), static_cast<double>(patches.tallied(i, k)));
+    }
+  }
 }
 
 /// Gives a body where it is now, and how fast. What a mover has rounded off its speed at the start is not lost.
@@ -287,7 +304,7 @@ void SoftStep::Impl::show(std::size_t i) const {
 }
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
-                     std::span<btTypedConstraint* const> joints, const btVector3& gravity) {
+                     std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses) {
   Impl& impl = *impl_;
   impl.gravity = gravity;
   impl.take_in(bodies, touches, joints);
@@ -299,6 +316,7 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftT
   Real pull[3];
   soft::from_bullet(gravity, pull);
   impl.patches.build(impl.movers.data(), impl.inertias.data(), pull, impl.threads);
+  impl.patches.begin_tally(impulses.wanted());
   impl.joints.clear();
   for (btTypedConstraint* joint : joints) {
     impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
@@ -308,6 +326,7 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftT
   soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
   impl.joints.finish();
   impl.patches.remember(impl.threads);
+  if (impulses.wanted()) impl.tell(impulses);
   soft::for_each_side_by_side(impl.threads, impl.movers.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }
 

@@ -13,6 +13,7 @@ class btVector3;
 
 namespace aurasim::physics {
 
+class ContactImpulses;
 class SoftContacts;
 struct SoftTouch;
 
@@ -22,9 +23,10 @@ class SoftStep {
   ~SoftStep();
 
   /// Moves and turns `bodies`: all that are awake. Each island's touches and joints come in an order that follows from
-  /// the island alone; all awake touches have their patches in `contacts`. Gravity in m/s^2.
+  /// the island alone; all awake touches have their patches in `contacts`. Gravity in m/s^2. Tells `impulses` what has
+  /// pressed on what, if it wants to know.
   void solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
-             std::span<btTypedConstraint* const> joints, const btVector3& gravity);
+             std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses);
 
  private:
   struct Impl;

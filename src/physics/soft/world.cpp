@@ -7,6 +7,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
 #include "physics/settings.h"
 #include "physics/soft/contacts.h"
@@ -26,6 +27,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   SoftWorld(const WorldParts& parts, const Settings& settings)
       : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
+        contact_impulses_(parts.contact_impulses),
         contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
         step_(settings.step_s, settings.substeps, settings.threads),
         looks_ahead_(settings.continuous) {}
@@ -41,7 +43,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
     if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
     islands_.sort(contacts_.touches());
-    step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity());
+    step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity(), contact_impulses_);
     report_met();
     rest(step_s);
     return 1;
@@ -112,6 +114,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   }
 
   FirstContacts& first_contacts_;
+  ContactImpulses& contact_impulses_;
   SoftIslands islands_;
   SoftContacts contacts_;
   std::vector<btPersistentManifold*> manifolds_;

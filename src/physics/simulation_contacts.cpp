@@ -1,0 +1,28 @@
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+
+/// Before bodies come or go: the sums name them by their places.
+void Simulation::collect_contact_impulses() {
+  contact_impulses_.clear();
+  for (const auto& [objects, sum] : world_.contact_impulses().sums()) {
+    const auto ref = [this](int index) -> core::ObjectRef {
+      return is_static(index) ? index : core::ref_of(table_[static_cast<std::size_t>(index)].id);
+    };
+    core::ContactImpulse contact{ref(objects.first), ref(objects.second), frame_.to_world(sum.p / scalar(sum.impulse)),
+                                 from_bullet(sum.normal).stableNormalized(), sum.impulse};
+    if (contact.b >= 0) {  // bodies have places in the order of their ids, and the higher place is first
+      std::swap(contact.a, contact.b);
+      contact.normal_W = -contact.normal_W;
+    }
+    const bool is_sound = contact.p_W.allFinite() && contact.normal_W.allFinite();
+    if (is_sound) contact_impulses_.push_back(contact);
+  }
+  std::ranges::sort(contact_impulses_, {}, [](const core::ContactImpulse& c) { return std::tie(c.a, c.b); });
+}
+
+}  // namespace aurasim::physics
