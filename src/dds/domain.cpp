@@ -46,6 +46,8 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"cluster_graph", "aurasim::wire::ClusterGraph"},
     {"checkpoint", "aurasim::wire::Checkpoint"},
     {"control", "aurasim::wire::Setpoints"},
+    {"interest", "aurasim::wire::Interest"},
+    {"observation", "aurasim::wire::Observation"},
 }};
 
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
@@ -64,6 +66,12 @@ std::string partition_of(core::RegionId source) { return fmt::format("region/{}"
 std::string partition_of(core::RegionId source, core::RegionId destination) {
   return fmt::format("region/{}/to/{}", core::value_of(source), core::value_of(destination));
 }
+
+std::string partition_of_observer(core::RegionId source, std::uint64_t client) {
+  return fmt::format("{}/observer/{:016x}", partition_of(source), client);
+}
+
+std::string partition_of_observer(std::uint64_t client) { return fmt::format("region/*/observer/{:016x}", client); }
 
 std::string in_life(std::string partition, core::Generation life) {
   return life == 0 ? std::move(partition) : fmt::format("{}/since/{}", partition, life);
@@ -131,6 +139,8 @@ void Domain::register_types() {
       TypeSupport(new GuardedType<wire::ClusterGraphPubSubType>()),
       TypeSupport(new GuardedType<wire::CheckpointPubSubType>()),
       TypeSupport(new GuardedType<wire::SetpointsPubSubType>()),
+      TypeSupport(new GuardedType<wire::InterestPubSubType>()),
+      TypeSupport(new GuardedType<wire::ObservationPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -41,9 +41,11 @@ enum class TopicId : std::uint8_t {
   kOrders,
   kClusterGraph,
   kCheckpoint,
-  kControl
+  kControl,
+  kInterest,
+  kObservation
 };
-inline constexpr std::size_t kTopicCount = 15;
+inline constexpr std::size_t kTopicCount = 17;
 /// "aura", "migration", ...: also the first part of the profile names.
 const char* name_of(TopicId topic);
 
@@ -52,6 +54,10 @@ inline const std::string kWorldPartition = "world";
 inline const std::string kEveryRegionPartition = "region/*";
 std::string partition_of(core::RegionId source);
 std::string partition_of(core::RegionId source, core::RegionId destination);
+/// What a region tells one observer.
+std::string partition_of_observer(core::RegionId source, std::uint64_t client);
+/// What all regions tell it.
+std::string partition_of_observer(std::uint64_t client);
 /// Of what nodes say to each other: also by generation, once somebody has died (dds_transport.h). 0: nobody has.
 std::string in_life(std::string partition, core::Generation life);
 /// Of all generations.

@@ -118,6 +118,9 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
     case TopicId::kClusterGraph:
       each_region([&](core::RegionId source) { partitions.push_back(partition_of(source)); });
       break;
+    case TopicId::kObservation:  // of all observers
+      each_region([&](core::RegionId source) { partitions.push_back(partition_of(source) + "/observer/*"); });
+      break;
     case TopicId::kMigration:
     case TopicId::kMigrationAck:
     case TopicId::kCheckpoint:

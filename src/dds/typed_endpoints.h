@@ -11,6 +11,8 @@
 #include "dds/codec.h"
 #include "dds/command_codec.h"
 #include "dds/endpoints.h"
+#include "dds/interest_codec.h"
+#include "dds/observation_codec.h"
 #include "dds/replica_codec.h"
 
 namespace aurasim::dds {

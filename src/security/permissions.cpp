@@ -15,6 +15,7 @@ constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "
 
 const std::string kWorld = "world";
 const std::string kEveryRegion = "region/*";  // and what regions say to each other
+const std::string kEveryObserver = "region/*/observer/*";
 
 /// Fast DDS reads the dates as of the time zone of its host.
 constexpr std::chrono::hours kTimeZones{24};
@@ -42,15 +43,16 @@ Grants grants_of_node(const std::string& region) {
                       {"replica", own},
                       {"replica_key", own},
                       {"cluster_graph", own},
+                      {"observation", {fmt::format("region/{}/observer/*", region)}},
                       {"command_reply", {kWorld}},
                       {"orders", {kWorld}},
                       {"shape", {kWorld}},
                       {"checkpoint", {to_any, kWorld}}};
   // Whom it listens to changes with the bodies (docs/decisions/0003), so it may listen to all.
-  grants.subscribes = {
-      {"aura", {kEveryRegion}},  {"migration", to_it},      {"migration_ack", to_it}, {"node_status", {kEveryRegion}},
-      {"region_map", {kWorld}},  {"run_control", {kWorld}}, {"command", {kWorld}},    {"shape", {kWorld}},
-      {"checkpoint", kept_here}, {"control", {kWorld}}};
+  grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
+                       {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
+                       {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here},
+                       {"control", {kWorld}},          {"interest", {kWorld}}};
   return grants;
 }
 
@@ -62,12 +64,16 @@ std::vector<Grant> what_viewers_see() {
           {"cluster_graph", {kEveryRegion}},
           {"aura", {kEveryRegion}},
           {"orders", {kWorld}},
-          {"shape", {kWorld}}};
+          {"shape", {kWorld}},
+          {"observation", {kEveryObserver}}};
 }
+
+/// Who looks on says what it wants to see.
+const Grant kInterest = {"interest", {kWorld}};
 
 Grants grants_of_operator() {
   Grants grants;
-  grants.publishes = {{"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}};
+  grants.publishes = {{"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}, kInterest};
   grants.subscribes = what_viewers_see();
   grants.subscribes.push_back({"command_reply", {kWorld}});
   grants.subscribes.push_back({"run_control", {kWorld}});
@@ -78,7 +84,7 @@ Grants grants_of_recorder() {
   Grants grants;
   for (const char* topic :
        {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key",
-        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint", "control"}) {
+        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint", "control", "interest", "observation"}) {
     grants.subscribes.push_back({topic, {"*"}});
   }
   return grants;
@@ -121,7 +127,7 @@ Grants grants_of(Role role, std::uint32_t region) {
     case Role::kViewer:
       break;
   }
-  return {{}, what_viewers_see()};
+  return {{kInterest}, what_viewers_see()};
 }
 
 bool is_granted(const std::vector<Grant>& grants, std::string_view topic, const std::string& partition) {

@@ -15,6 +15,8 @@
 #include "dds/command_codec.h"
 #include "dds/control_codec.h"
 #include "dds/guarded_type.h"
+#include "dds/interest_codec.h"
+#include "dds/observation_codec.h"
 #include "dds/replica_codec.h"
 #include "messages.h"
 #include "replica_messages.h"
@@ -165,6 +167,28 @@ TEST(Fuzz, Replicas) {
   wire::Replica message;
   encode(testing::replica_of(5), message);
   report("replica", read_mutations<wire::ReplicaPubSubType>(message));
+}
+
+TEST(Fuzz, Observations) {
+  core::Observation observation;
+  for (const core::ReplicaBody& row : testing::replica_of(5).bodies) observation.bodies.push_back({row, false});
+  observation.outside = {core::BodyId{3}};
+  observation.joints = {{core::JointId{1}, 0.5, 2}};
+  observation.contacts = {{1, -1, {1, 2, 3}, {0, 0, 1}, 4}};
+  wire::Observation message;
+  encode(observation, message);
+  report("observation", read_mutations<wire::ObservationPubSubType>(message));
+}
+
+TEST(Fuzz, Interests) {
+  core::Interest interest;
+  interest.client = 9;
+  interest.bodies = {core::BodyId{1}, core::BodyId{5}};
+  interest.prototypes = {core::PrototypeId{2}};
+  interest.boxes = {{{0, 0, 0}, {1, 2, 3}}};
+  wire::Interest message;
+  encode(interest, 0, message);
+  report("interest", read_mutations<wire::InterestPubSubType>(message));
 }
 
 TEST(Fuzz, ClientCommands) {

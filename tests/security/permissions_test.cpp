@@ -68,8 +68,10 @@ TEST(ASpare, SpeaksForTheRegionThatItTakesOver) {
   EXPECT_FALSE(may_say(Role::kSpare, 0, "command", "world"));
 }
 
-TEST(AViewer, SaysNothing) {
-  EXPECT_TRUE(grants_of(Role::kViewer).publishes.empty());
+TEST(AViewer, SaysOnlyWhatItWantsToSee) {
+  const std::vector<Grant> says = grants_of(Role::kViewer).publishes;
+  ASSERT_EQ(says.size(), 1U);
+  EXPECT_EQ(says[0].topic, "interest");
   EXPECT_TRUE(grants_of(Role::kRecorder).publishes.empty());
 }
 
@@ -86,6 +88,19 @@ TEST(AViewer, SeesTheWorldAndNotHowItIsHandedOver) {
       EXPECT_FALSE(may_read(Role::kViewer, 0, topic, partition)) << topic << " " << partition;
     }
   }
+}
+
+TEST(Observers, AreToldByEachRegionInItsOwnNameAndByNobodyElse) {
+  EXPECT_TRUE(may_say(Role::kRegion, 2, "observation", "region/2/observer/00000000000000ff"));
+  EXPECT_FALSE(may_say(Role::kRegion, 2, "observation", "region/1/observer/00000000000000ff"));
+  EXPECT_FALSE(may_say(Role::kRegion, 2, "observation", "region/*/observer/00000000000000ff"));
+  EXPECT_TRUE(may_read(Role::kRegion, 2, "interest", "world"));
+  for (const Role role : {Role::kViewer, Role::kOperator}) {
+    EXPECT_TRUE(may_say(role, 0, "interest", "world"));
+    EXPECT_TRUE(may_read(role, 0, "observation", "region/*/observer/00000000000000ff"));
+    EXPECT_FALSE(may_say(role, 0, "observation", "region/1/observer/00000000000000ff"));
+  }
+  EXPECT_FALSE(may_say(Role::kRecorder, 0, "interest", "world"));
 }
 
 TEST(OnlyOperators, AskSomethingOfTheWorld) {

@@ -1,0 +1,16 @@
+// core/interest.h as a wire type, and back. As in codec.h.
+#pragma once
+
+#include "core/interest.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class Interest;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const core::Interest& interest, std::uint64_t map_version, wire::Interest& out);
+Decoded<core::Interest> decode(const wire::Interest& in, const Expected& expected);
+
+}  // namespace aurasim::dds

@@ -1,0 +1,187 @@
+#include "dds/observation_bus.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "dds/observing.h"
+#include "dds/random_id.h"
+#include "dds/rate_limit.h"
+#include "dds/typed_endpoints.h"
+
+namespace aurasim::dds {
+namespace {
+
+/// Of one process: far more than a sensor that moves with its body needs.
+constexpr double kInterestsASecond = 100;
+constexpr double kInterestsAtOnce = 300;
+
+}  // namespace
+
+struct ObservationServer::Impl {
+  struct Observer {
+    Observer(Impl& of, std::uint64_t client)
+        : writer(of.participant.domain(),
+                 {TopicId::kObservation, {partition_of_observer(of.region, client)}, of.region, {}}, of.wakeup) {}
+
+    core::Interest interest;
+    Guid origin;
+    std::uint64_t changes = 0;
+    TypedWriter<wire::Observation> writer;
+  };
+
+  Impl(Participant& participant_in, core::RegionId region_in)
+      : participant(participant_in),
+        region(region_in),
+        interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
+
+  void hear(core::Interest&& interest, const Origin& origin);
+  void forget_the_gone();
+  void list();
+  void refuse(const Origin& origin, const std::string& why) {
+    ++refused;
+    interests.refuse_from(origin, why);
+  }
+
+  Participant& participant;
+  core::RegionId region;
+  Wakeup wakeup;
+  TypedReader<wire::Interest> interests;
+  std::map<std::uint64_t, Observer> observers;  ///< by client
+  std::vector<Asked> asked;
+  RateLimit<ProcessPrefix> limit{kInterestsASecond, kInterestsAtOnce};
+  std::uint64_t refused = 0;
+};
+
+ObservationServer::ObservationServer(Participant& participant, core::RegionId region)
+    : impl_(std::make_unique<Impl>(participant, region)) {}
+
+ObservationServer::~ObservationServer() = default;
+
+void ObservationServer::Impl::hear(core::Interest&& interest, const Origin& origin) {
+  if (!limit.allows(origin.writer.guidPrefix, std::chrono::steady_clock::now())) {
+    return refuse(origin, "too many a second");
+  }
+  const auto known = observers.find(interest.client);
+  if (known != observers.end() && known->second.origin != origin.writer) {
+    return refuse(origin, "an interest in the name of another client");
+  }
+  if (interest.ended) {
+    if (known != observers.end()) observers.erase(known);
+    return;
+  }
+  if (known == observers.end() && observers.size() >= core::kMostObservers) {
+    return refuse(origin, fmt::format("more than {} observers", core::kMostObservers));
+  }
+  Observer& observer = known != observers.end()
+                           ? known->second
+                           : observers.try_emplace(interest.client, *this, interest.client).first->second;
+  if (interest.sequence < observer.interest.sequence) return;
+  observer.interest = std::move(interest);
+  observer.origin = origin.writer;
+  ++observer.changes;
+}
+
+/// A writer that is gone wants nothing any more, however it has ended.
+void ObservationServer::Impl::forget_the_gone() {
+  if (observers.empty()) return;
+  const std::vector<RemoteWriter> writers = interests.watch().writers();
+  std::erase_if(observers, [&](const auto& entry) {
+    return std::ranges::none_of(
+        writers, [&](const RemoteWriter& writer) { return writer.matched && writer.guid == entry.second.origin; });
+  });
+}
+
+void ObservationServer::Impl::list() {
+  asked.clear();
+  for (const auto& [client, observer] : observers) {
+    if (observer.writer.reader_count() == 0) continue;
+    asked.push_back({&observer.interest, observer.changes + observer.writer.matches(), client});
+  }
+}
+
+void ObservationServer::look() {
+  const auto refuse = [this](const wire::Interest&, WireError) { ++impl_->refused; };
+  impl_->interests.take_each(
+      {}, [this](core::Interest&& interest, const Origin& origin) { impl_->hear(std::move(interest), origin); },
+      refuse);
+  impl_->forget_the_gone();
+  impl_->list();
+}
+
+bool ObservationServer::anybody_asks() const { return !impl_->observers.empty(); }
+
+const std::vector<ObservationServer::Asked>& ObservationServer::asked() const { return impl_->asked; }
+
+bool ObservationServer::send(std::uint64_t key, const core::Observation& observation) {
+  const auto observer = impl_->observers.find(key);
+  return observer != impl_->observers.end() && observer->second.writer.send(observation) != WriteResult::kFailed;
+}
+
+std::uint64_t ObservationServer::refused() const { return impl_->refused; }
+
+struct ObserverEndpoint::Impl {
+  Impl(Participant& participant_in, const ObserverSettings& settings)
+      : participant(participant_in),
+        expected(expected_of(settings)),
+        observations(participant.domain(), {TopicId::kObservation, {partition_of_observer(client)}, {}, {}}, wakeup),
+        interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
+
+  Participant& participant;
+  std::uint64_t client = draw_id();
+  std::uint64_t sequence = 0;
+  Expected expected;
+  Wakeup wakeup;
+  TypedReader<wire::Observation> observations;
+  TypedWriter<wire::Interest> interests;
+};
+
+ObserverEndpoint::ObserverEndpoint(Participant& participant, const ObserverSettings& settings)
+    : impl_(std::make_unique<Impl>(participant, settings)) {}
+
+ObserverEndpoint::~ObserverEndpoint() {
+  core::Interest none;
+  none.ended = true;
+  none.client = impl_->client;
+  none.sequence = impl_->sequence + 1;
+  impl_->interests.send(none, std::uint64_t{0});
+}
+
+std::uint64_t ObserverEndpoint::client() const { return impl_->client; }
+
+std::uint64_t ObserverEndpoint::want(core::Interest interest) {
+  interest.client = impl_->client;
+  interest.sequence = ++impl_->sequence;
+  if (impl_->interests.send(interest, std::uint64_t{0}) == WriteResult::kFailed) {
+    throw DdsError("cannot say what is wanted: topic interest does not take it");
+  }
+  return impl_->sequence;
+}
+
+std::vector<core::Observation> ObserverEndpoint::take() {
+  impl_->participant.progress();
+  impl_->wakeup.clear();
+  std::vector<core::Observation> observations;
+  const Speakers& speakers = impl_->participant.domain().speakers();
+  impl_->observations.take_each(impl_->expected, [&](core::Observation&& observation, const Origin& origin) {
+    const bool may_say =
+        speakers.may_speak(origin.writer, observation.source) && speakers.is_at_home(origin.writer, observation.source);
+    if (may_say) return observations.push_back(std::move(observation));
+    impl_->observations.refuse_from(origin,
+                                    fmt::format("it is not the node of region {}", core::value_of(observation.source)));
+  });
+  return observations;
+}
+
+void ObserverEndpoint::wait(std::chrono::nanoseconds time_out) {
+  impl_->participant.progress();
+  impl_->wakeup.wait(time_out);
+}
+
+void ObserverEndpoint::use(const ObserverSettings& settings) { impl_->expected = expected_of(settings); }
+
+std::uint64_t ObserverEndpoint::refused() const { return impl_->observations.refused().total(); }
+
+}  // namespace aurasim::dds

@@ -1,0 +1,179 @@
+#include "dds/observation_codec.h"
+
+#include <cmath>
+#include <optional>
+
+#include "aurasim.h"
+#include "dds/bearable.h"
+#include "dds/columns.h"
+#include "dds/header_check.h"
+
+namespace aurasim::dds {
+
+using core::BodyId;
+using core::ContactImpulse;
+using core::JointState;
+using core::Observation;
+using core::ObservedBody;
+using core::value_of;
+
+namespace {
+
+using MaybeError = std::optional<WireError>;
+
+constexpr std::uint8_t kAsleep = 1;
+constexpr std::uint8_t kStale = 2;
+
+void put_floats(const Eigen::Vector3f& v, float* out) {
+  for (int axis = 0; axis < 3; ++axis) out[axis] = v[axis];
+}
+
+MaybeError check_shape(const wire::Observation& in) {
+  if (std::max({in.id().size(), in.outside().size(), in.joint().size(), in.contact_a().size()}) > kMaxRows) {
+    return WireError::kTooLarge;
+  }
+  const bool fits = same_rows(in.id().size(), {{in.epoch().size()},
+                                               {in.host().size()},
+                                               {in.prototype().size()},
+                                               {in.flags().size()},
+                                               {in.p_WB().size(), 3},
+                                               {in.q_WB().size(), 4},
+                                               {in.v_WB().size(), 3},
+                                               {in.w_WB().size(), 3}}) &&
+                    same_rows(in.joint().size(), {{in.joint_position().size()}, {in.joint_speed().size()}}) &&
+                    same_rows(in.contact_a().size(), {{in.contact_b().size()},
+                                                      {in.contact_p().size(), 3},
+                                                      {in.contact_normal().size(), 3},
+                                                      {in.contact_impulse().size()}});
+  return fits ? MaybeError{} : WireError::kLength;
+}
+
+bool all_are_finite(const wire::Observation& in) {
+  return all_finite(in.p_WB()) && all_finite(in.q_WB()) && all_finite(in.v_WB()) && all_finite(in.w_WB()) &&
+         all_finite(in.joint_position()) && all_finite(in.joint_speed()) && all_finite(in.contact_p()) &&
+         all_finite(in.contact_normal()) && all_finite(in.contact_impulse());
+}
+
+/// The first of two is a body, the second another one with a higher id, or a static.
+bool are_pairs(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b, const Expected& expected) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool is_pair =
+        a[i] >= 0 && (b[i] >= 0 ? b[i] > a[i] : static_cast<std::uint64_t>(-1 - b[i]) < expected.static_count);
+    if (!is_pair) return false;
+  }
+  return true;
+}
+
+MaybeError check_values(const wire::Observation& in, const Expected& expected) {
+  if (!all_are_finite(in)) return WireError::kNotFinite;
+  const auto is_unknown = [](std::uint8_t flags) { return (flags & ~(kAsleep | kStale)) != 0; };
+  if (in.kind() > static_cast<std::uint8_t>(Observation::Kind::kMadeUp) ||
+      std::ranges::any_of(in.flags(), is_unknown)) {
+    return WireError::kEnum;
+  }
+  if (!unit_quaternions(in.q_WB())) return WireError::kRotation;
+  const bool in_range =
+      in.stamp() >= 0 && in.sequence_number() > 0 && all_body_ids(in.id()) && all_body_ids(in.outside()) &&
+      strictly_ascending(in.id()) && strictly_ascending(in.outside()) && all_below(in.host(), expected.region_count) &&
+      all_below(in.prototype(), expected.prototype_count) && all_below(in.joint(), expected.joint_count) &&
+      all_within(in.p_WB(), bearable::kFarthest_m) && all_within(in.v_WB(), bearable::kFastest_m_s) &&
+      all_within(in.w_WB(), bearable::kFastestSpin_rad_s) && all_within(in.contact_normal(), 1 + kRotationTolerance) &&
+      all_within(in.contact_impulse(), bearable::kLargestOfAContact) && none_negative(in.contact_impulse()) &&
+      are_pairs(in.contact_a(), in.contact_b(), expected);
+  return in_range ? MaybeError{} : WireError::kRange;
+}
+
+MaybeError check(const wire::Observation& in, const Expected& expected) {
+  if (const auto error = check_header(in, expected)) return error;
+  if (const auto error = check_source(in, expected)) return error;
+  if (const auto error = check_shape(in)) return error;
+  return check_values(in, expected);
+}
+
+ObservedBody body_at(const wire::Observation& in, std::size_t i) {
+  const float* q = in.q_WB().data() + 4 * i;
+  const float* v = in.v_WB().data() + 3 * i;
+  const float* w = in.w_WB().data() + 3 * i;
+  return {.row = {.id = static_cast<BodyId>(in.id()[i]),
+                  .epoch = in.epoch()[i],
+                  .host = static_cast<core::RegionId>(in.host()[i]),
+                  .prototype = static_cast<core::PrototypeId>(in.prototype()[i]),
+                  .asleep = (in.flags()[i] & kAsleep) != 0,
+                  .p_WB = vector_at(in.p_WB(), i),
+                  .q_WB = Eigen::Quaternionf(q[0], q[1], q[2], q[3]),
+                  .v_WB = {v[0], v[1], v[2]},
+                  .w_WB = {w[0], w[1], w[2]}},
+          .stale = (in.flags()[i] & kStale) != 0};
+}
+
+void put_bodies(const std::vector<ObservedBody>& bodies, wire::Observation& out) {
+  fill(out.id(), bodies, [](const ObservedBody& b) { return value_of(b.row.id); });
+  fill(out.epoch(), bodies, [](const ObservedBody& b) { return b.row.epoch; });
+  fill(out.host(), bodies, [](const ObservedBody& b) { return value_of(b.row.host); });
+  fill(out.prototype(), bodies, [](const ObservedBody& b) { return value_of(b.row.prototype); });
+  fill(out.flags(), bodies, [](const ObservedBody& b) {
+    return static_cast<std::uint8_t>((b.row.asleep ? kAsleep : 0) | (b.stale ? kStale : 0));
+  });
+  fill_wide<3>(out.p_WB(), bodies, [](const ObservedBody& b, double* to) { put_vector(b.row.p_WB, to); });
+  fill_wide<4>(out.q_WB(), bodies, [](const ObservedBody& b, float* to) {
+    to[0] = b.row.q_WB.w();
+    to[1] = b.row.q_WB.x();
+    to[2] = b.row.q_WB.y();
+    to[3] = b.row.q_WB.z();
+  });
+  fill_wide<3>(out.v_WB(), bodies, [](const ObservedBody& b, float* to) { put_floats(b.row.v_WB, to); });
+  fill_wide<3>(out.w_WB(), bodies, [](const ObservedBody& b, float* to) { put_floats(b.row.w_WB, to); });
+}
+
+void put_contacts(const std::vector<ContactImpulse>& contacts, wire::Observation& out) {
+  fill(out.contact_a(), contacts, [](const ContactImpulse& c) { return c.a; });
+  fill(out.contact_b(), contacts, [](const ContactImpulse& c) { return c.b; });
+  fill_wide<3>(out.contact_p(), contacts, [](const ContactImpulse& c, double* to) { put_vector(c.p_W, to); });
+  fill_wide<3>(out.contact_normal(), contacts, [](const ContactImpulse& c, double* to) { put_vector(c.normal_W, to); });
+  fill(out.contact_impulse(), contacts, [](const ContactImpulse& c) { return c.impulse_Ns; });
+}
+
+}  // namespace
+
+void encode(const Observation& observation, wire::Observation& out) {
+  out.source(value_of(observation.source));
+  out.version(kProtocolVersion);
+  out.generation(observation.generation);
+  out.redo(observation.redo);
+  out.stamp(observation.stamp);
+  out.map_version(observation.map_version);
+  out.sequence_number(observation.sequence);
+  out.kind(static_cast<std::uint8_t>(observation.kind));
+  put_bodies(observation.bodies, out);
+  fill(out.outside(), observation.outside, [](BodyId id) { return value_of(id); });
+  fill(out.joint(), observation.joints, [](const JointState& j) { return value_of(j.id); });
+  fill(out.joint_position(), observation.joints, [](const JointState& j) { return j.position; });
+  fill(out.joint_speed(), observation.joints, [](const JointState& j) { return j.speed; });
+  put_contacts(observation.contacts, out);
+}
+
+Decoded<Observation> decode(const wire::Observation& in, const Expected& expected) {
+  if (const auto error = check(in, expected)) return *error;
+  Observation observation;
+  observation.source = static_cast<core::RegionId>(in.source());
+  observation.generation = in.generation();
+  observation.redo = in.redo();
+  observation.stamp = in.stamp();
+  observation.map_version = in.map_version();
+  observation.sequence = in.sequence_number();
+  observation.kind = static_cast<Observation::Kind>(in.kind());
+  observation.bodies.reserve(in.id().size());
+  for (std::size_t i = 0; i < in.id().size(); ++i) observation.bodies.push_back(body_at(in, i));
+  for (const std::uint64_t id : in.outside()) observation.outside.push_back(static_cast<BodyId>(id));
+  for (std::size_t i = 0; i < in.joint().size(); ++i) {
+    observation.joints.push_back(
+        {static_cast<core::JointId>(in.joint()[i]), in.joint_position()[i], in.joint_speed()[i]});
+  }
+  for (std::size_t i = 0; i < in.contact_a().size(); ++i) {
+    observation.contacts.push_back({in.contact_a()[i], in.contact_b()[i], vector_at(in.contact_p(), i),
+                                    vector_at(in.contact_normal(), i), in.contact_impulse()[i]});
+  }
+  return observation;
+}
+
+}  // namespace aurasim::dds

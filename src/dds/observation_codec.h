@@ -1,0 +1,16 @@
+// core/observation.h as a wire type, and back. As in codec.h.
+#pragma once
+
+#include "core/observation.h"
+#include "dds/codec.h"
+
+namespace aurasim::wire {
+class Observation;
+}  // namespace aurasim::wire
+
+namespace aurasim::dds {
+
+void encode(const core::Observation& observation, wire::Observation& out);
+Decoded<core::Observation> decode(const wire::Observation& in, const Expected& expected);
+
+}  // namespace aurasim::dds
