@@ -17,20 +17,24 @@ ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participan
       map_version_(launch.regions.version()),
       tick_steps_(node::tick_steps(launch.time.step_hz, launch.observe.tick_hz)),
       writer_(participant, region),
-      graphs_(participant, region) {}
+      graphs_(participant, region),
+      observations_(launch, participant, region) {}
 
 void ReplicaPublisher::begin_generation(core::Generation generation) {
   feed_.emplace(region_, generation, map_version_);
   generation_ = generation;
   published_ = -1;
+  observations_.begin_generation(generation, map_version_);
 }
 
 void ReplicaPublisher::put_back() {
   if (feed_) feed_->forget();
   last_key_frame_ = {};
+  observations_.put_back();
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
+  observations_.after_step(node, report);
   if (!writer_.anybody_listens()) {
     feed_->forget();
     return;
@@ -40,6 +44,7 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
 }
 
 void ReplicaPublisher::while_paused(node::Node& node) {
+  observations_.while_paused(node);
   if (!writer_.anybody_listens()) return;
   // Again and again: nobody asks for a sample that was lost.
   if (Clock::now() - last_graph_ >= kClusterGraphPeriod) publish_cluster_graph(node);

@@ -1,9 +1,11 @@
 // When a node process publishes what for observers (node/replica_feed.h), and over which topic (dds/replica_bus.h).
+// What each of them has asked for is another matter (observation_publisher.h).
 #pragma once
 
 #include <chrono>
 #include <optional>
 
+#include "cli/observation_publisher.h"
 #include "config/launch.h"
 #include "dds/overlay_bus.h"
 #include "dds/replica_bus.h"
@@ -37,6 +39,7 @@ class ReplicaPublisher {
   core::Step tick_steps_;
   dds::ReplicaWriter writer_;
   dds::ClusterGraphWriter graphs_;
+  ObservationPublisher observations_;
   std::optional<node::ReplicaFeed> feed_;
   core::Generation generation_ = 0;
   core::Step published_ = -1;

@@ -172,6 +172,7 @@ void Node::clear_report() {
   report_.departed.clear();
   report_.let_go.clear();
   report_.arrivals.clear();
+  report_.made_up.clear();
   report_.collisions.clear();
   report_.hash.clear();
   report_.births.clear();
@@ -248,9 +249,25 @@ void Node::apply(const core::Changes& changes) {
 void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
   world_.adopt(adoption.cluster, adoption.stamp, [&](core::Step step, std::span<const core::BodyRecord> bodies) {
     if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
+    if (is_observed_) report_.made_up.push_back({step, {bodies.begin(), bodies.end()}, {}});
     protocol_->note_made_up(step, nth, bodies);
   });
+  note_made_up_contacts();
   note_arrivals(adoption);
+}
+
+void Node::observe(bool states, bool contacts) {
+  is_observed_ = states;
+  world_.watch_contacts(contacts);
+}
+
+/// Of the states that have just been reported, in their order.
+void Node::note_made_up_contacts() {
+  std::vector<physics::MadeUpContacts> contacts = world_.take_made_up_contacts();
+  const std::size_t first = report_.made_up.size() - std::min(report_.made_up.size(), contacts.size());
+  for (std::size_t i = 0; first + i < report_.made_up.size(); ++i) {
+    report_.made_up[first + i].contacts = std::move(contacts[i].contacts);
+  }
 }
 
 void Node::note_arrivals(const core::Adoption& adoption) {

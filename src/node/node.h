@@ -100,6 +100,13 @@ struct Durations {
 /// The mesh of this content, for this use, if the process has it.
 using MeshSource = std::function<std::optional<core::Shape>(const core::MeshRef&)>;
 
+/// A state that was made up for bodies that have joined late.
+struct MadeUp {
+  core::Step step = 0;
+  std::vector<core::BodyRecord> bodies;        ///< ascending id
+  std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
+};
+
 /// What one step did. Valid until the next.
 struct StepReport {
   core::Step step = 0;
@@ -120,6 +127,7 @@ struct StepReport {
   std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
   std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
   std::vector<HandOffRow> arrivals;
+  std::vector<MadeUp> made_up;  ///< while somebody observes
   std::vector<SeenCollision> collisions;
   std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
   std::vector<core::Violation> violations;
@@ -188,6 +196,9 @@ class Node {
   /// A program's word. Takes effect wherever the bodies are by then.
   core::Heard hear(const core::Setpoints& setpoints);
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }
+  /// Whether somebody wants to know what late bodies have done before they came, and what presses on what. In the steps
+  /// from now on; it changes no bit.
+  void observe(bool states, bool contacts);
   /// As it has grown.
   const core::Scene& scene() const { return scene_; }
 
@@ -241,6 +252,7 @@ class Node {
   void finish_state();
   void watch_collisions(const core::Snapshot& snapshot);
   void note_contacts(const core::Snapshot& snapshot);
+  void note_made_up_contacts();
   void note_arrivals(const core::Adoption& adoption);
   void release(std::span<const core::Departure> departures);
   void hand_over(const core::Departure& departure, core::ClusterState cluster);
@@ -292,6 +304,7 @@ class Node {
   std::optional<core::WorldCut> begun_with_;  ///< as long as a redo may come back to it
   std::vector<core::BodyRecord> born_soon_;   ///< announced neither there nor later
   bool settled_ = false;
+  bool is_observed_ = false;
   std::optional<core::Order> redo_;  ///< not yet due
   bool redo_is_ordered_ = false;     ///< by us
   core::Epoch first_epoch_ = 0;      ///< of bodies that are new

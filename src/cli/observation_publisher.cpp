@@ -1,0 +1,73 @@
+#include "cli/observation_publisher.h"
+
+#include <algorithm>
+
+namespace aurasim::cli {
+
+ObservationPublisher::ObservationPublisher(const config::Launch& launch, dds::Participant& participant,
+                                           core::RegionId region)
+    : settings_{region, 0, launch.regions.version(), launch.lookahead()}, server_(participant, region) {}
+
+void ObservationPublisher::begin_generation(core::Generation generation, std::uint64_t map_version) {
+  settings_.generation = generation;
+  settings_.map_version = map_version;
+  feed_.reset();
+}
+
+/// False: nobody asks. The node sums up contacts for observers from its next step on.
+bool ObservationPublisher::look(node::Node& node) {
+  server_.look();
+  if (!server_.anybody_asks()) {
+    if (is_observed_) node.observe(false, false);
+    is_observed_ = false;
+    feed_.reset();
+    told_.clear();
+    return false;
+  }
+  const bool wants_contacts = std::ranges::any_of(
+      server_.asked(), [](const dds::ObservationServer::Asked& asked) { return asked.interest->contacts; });
+  node.observe(true, wants_contacts);
+  is_observed_ = true;
+  if (!feed_) {
+    feed_.emplace(settings_, node.scene());
+    feed_->begin(node.current_step(), node.protocol().departures().open());
+  }
+  return true;
+}
+
+void ObservationPublisher::after_step(node::Node& node, const node::StepReport& report) {
+  if (!look(node)) return;
+  feed_->note(report, node.protocol().departures().open());
+  tell_made_up(node, report);
+  for (const dds::ObservationServer::Asked& asked : server_.asked()) {
+    if (asked.interest->is_for(report.step)) tell(node, asked);
+  }
+}
+
+void ObservationPublisher::while_paused(node::Node& node) {
+  if (!look(node)) return;
+  for (const dds::ObservationServer::Asked& asked : server_.asked()) {
+    const Told now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
+    const auto told = told_.find(asked.key);
+    if (told == told_.end() || told->second != now) tell(node, asked);
+  }
+}
+
+/// What cannot be sent is lost: the next state is told as if it had been.
+void ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::Asked& asked) {
+  server_.send(asked.key,
+               feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos()));
+  told_.insert_or_assign(asked.key, Told{asked.arrivals, settings_.generation, node.redos(), node.current_step()});
+}
+
+void ObservationPublisher::tell_made_up(const node::Node& node, const node::StepReport& report) {
+  for (const node::MadeUp& state : report.made_up) {
+    for (const dds::ObservationServer::Asked& asked : server_.asked()) {
+      if (asked.interest->is_for(state.step)) {
+        server_.send(asked.key, feed_->compose(*asked.interest, state, node.redos()));
+      }
+    }
+  }
+}
+
+}  // namespace aurasim::cli

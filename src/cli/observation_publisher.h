@@ -1,0 +1,49 @@
+// When a node process tells whom what of the world that it computes (node/observation_feed.h), over topic observation
+// (dds/observation_bus.h). Nothing is done while nobody asks.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "config/launch.h"
+#include "dds/observation_bus.h"
+#include "node/node.h"
+#include "node/observation_feed.h"
+
+namespace aurasim::cli {
+
+class ObservationPublisher {
+ public:
+  ObservationPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
+
+  void begin_generation(core::Generation generation, std::uint64_t map_version);
+  /// The run goes back: states that were told are told again when they have been computed again.
+  void put_back() { feed_.reset(); }
+  /// After the first state and after every step.
+  void after_step(node::Node& node, const node::StepReport& report);
+  /// As often as you like while the run stands: the state in which it does, to whoever has not been told.
+  void while_paused(node::Node& node);
+
+ private:
+  bool look(node::Node& node);
+  void tell(node::Node& node, const dds::ObservationServer::Asked& asked);
+  void tell_made_up(const node::Node& node, const node::StepReport& report);
+
+  struct Told {
+    std::uint64_t arrivals = 0;
+    core::Generation generation = 0;
+    std::uint32_t redo = 0;
+    core::Step step = -1;
+
+    bool operator==(const Told&) const = default;
+  };
+
+  node::FeedSettings settings_;
+  dds::ObservationServer server_;
+  std::optional<node::ObservationFeed> feed_;  ///< while somebody asks
+  std::map<std::uint64_t, Told> told_;         ///< by observer
+  bool is_observed_ = false;
+};
+
+}  // namespace aurasim::cli
