@@ -1,33 +1,12 @@
 #include "client/answers.h"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace aurasim::client {
 namespace {
 
 using nlohmann::json;
-
-/// Takes columns from the front of what is left.
-class Columns {
- public:
-  Columns(const std::string& bytes, std::size_t rows) : bytes_(bytes), rows_(rows) {}
-
-  template <class T>
-  void take(std::vector<T>& column, std::size_t width = 1) {
-    const std::size_t size = rows_ * width * sizeof(T);
-    if (size > bytes_.size() - at_) throw Error("the agent's answer is shorter than it says");
-    column.resize(rows_ * width);
-    std::memcpy(column.data(), bytes_.data() + at_, size);
-    at_ += size;
-  }
-
- private:
-  const std::string& bytes_;
-  std::size_t rows_;
-  std::size_t at_ = 0;
-};
 
 template <class T>
 std::optional<T> optional_of(const json& head, const char* key) {
@@ -40,13 +19,16 @@ std::optional<T> optional_of(const json& head, const char* key) {
 
 Bodies bodies_of(const Message& answer) {
   Bodies bodies;
+  Columns columns(answer.body, answer.head.value("rows", std::size_t{0}));
+  take_bodies(answer, columns, bodies);
+  return bodies;
+}
+
+void take_bodies(const Message& answer, Columns& columns, Bodies& bodies) {
   bodies.step = answer.head.value("step", std::int64_t{0});
   bodies.time_s = answer.head.value("time_s", 0.0);
   bodies.generation = answer.head.value("generation", 0U);
   bodies.exact = answer.head.value("exact", false);
-  const std::size_t rows = answer.head.value("rows", std::size_t{0});
-  if (rows > answer.body.size()) throw Error("the agent's answer is shorter than it says");
-  Columns columns(answer.body, rows);
   columns.take(bodies.ids);
   columns.take(bodies.positions, 3);
   columns.take(bodies.rotations, 4);
@@ -57,7 +39,6 @@ Bodies bodies_of(const Message& answer) {
   columns.take(bodies.prototypes);
   columns.take(bodies.asleep);
   columns.take(bodies.under_way);
-  return bodies;
 }
 
 RunInfo info_of(const json& head) {
@@ -72,6 +53,7 @@ RunInfo info_of(const json& head) {
   info.sync = head.value("sync", "");
   info.joints = head.value("joints", std::vector<std::string>{});
   info.prototypes = head.value("prototypes", std::vector<std::string>{});
+  info.joints = head.value("joints", std::vector<std::string>{});
   for (const json& box : head.value("regions", json::array())) info.regions.push_back(box_of(box));
   return info;
 }

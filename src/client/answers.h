@@ -3,12 +3,15 @@
 
 #include <aurasim/client.h>
 
+#include "client/columns.h"
 #include "client/message.h"
 
 namespace aurasim::client {
 
 /// Its columns lie one after the other in the message's body. Throws Error if they do not fit.
 Bodies bodies_of(const Message& answer);
+/// Likewise, where more columns follow.
+void take_bodies(const Message& answer, Columns& columns, Bodies& bodies);
 RunInfo info_of(const nlohmann::json& head);
 std::vector<NodeStatus> nodes_of(const nlohmann::json& head);
 Acknowledgement acknowledgement_of(const nlohmann::json& head);

@@ -5,6 +5,7 @@
 
 #include "client/answers.h"
 #include "client/connection.h"
+#include "client/observation.h"
 #include "client/program_file.h"
 
 namespace aurasim::client {
@@ -88,7 +89,7 @@ Shape Shape::mesh(std::string file, bool in_parts) {
   return {.kind = Kind::kMesh, .file = std::move(file), .in_parts = in_parts};
 }
 
-World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
@@ -97,7 +98,7 @@ World::~World() {
 }
 
 World World::connect(const std::string& file, const ConnectOptions& options) {
-  World world(std::make_unique<Impl>(options.program, options.log, options.interrupted));
+  World world(std::make_shared<Impl>(options.program, options.log, options.interrupted));
   world.impl_->ask(
       {{"do", "connect"}, {"protocol", kAgentProtocol}, {"file", file}, {"set", options.overrides}, {"as", options.as}},
       options.time_out);
@@ -105,7 +106,7 @@ World World::connect(const std::string& file, const ConnectOptions& options) {
 }
 
 World World::launch(const std::string& file, const LaunchOptions& options) {
-  World world(std::make_unique<Impl>(options.program, options.log, options.interrupted));
+  World world(std::make_shared<Impl>(options.program, options.log, options.interrupted));
   world.impl_->ask({{"do", "launch"},
                     {"protocol", kAgentProtocol},
                     {"file", file},
@@ -129,6 +130,45 @@ std::vector<NodeStatus> World::nodes(Seconds time_out) { return nodes_of(impl_->
 Bodies World::bodies(Seconds time_out) { return impl_->ask_bodies({{"do", "bodies"}}, time_out); }
 RayHit World::ray(const Vec3& from, const Vec3& to, Seconds time_out) {
   return ray_hit_of(impl_->ask({{"do", "ray"}, {"from", from}, {"to", to}}, time_out));
+}
+
+struct Observer::Impl {
+  std::weak_ptr<World::Impl> world;
+  std::uint64_t number = 0;
+};
+
+Observer::Observer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Observer::Observer(Observer&&) noexcept = default;
+Observer& Observer::operator=(Observer&& other) noexcept {
+  std::swap(impl_, other.impl_);
+  return *this;
+}
+
+Observer::~Observer() {
+  try {
+    if (impl_) close();
+  } catch (const std::exception&) {  // the world has ended, and this with it
+  }
+}
+
+Observation Observer::next(Seconds time_out) {
+  const auto world = impl_ ? impl_->world.lock() : nullptr;
+  if (!world) throw Ended("this observer was closed, or its World");
+  return observation_of(world->connection.ask({{{"do", "next"}, {"observer", impl_->number}}, {}}, time_out));
+}
+
+void Observer::close() {
+  const auto world = impl_ ? impl_->world.lock() : nullptr;
+  const std::uint64_t number = impl_ ? impl_->number : 0;
+  impl_.reset();
+  if (world && world->connection.is_open()) {
+    world->ask({{"do", "end_observer"}, {"observer", number}}, Seconds{10});
+  }
+}
+
+Observer World::observe(const Interest& interest, Seconds time_out) {
+  const json begun = impl_->ask(interest_json(interest), time_out);
+  return Observer(std::make_unique<Observer::Impl>(impl_, begun.value("observer", std::uint64_t{0})));
 }
 
 Bodies World::pause(Seconds time_out) { return impl_->ask_bodies({{"do", "pause"}}, time_out); }

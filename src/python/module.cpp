@@ -68,6 +68,13 @@ void add_flags(py::class_<Bodies, std::shared_ptr<Bodies>>& type, const char* na
       name, [=](const py::object& self) { return view<Bodies, std::uint8_t>(self, column, 1, py::dtype::of<bool>()); });
 }
 
+template <class Owner, class T>
+void add_array(py::class_<Owner, std::shared_ptr<Owner>>& type, const char* name, const std::vector<T> Owner::*column,
+               py::ssize_t width = 1) {
+  type.def_property_readonly(
+      name, [=](const py::object& self) { return view<Owner, T>(self, column, width, py::dtype::of<T>()); });
+}
+
 void add_bodies(py::module_& m) {
   py::class_<Bodies, std::shared_ptr<Bodies>> bodies(m, "Bodies");
   bodies.def_readonly("step", &Bodies::step)
@@ -88,6 +95,71 @@ void add_bodies(py::module_& m) {
   add_column(bodies, "prototypes", &Bodies::prototypes);
   add_flags(bodies, "asleep", &Bodies::asleep);
   add_flags(bodies, "under_way", &Bodies::under_way);
+}
+
+/// A part of an observation, which keeps it.
+template <class Part>
+void add_part(py::class_<Observation, std::shared_ptr<Observation>>& type, const char* name, Part Observation::*part) {
+  type.def_property_readonly(
+      name, [=](const std::shared_ptr<Observation>& self) { return std::shared_ptr<Part>(self, &((*self).*part)); });
+}
+
+template <class Part>
+void add_parts(py::class_<Observation, std::shared_ptr<Observation>>& type, const char* name,
+               std::vector<Part> Observation::*parts) {
+  type.def_property_readonly(name, [=](const std::shared_ptr<Observation>& self) {
+    py::list all;
+    for (Part& part : (*self).*parts) all.append(std::shared_ptr<Part>(self, &part));
+    return all;
+  });
+}
+
+void add_sensed(py::module_& m) {
+  py::class_<Contacts, std::shared_ptr<Contacts>> contacts(m, "Contacts");
+  contacts.def("__len__", &Contacts::size);
+  add_array(contacts, "a", &Contacts::a);
+  add_array(contacts, "b", &Contacts::b);
+  add_array(contacts, "positions", &Contacts::positions, 3);
+  add_array(contacts, "normals", &Contacts::normals, 3);
+  add_array(contacts, "impulses", &Contacts::impulses);
+  py::class_<Joints, std::shared_ptr<Joints>> joints(m, "Joints");
+  joints.def("__len__", &Joints::size);
+  add_array(joints, "ids", &Joints::ids);
+  add_array(joints, "positions", &Joints::positions);
+  add_array(joints, "speeds", &Joints::speeds);
+  py::class_<FanHits, std::shared_ptr<FanHits>> fan(m, "FanHits");
+  fan.def("__len__", &FanHits::size).def_readonly("cast", &FanHits::cast).def_readonly("complete", &FanHits::complete);
+  add_array(fan, "objects", &FanHits::objects);
+  add_array(fan, "distances", &FanHits::distances);
+  add_array(fan, "positions", &FanHits::positions, 3);
+  add_array(fan, "normals", &FanHits::normals, 3);
+  py::class_<TriggerEvents, std::shared_ptr<TriggerEvents>> trigger(m, "TriggerEvents");
+  trigger.def_readonly("complete", &TriggerEvents::complete);
+  add_array(trigger, "inside", &TriggerEvents::inside);
+  add_array(trigger, "entered", &TriggerEvents::entered);
+  add_array(trigger, "left", &TriggerEvents::left);
+}
+
+void add_observation(py::module_& m) {
+  add_sensed(m);
+  py::class_<Observation, std::shared_ptr<Observation>> type(m, "Observation");
+  type.def_property_readonly("step", [](const Observation& o) { return o.bodies.step; })
+      .def_property_readonly("time", [](const Observation& o) { return o.bodies.time_s; })
+      .def_property_readonly("generation", [](const Observation& o) { return o.bodies.generation; })
+      .def_property_readonly("complete", [](const Observation& o) { return o.bodies.exact; })
+      .def_readonly("redo", &Observation::redo)
+      .def_readonly("skipped", &Observation::skipped)
+      .def_readonly("silent", &Observation::silent)
+      .def("__repr__", [](const Observation& o) {
+        return "<aurasim.Observation: " + std::to_string(o.bodies.size()) + " bodies in state " +
+               std::to_string(o.bodies.step) + ">";
+      });
+  add_array(type, "missing", &Observation::missing);
+  add_part(type, "bodies", &Observation::bodies);
+  add_part(type, "contacts", &Observation::contacts);
+  add_part(type, "joints", &Observation::joints);
+  add_parts(type, "fans", &Observation::fans);
+  add_parts(type, "triggers", &Observation::triggers);
 }
 
 void add_reports(py::module_& m) {
@@ -230,6 +302,87 @@ void add_sensing(PyWorld& world) {
   });
 }
 
+Mount mount_of(const std::optional<std::uint64_t>& body, const Vec3& position, const Quaternion& rotation) {
+  return {body, position, rotation};
+}
+
+void add_interest(py::module_& m) {
+  py::class_<RayFan>(m, "RayFan")
+      .def(py::init([](const Rows& directions, double range, const std::optional<std::uint64_t>& body,
+                       const Vec3& position, const Quaternion& rotation, std::int64_t every) {
+             if (directions.ndim() != 2 || directions.shape(1) != 3)
+               throw py::value_error("directions: allowed: n x 3");
+             return RayFan{mount_of(body, position, rotation),
+                           {directions.data(), directions.data() + directions.size()},
+                           range,
+                           every};
+           }),
+           py::arg("directions"), py::arg("range"), py::kw_only(), py::arg("body") = py::none(),
+           py::arg("position") = Vec3{}, py::arg("rotation") = Quaternion{1, 0, 0, 0}, py::arg("every") = 1)
+      .def_static(
+          "grid",
+          [](double from, double to, int columns, double up_from, double up_to, int rows) {
+            const std::vector<double> all = RayFan::grid(from, to, columns, up_from, up_to, rows);
+            return py::array_t<double>({static_cast<py::ssize_t>(all.size() / 3), py::ssize_t{3}}, all.data());
+          },
+          py::arg("azimuth_from"), py::arg("azimuth_to"), py::arg("columns"), py::arg("elevation_from") = 0.0,
+          py::arg("elevation_to") = 0.0, py::arg("rows") = 1)
+      .def_property_readonly_static("NOTHING", [](const py::object&) { return FanHits::kNothing; });
+  py::class_<Trigger>(m, "Trigger")
+      .def_static(
+          "box",
+          [](const Vec3& size, const std::optional<std::uint64_t>& body, const Vec3& p, const Quaternion& q) {
+            return Trigger{mount_of(body, p, q), size, 0};
+          },
+          py::arg("size"), py::kw_only(), py::arg("body") = py::none(), py::arg("position") = Vec3{},
+          py::arg("rotation") = Quaternion{1, 0, 0, 0})
+      .def_static(
+          "ball",
+          [](double radius, const std::optional<std::uint64_t>& body, const Vec3& p) {
+            return Trigger{mount_of(body, p, {1, 0, 0, 0}), {}, radius};
+          },
+          py::arg("radius"), py::kw_only(), py::arg("body") = py::none(), py::arg("position") = Vec3{});
+}
+
+/// Keeps the World: its calls come one after the other with the World's.
+class SharedObserver {
+ public:
+  SharedObserver(std::shared_ptr<SharedWorld> world, Observer observer)
+      : world_(std::move(world)), observer_(std::move(observer)) {}
+  ~SharedObserver() { close(); }
+  SharedObserver(const SharedObserver&) = delete;
+  SharedObserver& operator=(const SharedObserver&) = delete;
+
+  std::shared_ptr<Observation> next(double time_out_s) {
+    return world_->with([&](World&) { return std::make_shared<Observation>(observer_.next(Seconds(time_out_s))); });
+  }
+  void close() {
+    world_->with([&](World&) {
+      const Observer ended = std::move(observer_);
+      return 0;
+    });
+  }
+
+ private:
+  std::shared_ptr<SharedWorld> world_;
+  Observer observer_;
+};
+
+void add_observing(py::module_& m, PyWorld& world) {
+  py::class_<SharedObserver, std::shared_ptr<SharedObserver>>(m, "Observer")
+      .def("next", &SharedObserver::next)
+      .def("close", &SharedObserver::close);
+  world.def("observe",
+            [](const std::shared_ptr<SharedWorld>& w, std::uint32_t every, bool all, const Ids& bodies,
+               const std::vector<std::string>& patterns, const std::vector<std::pair<Vec3, Vec3>>& boxes, bool contacts,
+               bool joints, const std::vector<RayFan>& fans, const std::vector<Trigger>& triggers, double t) {
+              Interest interest{every, all, ids_of(bodies), patterns, {}, contacts, joints, fans, triggers};
+              for (const auto& [low, high] : boxes) interest.boxes.push_back({low, high});
+              Observer observer = w->with([&](World& o) { return o.observe(interest, Seconds(t)); });
+              return std::make_shared<SharedObserver>(w, std::move(observer));
+            });
+}
+
 void add_steering(PyWorld& world) {
   world.def("pause",
             [](SharedWorld& w, double t) { return w.with([=](World& o) { return shared(o.pause(Seconds(t))); }); });
@@ -322,12 +475,15 @@ void add_acting(PyWorld& world) {
 PYBIND11_MODULE(_aurasim, m) {
   add_errors(m);
   add_bodies(m);
+  add_observation(m);
   add_reports(m);
   PyWorld world(m, "World");
   add_opening(world);
   add_sensing(world);
   add_steering(world);
   add_acting(world);
+  add_interest(m);
+  add_observing(m, world);
   m.attr("__version__") = version();
 }
 

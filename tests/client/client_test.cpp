@@ -56,6 +56,33 @@ TEST_F(Client, AWorldIsLaunchedPausedAndSteppedStateByState) {
   EXPECT_TRUE(world.closed());
 }
 
+TEST_F(Client, AnObserverIsToldWhatItHasAskedFor) {
+  World world = launch_world();
+  const Bodies all = world.bodies();
+  Interest interest;
+  interest.bodies = {all.ids[0], all.ids[5]};
+  interest.contacts = true;
+  interest.fans.push_back({{{}, {0, 0, 2}, {1, 0, 0, 0}}, RayFan::grid(-3.1, 3.1, 64), 50, 1});
+  interest.triggers.push_back({{}, {1000, 1000, 1000}, 0});
+  Observer observer = world.observe(interest);
+  EXPECT_EQ(observer.next().bodies.ids, interest.bodies);
+  world.step(3);
+  for (std::int64_t step = 1; step <= 3; ++step) {
+    const Observation state = observer.next();
+    EXPECT_EQ(state.bodies.step, step);
+    EXPECT_TRUE(state.bodies.exact);
+    ASSERT_EQ(state.fans.size(), 1U);
+    EXPECT_TRUE(state.fans[0].complete);
+    EXPECT_EQ(state.fans[0].size(), 64U);
+    ASSERT_EQ(state.triggers.size(), 1U);
+    EXPECT_EQ(state.triggers[0].inside, all.ids);
+  }
+  interest.fans[0].range_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(world.observe(interest), Refused);
+  world.close();
+  EXPECT_THROW(observer.next(), Ended);
+}
+
 TEST_F(Client, AnActShowsInTheStateThatItSaysAndNotBefore) {
   World world = launch_world();
   const Acknowledgement ball = world.spawn({.shape = Shape::sphere(0.5), .mass_kg = 4, .position = {15, -15, 20}});

@@ -11,7 +11,9 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/agent/answers.h"
+#include "cli/agent/asked_interest.h"
 #include "cli/agent/asks.h"
+#include "cli/agent/observation_answer.h"
 #include "cli/agent/setpoints.h"
 #include "cli/key_choice.h"
 #include "cli/version.h"
@@ -122,6 +124,18 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return state(run().step(count, patience));
   }
   if (what == "info") return {info_json(run()), {}};
+  if (what == "observe") {
+    run().wait_for_listeners(patience);
+    return {{{"observer", run().observe(asked_interest(asked, run().launch().scene))}}, {}};
+  }
+  if (what == "next") {
+    const Observed observed = run().next(asked.value("observer", std::uint64_t{0}), patience);
+    return observation_message(observed, run().launch().step_s());
+  }
+  if (what == "end_observer") {
+    run().end_observer(asked.value("observer", std::uint64_t{0}));
+    return {json::object(), {}};
+  }
   if (what == "nodes") return {nodes_json(run().nodes()), {}};
   if (what == "act") return {act(asked, patience), {}};
   if (what == "ray") {

@@ -116,8 +116,8 @@ json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes) {
 json info_json(const RunLink& run) {
   const config::Launch& launch = run.launch();
   json prototypes = json::array(), regions = json::array(), joints = json::array();
-  for (const core::JointSpec& joint : launch.scene.joints) joints.push_back(joint.name);
   for (const core::Prototype& prototype : launch.scene.prototypes) prototypes.push_back(prototype.name);
+  for (const core::JointSpec& joint : launch.scene.joints) joints.push_back(joint.name);
   for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
     regions.push_back(box_json(launch.regions.region(core::RegionId{r})));
   }

@@ -1,6 +1,8 @@
 #include "cli/agent/run_link.h"
 
 #include <algorithm>
+#include <memory>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +18,7 @@ using namespace std::chrono_literals;
 using Steer = dds::RunCommandKind;
 
 constexpr auto kRound = 2ms;
+constexpr std::size_t kMostObservers = 16;    ///< of one client
 constexpr auto kStillHereEvery = 20ms;
 constexpr auto kPatienceWithSilence = 5s;     ///< of all nodes, before the run has ended
 constexpr auto kPatienceWithAReader = 1s;     ///< that some node has not found
@@ -37,6 +40,10 @@ RunLink::RunLink(const config::Launch& launch, const std::optional<security::Mem
 void RunLink::turn(std::chrono::milliseconds time_out) {
   watch_.look(time_out);
   while (watch_.view().compose(overseer::view_clock_s()) != nullptr) {
+  }
+  if (!observers_.empty()) {
+    const std::set<core::RegionId> live = live_regions();
+    for (const auto& [number, observer] : observers_) observer->turn(live, stands());
   }
   if (has_met_) look_for_the_end();
   say_still_here();
@@ -74,6 +81,25 @@ core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience)
   const core::Step at_step = setpoints.at_step;
   setpoints_->send(std::move(setpoints));
   return at_step;
+}
+
+std::uint64_t RunLink::observe(AskedInterest asked) {
+  if (observers_.size() >= kMostObservers) {
+    throw Problem(Kind::kRefused, fmt::format("observers: allowed: {} at a time", kMostObservers));
+  }
+  observers_[++last_observer_] = std::make_unique<Observer>(participant_, watch_, std::move(asked));
+  return last_observer_;
+}
+
+Observed RunLink::next(std::uint64_t number, const Patience& patience) {
+  const auto observer = observers_.find(number);
+  if (observer == observers_.end()) throw Problem(Kind::kRefused, "this observer is closed");
+  for (;;) {
+    if (std::optional<Observed> state = observer->second->next()) return std::move(*state);
+    patience.check("no state has been observed");
+    observer->second->wait(kRound);
+    turn(0ms);
+  }
 }
 
 void RunLink::look_for_the_end() {
@@ -161,8 +187,52 @@ bool RunLink::all_have_published(const Standing& wanted) {
   });
 }
 
-/// Nodes publish all that they have for a reader that has just come. False: some have not found this one.
+/// Once told, nodes say without being asked again what they have of each state in which they stand.
+void RunLink::watch_standing_states() {
+  if (!standing_) {
+    standing_.emplace(participant_, watch_.observer_settings());
+    core::Interest all;
+    all.every = 0;
+    all.all = true;
+    standing_->want(all);
+  }
+  standing_->use(watch_.observer_settings());
+}
+
+/// True once it is complete: all regions have told one state. What was told before a redo does not count any more.
+bool RunLink::take_standing(StandingState& state) {
+  for (core::Observation& observation : standing_->take()) {
+    const core::RegionId source = observation.source;
+    told_.insert_or_assign(source, std::move(observation));
+  }
+  const auto when = [](const core::Observation& told) { return std::tuple(told.generation, told.redo, told.stamp); };
+  std::tuple<core::Generation, std::uint32_t, core::Step> newest{};
+  for (const auto& [region, told] : told_) newest = std::max(newest, when(told));
+  const bool all_have_told = std::ranges::all_of(live_regions(), [&](core::RegionId region) {
+    const auto told = told_.find(region);
+    return told != told_.end() && when(told->second) == newest;
+  });
+  if (!all_have_told) return false;
+  for (const auto& [region, told] : told_) {
+    if (when(told) == newest) state.accept(told);
+  }
+  return state.is_complete(live_regions());
+}
+
 bool RunLink::collect(StandingState& state, const Patience& patience) {
+  watch_standing_states();
+  const auto end = Clock::now() + kPatienceWithAReader;
+  while (!take_standing(state)) {
+    patience.check("not all regions have told the state in which they stand");
+    if (Clock::now() > end) return collect_key_frames(state, patience);
+    standing_->wait(kRound);
+    turn(0ms);
+  }
+  return true;
+}
+
+/// Nodes publish all that they have for a reader that has just come. False: some have not found this one.
+bool RunLink::collect_key_frames(StandingState& state, const Patience& patience) {
   dds::ReplicaReader reader(participant_, watch_.observer_settings());
   const auto end = Clock::now() + kPatienceWithAReader;
   while (!state.is_complete(live_regions())) {
@@ -229,7 +299,11 @@ const RunLink::Standing& RunLink::known_standing(const Patience& patience) {
 
 WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   const auto begin = Clock::now();
-  while (!stands()) {
+  const auto is_known_to_stand = [this] {  // earlier than the statuses say
+    const Standing said = farthest();
+    return stands_in_ && stands_in_->generation == said.generation && stands_in_->step == said.step;
+  };
+  while (!stands() && !is_known_to_stand()) {
     patience.check("steps are for a run that is paused");
     if (Clock::now() > begin + kPatienceWithAPause) {
       throw Problem(Kind::kRefused, "steps are for a run that is paused");
@@ -239,13 +313,22 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   known_standing(patience);
   const Standing wanted{stands_in_->generation, stands_in_->step + count};
   say_still_here_until(wanted, patience);
+  watch_standing_states();
   steering_.send_step(wanted.generation, stands_in_->step, count);
   stands_in_.reset();
-  const auto is_there = [&] {  // or all have gone back meanwhile
-    return all_have_published(wanted) || (farthest().generation > wanted.generation && stands());
-  };
-  wait_until(is_there, patience, "not every region has come to that state");
-  return standing_state(patience);
+  StandingState state(wanted.generation, wanted.step);
+  std::optional<Clock::time_point> published_since;
+  while (!take_standing(state)) {
+    patience.check("not every region has come to that state");
+    if (!published_since && all_have_published(wanted)) published_since = Clock::now();
+    const bool is_late = published_since && Clock::now() > *published_since + kPatienceWithAReader;
+    const bool has_gone_back = farthest().generation > wanted.generation && stands();
+    if (is_late || has_gone_back) return standing_state(patience);
+    standing_->wait(kRound);
+    turn(0ms);
+  }
+  stands_in_ = Standing{state.generation(), state.step()};
+  return {state.generation(), state.step(), true, state.bodies()};
 }
 
 void RunLink::steer(Steer kind, const Patience& patience) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,10 +12,12 @@
 #include <vector>
 
 #include "cli/agent/launched_run.h"
+#include "cli/agent/observer.h"
 #include "cli/agent/patience.h"
 #include "cli/agent/standing_state.h"
 #include "cli/command_client.h"
 #include "cli/run_steering.h"
+#include "dds/observation_bus.h"
 #include "dds/setpoint_bus.h"
 #include "overseer/world_watch.h"
 #include "security/key_store.h"
@@ -61,6 +64,11 @@ class RunLink {
   std::vector<Delivery> act(std::vector<core::Command> commands, const Patience& patience);
   /// The process that has taken the region over.
   std::uint32_t drain(core::RegionId region, const Patience& patience);
+  /// Begins to observe; returns the observer's number. Throws Problem for what cannot be asked for.
+  std::uint64_t observe(AskedInterest asked);
+  /// The next state of it.
+  Observed next(std::uint64_t observer, const Patience& patience);
+  void end_observer(std::uint64_t observer) { observers_.erase(observer); }
   CommandClient& client() { return client_; }
   void wait_for_listeners(const Patience& patience);
 
@@ -79,6 +87,9 @@ class RunLink {
   bool all_have_published(const Standing& wanted);
   WorldState standing_state(const Patience& patience);
   bool collect(StandingState& state, const Patience& patience);
+  bool collect_key_frames(StandingState& state, const Patience& patience);
+  void watch_standing_states();
+  bool take_standing(StandingState& state);
   WorldState seen_state(const Patience& patience);
   const Standing& known_standing(const Patience& patience);
   void say_still_here();
@@ -94,7 +105,11 @@ class RunLink {
   std::optional<dds::SetpointWriter> setpoints_;  ///< once it has steered anything
   Clock::time_point said_last_;                   ///< that it is still here
   std::unique_ptr<LaunchedRun> launched_;
-  std::optional<Standing> stands_in_;  ///< as all regions have shown; nothing: not known
+  std::optional<Standing> stands_in_;                 ///< as all regions have shown; nothing: not known
+  std::optional<dds::ObserverEndpoint> standing_;     ///< tells all bodies of states in which the run stands
+  std::map<core::RegionId, core::Observation> told_;  ///< by it, the last of each region
+  Observers observers_;
+  std::uint64_t last_observer_ = 0;
   bool has_met_ = false;
   std::optional<Clock::time_point> alone_since_;
 };

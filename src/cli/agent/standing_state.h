@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "core/observation.h"
 #include "core/replica.h"
 
 namespace aurasim::cli::agent {
@@ -24,6 +25,8 @@ class StandingState {
   StandingState(core::Generation generation, core::Step at_least) : generation_(generation), at_least_(at_least) {}
 
   void accept(core::Replica replica);
+  /// All bodies of a region, told by another way.
+  void accept(const core::Observation& observation);
   /// Each of these regions has given all that it has of one and the same state.
   bool is_complete(const std::set<core::RegionId>& regions) const;
 

@@ -26,12 +26,17 @@ from ._aurasim import (  # noqa: F401
     Acknowledgement,
     BadFile,
     Bodies,
+    Contacts,
     Ended,
     Error,
+    FanHits,
+    Joints,
     LaunchFailed,
     NodeStatus,
     NoProgram,
     NoSuchRun,
+    Observation,
+    RayFan,
     RayHit,
     Refused,
     RunDiffers,
@@ -39,13 +44,17 @@ from ._aurasim import (  # noqa: F401
     SavedWorld,
     Shape,
     TimedOut,
+    Trigger,
+    TriggerEvents,
     __version__,
 )
+from ._aurasim import Observer as _Observer
 from ._aurasim import World as _World
 
 __all__ = [
-    "Acknowledgement", "BadFile", "Bodies", "Ended", "Error", "LaunchFailed", "NodeStatus", "NoProgram", "NoSuchRun",
-    "RayHit", "Refused", "RunDiffers", "RunInfo", "SavedWorld", "Shape", "TimedOut", "World", "__version__",
+    "Acknowledgement", "BadFile", "Bodies", "Contacts", "Ended", "Error", "FanHits", "Joints", "LaunchFailed",
+    "NodeStatus", "NoProgram", "NoSuchRun", "Observation", "Observer", "RayFan", "RayHit", "Refused", "RunDiffers",
+    "RunInfo", "SavedWorld", "Shape", "TimedOut", "Trigger", "TriggerEvents", "World", "__version__",
 ]
 
 Overrides = Union[Mapping[str, Any], Iterable[str]]
@@ -67,6 +76,27 @@ def _override_texts(overrides: Overrides) -> list[str]:
 
 def _path(path: str | os.PathLike[str] | None) -> str:
     return "" if path is None else os.fspath(path)
+
+
+class Observer:
+    """What `World.observe` has begun. Close it, or use it in a `with` block; it ends with its World, too."""
+
+    def __init__(self, observer: _Observer) -> None:
+        self._observer = observer
+
+    def next(self, timeout: float = 60.0) -> Observation:
+        """The next state, in order; waits for it. One that has come is kept until it is asked for: up to 256 of them,
+        then the oldest go, and `skipped` counts them."""
+        return self._observer.next(timeout)
+
+    def close(self) -> None:
+        self._observer.close()
+
+    def __enter__(self) -> Observer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 class World:
@@ -130,6 +160,17 @@ class World:
     def ray(self, start: Vector, end: Vector, timeout: float = 60.0) -> RayHit:
         """What is first on the way from `start` to `end`?"""
         return self._world.ray(start, end, timeout)
+
+    def observe(self, *, every: int = 1, all: bool = False, bodies: Iterable[int] = (), patterns: Iterable[str] = (),
+                boxes: Iterable[tuple[Vector, Vector]] = (), contacts: bool = False, joints: bool = False,
+                fans: Iterable[RayFan] = (), triggers: Iterable[Trigger] = (), timeout: float = 60.0) -> Observer:
+        """Begins to observe: only what is asked for is sent. `every`: states whose number is a multiple of it; 0: only
+        those in which the run stands. `bodies`: ids; `patterns`: of names of kinds of bodies; `boxes`: (low, high) of
+        boxes that a body's origin is in. `contacts`, `joints`: of these bodies. Raises Refused for what cannot be
+        asked for."""
+        ids = np.fromiter(bodies, dtype=np.uint64)
+        return Observer(self._world.observe(every, all, ids, list(patterns), list(boxes), contacts, joints, list(fans),
+                                            list(triggers), timeout))
 
     # Steer.
 

@@ -23,6 +23,7 @@
 
 #include <aurasim/bodies.h>
 #include <aurasim/errors.h>
+#include <aurasim/observe.h>
 
 namespace aurasim::client {
 
@@ -146,6 +147,25 @@ struct SavedWorld {
   std::vector<std::string> parts;  ///< else
 };
 
+/// What World::observe() has begun; it ends with this, or with the World. Used as the World is.
+class AURASIM_API Observer {
+ public:
+  Observer(Observer&&) noexcept;
+  Observer& operator=(Observer&&) noexcept;
+  ~Observer();
+
+  /// The next state, in order; waits for it. One that has come is kept until it is asked for: up to 256 of them, then
+  /// the oldest go.
+  Observation next(Seconds time_out = kUsualTimeOut);
+  void close();
+
+ private:
+  friend class World;
+  struct Impl;
+  explicit Observer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Used by one thread at a time. Every call throws one of errors.h, at the latest soon after its time-out. Where it
 /// says `at_step`: not before that state; 0: as soon as possible.
 ///
@@ -176,6 +196,10 @@ class AURASIM_API World {
   Bodies bodies(Seconds time_out = kUsualTimeOut);
   /// What is first on the way from a point to another, m? All regions are asked.
   RayHit ray(const Vec3& from, const Vec3& to, Seconds time_out = kUsualTimeOut);
+
+  /// Begins to observe: only what is asked for is sent, up to every state. At most 16 observers at a time. Throws
+  /// Refused for what cannot be asked for.
+  Observer observe(const Interest& interest, Seconds time_out = kUsualTimeOut);
 
   // Steer. All nodes do so in one state.
   /// Returns the bodies of the state in which all stand.
@@ -229,9 +253,10 @@ class AURASIM_API World {
                                               Seconds time_out = kUsualTimeOut);
 
  private:
+  friend class Observer;
   struct Impl;
-  explicit World(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit World(std::shared_ptr<Impl> impl);
+  std::shared_ptr<Impl> impl_;  ///< observers look whether it is still there
 };
 
 /// "0.1.0", of this library.

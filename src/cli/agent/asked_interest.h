@@ -1,0 +1,28 @@
+// What a client wants to observe, from JSON.
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/agent/fans_and_triggers.h"
+#include "core/interest.h"
+#include "core/scene.h"
+
+namespace aurasim::cli::agent {
+
+struct AskedInterest {
+  core::Interest selection;  ///< of bodies; client and sequence are not filled in
+  std::vector<FanSpec> fans;
+  std::vector<TriggerSpec> triggers;
+};
+
+inline constexpr std::size_t kMostFans = 16;
+inline constexpr std::size_t kMostRays = 100'000;  ///< of a fan
+inline constexpr std::size_t kMostTriggers = 64;
+inline constexpr double kFarthestRay_m = 1e4;
+
+/// Throws Problem (kRefused) with the field, what was found and what is allowed.
+AskedInterest asked_interest(const nlohmann::json& json, const core::Scene& scene);
+
+}  // namespace aurasim::cli::agent

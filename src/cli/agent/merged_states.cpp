@@ -1,0 +1,174 @@
+#include "cli/agent/merged_states.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace aurasim::cli::agent {
+namespace {
+
+/// States that are kept waiting, at most: the oldest go.
+constexpr std::size_t kMostPending = 4096;
+
+using Observations = std::vector<const core::Observation*>;
+
+Observations all_of(const std::map<core::RegionId, core::Observation>& hosted,
+                    const std::vector<core::Observation>& made_up) {
+  Observations all;
+  for (const auto& [source, observation] : hosted) all.push_back(&observation);
+  for (const core::Observation& observation : made_up) all.push_back(&observation);
+  return all;
+}
+
+/// The highest epoch is the truth; under one epoch, exact rows before those of earlier states, and the host's before
+/// those of who has handed it over.
+std::vector<WorldBody> bodies_of(const Observations& all) {
+  struct Row {
+    const core::ObservedBody* body;
+    bool under_way;
+  };
+  std::vector<Row> rows;
+  for (const core::Observation* observation : all) {
+    for (const core::ObservedBody& body : observation->bodies) {
+      rows.push_back({&body, body.row.host != observation->source});
+    }
+  }
+  const auto rank = [](const Row& row) {
+    return std::tuple(row.body->row.id, ~row.body->row.epoch, row.body->stale, row.under_way);
+  };
+  std::ranges::stable_sort(rows, {}, rank);
+  std::vector<WorldBody> bodies;
+  for (const Row& row : rows) {
+    if (bodies.empty() || bodies.back().row.id != row.body->row.id) bodies.push_back({row.body->row, row.under_way});
+  }
+  return bodies;
+}
+
+}  // namespace
+
+void MergedStates::begin_generation(core::Generation generation) {
+  generation_ = generation;
+  redo_ = 0;
+  given_ = -1;
+  has_given_ = false;
+  pending_.clear();
+  told_.clear();
+}
+
+/// What was told of this state and later ones before is void.
+void MergedStates::go_back(core::Step to, std::uint32_t redo) {
+  std::erase_if(pending_, [&](const auto& entry) { return entry.first >= to && entry.second.redo < redo; });
+  for (auto& [region, step] : told_) step = std::min(step, to - 1);
+  given_ = std::min(given_, to - 1);
+  redo_ = redo;
+}
+
+void MergedStates::accept(core::Observation observation, double now_s) {
+  if (generation_ && observation.generation < *generation_) return;
+  if (!generation_ || observation.generation > *generation_) begin_generation(observation.generation);
+  const bool is_hosted = observation.kind == core::Observation::Kind::kHosted;
+  if (is_hosted && observation.redo > redo_) go_back(observation.stamp, observation.redo);
+  if (observation.stamp <= given_) return;
+  Pending& pending = pending_.try_emplace(observation.stamp, Pending{observation.redo, now_s, {}, {}}).first->second;
+  if (observation.redo < pending.redo) return;
+  if (observation.redo > pending.redo) pending = {observation.redo, now_s, {}, {}};
+  if (is_hosted) {
+    core::Step& told = told_.try_emplace(observation.source, observation.stamp).first->second;
+    told = std::max(told, observation.stamp);
+    pending.hosted.insert_or_assign(observation.source, std::move(observation));
+  } else {
+    pending.made_up.push_back(std::move(observation));
+  }
+  if (pending_.size() > kMostPending) pending_.erase(pending_.begin());
+}
+
+std::vector<core::BodyId> MergedStates::missing(const Pending& pending) const {
+  std::set<core::BodyId> under_way, known;
+  for (const core::Observation* observation : all_of(pending.hosted, pending.made_up)) {
+    for (const core::ObservedBody& body : observation->bodies) (body.stale ? under_way : known).insert(body.row.id);
+    known.insert(observation->outside.begin(), observation->outside.end());
+  }
+  std::vector<core::BodyId> missing;
+  std::ranges::set_difference(under_way, known, std::back_inserter(missing));
+  return missing;
+}
+
+bool MergedStates::have_passed(core::Step step, const std::set<core::RegionId>& regions) const {
+  return std::ranges::all_of(regions, [&](core::RegionId region) {
+    const auto told = told_.find(region);
+    return told != told_.end() && told->second > step;
+  });
+}
+
+bool MergedStates::is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions,
+                           bool stands, double now_s) const {
+  if (now_s - pending.since_s > settings_.patience_s) return true;
+  const bool all_have_told =
+      std::ranges::all_of(regions, [&](core::RegionId region) { return pending.hosted.contains(region); });
+  if (!all_have_told) return have_passed(step, regions);
+  return stands || missing(pending).empty() || have_passed(step + settings_.latest_steps, regions);
+}
+
+MergedState MergedStates::merge(core::Step step, const Pending& pending,
+                                const std::set<core::RegionId>& regions) const {
+  MergedState state;
+  state.generation = *generation_;
+  state.redo = pending.redo;
+  state.step = step;
+  state.missing = missing(pending);
+  for (const core::RegionId region : regions) {
+    if (!pending.hosted.contains(region)) state.silent.push_back(region);
+  }
+  const Observations all = all_of(pending.hosted, pending.made_up);
+  for (const auto& [source, observation] : pending.hosted) {
+    state.sequence = state.sequence == 0 ? observation.sequence : std::min(state.sequence, observation.sequence);
+  }
+  state.bodies = bodies_of(all);
+  for (const core::Observation* observation : all) {
+    state.joints.insert(state.joints.end(), observation->joints.begin(), observation->joints.end());
+    state.contacts.insert(state.contacts.end(), observation->contacts.begin(), observation->contacts.end());
+  }
+  std::ranges::sort(state.joints, {}, &core::JointState::id);
+  std::ranges::stable_sort(state.contacts, {}, [](const core::ContactImpulse& c) { return std::pair(c.a, c.b); });
+  // Of what is on its way twice, both tell.
+  const auto same_joint = [](const core::JointState& x, const core::JointState& y) { return x.id == y.id; };
+  state.joints.erase(std::unique(state.joints.begin(), state.joints.end(), same_joint), state.joints.end());
+  const auto same_pair = [](const core::ContactImpulse& x, const core::ContactImpulse& y) {
+    return x.a == y.a && x.b == y.b;
+  };
+  state.contacts.erase(std::unique(state.contacts.begin(), state.contacts.end(), same_pair), state.contacts.end());
+  // A body in a box when it left may be outside by now.
+  std::set<core::BodyId> outside;
+  for (const core::Observation* observation : all) {
+    outside.insert(observation->outside.begin(), observation->outside.end());
+  }
+  std::set<core::BodyId> exact;
+  for (const core::Observation* observation : all) {
+    for (const core::ObservedBody& body : observation->bodies) {
+      if (!body.stale) exact.insert(body.row.id);
+    }
+  }
+  std::erase_if(state.bodies,
+                [&](const WorldBody& body) { return outside.contains(body.row.id) && !exact.contains(body.row.id); });
+  return state;
+}
+
+std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regions, bool stands, double now_s) {
+  std::vector<MergedState> states;
+  while (!pending_.empty() && !regions.empty()) {
+    const auto& [step, pending] = *pending_.begin();
+    if (!is_over(step, pending, regions, stands, now_s)) break;
+    MergedState state = merge(step, pending, regions);
+    // Before the first whole state some regions have not yet heard what is wanted.
+    if (state.silent.empty() || has_given_) {
+      given_ = step;
+      has_given_ = true;
+      states.push_back(std::move(state));
+    }
+    pending_.erase(pending_.begin());
+  }
+  return states;
+}
+
+}  // namespace aurasim::cli::agent

@@ -1,0 +1,11 @@
+// What a client is told of an observed state, as JSON and bytes; client/observation.cpp reads it.
+#pragma once
+
+#include "cli/agent/observer.h"
+#include "client/message.h"
+
+namespace aurasim::cli::agent {
+
+client::Message observation_message(const Observed& observed, double step_s);
+
+}  // namespace aurasim::cli::agent

@@ -1,0 +1,163 @@
+// Simulated clusters: real protocol, real physics, virtual time. What an observer puts together of their nodes is,
+// state by state and bit by bit, what it is told of the same world on one node, also of bodies between two hosts.
+#include <cstring>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "cli/agent/merged_states.h"
+#include "cluster/cluster_sim.h"
+#include "cluster/scenes.h"
+#include "node/observation_feed.h"
+
+namespace aurasim::cli::agent {
+namespace {
+
+using core::RegionId;
+using core::Step;
+
+constexpr double kCell = 9;
+constexpr Step kSteps = 150;
+
+class Watched {
+ public:
+  Watched(const core::Scene& scene, const test::ClusterOptions& options, core::Interest interest)
+      : interest_(std::move(interest)),
+        lookahead_(options.aura.lookahead),
+        states_({.latest_steps = 2 * options.aura.lookahead + 2, .patience_s = 1e9}),
+        sim_(scene, options) {
+    for (std::uint32_t r = 0; r < options.map.size(); ++r) {
+      regions_.insert(RegionId{r});
+      feeds_.emplace_back(node::FeedSettings{RegionId{r}, 0, 1, lookahead_}, scene);
+    }
+    sim_.on_state = [this](node::Node& node, const node::StepReport& report, double) { tell(node, report); };
+  }
+
+  test::Outcome run() { return sim_.run(kSteps); }
+
+  std::map<Step, MergedState> seen;
+  std::size_t made_up = 0;  ///< rows
+
+ private:
+  void tell(node::Node& node, const node::StepReport& report) {
+    node::ObservationFeed& feed = feeds_[core::value_of(node.region())];
+    node.observe(true, interest_.contacts);
+    const auto& open = node.protocol().departures().open();
+    if (report.put_back_from) {
+      feed.begin(report.step, open);
+      return;
+    }
+    feed.note(report, open);
+    for (const node::MadeUp& state : report.made_up) {
+      if (interest_.is_for(state.step)) accept(feed.compose(interest_, state, node.redos()));
+    }
+    if (!interest_.is_for(report.step)) return;
+    accept(feed.compose(interest_, node.world().snapshot(), node.world().contact_impulses(), node.redos()));
+  }
+
+  void accept(core::Observation observation) {
+    if (observation.kind == core::Observation::Kind::kMadeUp) made_up += observation.bodies.size();
+    states_.accept(std::move(observation), 0);
+    for (MergedState& state : states_.take(regions_, false, 0)) seen.insert_or_assign(state.step, std::move(state));
+  }
+
+  core::Interest interest_;
+  int lookahead_;
+  std::set<RegionId> regions_;
+  std::vector<node::ObservationFeed> feeds_;
+  MergedStates states_;
+  test::ClusterSim sim_;
+};
+
+/// Where, or nothing. Host and epoch are no matter of the world's.
+std::string first_difference(const MergedState& a, const MergedState& b) {
+  std::ostringstream where;
+  where << "state " << a.step << ": ";
+  if (!a.is_complete() || !b.is_complete()) return where.str() + "incomplete";
+  if (a.bodies.size() != b.bodies.size()) return where.str() + "number of bodies";
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    const core::ReplicaBody &x = a.bodies[i].row, &y = b.bodies[i].row;
+    const bool same = x.id == y.id && x.prototype == y.prototype && x.asleep == y.asleep && x.p_WB == y.p_WB &&
+                      x.q_WB.coeffs() == y.q_WB.coeffs() && x.v_WB == y.v_WB && x.w_WB == y.w_WB;
+    where << "body " << core::value_of(x.id);
+    if (!same) return where.str();
+    where.str("");
+    where << "state " << a.step << ": ";
+  }
+  if (a.contacts.size() != b.contacts.size()) return where.str() + "number of contacts";
+  for (std::size_t i = 0; i < a.contacts.size(); ++i) {
+    const core::ContactImpulse &x = a.contacts[i], &y = b.contacts[i];
+    if (x.a != y.a || x.b != y.b || x.p_W != y.p_W || x.normal_W != y.normal_W || x.impulse_Ns != y.impulse_Ns) {
+      where << "contact " << x.a << " with " << x.b;
+      return where.str();
+    }
+  }
+  return {};
+}
+
+test::ClusterOptions options_for(int seed) {
+  test::ClusterOptions options;
+  options.sync = core::SyncMode::kDeterministic;
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.map = core::RegionMap::grid(2, 2, kCell, kCell);
+  options.aura.lookahead = 1 + seed % 3;
+  options.aura.top_speed_m_s = 40;
+  options.aura.redo = true;
+  options.over_the_wire = true;
+  options.solver = seed % 2 == 0 ? physics::Solver::kSoftStep : physics::Solver::kSequentialImpulse;
+  options.faults.latency_s = 0.004 * (seed % 5);
+  options.faults.jitter_s = 0.004 * (seed % 3);
+  return options;
+}
+
+class Observation : public testing::TestWithParam<int> {
+ protected:
+  /// Of every state that both have: at least all but those at the very end, which wait for bodies under way.
+  void expect_the_same(const core::Interest& interest) {
+    const core::Scene scene = test::thrown_bodies(40, 2 * kCell, 2 * kCell, 12, static_cast<std::uint64_t>(GetParam()));
+    test::ClusterOptions options = options_for(GetParam());
+    Watched apart(scene, options, interest);
+    const test::Outcome outcome = apart.run();
+    options.map = core::RegionMap::columns(1, 1);
+    Watched together(scene, options, interest);
+    together.run();
+    EXPECT_GT(outcome.hand_offs, 0U) << "or this test proves nothing";
+    if (options.aura.lookahead > 1) {
+      EXPECT_GT(apart.made_up, 0U);
+    }
+    std::size_t compared = 0, contacts = 0;
+    for (const auto& [step, state] : apart.seen) {
+      const auto other = together.seen.find(step);
+      if (other == together.seen.end()) continue;
+      ASSERT_EQ(first_difference(state, other->second), "");
+      ++compared;
+      contacts += state.contacts.size();
+    }
+    EXPECT_GE(compared, static_cast<std::size_t>((kSteps - 20) / interest.every));
+    if (interest.contacts) {
+      EXPECT_GT(contacts, 0U);
+    }
+    std::cout << compared << " states, " << outcome.hand_offs << " hand-offs, " << apart.made_up << " rows made up, "
+              << contacts << " contacts, " << outcome.redos << " redos\n";
+  }
+};
+
+TEST_P(Observation, OfAllBodiesIsThatOfOneNode) {
+  core::Interest interest;
+  interest.all = true;
+  interest.contacts = true;
+  expect_the_same(interest);
+}
+
+TEST_P(Observation, OfABoxAcrossBordersIsThatOfOneNode) {
+  core::Interest interest;
+  interest.boxes = {{{-4, -3, -1}, {3, 5, 4}}};
+  interest.contacts = true;
+  interest.every = 3;
+  expect_the_same(interest);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Observation, testing::Range(1, 1 + test::seeds_or(6)));
+
+}  // namespace
+}  // namespace aurasim::cli::agent
