@@ -53,7 +53,6 @@ RunInfo info_of(const json& head) {
   info.sync = head.value("sync", "");
   info.joints = head.value("joints", std::vector<std::string>{});
   info.prototypes = head.value("prototypes", std::vector<std::string>{});
-  info.joints = head.value("joints", std::vector<std::string>{});
   for (const json& box : head.value("regions", json::array())) info.regions.push_back(box_of(box));
   return info;
 }

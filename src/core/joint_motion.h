@@ -21,12 +21,8 @@ JointFrame frame_of(const JointSpec& joint, const Pose& X_WA, const Pose& X_WB);
 /// sliders 2, springs theirs if they have one that is not held. Nothing: the joint has none, or several.
 std::optional<int> coordinate_of(const JointSpec& joint);
 
-struct JointMotion {
-  double position = 0;  ///< m, or rad in (-pi, pi]: J of a from J of b
-  double speed = 0;     ///< m/s or rad/s
-};
-
-/// `a`, `b`: origin, rotation, velocity and spin of the bodies. Without b: a BodyState as it is by itself.
+/// Without an effort, and an angle in (-pi, pi]. `a`, `b`: origin, rotation, velocity and spin of the bodies. Without
+/// b: a BodyState as it is by itself.
 JointMotion joint_motion(const JointFrame& frame, int coordinate, const BodyState& a, const BodyState& b);
 
 }  // namespace aurasim::core

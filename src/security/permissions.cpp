@@ -52,7 +52,7 @@ Grants grants_of_node(const std::string& region) {
   grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
                        {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
                        {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here},
-                       {"control", {kWorld}},          {"interest", {kWorld}}};
+                       {"control", {kWorld}},           {"interest", {kWorld}}};
   return grants;
 }
 
@@ -73,7 +73,8 @@ const Grant kInterest = {"interest", {kWorld}};
 
 Grants grants_of_operator() {
   Grants grants;
-  grants.publishes = {{"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}, kInterest};
+  grants.publishes = {
+      {"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}, kInterest};
   grants.subscribes = what_viewers_see();
   grants.subscribes.push_back({"command_reply", {kWorld}});
   grants.subscribes.push_back({"run_control", {kWorld}});
@@ -82,9 +83,9 @@ Grants grants_of_operator() {
 
 Grants grants_of_recorder() {
   Grants grants;
-  for (const char* topic :
-       {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key",
-        "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint", "control", "interest", "observation"}) {
+  for (const char* topic : {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica",
+                            "replica_key", "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint",
+                            "control", "interest", "observation"}) {
     grants.subscribes.push_back({topic, {"*"}});
   }
   return grants;

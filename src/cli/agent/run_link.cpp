@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 using Steer = dds::RunCommandKind;
 
 constexpr auto kRound = 2ms;
-constexpr std::size_t kMostObservers = 16;    ///< of one client
+constexpr std::size_t kMostObservers = 16;  ///< of one client
 constexpr auto kStillHereEvery = 20ms;
 constexpr auto kPatienceWithSilence = 5s;     ///< of all nodes, before the run has ended
 constexpr auto kPatienceWithAReader = 1s;     ///< that some node has not found
