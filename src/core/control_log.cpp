@@ -73,7 +73,8 @@ bool ControlLog::is_silent(std::uint64_t client, Step step) const {
 }
 
 std::optional<Vec3> ControlLog::in_silence(const Vec3&, Quantity quantity) const {
-  const bool stands_still = quantity == Quantity::kVelocity || quantity == Quantity::kSpin;
+  const bool stands_still =
+      quantity == Quantity::kVelocity || quantity == Quantity::kSpin || quantity == Quantity::kDriving;
   if (rules_.on_silence == OnSilence::kZero || !stands_still) return std::nullopt;
   return Vec3(Vec3::Zero());
 }

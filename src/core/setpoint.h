@@ -12,14 +12,17 @@
 
 namespace aurasim::core {
 
-/// Of a body, in the world's frame.
+/// Of a body, in the world's frame but for the last.
 enum class Quantity : std::uint8_t {
   kForce,     ///< N, at the centre of mass
   kTorque,    ///< N m
   kVelocity,  ///< m/s: the body has it before each state is computed
   kSpin,      ///< rad/s: likewise
+  /// Likewise, of a mobile base: m/s ahead and to the left, rad/s about the vertical; ahead is where the body's x axis
+  /// points on the ground (docs/ros2.md). How it rises, falls and tilts is left to gravity and contacts.
+  kDriving,
 };
-inline constexpr int kQuantities = 4;
+inline constexpr int kQuantities = 5;
 
 struct BodySetpoint {
   BodyId id{};

@@ -15,7 +15,8 @@
 namespace aurasim::node {
 namespace {
 
-constexpr std::array<std::string_view, core::kQuantities> kQuantityNames = {"force", "torque", "velocity", "spin"};
+constexpr std::array<std::string_view, core::kQuantities> kQuantityNames = {"force", "torque", "velocity", "spin",
+                                                                            "driving"};
 constexpr std::string_view kDrive = "drive";
 constexpr std::size_t kColumns = 10, kFirstNumber = 4;
 

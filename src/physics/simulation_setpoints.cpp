@@ -20,6 +20,35 @@ bool bears(const core::Vec3& before, const core::Vec3& after, double limit) {
   return after.norm() <= std::max(limit, before.norm());
 }
 
+/// A body's velocity and spin, as a mobile base that drives has them.
+struct Driven {
+  core::Vec3 v_WB, w_WB;
+};
+
+/// Nothing: it stands on end, and ahead is nowhere on the ground.
+std::optional<Driven> driven(const btRigidBody& body, const core::Vec3& value) {
+  constexpr double kFlat = 1e-6;
+  const core::Vec3 x_W = from_bullet(body.getWorldTransform().getBasis().getColumn(0));
+  const double length = x_W.head<2>().norm();
+  if (length < kFlat) return std::nullopt;
+  const double cosine = x_W.x() / length, sine = x_W.y() / length;
+  Driven after{from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())};
+  after.v_WB.x() = cosine * value.x() - sine * value.y();
+  after.v_WB.y() = sine * value.x() + cosine * value.y();
+  after.w_WB.z() = value.z();
+  return after;
+}
+
+/// How much driving will change the velocity of the body's surface, m/s: it goes on in a curve.
+double coming_turn(const btRigidBody& body, const core::Vec3& value, double radius, double foresight_s) {
+  const std::optional<Driven> after = driven(body, value);
+  if (!after) return 0;
+  const core::Vec3 dv = after->v_WB - from_bullet(body.getLinearVelocity());
+  const core::Vec3 dw = after->w_WB - from_bullet(body.getAngularVelocity());
+  const double swing = std::min(2.0, foresight_s / 2 * std::abs(value.z())) * value.head<2>().norm();
+  return dv.norm() + swing + radius * dw.norm();
+}
+
 }  // namespace
 
 /// Before state `n` is computed. Forces are noted; what would make a body too fast is not obeyed.
@@ -74,6 +103,14 @@ bool Simulation::heed(btRigidBody& body, core::Quantity quantity, const core::Ve
       if (!bears(w, value, spin)) return false;
       body.setAngularVelocity(to_bullet(value));
       return true;
+    case core::Quantity::kDriving: {
+      const std::optional<Driven> after = driven(body, value);
+      if (!after) return true;
+      if (!bears(v, after->v_WB, fastest) || !bears(w, after->w_WB, spin)) return false;
+      body.setLinearVelocity(to_bullet(after->v_WB));
+      body.setAngularVelocity(to_bullet(after->w_WB));
+      return true;
+    }
   }
   return false;
 }
@@ -116,11 +153,14 @@ double Simulation::coming_push(const HostedBody& body) const {
       case core::Quantity::kSpin:
         kick = radius * (value - from_bullet(rigid.getAngularVelocity())).norm();
         break;
+      case core::Quantity::kDriving:
+        kick = coming_turn(rigid, value, radius, settings_.foresight_s);
+        break;
     }
     double& of_quantity = most[static_cast<std::size_t>(quantity)];
     of_quantity = std::max(of_quantity, kick);
   });
-  const double linear = std::max(most[0], most[2]), turning = std::max(most[1], most[3]);
+  const double linear = std::max({most[0], most[2], most[4]}), turning = std::max(most[1], most[3]);
   return std::min(linear, 2 * settings_.top_speed_m_s) + std::min(turning, 2 * settings_.top_speed_m_s);
 }
 

@@ -50,7 +50,7 @@ std::vector<core::Setpoints> words_for(const core::Scene& scene, int seed) {
     said.at_step = step;
     for (std::size_t i = 0; i < scene.bodies.size(); i += 3) {
       const auto quantity = static_cast<Quantity>(random() % core::kQuantities);
-      const double most[] = {25, 1.5, 6, 8};
+      const double most[core::kQuantities] = {25, 1.5, 6, 8, 4};
       const Vec3 value = most[static_cast<std::size_t>(quantity)] * Vec3(any(random), any(random), any(random));
       core::BodySetpoint& body = said.bodies.emplace_back();
       body.id = scene.bodies[i].id, body.quantity = quantity;

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Fault{"Nan", [](Wire& w) { w.value()[4] = kNan; }, WireError::kNotFinite},
                     Fault{"Infinite", [](Wire& w) { w.value()[4] = kInfinite; }, WireError::kNotFinite},
                     Fault{"Force1e30", [](Wire& w) { w.value()[0] = 1e30; }, WireError::kRange},
-                    Fault{"UnknownQuantity", [](Wire& w) { w.quantity()[0] = 4; }, WireError::kEnum},
+                    Fault{"UnknownQuantity", [](Wire& w) { w.quantity()[0] = core::kQuantities; }, WireError::kEnum},
                     Fault{"UnknownBit", [](Wire& w) { w.quantity()[0] = 64; }, WireError::kEnum},
                     Fault{"ValuesMissing", [](Wire& w) { w.value().pop_back(); }, WireError::kLength},
                     Fault{"QuantitiesMissing", [](Wire& w) { w.quantity().pop_back(); }, WireError::kLength},

@@ -83,6 +83,33 @@ TEST_P(Pushed, AVelocityIsHeldAgainstGravity) {
   EXPECT_GT(now(world).p_WB.z(), 4.85);
 }
 
+TEST_P(Pushed, ABaseDrivesACircleAheadOfItAndStillFalls) {
+  RegionWorld world(scene, settings);
+  core::BodyRecord box = body(1, kBox, {0, 0, 40});
+  box.R_WB = Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix();  // ahead is the world's y
+  world.add({&box, 1});
+  say(world, 1, Quantity::kDriving, Vec3(1, 0, EIGEN_PI / 2));
+  run(world, 60);  // a quarter turn to the left, of radius v / w
+  const double radius = 2 / EIGEN_PI;
+  EXPECT_NEAR(now(world).p_WB.x(), -radius, 0.03);
+  EXPECT_NEAR(now(world).p_WB.y(), radius, 0.03);
+  EXPECT_NEAR(now(world).v_WB.z(), -9.81, 0.2);
+  EXPECT_NEAR(now(world).w_WB.z(), EIGEN_PI / 2, 1e-5);
+  say(world, 61, Quantity::kDriving, Vec3(0, 2, 0));
+  run(world, 1);
+  EXPECT_NEAR(now(world).v_WB.y(), -2, 0.05);  // its left
+}
+
+TEST_P(Pushed, ABaseOnItsEndHasNoAhead) {
+  RegionWorld world(scene, settings);
+  core::BodyRecord box = body(1, kBox, {0, 0, 40});
+  box.R_WB = Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitY()).toRotationMatrix();
+  world.add({&box, 1});
+  say(world, 1, Quantity::kDriving, Vec3(1, 0, 0));
+  run(world, 10);
+  EXPECT_NEAR(now(world).v_WB.head<2>().norm(), 0, 1e-6);
+}
+
 TEST_P(Pushed, ASleeperWakesUpAndSleepsAgain) {
   RegionWorld world(scene, settings);
   const core::BodyRecord box = body(1, kBox, {0, 0, 0.5});

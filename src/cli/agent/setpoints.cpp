@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<const char*, core::kQuantities> kLists = {"forces", "torques", "velocities", "spins"};
+constexpr std::array<const char*, core::kQuantities> kLists = {"forces", "torques", "velocities", "spins", "drivings"};
 constexpr std::size_t kDriveNumbers = 6;
 
 [[noreturn]] void refuse(const std::string& why) { throw Problem(Kind::kRefused, why); }
