@@ -60,7 +60,7 @@ awk '
 
   # "folder/file.h", from the root of src.
   function check_own(name,    parts) {
-    if (name ~ /^aurasim[A-Za-z]*\.h$/) {  # generated from idl/
+    if (name ~ /^(aurasim|ros2)[A-Za-z]*\.h$/) {  # generated from idl/
       if (folder != "dds") refuse("only dds knows the wire types")
       return
     }
