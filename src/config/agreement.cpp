@@ -228,6 +228,7 @@ void add_settings(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(control.on_silence));
   d.bytes(static_cast<std::uint64_t>(control.silence));
   d.bytes(launch.control.replay_content);
+  for (const std::string& name : launch.ros2.cmd_vel) d.add(std::string_view(name));
 }
 
 void add_world(const Launch& launch, Digest& d) {

@@ -101,6 +101,15 @@ struct Observe {
   double tick_hz = 20;
 };
 
+/// What nodes say to ROS 2, and hear of it (docs/ros2.md).
+struct Ros2 {
+  bool on = false;
+  std::optional<int> domain;  ///< ROS_DOMAIN_ID; nothing: the run's
+  double tf_hz = 20;
+  std::string frame = "world";
+  std::vector<std::string> cmd_vel;  ///< names of bodies that listen
+};
+
 /// PEM files, absolute once read.
 struct Tls {
   std::filesystem::path certificate;  ///< with those of its issuers behind it, if there are any
@@ -138,6 +147,7 @@ struct Launch {
   Dds dds;
   Observe observe;
   Control control;
+  Ros2 ros2;
   Overseer overseer;
   Survival survival;
 

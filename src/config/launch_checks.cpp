@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "config/launch_keys.h"
 #include "core/sphere_aura.h"
 
 namespace aurasim::config {
@@ -30,7 +31,42 @@ core::TightAura top_speed_aura(const Launch& launch) {
   return {rules, no_shapes};
 }
 
+/// Parts between slashes: a letter or _, then letters, digits and _.
+bool is_ros_name(const std::string& name) {
+  char before = '/';
+  for (const char c : name) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    const bool is_digit = c >= '0' && c <= '9';
+    if (before == '/' ? !is_letter : !is_letter && !is_digit && c != '/') return false;
+    before = c;
+  }
+  return before != '/';
+}
+
 }  // namespace
+
+void read_ros2(const Field& ros2, Launch& launch) {
+  if (!ros2.given()) return;
+  if (ros2.is_map()) {
+    ros2_keys().read(ros2, launch.ros2);
+    launch.ros2.on = true;
+  } else if (const Word* word = ros2.word()) {
+    launch.ros2.on = word->name == "on";
+  }
+  if (launch.ros2.on && !launch.dds.security.empty()) {
+    ros2.complain("ROS 2 is told everything in the clear, allowed: off beside dds.security");
+  }
+  for (const std::string& name : launch.ros2.cmd_vel) {
+    if (!is_ros_name(name)) {
+      ros2.complain(
+          fmt::format("cmd_vel: \"{}\" is no name of a topic of ROS, allowed: letters, digits, _ and /, no "
+                      "digit behind a /",
+                      name));
+    } else if (std::ranges::find(launch.body_sources, name, &SceneSource::name) == launch.body_sources.end()) {
+      ros2.complain(fmt::format("cmd_vel: the scene has no body \"{}\"", name));
+    }
+  }
+}
 
 double reach_m(const Launch& launch) { return top_speed_aura(launch).reach(1) + 2 * largest_radius_m(launch.scene); }
 

@@ -208,6 +208,22 @@ const KeysOf<Control>& control_keys() {
   return keys;
 }
 
+const KeysOf<Ros2>& ros2_keys() {
+  static const KeysOf<Ros2> keys(
+      "ros2", "What nodes say to ROS 2, and hear of it, by DDS alone (docs/ros2.md). `{}` is on.",
+      {
+          optional("domain", &Ros2::domain, integer(0, 232), "ROS_DOMAIN_ID of those who listen")
+              .otherwise("the run's"),
+          optional("tf_hz", &Ros2::tf_hz, number(Range::above(0, 1000), "Hz"),
+                   "simulated; how often /clock, /tf and /joint_states are said"),
+          optional("frame", &Ros2::frame, text("a frame"), "parent of all frames in /tf"),
+          optional("cmd_vel", &Ros2::cmd_vel, list(0, 1000, text("the name of a body")),
+                   "bodies that listen to /NAME/cmd_vel, and drive as mobile bases")
+              .otherwise("none"),
+      });
+  return keys;
+}
+
 const KeysOf<Survival>& survival_keys() {
   static const KeysOf<Survival> keys(
       "survival", "What becomes of the run when one of its nodes dies.",
@@ -280,6 +296,7 @@ const KeysOf<Launch>& launch_keys() {
           optional("survival", &Launch::survival, survival_keys, "what happens when a node dies"),
           optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
           optional("control", map(control_keys), "programs that steer bodies and joints"),
+          optional("ros2", map(ros2_keys).or_else(words({"on", "off"})), "what ROS 2 is told and may say").usual("off"),
           optional("overseer", map(overseer_keys), "the viewer's server"),
       });
   return keys;

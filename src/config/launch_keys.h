@@ -17,6 +17,7 @@ const KeysOf<Dds>& dds_keys();
 const KeysOf<Impair>& impair_keys();
 const KeysOf<Observe>& observe_keys();
 const KeysOf<Control>& control_keys();
+const KeysOf<Ros2>& ros2_keys();
 const KeysOf<Survival>& survival_keys();
 const KeysOf<Overseer>& overseer_keys();
 const KeyTable& tls_keys();

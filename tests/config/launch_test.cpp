@@ -28,6 +28,30 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.observe.tick_hz, 20);
 }
 
+TEST(LaunchFile, Ros2IsSpokenWhereItIsSaid) {
+  const Workspace workspace;
+  const std::string start = kSmallLaunch;
+  EXPECT_FALSE(workspace.launch(start).ros2.on);
+  EXPECT_FALSE(workspace.launch(start + "ros2: off\n").ros2.on);
+  EXPECT_TRUE(workspace.launch(start + "ros2: on\n").ros2.on);
+  EXPECT_TRUE(workspace.launch(start + "ros2: {}\n").ros2.on);
+  EXPECT_TRUE(workspace.launch(start, {"ros2=on"}).ros2.on);
+  const Ros2 ros2 = workspace.launch(start + "ros2: {domain: 42, tf_hz: 50, frame: map}\n").ros2;
+  EXPECT_TRUE(ros2.on);
+  EXPECT_EQ(ros2.domain, 42);
+  EXPECT_EQ(ros2.tf_hz, 50);
+  EXPECT_EQ(ros2.frame, "map");
+  EXPECT_THAT(ros2.cmd_vel, testing::IsEmpty());
+}
+
+TEST(LaunchFile, Ros2IsNotSpokenBesideKeys) {
+  const Workspace workspace;
+  workspace.write("keys/identity_ca.pem", "");
+  const std::string keys = std::string(kSmallLaunch) + "dds: {security: keys}\n";
+  EXPECT_FALSE(workspace.launch(keys + "ros2: off\n").ros2.on);
+  EXPECT_THROW(workspace.launch(keys + "ros2: on\n"), BadConfig);
+}
+
 TEST(LaunchFile, FilesOfTlsAreBesideItAndNotLookedForHere) {
   const Workspace workspace;
   EXPECT_FALSE(workspace.launch(kSmallLaunch).overseer.tls);
