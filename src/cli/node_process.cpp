@@ -122,6 +122,7 @@ ExitCode NodeProcess::meet_and_run() {
   observers_.emplace(launch_, participant_, options_.region);
   command_server_.emplace(launch_, participant_, options_.region, options_.saves);
   programs_.emplace(participant_);
+  open_ros2();
   served_map_ = launch_.regions.version();
   checkpoints_.emplace(participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
@@ -249,6 +250,7 @@ void NodeProcess::run_until_end() {
     save_parts();
     reset_if_due();
     change_if_due();
+    tell_ros2();
     hear_programs();
     if (!wait_until_due()) continue;
     look_for_deaths();

@@ -19,6 +19,7 @@
 #include "cli/fence.h"
 #include "cli/node_phase.h"
 #include "cli/replica_publisher.h"
+#include "cli/ros2_link.h"
 #include "cli/run_control_limits.h"
 #include "cli/saved_world.h"
 #include "config/launch.h"
@@ -156,6 +157,8 @@ class NodeProcess {
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
   void hear_programs();
+  void open_ros2();
+  void tell_ros2();
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
@@ -203,6 +206,7 @@ class NodeProcess {
   std::optional<ReplicaPublisher> observers_;    ///< likewise
   std::optional<CommandServer> command_server_;  ///< likewise
   std::optional<dds::SetpointReader> programs_;  ///< likewise
+  std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
   core::Step saved_last_ = 0;               ///< state of the last save that nobody has asked for, on the lead

@@ -1,4 +1,7 @@
 // What a node hears of programs that steer bodies and joints (topic control).
+#include <algorithm>
+#include <iterator>
+
 #include <spdlog/spdlog.h>
 
 #include "cli/node_process.h"
@@ -7,7 +10,9 @@ namespace aurasim::cli {
 
 /// Before each state, and often in between: what has come by then takes effect in it. Every node hears everything.
 void NodeProcess::hear_programs() {
-  for (const core::Setpoints& said : programs_->take(generation_)) {
+  std::vector<core::Setpoints> heard = programs_->take(generation_);
+  if (ros2_) std::ranges::move(ros2_->take(generation_), std::back_inserter(heard));
+  for (const core::Setpoints& said : heard) {
     switch (node_->hear(said)) {
       case core::Heard::kInTime:
         break;
@@ -24,7 +29,8 @@ void NodeProcess::hear_programs() {
     }
     ++status_.setpoints_heard;
   }
-  status_.setpoints_refused = programs_->refused() + unheard_setpoints_ + unbearable_setpoints_;
+  status_.setpoints_refused =
+      programs_->refused() + (ros2_ ? ros2_->refused() : 0) + unheard_setpoints_ + unbearable_setpoints_;
   if (status_.setpoints_refused > 0 && !std::exchange(says_refused_, true)) {
     spdlog::warn("setpoints were refused: not understood, too many, too far ahead, or more than a body can bear");
   }

@@ -202,6 +202,7 @@ void NodeProcess::take_map_of(const dds::RunCommand& restore) {
   status_.map_version = launch_.regions.version();
   status_.footprint = launch_.regions.region(options_.region);
   control_.use_map(launch_.regions.version());
+  open_ros2();
   if (observers_ && command_server_ && programs_ && served_map_ == launch_.regions.version()) return;
   observers_.emplace(launch_, participant_, options_.region);
   command_server_.emplace(launch_, participant_, options_.region, options_.saves);
