@@ -13,7 +13,6 @@ using core::Mat3;
 using core::Vec3;
 
 constexpr double kNoProduct = 1e-12;  ///< of the largest moment: what rounding leaves of a product of inertia
-constexpr double kThinnest = 1e-3;
 
 /// The order of columns in which each is most nearly the axis of its number.
 std::array<int, 3> nearest_order(const Mat3& axes) {
@@ -55,12 +54,6 @@ core::Pose body_pose(const Link& link) {
 bool is_physical(const Vec3& moments) {
   const double sum = moments.sum();
   return moments.allFinite() && moments.minCoeff() > 0 && 2 * moments.maxCoeff() <= sum * (1 + 1e-9);
-}
-
-core::Box equal_box(double mass_kg, const Vec3& moments) {
-  const Vec3 squares = 6 / mass_kg * (Vec3::Constant(moments.sum()) - 2 * moments);
-  const Vec3 edges = squares.cwiseMax(0).cwiseSqrt();
-  return {(edges.cwiseMax(kThinnest * edges.maxCoeff())) / 2};
 }
 
 }  // namespace aurasim::importing

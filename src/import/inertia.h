@@ -20,7 +20,4 @@ core::Pose body_pose(const Link& link);
 /// Whether three moments can be those of a body: positive, and no one above the sum of the two others.
 bool is_physical(const core::Vec3& moments);
 
-/// The box of even density that has this mass and these moments; edges of at least a thousandth of the longest.
-core::Box equal_box(double mass_kg, const core::Vec3& moments);
-
 }  // namespace aurasim::importing

@@ -14,26 +14,45 @@ using core::JointLimits;
 using core::Vec3;
 using std::numbers::pi;
 
-constexpr double kFarthestWay = 1e7;  ///< m; a scene's limits of a slider
-constexpr double kSquare = 1e-9;      ///< cosine of the angle between axes that count as square to each other
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kFarthestWay = 1e7;      ///< m; a scene's limits of a slider
+constexpr double kMostTurns = 1999 * pi;  ///< rad; a scene's limits of a hinge
+constexpr double kSquare = 1e-9;          ///< cosine of the angle between axes that count as square to each other
 
+/// None on a side that is farther than that.
+std::optional<JointLimits> limits_within(double farthest, const AxisRule& rule) {
+  const JointLimits limits{rule.low < -farthest ? -kInfinite : rule.low, rule.high > farthest ? kInfinite : rule.high};
+  if (std::isinf(limits.low) && std::isinf(limits.high)) return std::nullopt;
+  return limits;
+}
+
+/// Of one turn among several axes.
 std::optional<JointLimits> turn_limits(const AxisRule& rule, const std::string& element, Model& model) {
   if (rule.low >= -pi && rule.high <= pi) return JointLimits{rule.low, rule.high};
   if (std::isfinite(rule.low) || std::isfinite(rule.high)) {
-    model.lose(element, fmt::format("its limits, {:.6g} to {:.6g} rad: a scene's are within half a turn either way; it "
-                                    "is left free",
-                                    rule.low, rule.high));
+    model.lose(element,
+               fmt::format("its limits, {:.6g} to {:.6g} rad: those of several axes together are within half a "
+                           "turn either way; it is left free",
+                           rule.low, rule.high));
   }
   return std::nullopt;
 }
 
-std::optional<JointLimits> way_limits(const AxisRule& rule) {
-  if (!std::isfinite(rule.low) && !std::isfinite(rule.high)) return std::nullopt;
-  return JointLimits{std::max(rule.low, -kFarthestWay), std::min(rule.high, kFarthestWay)};
-}
-
-std::optional<JointLimits> limits_of(const AxisRule& rule, const std::string& element, Model& model) {
-  return rule.turns ? turn_limits(rule, element, model) : way_limits(rule);
+/// A spring has stiffness and damping, but no friction and no bound: a drive becomes a part of them.
+core::SpringAxis spring_axis(const AxisRule& rule, const std::string& element, Model& model) {
+  core::SpringAxis axis;
+  axis.limits = rule.turns ? turn_limits(rule, element, model) : limits_within(kFarthestWay, rule);
+  const core::JointResistance& own = rule.resistance;
+  const core::JointDrive drive = rule.drive.value_or(core::JointDrive{});
+  axis.stiffness = own.stiffness + drive.stiffness;
+  axis.damping = own.damping + drive.damping;
+  const double pull = own.stiffness * own.rest + drive.stiffness * drive.position + drive.effort;
+  if (axis.stiffness > 0) axis.rest = pull / axis.stiffness;
+  if (axis.stiffness == 0 && pull != 0) model.lose(element, "a steady force on one of several axes");
+  if (own.friction != 0) model.lose(element, fmt::format("friction {} of one of several axes", own.friction));
+  if (axis.stiffness + axis.damping > 0 && std::isfinite(drive.max_effort))
+    model.lose(element, fmt::format("that its drive is no stronger than {}: one of several axes", drive.max_effort));
+  return axis;
 }
 
 core::SpringJoint all_locked() {
@@ -97,6 +116,8 @@ AxisRule turned_over(AxisRule rule) {
   std::swap(rule.low, rule.high);
   rule.low = -rule.low;
   rule.high = -rule.high;
+  rule.resistance.rest *= -1;
+  if (rule.drive) rule.drive->position *= -1, rule.drive->speed *= -1, rule.drive->effort *= -1;
   return rule;
 }
 
@@ -104,15 +125,9 @@ AxisRule turned_over(AxisRule rule) {
 
 core::Quat axis_frame(const Vec3& axis_W) { return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis_W); }
 
-core::JointKind one_axis_kind(const AxisRule& rule, const std::string& element, Model& model) {
-  const std::optional<JointLimits> limits = limits_of(rule, element, model);
-  if (rule.stiffness == 0 && rule.damping == 0) {
-    if (rule.turns) return core::HingeJoint{limits, {}};
-    return core::SliderJoint{limits};
-  }
-  core::SpringJoint spring = all_locked();
-  spring.axes[rule.turns ? 5 : 2] = {limits, rule.stiffness, rule.damping};
-  return spring;
+core::JointKind one_axis_kind(const AxisRule& rule) {
+  if (rule.turns) return core::HingeJoint{limits_within(kMostTurns, rule), {}, rule.resistance, rule.drive};
+  return core::SliderJoint{limits_within(kFarthestWay, rule), rule.resistance, rule.drive};
 }
 
 std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules, const std::string& element,
@@ -134,14 +149,14 @@ std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules,
   core::SpringJoint spring = all_locked();
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const AxisRule rule = slots[i] == 2 && triad.third_turned_over ? turned_over(turns[i]) : turns[i];
-    spring.axes[3 + slots[i]] = {limits_of(rule, element, model), rule.stiffness, rule.damping};
+    spring.axes[3 + slots[i]] = spring_axis(rule, element, model);
   }
   for (AxisRule rule : ways) {
     const Vec3 along = triad.axes.transpose() * rule.axis_W.normalized();
     Eigen::Index i = 0;
     if (along.cwiseAbs().maxCoeff(&i) < 1 - kSquare) return std::nullopt;
     if (along[i] < 0) rule = turned_over(rule);
-    spring.axes[i] = {limits_of(rule, element, model), rule.stiffness, rule.damping};
+    spring.axes[i] = spring_axis(rule, element, model);
   }
   return SeveralAxes{spring, core::Quat(triad.axes)};
 }

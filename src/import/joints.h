@@ -1,6 +1,8 @@
 // Joints of one axis, and of several, as those of a scene.
 #pragma once
 
+#include <limits>
+
 #include "import/model.h"
 
 namespace aurasim::importing {
@@ -11,16 +13,15 @@ struct AxisRule {
   bool turns = true;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  double stiffness = 0;  ///< N/m or N m/rad, towards the rest pose
-  double damping = 0;    ///< N s/m or N m s/rad
+  core::JointResistance resistance = {};
+  std::optional<core::JointDrive> drive = {};
 };
 
 /// The rotation that takes z to the axis: as the scene reader makes it of a hinge's or slider's `axis`.
 core::Quat axis_frame(const core::Vec3& axis_W);
 
-/// Of one axis along z of J: a hinge or slider, or a spring joint if it has stiffness or damping. Limits that a scene
-/// cannot say are left out and told of.
-core::JointKind one_axis_kind(const AxisRule& rule, const std::string& element, Model& model);
+/// Of one axis along z of J: a hinge or slider.
+core::JointKind one_axis_kind(const AxisRule& rule);
 
 struct SeveralAxes {
   core::JointKind kind;

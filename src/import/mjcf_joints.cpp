@@ -1,5 +1,6 @@
 #include "import/mjcf_joints.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,13 +13,20 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-9;
 
-/// What position and velocity actuators do at a control of 0: they are springs and dampers.
-struct Servo {
-  double stiffness = 0, damping = 0;
-};
+/// The bound of an actuator's force on the joint, either way; infinite without.
+double most_of(const mjModel& m, int actuator, double gear, const std::string& element, Model& model) {
+  if (!m.actuator_forcelimited[actuator]) return core::JointDrive{}.max_effort;
+  const double low = m.actuator_forcerange[2 * actuator], high = m.actuator_forcerange[2 * actuator + 1];
+  if (low != -high)
+    model.lose(element, fmt::format("forcerange {} to {}: a scene's bound is the same either way", low, high));
+  return std::abs(gear) * std::max(std::abs(low), std::abs(high));
+}
 
-Servo servo_of(const mjModel& m, int joint, const std::string& element, Model& model) {
-  Servo servo;
+/// What position and velocity actuators do at a control of 0, from where the joint starts. Nothing without any.
+std::optional<core::JointDrive> drive_of(const mjModel& m, int joint, double start, const std::string& element,
+                                         Model& model) {
+  std::optional<core::JointDrive> drive;
+  double pull = 0;  ///< at the start
   for (int a = 0; a < m.nu; ++a) {
     const bool drives = (m.actuator_trntype[a] == mjTRN_JOINT || m.actuator_trntype[a] == mjTRN_JOINTINPARENT) &&
                         m.actuator_trnid[2 * a] == joint;
@@ -30,37 +38,44 @@ Servo servo_of(const mjModel& m, int joint, const std::string& element, Model& m
       model.lose(actuator, fmt::format("it drives {} in a way that a scene has not", element));
       continue;
     }
+    if (!drive) drive = core::JointDrive{.max_effort = 0};
     const double gear = m.actuator_gear[6 * a];
+    drive->max_effort += most_of(m, a, gear, actuator, model);
     if (m.actuator_biastype[a] == mjBIAS_AFFINE) {
-      servo.stiffness -= gear * gear * bias[1];
-      servo.damping -= gear * gear * bias[2];
-      if (bias[0] != 0) model.lose(actuator, fmt::format("a steady force on {}", element));
-      if (m.actuator_forcelimited[a])
-        model.lose(actuator, "forcerange: its spring and damper have no bound in a scene");
+      drive->stiffness -= gear * gear * bias[1];
+      drive->damping -= gear * gear * bias[2];
+      pull += gear * (bias[0] + bias[1] * gear * start);
     }
     model.note(actuator, "its control: a scene has it at 0");
   }
-  return servo;
+  if (!drive) return drive;
+  if (drive->stiffness > 0) {
+    drive->position = pull / drive->stiffness;
+  } else {
+    drive->effort = pull;
+  }
+  return drive;
 }
 
 AxisRule mjcf_rule(const mjModel& m, const mjData& d, int joint, const std::string& element, Model& model) {
   const int dof = m.jnt_dofadr[joint];
-  const double start = m.qpos0[m.jnt_qposadr[joint]], relaxed = m.qpos_spring[m.jnt_qposadr[joint]];
+  const double start = m.qpos0[m.jnt_qposadr[joint]];
   AxisRule rule{.axis_W = mj_vec3(d.xaxis + 3 * joint), .turns = m.jnt_type[joint] == mjJNT_HINGE};
   if (m.jnt_limited[joint]) {
     rule.low = m.jnt_range[2 * joint] - start;
     rule.high = m.jnt_range[2 * joint + 1] - start;
   }
-  const Servo servo = servo_of(m, joint, element, model);
-  rule.stiffness = m.jnt_stiffness[joint] + servo.stiffness;
-  rule.damping = m.dof_damping[dof] + servo.damping;
-  if (m.jnt_stiffness[joint] != 0 && relaxed != start)
-    model.lose(element, fmt::format("springref {}: a scene's springs pull towards the start", relaxed));
-  if (servo.stiffness != 0 && start != 0) model.lose(element, "ref: a scene's springs pull towards the start");
-  if (rule.stiffness < 0 || rule.damping < 0) {
+  rule.resistance = {.stiffness = m.jnt_stiffness[joint],
+                     .rest = m.qpos_spring[m.jnt_qposadr[joint]] - start,
+                     .damping = m.dof_damping[dof],
+                     .friction = m.dof_frictionloss[dof]};
+  rule.drive = drive_of(m, joint, start, element, model);
+  double own[] = {rule.resistance.stiffness, rule.resistance.damping};
+  double* const gains[] = {&rule.resistance.stiffness, &rule.resistance.damping,
+                           rule.drive ? &rule.drive->stiffness : own, rule.drive ? &rule.drive->damping : own + 1};
+  if (std::ranges::any_of(gains, [](const double* gain) { return *gain < 0; })) {
     model.lose(element, "a stiffness or damping below 0: taken for 0");
-    rule.stiffness = std::max(rule.stiffness, 0.0);
-    rule.damping = std::max(rule.damping, 0.0);
+    for (double* gain : gains) *gain = std::max(*gain, 0.0);
   }
   return rule;
 }
@@ -68,14 +83,15 @@ AxisRule mjcf_rule(const mjModel& m, const mjData& d, int joint, const std::stri
 void tell_of_dofs(const mjModel& m, int joint, const std::string& element, Model& model) {
   const int count = m.jnt_type[joint] == mjJNT_FREE ? 6 : m.jnt_type[joint] == mjJNT_BALL ? 3 : 1;
   for (int dof = m.jnt_dofadr[joint]; dof < m.jnt_dofadr[joint] + count; ++dof) {
-    if (m.dof_frictionloss[dof] != 0) return model.lose(element, "frictionloss");
+    if (count > 1 && m.dof_frictionloss[dof] != 0) return model.lose(element, "frictionloss of a ball or free joint");
     if (m.dof_armature[dof] != 0) return model.lose(element, "armature");
   }
 }
 
 /// Of joints with three or six degrees of freedom, beyond what holds them.
 void tell_of_wide_joint(const mjModel& m, int joint, const std::string& element, Model& model) {
-  if (m.dof_damping[m.jnt_dofadr[joint]] != 0) model.lose(element, "damping of a ball or free joint");
+  if (m.jnt_type[joint] == mjJNT_FREE && m.dof_damping[m.jnt_dofadr[joint]] != 0)
+    model.lose(element, "damping of a free joint");
   if (m.jnt_stiffness[joint] != 0) model.lose(element, "stiffness of a ball or free joint");
   if (m.jnt_limited[joint]) model.lose(element, "the limit of a ball joint");
 }
@@ -84,15 +100,17 @@ struct Parts {
   std::vector<AxisRule> rules;
   std::vector<core::Vec3> anchors;  ///< of the turns
   int balls = 0, frees = 0;
+  double ball_damping = 0;
 };
 
 /// Nothing if a scene has no joint for all that joins the body.
 std::optional<SeveralAxes> mjcf_kind(const Parts& parts, const std::string& element, Model& model) {
-  if (parts.balls == 1 && parts.rules.empty()) return SeveralAxes{core::BallJoint{}, core::Quat::Identity()};
+  if (parts.balls == 1 && parts.rules.empty())
+    return SeveralAxes{core::BallJoint{parts.ball_damping}, core::Quat::Identity()};
   if (parts.balls > 0) return std::nullopt;
   if (parts.rules.size() == 1) {
     const AxisRule& rule = parts.rules.front();
-    return SeveralAxes{one_axis_kind(rule, element, model), axis_frame(rule.axis_W)};
+    return SeveralAxes{one_axis_kind(rule), axis_frame(rule.axis_W)};
   }
   for (const core::Vec3& anchor : parts.anchors) {
     if ((anchor - parts.anchors.front()).norm() > kSamePlace_m) return std::nullopt;
@@ -151,6 +169,7 @@ void add_mjcf_joints(const mjModel& m, const mjData& d, int body, const LinkOfBo
     if (m.jnt_type[joint] == mjJNT_FREE || m.jnt_type[joint] == mjJNT_BALL) {
       tell_of_wide_joint(m, joint, element, model);
       ++(m.jnt_type[joint] == mjJNT_FREE ? parts.frees : parts.balls);
+      parts.ball_damping = m.dof_damping[m.jnt_dofadr[joint]];
     } else {
       parts.rules.push_back(mjcf_rule(m, d, joint, element, model));
     }

@@ -10,9 +10,8 @@ struct ReadSettings {
   std::optional<double> mass_kg;             ///< of a mesh file, which then is a body that moves
 };
 
-/// URDF, SDF or MJCF, told by the outermost element; or a mesh by its ending: OBJ, STL, glTF, GLB, DAE. Links without a
-/// collision shape have a stand-in. Reads no file outside of the model's folder and `paths`, and nothing from a
-/// network. Throws BadModel.
+/// URDF, SDF or MJCF, told by the outermost element; or a mesh by its ending: OBJ, STL, glTF, GLB, DAE. Reads no file
+/// outside of the model's folder and `paths`, and nothing from a network. Throws BadModel.
 Model read_model(const std::filesystem::path& file, const ReadSettings& settings);
 
 /// The formats of description, each with its own library.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include "import/inertia.h"
 #include "import/mesh_shapes.h"
+#include "import/scene_parts.h"
 #include "import/stand_ins.h"
 
 namespace aurasim::importing {
@@ -18,147 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 
-constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
 constexpr double kMostFriction = 100;  ///< of a scene's material
-
-/// In as few digits as give the same bits back.
-std::string digits(double number) { return fmt::format("{}", number + 0.0); }
-
-/// Many things of one kind on one line.
-YAML::Emitter& operator<<(YAML::Emitter& out, const Vec3& v) {
-  return out << YAML::Flow << YAML::BeginSeq << digits(v.x()) << digits(v.y()) << digits(v.z()) << YAML::EndSeq;
-}
-
-YAML::Emitter& operator<<(YAML::Emitter& out, const core::Quat& q) {
-  return out << YAML::Flow << YAML::BeginSeq << digits(q.w()) << digits(q.x()) << digits(q.y()) << digits(q.z())
-             << YAML::EndSeq;
-}
-
-void write_orientation(YAML::Emitter& out, const core::Quat& q) {
-  if (q.vec().isZero(0)) return;
-  out << YAML::Key << "orientation" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << "quaternion"
-      << YAML::Value << q << YAML::EndMap;
-}
-
-void write_pose(YAML::Emitter& out, const core::Pose& pose) {
-  if (!pose.p_WB.isZero(0)) out << YAML::Key << "position" << YAML::Value << pose.p_WB;
-  write_orientation(out, pose.q_WB);
-}
-
-/// Key and value of one shape within a map.
-class ShapeWriter {
- public:
-  explicit ShapeWriter(YAML::Emitter& out) : out_(out) {}
-
-  void operator()(const core::Sphere& s) { begin("sphere").number("radius", s.radius).end(); }
-  void operator()(const core::Box& s) {
-    begin("box");
-    out_ << YAML::Key << "size" << YAML::Value << Vec3(2 * s.half_extents);
-    end();
-  }
-  void operator()(const core::Capsule& s) {
-    begin("capsule").number("radius", s.radius).number("height", s.height).end();
-  }
-  void operator()(const core::Cylinder& s) {
-    begin("cylinder").number("radius", s.radius).number("height", s.height).end();
-  }
-  void operator()(const core::ConvexHull& s) {
-    begin("convex_hull");
-    out_ << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const Vec3& p : s.points) out_ << p;
-    out_ << YAML::EndSeq;
-    end();
-  }
-  void operator()(const core::Plane& s) {
-    begin("plane");
-    out_ << YAML::Key << "normal" << YAML::Value << s.normal;
-    number("offset", s.offset).end();
-  }
-  void operator()(const core::Compound& s) {
-    out_ << YAML::Key << "compound" << YAML::Value << YAML::BeginMap << YAML::Key << "parts" << YAML::Value
-         << YAML::BeginSeq;
-    for (const core::CompoundPart& part : s.parts) {
-      out_ << YAML::Flow << YAML::BeginMap;
-      std::visit(*this, part.shape);
-      write_pose(out_, part.pose);
-      out_ << YAML::EndMap;
-    }
-    out_ << YAML::EndSeq << YAML::EndMap;
-  }
-  void mesh(const std::string& file, const Vec3& scale) {
-    begin("mesh");
-    out_ << YAML::Key << "file" << YAML::Value << file;
-    if (scale != Vec3::Ones()) out_ << YAML::Key << "scale" << YAML::Value << scale;
-    end();
-  }
-  void operator()(const core::TriangleMesh&) {}  // written as files
-
- private:
-  ShapeWriter& begin(const char* kind) {
-    out_ << YAML::Key << kind << YAML::Value << YAML::Flow << YAML::BeginMap;
-    return *this;
-  }
-  ShapeWriter& number(const char* key, double value) {
-    out_ << YAML::Key << key << YAML::Value << digits(value);
-    return *this;
-  }
-  void end() { out_ << YAML::EndMap; }
-
-  YAML::Emitter& out_;
-};
-
-/// Ways and turns of a joint, within its map.
-class JointWriter {
- public:
-  JointWriter(YAML::Emitter& out, const core::Quat& q_WJ) : out_(out), q_WJ_(q_WJ) {}
-
-  void operator()(const core::BallJoint&) { empty("ball"); }
-  void operator()(const core::FixedJoint&) { empty("fixed"); }
-  void operator()(const core::HingeJoint& joint) {
-    begin_along("hinge");
-    write_limits("limits_deg", joint.limits, kDegreesOfRadian);
-    out_ << YAML::EndMap;
-  }
-  void operator()(const core::SliderJoint& joint) {
-    begin_along("slider");
-    write_limits("limits", joint.limits, 1);
-    out_ << YAML::EndMap;
-  }
-  void operator()(const core::SpringJoint& joint) {
-    out_ << YAML::Key << "spring" << YAML::Value << YAML::Flow << YAML::BeginMap;
-    write_orientation(out_, q_WJ_);
-    constexpr const char* kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
-    for (std::size_t i = 0; i < 6; ++i) {
-      const core::SpringAxis& axis = joint.axes[i];
-      const bool is_locked = axis.limits && axis.limits->low == 0 && axis.limits->high == 0;
-      if (is_locked) continue;
-      out_ << YAML::Key << kAxes[i] << YAML::Value << YAML::Flow << YAML::BeginMap;
-      write_limits(i < 3 ? "limits" : "limits_deg", axis.limits, i < 3 ? 1 : kDegreesOfRadian);
-      if (axis.stiffness != 0) out_ << YAML::Key << "stiffness" << YAML::Value << digits(axis.stiffness);
-      if (axis.damping != 0) out_ << YAML::Key << "damping" << YAML::Value << digits(axis.damping);
-      out_ << YAML::EndMap;
-    }
-    out_ << YAML::EndMap;
-  }
-
- private:
-  void empty(const char* kind) {
-    out_ << YAML::Key << kind << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::EndMap;
-  }
-  void begin_along(const char* kind) {
-    out_ << YAML::Key << kind << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << "axis" << YAML::Value
-         << Vec3(q_WJ_ * Vec3::UnitZ());
-  }
-  void write_limits(const char* key, const std::optional<core::JointLimits>& limits, double unit) {
-    if (!limits) return;
-    const auto bounded = [unit](double x) { return unit == 1 ? x : std::clamp(x * unit, -180.0, 180.0); };
-    out_ << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginSeq << digits(bounded(limits->low))
-         << digits(bounded(limits->high)) << YAML::EndSeq;
-  }
-
-  YAML::Emitter& out_;
-  core::Quat q_WJ_;
-};
 
 class SceneWriter {
  public:
@@ -182,8 +42,9 @@ class SceneWriter {
 
  private:
   bool has(bool is_static) const {
-    return std::ranges::any_of(
-        model_.links, [&](const Link& link) { return link.is_static == is_static && !link.collisions.empty(); });
+    return std::ranges::any_of(model_.links, [&](const Link& link) {
+      return link.is_static == is_static && !(is_static && link.collisions.empty());
+    });
   }
 
   std::string what_is_lost() const {
@@ -237,7 +98,10 @@ class SceneWriter {
       if (link.is_static) continue;
       out_ << YAML::Key << link.name << YAML::Value << YAML::BeginMap;
       out_ << YAML::Key << "mass" << YAML::Value << digits(link.mass_kg);
-      out_ << YAML::Key << "material" << YAML::Value << material_of(link.collisions.front());
+      out_ << YAML::Key << "inertia" << YAML::Value << principal_inertia(link.I_BL).moments;
+      if (link.collisions.empty()) out_ << YAML::Key << "collides" << YAML::Value << false;
+      if (!link.collisions.empty())
+        out_ << YAML::Key << "material" << YAML::Value << material_of(link.collisions.front());
       out_ << YAML::Key << "shape" << YAML::Value << YAML::BeginMap;
       ShapeWriter writer(out_);
       std::visit(writer, body_shape(link));

@@ -31,14 +31,12 @@ AxisRule rule_of(const sdf::JointAxis& axis, bool turns, bool limited, const Sdf
   if (limited && std::abs(axis.Upper()) < kNoLimit) rule.high = axis.Upper();
   if (rule.low > rule.high)
     throw BadModel({fmt::format("{}: its limits, {} to {}, are the wrong way round", element, rule.low, rule.high)});
-  rule.damping = axis.Damping();
-  rule.stiffness = axis.SpringStiffness();
-  if (rule.stiffness != 0 && axis.SpringReference() != 0)
-    model.lose(element,
-               fmt::format("spring_reference {}: a scene's springs pull towards the start", axis.SpringReference()));
-  if (axis.Friction() != 0) model.lose(element, fmt::format("friction {} of the joint", axis.Friction()));
-  if (std::isfinite(axis.Effort()) && axis.Effort() >= 0 && axis.Effort() < kNoBound)
-    model.note(element, "limit/effort: a bound for a controller");
+  rule.resistance = {.stiffness = axis.SpringStiffness(),
+                     .rest = axis.SpringReference(),
+                     .damping = axis.Damping(),
+                     .friction = axis.Friction()};
+  if (std::isfinite(axis.Effort()) && axis.Effort() > 0 && axis.Effort() < kNoBound)
+    rule.drive = core::JointDrive{.max_effort = axis.Effort()};  // of whoever will drive it
   if (std::isfinite(axis.MaxVelocity()) && axis.MaxVelocity() >= 0 && axis.MaxVelocity() < kNoBound)
     model.note(element, "limit/velocity: a bound for a controller");
   return rule;
@@ -52,9 +50,7 @@ std::optional<SeveralAxes> kind_of(const sdf::Joint& joint, const SdfScope& scop
     if (axis == nullptr) throw BadModel({element + ": it has no axis"});
     return rule_of(*axis, turns, limited, scope, element, model);
   };
-  const auto one = [&](const AxisRule& of) {
-    return SeveralAxes{one_axis_kind(of, element, model), axis_frame(of.axis_W)};
-  };
+  const auto one = [&](const AxisRule& of) { return SeveralAxes{one_axis_kind(of), axis_frame(of.axis_W)}; };
   switch (joint.Type()) {
     case sdf::JointType::REVOLUTE:
       return one(rule(0, true, true));

@@ -39,11 +39,23 @@ bool is_free_in_all_ways(const core::JointKind& kind) {
          });
 }
 
+struct SdfAxis {
+  Vec3 axis_J;
+  std::optional<core::JointLimits> limits;
+  core::JointResistance resistance;
+  double max_effort = core::JointDrive{}.max_effort;
+};
+
 /// A joint as SDF has it: its type and one or two axes of J.
 struct SdfKind {
   const char* type = nullptr;
-  std::vector<std::pair<Vec3, core::SpringAxis>> axes_J;
+  std::vector<SdfAxis> axes;
 };
+
+template <class Joint>
+SdfAxis own_axis(const Joint& joint) {
+  return {Vec3::UnitZ(), joint.limits, joint.resistance, joint.drive.value_or(core::JointDrive{}).max_effort};
+}
 
 /// Nothing if SDF has no such joint.
 std::optional<SdfKind> sdf_kind(const core::SpringJoint& spring) {
@@ -51,7 +63,10 @@ std::optional<SdfKind> sdf_kind(const core::SpringJoint& spring) {
   for (std::size_t i = 0; i < 6; ++i) {
     if (!is_locked(spring.axes[i])) open.push_back(i);
   }
-  const auto axis = [&](std::size_t i) { return std::pair(Vec3(Vec3::Unit(i % 3)), spring.axes[i]); };
+  const auto axis = [&](std::size_t i) {
+    const core::SpringAxis& of = spring.axes[i];
+    return SdfAxis{Vec3::Unit(i % 3), of.limits, {of.stiffness, of.rest, of.damping, 0}};
+  };
   if (open.empty()) return SdfKind{"fixed", {}};
   if (open.size() == 1) return SdfKind{open[0] < 3 ? "prismatic" : "revolute", {axis(open[0])}};
   if (open.size() == 2 && open[0] >= 3) return SdfKind{"universal", {axis(open[0]), axis(open[1])}};
@@ -61,11 +76,16 @@ std::optional<SdfKind> sdf_kind(const core::SpringJoint& spring) {
 std::optional<SdfKind> sdf_kind(const core::JointKind& kind) {
   if (std::holds_alternative<core::BallJoint>(kind)) return SdfKind{"ball", {}};
   if (std::holds_alternative<core::FixedJoint>(kind)) return SdfKind{"fixed", {}};
-  if (const auto* hinge = std::get_if<core::HingeJoint>(&kind))
-    return SdfKind{"revolute", {{Vec3::UnitZ(), {hinge->limits, 0, 0}}}};
-  if (const auto* slider = std::get_if<core::SliderJoint>(&kind))
-    return SdfKind{"prismatic", {{Vec3::UnitZ(), {slider->limits, 0, 0}}}};
+  if (const auto* hinge = std::get_if<core::HingeJoint>(&kind)) return SdfKind{"revolute", {own_axis(*hinge)}};
+  if (const auto* slider = std::get_if<core::SliderJoint>(&kind)) return SdfKind{"prismatic", {own_axis(*slider)}};
   return sdf_kind(std::get<core::SpringJoint>(kind));
+}
+
+/// What drives a joint, which SDF leaves to plugins.
+std::optional<core::JointDrive> drive_of(const core::JointKind& kind) {
+  if (const auto* hinge = std::get_if<core::HingeJoint>(&kind)) return hinge->drive;
+  if (const auto* slider = std::get_if<core::SliderJoint>(&kind)) return slider->drive;
+  return std::nullopt;
 }
 
 class SdfWriter {
@@ -180,7 +200,7 @@ class SdfWriter {
   void write_body(const core::InitialBody& body, const std::string& name) {
     const core::Prototype& prototype = scene_.prototypes[core::value_of(body.prototype)];
     const core::Shape& shape = scene_.shapes[prototype.shape].shape;
-    const Vec3 moments = physics::inertia_diagonal(shape, prototype.mass_kg);
+    const Vec3 moments = physics::inertia_of(prototype, scene_);
     open("link", {{"name", name}});
     write_pose(body.pose);
     open("inertial");
@@ -188,7 +208,7 @@ class SdfWriter {
     open("inertia");
     number("ixx", moments.x()), number("iyy", moments.y()), number("izz", moments.z());
     close(), close();
-    write_collisions(shape, scene_.materials[prototype.material], name);
+    if (prototype.collides) write_collisions(shape, scene_.materials[prototype.material], name);
     close();
     if (!body.v_WB.isZero(0) || !body.w_WB.isZero(0)) lose("body", name, "its velocity at the start");
   }
@@ -256,28 +276,34 @@ class SdfWriter {
     if (!kind) return lose("joint", joint.name, "axes that no joint of SDF has: it is left out");
     const auto* hinge = std::get_if<core::HingeJoint>(&joint.kind);
     if (hinge != nullptr && hinge->motor) lose("joint", joint.name, "its motor");
+    if (const auto drive = drive_of(joint.kind); drive && *drive != core::JointDrive{.max_effort = drive->max_effort})
+      lose("joint", joint.name, "its drive");
+    if (const auto* ball = std::get_if<core::BallJoint>(&joint.kind); ball != nullptr && ball->damping != 0)
+      lose("joint", joint.name, "its damping");
     if (std::isfinite(joint.break_impulse)) lose("joint", joint.name, "that it breaks");
     if (joint.collide) lose("joint", joint.name, "that its bodies collide");
     open("joint", {{"name", sdf_name(joint.name)}, {"type", kind->type}});
     write_pose({joint.X_WJ.p_WB, core::Quat::Identity()}, "__model__");
     text("parent", joint.b ? names_[place_.at(*joint.b)] : "world");
     text("child", names_[place_.at(joint.a)]);
-    for (std::size_t i = 0; i < kind->axes_J.size(); ++i) {
-      const auto& [axis_J, rule] = kind->axes_J[i];
-      write_axis(i == 0 ? "axis" : "axis2", joint.X_WJ.q_WB * axis_J, rule);
+    for (std::size_t i = 0; i < kind->axes.size(); ++i) {
+      write_axis(i == 0 ? "axis" : "axis2", joint.X_WJ.q_WB * kind->axes[i].axis_J, kind->axes[i]);
     }
     close();
   }
 
-  void write_axis(const char* name, const Vec3& axis_W, const core::SpringAxis& rule) {
+  void write_axis(const char* name, const Vec3& axis_W, const SdfAxis& rule) {
     open(name);
     text("xyz", triple(axis_W), {{"expressed_in", "__model__"}});
     open("limit");  // an element that SDF asks for, with or without limits
-    if (rule.limits) number("lower", rule.limits->low), number("upper", rule.limits->high);
+    if (rule.limits && std::isfinite(rule.limits->low)) number("lower", rule.limits->low);
+    if (rule.limits && std::isfinite(rule.limits->high)) number("upper", rule.limits->high);
+    if (std::isfinite(rule.max_effort)) number("effort", rule.max_effort);
     close();
-    if (rule.stiffness != 0 || rule.damping != 0) {
+    if (const core::JointResistance& own = rule.resistance; own != core::JointResistance{}) {
       open("dynamics");
-      number("damping", rule.damping), number("spring_stiffness", rule.stiffness), number("spring_reference", 0);
+      number("damping", own.damping), number("friction", own.friction);
+      number("spring_stiffness", own.stiffness), number("spring_reference", own.rest);
       close();
     }
     close();

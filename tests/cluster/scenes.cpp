@@ -49,6 +49,30 @@ core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m,
   return scene;
 }
 
+core::Scene driven_pairs(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed) {
+  core::Scene scene = thrown_bodies(count, width_x_m, width_y_m, speed_m_s, seed);
+  core::HingeJoint endless;
+  endless.drive = core::JointDrive{.speed = 12, .damping = 0.3, .max_effort = 3};
+  core::HingeJoint stiff{core::JointLimits{-7, 30}, {}};
+  stiff.drive = core::JointDrive{.position = 8, .stiffness = 500, .damping = 10, .max_effort = 6};
+  core::SliderJoint slider;
+  slider.resistance = {.stiffness = 50, .rest = 0.4, .damping = 0.5, .friction = 2};
+  const core::JointKind kinds[] = {endless, stiff, slider, core::BallJoint{0.1}};
+  for (std::size_t i = 0; i + 1 < scene.bodies.size(); i += 2) {
+    const core::InitialBody& a = scene.bodies[i];
+    core::InitialBody& b = scene.bodies[i + 1];
+    b.pose.p_WB = a.pose.p_WB + Vec3(1.2, 0, 0);
+    b.v_WB = a.v_WB;
+    core::JointSpec joint;
+    joint.name = "joint " + std::to_string(i);
+    joint.kind = kinds[i / 2 % 4];
+    joint.a = a.id, joint.b = b.id;
+    joint.X_WJ = {a.pose.p_WB + Vec3(0.6, 0, 0), core::Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
+    scene.joints.push_back(joint);
+  }
+  return scene;
+}
+
 int seeds_or(int usual) {
   const char* wanted = std::getenv("AURASIM_SEEDS");
   return wanted ? std::max(1, std::atoi(wanted)) : usual;

@@ -9,6 +9,10 @@ namespace aurasim::test {
 /// to `speed_m_s` along x and y above a plane; a tenth of them come later, from an injector.
 core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed);
 
+/// The same in pairs, each held together by a joint that drives: hinges that turn without end, or go to and fro by a
+/// stiff drive, and sliders with springs and friction.
+core::Scene driven_pairs(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed);
+
 /// How many seeds a rule is tried with: AURASIM_SEEDS, if it is set.
 int seeds_or(int usual);
 

@@ -34,6 +34,28 @@ TEST_P(SolverBits, AreThoseOfTheCentralRun) {
   std::cout << hand_offs << " hand-offs\n";
 }
 
+TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
+  if (GetParam() == physics::Solver::kDantzig) GTEST_SKIP() << "its time grows with the cube of what is joined";
+  std::uint64_t hand_offs = 0;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const core::Scene scene = driven_pairs(40, 16, 16, 8, seed);
+    ClusterOptions options;
+    options.map = seed == 1 ? core::RegionMap::grid(2, 2, 9, 9) : core::RegionMap::columns(2, 9);
+    options.sync = core::SyncMode::kDeterministic;
+    options.solver = GetParam();
+    options.seed = seed;
+    options.aura.lookahead = 1;
+    options.aura.top_speed_m_s = 60;
+    options.over_the_wire = true;
+    const Outcome o = ClusterSim(scene, options).run(240);
+    EXPECT_EQ(o.hash, run_central(scene, options, 240).hash) << "seed " << seed;
+    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
+    hand_offs += o.hand_offs;
+  }
+  EXPECT_GT(hand_offs, 0u);
+  std::cout << hand_offs << " hand-offs\n";
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, SolverBits,
                          testing::Values(physics::Solver::kSequentialImpulse, physics::Solver::kNncg,
                                          physics::Solver::kDantzig, physics::Solver::kSoftStep),

@@ -44,6 +44,10 @@ TEST_P(ThereAndBack, BodiesAreTheSame) {
     const core::InitialBody* const same = at(body.pose.p_WB, mass(scene_, body));
     ASSERT_NE(same, nullptr) << core::value_of(body.id);
     EXPECT_LT(distance(same->pose.q_WB.toRotationMatrix(), body.pose.q_WB.toRotationMatrix()), kAsTheLibrary);
+    const core::Prototype& before = scene_.prototypes[core::value_of(body.prototype)];
+    const core::Prototype& after = back_.prototypes[core::value_of(same->prototype)];
+    EXPECT_LT(distance(*after.inertia, *before.inertia), kAsTheLibrary);
+    EXPECT_EQ(after.collides, before.collides);
   }
   EXPECT_EQ(back_.gravity, scene_.gravity);
   EXPECT_EQ(back_.statics.size(), scene_.statics.size());

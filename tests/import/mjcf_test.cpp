@@ -89,9 +89,9 @@ INSTANTIATE_TEST_SUITE_P(Models, BesideMujoco,
 
 TEST(Mjcf, DefaultsOfClassesReachTheirElements) {
   const Model model = model_of("defaults.xml");
-  const auto lift = std::get<core::SpringJoint>(joint_named(model, "lift").kind);
-  EXPECT_NEAR(lift.axes[5].limits->low, -80 * std::acos(-1) / 180, 1e-12);
-  EXPECT_EQ(lift.axes[5].damping, 0.2);
+  const auto lift = std::get<core::HingeJoint>(joint_named(model, "lift").kind);
+  EXPECT_NEAR(lift.limits->low, -80 * std::acos(-1) / 180, 1e-12);
+  EXPECT_EQ(lift.resistance.damping, 0.2);
   EXPECT_EQ(link_named(model, "upper").collisions.front().surface.friction, 0.64);
   EXPECT_EQ(model.gravity->z(), -9.5);
 }
@@ -109,10 +109,11 @@ TEST(Mjcf, LimitsAreThoseFromTheReference) {
   EXPECT_NEAR(knee.limits->high, 0.9, 1e-12);
 }
 
-TEST(Mjcf, PositionAndVelocityServosAreSpringsAndDampers) {
+TEST(Mjcf, PositionAndVelocityServosAreDrives) {
   const Model model = model_of("servos.xml");
-  EXPECT_EQ(std::get<core::SpringJoint>(joint_named(model, "lift").kind).axes[5].stiffness, 200) << "kp gear^2";
-  EXPECT_EQ(std::get<core::SpringJoint>(joint_named(model, "spin").kind).axes[5].damping, 3);
+  EXPECT_EQ(std::get<core::HingeJoint>(joint_named(model, "lift").kind).drive->stiffness, 200) << "kp gear^2";
+  EXPECT_EQ(std::get<core::HingeJoint>(joint_named(model, "spin").kind).drive->damping, 3);
+  EXPECT_EQ(std::get<core::HingeJoint>(joint_named(model, "roll").kind).resistance.friction, 0.1);
 }
 
 TEST(Mjcf, BitsThatLetGeomsThroughKeepBodiesApart) {
@@ -125,8 +126,7 @@ TEST(Mjcf, WhatASceneCannotSayIsNamed) {
   for (const char* name : {"defaults.xml", "servos.xml", "hips.xml"}) {
     for (const Finding& finding : model_of(name).lost) elements.push_back(finding.element);
   }
-  for (const char* expected :
-       {"equality 'gear'", "tendon 'cord'", "actuator 'pull'", "joint 'roll'", "joint 'spin'", "body 'odd'"})
+  for (const char* expected : {"equality 'gear'", "tendon 'cord'", "actuator 'pull'", "joint 'spin'", "body 'odd'"})
     EXPECT_THAT(elements, ::testing::Contains(expected));
 }
 

@@ -1,4 +1,5 @@
 // What is written is a scene that our own reader takes, with the same numbers.
+#include <cmath>
 #include <numbers>
 
 #include "import/imported.h"
@@ -12,6 +13,35 @@ std::string letters_of(const ::testing::TestParamInfo<std::string>& info) {
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
+}
+
+void expect_same(const std::optional<core::JointLimits>& found, const std::optional<core::JointLimits>& expected) {
+  ASSERT_EQ(found.has_value(), expected.has_value());
+  if (!expected) return;
+  const auto expect_side = [](double side, double wanted) {
+    std::isinf(wanted) ? EXPECT_EQ(side, wanted) : EXPECT_NEAR(side, wanted, kAsTheLibrary);
+  };
+  expect_side(found->low, expected->low);
+  expect_side(found->high, expected->high);
+}
+
+/// Of hinges and sliders.
+template <class Kind>
+void expect_same_own(const core::JointKind& found_kind, const core::JointKind& expected_kind) {
+  const auto *found = std::get_if<Kind>(&found_kind), *expected = std::get_if<Kind>(&expected_kind);
+  if (expected == nullptr) return;
+  expect_same(found->limits, expected->limits);
+  EXPECT_EQ(found->resistance.stiffness, expected->resistance.stiffness);
+  if (expected->resistance.stiffness != 0)
+    EXPECT_NEAR(found->resistance.rest, expected->resistance.rest, kAsTheLibrary);
+  EXPECT_EQ(found->resistance.damping, expected->resistance.damping);
+  EXPECT_EQ(found->resistance.friction, expected->resistance.friction);
+  ASSERT_EQ(found->drive.has_value(), expected->drive.has_value());
+  if (!expected->drive) return;
+  EXPECT_NEAR(found->drive->position, expected->drive->position, kAsTheLibrary);
+  core::JointDrive same = *expected->drive;
+  same.position = found->drive->position;
+  EXPECT_EQ(*found->drive, same);
 }
 
 class WrittenAndRead : public ::testing::TestWithParam<std::string> {
@@ -34,7 +64,10 @@ TEST_P(WrittenAndRead, BodiesHaveMassAndPose) {
   for (std::size_t i = 0; i < links.size(); ++i) {
     const core::InitialBody& body = scene_.bodies[i];
     const core::Pose expected = body_pose(*links[i]);
-    EXPECT_EQ(scene_.prototypes[core::value_of(body.prototype)].mass_kg, links[i]->mass_kg);
+    const core::Prototype& prototype = scene_.prototypes[core::value_of(body.prototype)];
+    EXPECT_EQ(prototype.mass_kg, links[i]->mass_kg);
+    EXPECT_EQ(*prototype.inertia, principal_inertia(links[i]->I_BL).moments);
+    EXPECT_EQ(prototype.collides, !links[i]->collisions.empty());
     EXPECT_LT(distance(body.pose.p_WB, expected.p_WB), kAsTheLibrary);
     EXPECT_LT(distance(body.pose.q_WB.toRotationMatrix(), expected.q_WB.toRotationMatrix()), kAsTheLibrary);
   }
@@ -53,17 +86,16 @@ TEST_P(WrittenAndRead, JointsHaveAnchorAxisAndLimits) {
     if (std::holds_alternative<core::BallJoint>(joint.kind) || std::holds_alternative<core::FixedJoint>(joint.kind))
       continue;
     EXPECT_LT(distance(joint.X_WJ.q_WB * core::Vec3::UnitZ(), expected.X_WJ.q_WB * core::Vec3::UnitZ()), kAsTheLibrary);
+    expect_same_own<core::HingeJoint>(joint.kind, expected.kind);
+    expect_same_own<core::SliderJoint>(joint.kind, expected.kind);
     if (const auto* spring = std::get_if<core::SpringJoint>(&joint.kind)) {
       EXPECT_LT(distance(joint.X_WJ.q_WB.toRotationMatrix(), expected.X_WJ.q_WB.toRotationMatrix()), kAsTheLibrary);
       for (std::size_t axis = 0; axis < 6; ++axis) {
         const core::SpringAxis& of = std::get<core::SpringJoint>(expected.kind).axes[axis];
-        EXPECT_EQ(spring->axes[axis].limits.has_value(), of.limits.has_value());
+        expect_same(spring->axes[axis].limits, of.limits);
+        EXPECT_NEAR(spring->axes[axis].rest, of.rest, kAsTheLibrary);
         EXPECT_EQ(spring->axes[axis].stiffness, of.stiffness);
         EXPECT_EQ(spring->axes[axis].damping, of.damping);
-        if (of.limits) {
-          EXPECT_NEAR(spring->axes[axis].limits->low, of.limits->low, kAsTheLibrary);
-          EXPECT_NEAR(spring->axes[axis].limits->high, of.limits->high, kAsTheLibrary);
-        }
       }
     }
   }
