@@ -79,12 +79,7 @@ void ObservationFeed::begin(core::Step step, const std::deque<core::HandOff>& un
 }
 
 void ObservationFeed::note(const StepReport& report, const std::deque<core::HandOff>& under_way) {
-  for (std::size_t i = 0; i < report.departed.size(); ++i) {
-    BodyState body = core::state_of(report.departed[i]);
-    body.epoch = report.departures[i].epoch;
-    left_.insert_or_assign(body.id, Left{body, report.departures[i].destination, report.step});
-    arrived_.erase(body.id);
-  }
+  // Who joins for a step may leave in it.
   for (const HandOffRow& row : report.arrivals) {
     left_.erase(row.body);
     arrived_.insert_or_assign(row.body, report.step);
@@ -92,6 +87,12 @@ void ObservationFeed::note(const StepReport& report, const std::deque<core::Hand
   for (const physics::Removal& removal : report.removals) {
     left_.erase(removal.body);
     arrived_.insert_or_assign(removal.body, report.step);
+  }
+  for (std::size_t i = 0; i < report.departed.size(); ++i) {
+    BodyState body = core::state_of(report.departed[i]);
+    body.epoch = report.departures[i].epoch;
+    left_.insert_or_assign(body.id, Left{body, report.departures[i].destination, report.step});
+    arrived_.erase(body.id);
   }
   // Longer than the way takes: others, who are behind, still count on it.
   const core::Step old = report.step - 4 * settings_.lookahead - 8;

@@ -177,6 +177,17 @@ TEST_F(Observed, WhoComesBackIsHereAgain) {
   EXPECT_EQ(observation.bodies[0].row.host, RegionId{1});
 }
 
+TEST_F(Observed, WhoPassesThroughInOneStateIsExactInIt) {
+  step();
+  arrives(2, 5);
+  send_away(2, 3);
+  note();
+  const Observation observation = told();
+  ASSERT_THAT(ids(observation), ElementsAre(2));
+  EXPECT_FALSE(observation.bodies[0].stale);
+  EXPECT_EQ(observation.bodies[0].row.host, RegionId{3});
+}
+
 TEST_F(Observed, OfMadeUpStatesAllBodiesAreAccountedFor) {
   want_a_box(-1, 1);
   MadeUp state;
