@@ -10,8 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A listener that is known here may not know this node yet.
-constexpr auto kUntilKnown = std::chrono::milliseconds(300);
+/// A listener that is known here may not know this node yet. In a run that stands it is told once more.
+constexpr auto kUntilKnown = std::chrono::milliseconds(300), kUntilToldAgain = std::chrono::milliseconds(1000);
 
 dds::Ros2Settings ros2_settings(const config::Launch& launch, core::RegionId region) {
   dds::Ros2Settings settings;
@@ -38,16 +38,18 @@ void Ros2Link::begin(core::Generation generation) {
 
 /// States that are computed again are not told again: ROS's time would go back.
 bool Ros2Link::is_due(core::Step step) {
-  if (const std::uint64_t arrivals = bus_.arrivals(); std::exchange(arrivals_, arrivals) != arrivals) {
-    again_at_ = Clock::now() + kUntilKnown;
-  }
+  const Clock::time_point now = Clock::now();
+  const std::uint64_t arrivals = bus_.arrivals();
+  if (std::exchange(arrivals_, arrivals) != arrivals) somebody_came_at_ = now;
   if (step >= next_) {
     next_ = (step / tick_steps_ + 1) * tick_steps_;
+    if (somebody_came_at_ && now >= *somebody_came_at_ + kUntilKnown) somebody_came_at_.reset();
     return true;
   }
-  const bool is_told_again = again_at_ && Clock::now() >= *again_at_ && step + tick_steps_ >= next_;
-  if (is_told_again) again_at_.reset();
-  return is_told_again;
+  const bool again =
+      somebody_came_at_ && now >= *somebody_came_at_ + kUntilToldAgain && step + tick_steps_ >= next_;
+  if (again) somebody_came_at_.reset();
+  return again;
 }
 
 void Ros2Link::tell(node::Node& node, core::Generation generation, bool leads) {

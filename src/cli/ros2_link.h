@@ -40,7 +40,7 @@ class Ros2Link {
   std::vector<dds::Ros2Transform> transforms_;  ///< reused
   core::Step next_ = 0;                         ///< the next state that is due
   std::uint64_t arrivals_ = 0;
-  std::optional<std::chrono::steady_clock::time_point> again_at_;  ///< for whoever has just come
+  std::optional<std::chrono::steady_clock::time_point> somebody_came_at_;  ///< and may have missed it
 };
 
 }  // namespace aurasim::cli

@@ -89,9 +89,9 @@ struct Silent {
   bool drives;
 };
 
-class Silence : public testing::TestWithParam<Silent> {};
+class ProgramSilence : public testing::TestWithParam<Silent> {};
 
-TEST_P(Silence, IsWhatTheLaunchFileSays) {
+TEST_P(ProgramSilence, IsWhatTheLaunchFileSays) {
   ControlLog log;
   log.use({LateSetpoint::kNextState, GetParam().rule, 30});
   log.recall({1,
@@ -112,7 +112,7 @@ TEST_P(Silence, IsWhatTheLaunchFileSays) {
   EXPECT_EQ(drive->effort, GetParam().rule == OnSilence::kLast ? 4 : 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, Silence,
+INSTANTIATE_TEST_SUITE_P(Rules, ProgramSilence,
                          testing::Values(Silent{OnSilence::kHold, -1, 0, true}, Silent{OnSilence::kZero, -1, -1, false},
                                          Silent{OnSilence::kLast, 5, 2, true}));
 
