@@ -46,8 +46,7 @@ bool Ros2Link::is_due(core::Step step) {
     if (somebody_came_at_ && now >= *somebody_came_at_ + kUntilKnown) somebody_came_at_.reset();
     return true;
   }
-  const bool again =
-      somebody_came_at_ && now >= *somebody_came_at_ + kUntilToldAgain && step + tick_steps_ >= next_;
+  const bool again = somebody_came_at_ && now >= *somebody_came_at_ + kUntilToldAgain && step + tick_steps_ >= next_;
   if (again) somebody_came_at_.reset();
   return again;
 }

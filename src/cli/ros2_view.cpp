@@ -44,8 +44,8 @@ class Held {
   }
   bool together(const core::BodyState& a, const core::BodyState& b) const {
     const std::pair pair(static_cast<std::uint32_t>(&a - first_), static_cast<std::uint32_t>(&b - first_));
-    return std::ranges::binary_search(pairs_, std::pair(std::min(pair.first, pair.second),
-                                                        std::max(pair.first, pair.second)));
+    return std::ranges::binary_search(pairs_,
+                                      std::pair(std::min(pair.first, pair.second), std::max(pair.first, pair.second)));
   }
 
  private:
@@ -86,8 +86,7 @@ std::optional<JointMotion> motion_of(const core::JointKind& kind, const core::Po
   const core::Vec3 axis_W = of_b.R_W.col(2);
   if (std::holds_alternative<core::HingeJoint>(kind)) {
     const core::Mat3 R_ba = of_b.R_W.transpose() * of_a.R_W;
-    return JointMotion{std::atan2(R_ba(1, 0) - R_ba(0, 1), R_ba(0, 0) + R_ba(1, 1)),
-                       axis_W.dot(of_a.w_W - of_b.w_W)};
+    return JointMotion{std::atan2(R_ba(1, 0) - R_ba(0, 1), R_ba(0, 0) + R_ba(1, 1)), axis_W.dot(of_a.w_W - of_b.w_W)};
   }
   if (std::holds_alternative<core::SliderJoint>(kind)) {
     const core::Vec3 way_W = of_a.p_W - of_b.p_W;

@@ -48,8 +48,8 @@ constexpr double kMessagesASecond = 1000, kMessagesAtOnce = 4000;
 /// A message of so many transforms fits into a datagram of 64 kB, with names of usual length.
 constexpr std::size_t kTransformsAtOnce = 400;
 
-/// As ROS 2 announces it: without type object and type information, with which Fast DDS 2.9.1 ends processes that do not
-/// know the type.
+/// As ROS 2 announces it: without type object and type information, with which Fast DDS 2.9.1 ends processes that do
+/// not know the type.
 template <class Generated>
 class RosType : public Generated {
  public:
@@ -182,8 +182,7 @@ struct Ros2Bus::Impl {
     auto qos = profiles.writer(*publisher, profile);
     qos.user_data().setValue(ros2_user_data(type));
     const auto stopped = guard->delivery().stop();
-    telling.writer =
-        publisher->create_datawriter(&of_ros, qos, &telling.watch, StatusMask::publication_matched());
+    telling.writer = publisher->create_datawriter(&of_ros, qos, &telling.watch, StatusMask::publication_matched());
     if (telling.writer == nullptr) throw DdsError(fmt::format("cannot create the writer of {} of ROS", name));
   }
 
@@ -193,9 +192,8 @@ struct Ros2Bus::Impl {
     qos.user_data().setValue(ros2_user_data(kRos2Twist));
     auto hearing = std::make_unique<Hearing>(wakeup);
     const auto stopped = guard->delivery().stop();
-    hearing->reader =
-        subscriber->create_datareader(&of_ros, qos, &hearing->watch,
-                                      StatusMask::data_available() << StatusMask::subscription_matched());
+    hearing->reader = subscriber->create_datareader(&of_ros, qos, &hearing->watch,
+                                                    StatusMask::data_available() << StatusMask::subscription_matched());
     if (hearing->reader == nullptr) throw DdsError(fmt::format("cannot create the reader of {} of ROS", name));
     drivers.push_back(std::move(hearing));
   }

@@ -37,9 +37,9 @@ struct Ros2Joints {
 
 /// In the frame of who is to drive.
 struct Ros2Twist {
-  std::size_t listener = 0;    ///< place in Ros2Settings::cmd_vel
-  std::uint64_t sender = 0;    ///< the same number for the same publisher on all nodes; not 0
-  std::uint64_t sequence = 0;  ///< of the sender: 1, 2, ...
+  std::size_t listener = 0;                 ///< place in Ros2Settings::cmd_vel
+  std::uint64_t sender = 0;                 ///< the same number for the same publisher on all nodes; not 0
+  std::uint64_t sequence = 0;               ///< of the sender: 1, 2, ...
   core::Vec3 linear = core::Vec3::Zero();   ///< m/s
   core::Vec3 angular = core::Vec3::Zero();  ///< rad/s
 };

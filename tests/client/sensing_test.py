@@ -42,7 +42,7 @@ class Sensing(WorldTest):
         one, _ = self.sensed(interest=interest, regions__count=1, **overrides)
         self.assertGreater(hand_offs, 0, "or this test proves nothing")
         both = sorted(set(four) & set(one))
-        self.assertGreater(len(both), self.STEPS * 0.9)
+        self.assertEqual(both, list(range(self.STEPS + 1)), "no state is left out")
         for step in both:
             if four[step].complete:
                 check(four[step], one[step])

@@ -15,8 +15,7 @@ using core::Vec3;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr double kCell = 9;
-constexpr core::Step kSteps = 160;
+constexpr core::Step kBreakdownSteps = 160;
 
 class BreakdownInACluster : public testing::TestWithParam<core::SyncMode> {
  protected:
@@ -41,8 +40,8 @@ class BreakdownInACluster : public testing::TestWithParam<core::SyncMode> {
 TEST_P(BreakdownInACluster, ABodyOutOfAllBoundsIsTakenOutInTheSameStateOnOneNodeAndOnFour) {
   spawn(80, {3, 3, 30}, {2e6, 0, 0});
   spawn(90, {-3, 3, 40}, {0, 0, 0}, {0, 0, 2e6});
-  const Outcome four = ClusterSim(scene_, options_).run(kSteps);
-  const Outcome one = run_central(scene_, options_, kSteps);
+  const Outcome four = ClusterSim(scene_, options_).run(kBreakdownSteps);
+  const Outcome one = run_central(scene_, options_, kBreakdownSteps);
   ASSERT_EQ(four.broken.size(), one.broken.size());
   ASSERT_GE(one.broken.size(), 1u);
   for (std::size_t i = 0; i < one.broken.size(); ++i) {
@@ -61,7 +60,7 @@ TEST_P(BreakdownInACluster, ASpinThatNoWorldCanBearIsDeclined) {
   std::size_t declined = 0;
   ClusterSim cluster(scene_, options_);
   cluster.on_state = [&](node::Node&, const node::StepReport& report, double) { declined += report.declined.size(); };
-  const Outcome o = cluster.run(kSteps);
+  const Outcome o = cluster.run(kBreakdownSteps);
   EXPECT_EQ(declined, 2u);
   EXPECT_EQ(o.applied, 0u);
   EXPECT_THAT(o.fenced, IsEmpty());
@@ -79,7 +78,7 @@ TEST_P(BreakdownInACluster, WhoSendsWhatNobodyCanUseIsHeldForDead) {
   cluster.on_state = [&](node::Node& node, const node::StepReport&, double) {
     for (const core::Refusal& refusal : node.protocol().intake().refusals()) refusals.push_back(refusal);
   };
-  const Outcome o = cluster.run(kSteps);
+  const Outcome o = cluster.run(kBreakdownSteps);
   ASSERT_EQ(o.fenced.size(), 1u);
   ASSERT_FALSE(refusals.empty());
   EXPECT_EQ(refusals[0].source, o.fenced[0]);

@@ -14,7 +14,6 @@ using core::AuraKind;
 using core::RegionId;
 using core::SyncMode;
 
-constexpr double kCell = 9;
 constexpr core::Step kSteps = 180;
 
 int seeds() { return seeds_or(6); }

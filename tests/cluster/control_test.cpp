@@ -19,7 +19,6 @@ using core::RegionId;
 using core::Step;
 using core::Vec3;
 
-constexpr double kCell = 9;
 constexpr Step kSteps = 200, kFirst = 20, kEvery = 3;
 
 ClusterOptions options_for(int rows, int columns, int seed, bool redo) {

@@ -10,10 +10,10 @@
 namespace aurasim::test {
 namespace {
 
-constexpr core::Step kSteps = 150;
+constexpr core::Step kListeningSteps = 150;
 
 /// Regions narrower than what bodies come across, and only those that touch listen to each other at first.
-ClusterOptions options_for(int seed) {
+ClusterOptions listening_options_for(int seed) {
   ClusterOptions options;
   options.sync = core::SyncMode::kDeterministic;
   options.seed = static_cast<std::uint64_t>(seed);
@@ -34,9 +34,9 @@ class Listening : public testing::TestWithParam<int> {};
 
 TEST_P(Listening, FollowsBodiesSoThatNothingIsMissed) {
   const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
-  ClusterSim apart(scene, options_for(GetParam()));
-  const Outcome outcome = apart.run(kSteps);
-  const Outcome central = run_central(scene, options_for(GetParam()), kSteps);
+  ClusterSim apart(scene, listening_options_for(GetParam()));
+  const Outcome outcome = apart.run(kListeningSteps);
+  const Outcome central = run_central(scene, listening_options_for(GetParam()), kListeningSteps);
   EXPECT_EQ(outcome.hash, central.hash) << outcome.redos << " redos";
   EXPECT_EQ(outcome.lost, 0u);
   EXPECT_LE(outcome.redos, 2u);
@@ -45,16 +45,16 @@ TEST_P(Listening, FollowsBodiesSoThatNothingIsMissed) {
 /// Both sides say the same of it.
 TEST_P(Listening, IsMutualFromTheSameStateOn) {
   const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
-  const ClusterOptions options = options_for(GetParam());
+  const ClusterOptions options = listening_options_for(GetParam());
   ClusterSim apart(scene, options);
-  apart.run(kSteps);
+  apart.run(kListeningSteps);
   const auto listened = [&](core::RegionId region) {
     return apart.node(core::value_of(region)).protocol().listens_to();
   };
   std::size_t introduced = 0;
   for (std::uint32_t r = 0; r < options.map.size(); ++r) {
     for (const core::Listened& other : listened(core::RegionId{r})) {
-      if (other.since > kSteps) continue;  // nodes end a few states apart
+      if (other.since > kListeningSteps) continue;  // nodes end a few states apart
       introduced += other.introduced_by.has_value();
       const auto same = std::ranges::find(listened(other.region), core::RegionId{r}, &core::Listened::region);
       ASSERT_NE(same, listened(other.region).end()) << r << " listens to " << core::value_of(other.region);

@@ -15,8 +15,7 @@ namespace {
 using core::BodyId;
 using core::Vec3;
 
-constexpr double kCell = 9;
-constexpr core::Step kSteps = 240;
+constexpr core::Step kOrderSteps = 240;
 constexpr core::Step kFirst = 60;  ///< long enough for orders to have gone round
 
 struct Cut {
@@ -53,7 +52,7 @@ Vec3 somewhere(std::mt19937_64& random, double z) {
 std::vector<std::pair<core::Step, core::Action>> orders_for(const core::Scene& scene, int seed) {
   std::mt19937_64 random(static_cast<std::uint64_t>(seed));
   std::uniform_int_distribution<std::size_t> any(0, scene.bodies.size() - 1);
-  std::uniform_int_distribution<core::Step> when(kFirst, kSteps - 60);
+  std::uniform_int_distribution<core::Step> when(kFirst, kOrderSteps - 60);
   const auto shape = static_cast<std::uint32_t>(scene.shapes.size());
   const core::PrototypeId brick{static_cast<std::uint32_t>(scene.prototypes.size())};
   const core::StaticId wall{static_cast<std::uint32_t>(scene.statics.size())};
@@ -62,7 +61,7 @@ std::vector<std::pair<core::Step, core::Action>> orders_for(const core::Scene& s
       {0, core::DefinePrototype{shape, 2.5}},
       {0, core::DefineShape{core::Box{{3, 0.2, 2}}}},
       {kFirst, core::AddStatic{wall, shape + 1, {{0, 0.5, 2}, core::Quat::Identity()}}},
-      {kSteps - 80, core::RemoveStatic{wall}}};
+      {kOrderSteps - 80, core::RemoveStatic{wall}}};
   for (int i = 0; i < 12; ++i) {
     const BodyId id = scene.bodies[any(random)].id;
     orders.push_back({when(random), core::Impulse{id, somewhere(random, 4) / 4, {}}});
@@ -88,8 +87,8 @@ TEST_P(OrdersCluster, HaveTheSameEffectAsInOneWorld) {
     const core::Scene scene = thrown_bodies(60, 4 * kCell, 2 * kCell, 8, static_cast<std::uint64_t>(seed));
     ClusterOptions options = options_for(cut_, seed);
     options.orders = orders_for(scene, seed);
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
-    const Outcome central = run_central(scene, options, kSteps);
+    const Outcome o = ClusterSim(scene, options).run(kOrderSteps);
+    const Outcome central = run_central(scene, options, kOrderSteps);
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
     EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
                                          << first.first - o.hash.begin();
@@ -129,7 +128,7 @@ TEST(Orders, AKickIsForeseenByTheNeighbours) {
   options.sync = core::SyncMode::kBounded;
   options.orders = {{150, core::SetVelocity{BodyId{1}, {20, 0, 0}, {}}},
                     {150, core::SetVelocity{BodyId{2}, {-20, 0, 0}, {}}}};
-  const Outcome o = ClusterSim(scene, options).run(kSteps);
+  const Outcome o = ClusterSim(scene, options).run(kOrderSteps);
   EXPECT_EQ(o.applied, 2u);
   EXPECT_EQ(o.late + o.missed, 0u);
   EXPECT_EQ(o.contacts.size(), 1u);

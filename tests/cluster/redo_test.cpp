@@ -11,8 +11,7 @@ namespace {
 using core::AuraKind;
 using core::SyncMode;
 
-constexpr double kCell = 9;
-constexpr core::Step kSteps = 150;
+constexpr core::Step kRedoSteps = 150;
 
 ClusterOptions options_for(int seed) {
   ClusterOptions options;
@@ -47,8 +46,8 @@ TEST_P(Redo, AloneGivesTheBitsOfOneWorld) {
   const core::Scene scene = scene_for(GetParam());
   ClusterOptions options = options_for(GetParam());
   options.aura.kind = AuraKind::kNone;
-  const Outcome apart = ClusterSim(scene, options).run(kSteps);
-  const Outcome central = run_central(scene, options, kSteps);
+  const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+  const Outcome central = run_central(scene, options, kRedoSteps);
   EXPECT_EQ(first_difference(apart, central), central.hash.size()) << apart.redos << " redos";
   EXPECT_EQ(apart.lost, 0u);
 }
@@ -57,8 +56,8 @@ TEST_P(Redo, AloneGivesTheBitsOfOneWorld) {
 TEST_P(Redo, IsHardlyEverNeededWhereAurasTell) {
   const core::Scene scene = scene_for(GetParam());
   const ClusterOptions options = options_for(GetParam());
-  const Outcome apart = ClusterSim(scene, options).run(kSteps);
-  const Outcome central = run_central(scene, options, kSteps);
+  const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+  const Outcome central = run_central(scene, options, kRedoSteps);
   EXPECT_EQ(first_difference(apart, central), central.hash.size());
   EXPECT_LE(apart.redos, 1u);
 }
@@ -69,7 +68,7 @@ TEST(Check, FindsWhatAurasWouldHaveTold) {
   ClusterOptions options = options_for(1);
   options.aura.kind = AuraKind::kNone;
   const core::Scene scene = scene_for(1);
-  EXPECT_GT(ClusterSim(scene, options).run(kSteps).redos, 0u);
+  EXPECT_GT(ClusterSim(scene, options).run(kRedoSteps).redos, 0u);
 }
 
 TEST(Check, WithoutItsMarginMissesATouch) {
@@ -79,8 +78,8 @@ TEST(Check, WithoutItsMarginMissesATouch) {
     options.aura.kind = AuraKind::kNone;
     options.aura.check_scale = -5;
     const core::Scene scene = scene_for(seed);
-    const Outcome apart = ClusterSim(scene, options).run(kSteps);
-    differ += first_difference(apart, run_central(scene, options, kSteps)) < apart.hash.size();
+    const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+    differ += first_difference(apart, run_central(scene, options, kRedoSteps)) < apart.hash.size();
   }
   EXPECT_GT(differ, 0u);
 }

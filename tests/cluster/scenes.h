@@ -5,6 +5,9 @@
 
 namespace aurasim::test {
 
+/// The side of a region in the tests of clusters, in m.
+inline constexpr double kCell = 9;
+
 /// `count` spheres, boxes and capsules over an area of `width_x_m` x `width_y_m` around the origin, thrown about at up
 /// to `speed_m_s` along x and y above a plane; a tenth of them come later, from an injector.
 core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed);

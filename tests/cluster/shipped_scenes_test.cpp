@@ -28,15 +28,15 @@ constexpr ShippedScene kScenes[] = {
     {"newtons_cradle", 4, 600, 3}, {"ragdoll_stairs", 5, 360, 3}, {"three_way", 8, 400},          {"tower", 8, 400},
     {"tug_of_war", 10, 480, 3},    {"two_spheres", 10, 300},      {"vehicle_tour", 9, 850, 3}};
 
-struct Cut {
+struct ShippedCut {
   const char* name;
   int rows;
   int columns;
 };
 
-constexpr Cut kCuts[] = {{"TwoColumns", 1, 2}, {"TwoByTwo", 2, 2}, {"ThreeByThree", 3, 3}};
+constexpr ShippedCut kShippedCuts[] = {{"TwoColumns", 1, 2}, {"TwoByTwo", 2, 2}, {"ThreeByThree", 3, 3}};
 
-core::RegionMap map_of(const Cut& cut, const ShippedScene& shipped) {
+core::RegionMap map_of(const ShippedCut& cut, const ShippedScene& shipped) {
   std::vector<core::Rectangle> cells;
   const double x0 = shipped.centre_x_m - shipped.cell_m * cut.columns / 2;
   const double y0 = -shipped.cell_m * cut.rows / 2;
@@ -57,7 +57,7 @@ config::Launch launch_of(const char* name) {
 class ShippedCluster : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
  protected:
   ShippedScene shipped_ = kScenes[std::get<0>(GetParam())];
-  Cut cut_ = kCuts[std::get<1>(GetParam())];
+  ShippedCut cut_ = kShippedCuts[std::get<1>(GetParam())];
 
   ClusterOptions options(const config::Launch& launch, int seed) const {
     ClusterOptions options;
@@ -141,10 +141,10 @@ TEST(ShippedClusterBits, WithoutAurasJointsAreCutAndTheBitsDiffer) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ShippedCluster,
                          testing::Combine(testing::Range<std::size_t>(0, std::size(kScenes)),
-                                          testing::Range<std::size_t>(0, std::size(kCuts))),
+                                          testing::Range<std::size_t>(0, std::size(kShippedCuts))),
                          [](const auto& param) {
                            return std::string(kScenes[std::get<0>(param.param)].name) + "_" +
-                                  kCuts[std::get<1>(param.param)].name;
+                                  kShippedCuts[std::get<1>(param.param)].name;
                          });
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 constexpr BodyId kBody{7};
 constexpr JointId kJoint{2};
 constexpr std::size_t kJoints = 3;
-constexpr Step kNotice = 3;
+constexpr Step kControlNotice = 3;
 
 Setpoints force(std::uint64_t client, std::uint64_t sequence, Step at, double x) {
   return {client, sequence, 0, at, {{kBody, Quantity::kForce, Vec3(x, 0, 0)}}, {}};
@@ -21,8 +21,8 @@ double force_in(const ControlLog& log, Step step) {
 
 TEST(ControlLog, ASetpointHoldsFromItsStateUntilTheNextOne) {
   ControlLog log;
-  EXPECT_EQ(log.hear(force(1, 1, 10, 5), 8, kNotice, kJoints), Heard::kInTime);
-  EXPECT_EQ(log.hear(force(1, 2, 12, 6), 8, kNotice, kJoints), Heard::kInTime);
+  EXPECT_EQ(log.hear(force(1, 1, 10, 5), 8, kControlNotice, kJoints), Heard::kInTime);
+  EXPECT_EQ(log.hear(force(1, 2, 12, 6), 8, kControlNotice, kJoints), Heard::kInTime);
   EXPECT_EQ(force_in(log, 9), -1);
   EXPECT_EQ(force_in(log, 10), 5);
   EXPECT_EQ(force_in(log, 11), 5);
@@ -31,7 +31,7 @@ TEST(ControlLog, ASetpointHoldsFromItsStateUntilTheNextOne) {
 
 TEST(ControlLog, WithoutAStateItTakesEffectAfterTheNotice) {
   ControlLog log;
-  log.hear(force(1, 1, 0, 5), 8, kNotice, kJoints);
+  log.hear(force(1, 1, 0, 5), 8, kControlNotice, kJoints);
   EXPECT_EQ(force_in(log, 10), -1);
   EXPECT_EQ(force_in(log, 11), 5);
 }
@@ -49,8 +49,8 @@ TEST(ControlLog, TheOrderOfArrivalDoesNotMatter) {
 TEST(ControlLog, WhatIsLateTakesEffectInTheNextStateOrNotAtAll) {
   ControlLog next, drop;
   drop.use({LateSetpoint::kDropped, OnSilence::kHold, 30});
-  EXPECT_EQ(next.hear(force(1, 1, 8, 5), 8, kNotice, kJoints), Heard::kLate);
-  EXPECT_EQ(drop.hear(force(1, 1, 8, 5), 8, kNotice, kJoints), Heard::kLate);
+  EXPECT_EQ(next.hear(force(1, 1, 8, 5), 8, kControlNotice, kJoints), Heard::kLate);
+  EXPECT_EQ(drop.hear(force(1, 1, 8, 5), 8, kControlNotice, kJoints), Heard::kLate);
   EXPECT_EQ(force_in(next, 8), -1);
   EXPECT_EQ(force_in(next, 9), 5);
   EXPECT_EQ(force_in(drop, 9), -1);
@@ -59,8 +59,8 @@ TEST(ControlLog, WhatIsLateTakesEffectInTheNextStateOrNotAtAll) {
 TEST(ControlLog, RefusesUnknownJointsAndStatesFarAhead) {
   ControlLog log;
   Setpoints drive{1, 1, 0, 10, {}, {{JointId{3}, JointDrive{}}}};
-  EXPECT_EQ(log.hear(drive, 8, kNotice, kJoints), Heard::kRefused);
-  EXPECT_EQ(log.hear(force(1, 1, 1'000'000, 5), 8, kNotice, kJoints), Heard::kRefused);
+  EXPECT_EQ(log.hear(drive, 8, kControlNotice, kJoints), Heard::kRefused);
+  EXPECT_EQ(log.hear(force(1, 1, 1'000'000, 5), 8, kControlNotice, kJoints), Heard::kRefused);
   EXPECT_TRUE(log.empty());
 }
 

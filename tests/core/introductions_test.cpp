@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr Step kNow = 100;
+constexpr Step kIntroduced = 100;
 
 /// Four columns of 10 m around the origin; we are the second, from -10 to 0, and hear the two beside us.
 class TheOwnerOfAPlace : public ::testing::Test {
@@ -25,11 +25,11 @@ class TheOwnerOfAPlace : public ::testing::Test {
     aura.id = BodyId{next_id_++};
     aura.host = host;
     aura.prototype = ball_;
-    aura.stamp = kNow - 1;
+    aura.stamp = kIntroduced - 1;
     aura.pose.p_WB = {x, 0, 0};
     aura.v_WB = {v_x, 0, 0};
     aura.speed_m_s = std::abs(v_x) + 0.1;
-    bodies_.add(aura, kNow - 1, kNow, *aura_);
+    bodies_.add(aura, kIntroduced - 1, kIntroduced, *aura_);
   }
   const std::vector<Introduction>& look() {
     bodies_.build();

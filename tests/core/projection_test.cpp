@@ -15,8 +15,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr RegionId kLeft{0};
-constexpr RegionId kRight{1};
+constexpr RegionId kWest{0};
+constexpr RegionId kEast{1};
 constexpr BodyId kBody{7};
 
 class ProjectionTest : public ::testing::TestWithParam<int> {
@@ -87,29 +87,29 @@ TEST_P(ProjectionTest, AnAuraIsCreatedInTheZoneUpdatedEachStepAndDeletedOnLeavin
   Step created = -1, gone = -1;
   while (world->now() < kSteps && gone < 0) {
     world->step();
-    const bool published = update_of(kBody, kLeft) != nullptr;
+    const bool published = update_of(kBody, kWest) != nullptr;
     if (published && created < 0) created = world->now();
     if (created >= 0 && !published) gone = world->now();
-    EXPECT_EQ(deleted(kBody, kLeft), gone >= 0);
+    EXPECT_EQ(deleted(kBody, kWest), gone >= 0);
     EXPECT_EQ(published, created >= 0 && gone < 0);
   }
   ASSERT_GT(created, 0);
   ASSERT_GT(gone, created);
-  EXPECT_EQ(counters(kLeft).created, 1u);
-  EXPECT_EQ(counters(kLeft).updated, static_cast<std::uint64_t>(gone - created - 1));
-  EXPECT_EQ(counters(kLeft).deleted, 1u);
+  EXPECT_EQ(counters(kWest).created, 1u);
+  EXPECT_EQ(counters(kWest).updated, static_cast<std::uint64_t>(gone - created - 1));
+  EXPECT_EQ(counters(kWest).deleted, 1u);
   while (world->now() < gone + k()) world->step();
-  EXPECT_TRUE(known_to(kRight).empty());
+  EXPECT_TRUE(known_to(kEast).empty());
 }
 
 TEST_P(ProjectionTest, ABodyProjectsNoLaterThanTheTableAsks) {
   make_world(RegionMap::columns(2, 100));
   place_flying(kBody, Vec3(-20, 0, 0), Vec3(20, 0, 0));
   world->start();
-  while (!update_of(kBody, kLeft)) world->step();
-  const AuraRecord& first = *update_of(kBody, kLeft);
+  while (!update_of(kBody, kWest)) world->step();
+  const AuraRecord& first = *update_of(kBody, kWest);
   const double before = first.pose.p_WB.x() + 0.5 - 20 * rules.step_s;  // its surface one state earlier
-  const Aura& aura = world->protocol(kLeft).aura();
+  const Aura& aura = world->protocol(kWest).aura();
   EXPECT_LT(before, -aura.zone(20, 1, 20, 0.5));
   EXPECT_LT(-first.pose.p_WB.x(), 100.0 / 2);
 }
@@ -119,22 +119,22 @@ TEST_P(ProjectionTest, ASleepingBodyIsSilent) {
   place_at(kBody, Vec3(-1, 0, 0));
   world->start();
   world->run_steps(5);
-  EXPECT_TRUE(update_of(kBody, kLeft));
+  EXPECT_TRUE(update_of(kBody, kWest));
   world->set_awake(kBody, false);
   world->step();
-  ASSERT_TRUE(update_of(kBody, kLeft));
-  EXPECT_EQ(update_of(kBody, kLeft)->flags, kAuraAsleep);
+  ASSERT_TRUE(update_of(kBody, kWest));
+  EXPECT_EQ(update_of(kBody, kWest)->flags, kAuraAsleep);
   for (int i = 0; i < 20; ++i) {
     world->step();
-    EXPECT_FALSE(update_of(kBody, kLeft));
-    EXPECT_FALSE(deleted(kBody, kLeft));
-    EXPECT_EQ(world->published(kLeft).aura.stamp, world->now()) << "the batch is sent all the same";
+    EXPECT_FALSE(update_of(kBody, kWest));
+    EXPECT_FALSE(deleted(kBody, kWest));
+    EXPECT_EQ(world->published(kWest).aura.stamp, world->now()) << "the batch is sent all the same";
   }
-  EXPECT_THAT(known_to(kRight), ElementsAre(kBody));
+  EXPECT_THAT(known_to(kEast), ElementsAre(kBody));
   world->set_awake(kBody, true);
   world->step();
-  ASSERT_TRUE(update_of(kBody, kLeft));
-  EXPECT_EQ(update_of(kBody, kLeft)->flags, 0);
+  ASSERT_TRUE(update_of(kBody, kWest));
+  EXPECT_EQ(update_of(kBody, kWest)->flags, 0);
 }
 
 TEST_P(ProjectionTest, ABodyFarFromEveryBoundaryIsItsHostsAlone) {
@@ -142,8 +142,8 @@ TEST_P(ProjectionTest, ABodyFarFromEveryBoundaryIsItsHostsAlone) {
   place_at(kBody, Vec3(-40, 0, 0));
   world->start();
   world->run_steps(10);
-  EXPECT_EQ(counters(kLeft).created, 0u);
-  EXPECT_EQ(world->protocol(kLeft).projection().find(kBody)->phase, Phase::kHostRegion);
+  EXPECT_EQ(counters(kWest).created, 0u);
+  EXPECT_EQ(world->protocol(kWest).projection().find(kBody)->phase, Phase::kHostRegion);
 }
 
 TEST_P(ProjectionTest, ABodyOnACornerIsSeenByAllThreeNeighbours) {
@@ -172,61 +172,61 @@ TEST_P(ProjectionTest, ABodyGoesHomeAfterAnIslandOf2KPlus1Steps) {
   Step outside = -1;
   while (outside < 0) {
     world->step();
-    const Phase phase = world->protocol(kLeft).projection().find(kBody)->phase;
+    const Phase phase = world->protocol(kWest).projection().find(kBody)->phase;
     if (phase == Phase::kBoundaryTraversed) outside = world->now();
   }
   EXPECT_GE(-2.01 + 0.1 * static_cast<double>(outside), 0.5) << "wholly outside: its bounding sphere is";
   EXPECT_LT(-2.01 + 0.1 * static_cast<double>(outside - 1), 0.5);
-  EXPECT_EQ(run_until_hand_off(kLeft), outside + 2 * k() + 1);
-  EXPECT_EQ(hand_off_of(kLeft)->reason, HandOffReason::kBoundaryTraversal);
-  EXPECT_EQ(hand_off_of(kLeft)->destination, kRight);
+  EXPECT_EQ(run_until_hand_off(kWest), outside + 2 * k() + 1);
+  EXPECT_EQ(hand_off_of(kWest)->reason, HandOffReason::kBoundaryTraversal);
+  EXPECT_EQ(hand_off_of(kWest)->destination, kEast);
 }
 
 TEST_P(ProjectionTest, AHandOffRaisesTheEpochByOneAndIsAdoptedKStepsLater) {
   make_world(RegionMap::columns(2, 100));
   place_flying(kBody, Vec3(-2, 0, 0), Vec3(6, 0, 0));
   world->start();
-  const Step sent = run_until_hand_off(kLeft);
-  EXPECT_EQ(hand_off_of(kLeft)->sequence, 1u);
-  ASSERT_EQ(hand_off_of(kLeft)->cluster.bodies.size(), 1u);
-  EXPECT_EQ(hand_off_of(kLeft)->cluster.bodies[0].epoch, 1u);
-  ASSERT_EQ(world->published(kLeft).aura.hand_offs.size(), 1u);
-  EXPECT_EQ(world->published(kLeft).aura.hand_offs[0].last_sequence, 1u);
-  EXPECT_EQ(world->published(kLeft).aura.hand_offs[0].destination, kRight);
+  const Step sent = run_until_hand_off(kWest);
+  EXPECT_EQ(hand_off_of(kWest)->sequence, 1u);
+  ASSERT_EQ(hand_off_of(kWest)->cluster.bodies.size(), 1u);
+  EXPECT_EQ(hand_off_of(kWest)->cluster.bodies[0].epoch, 1u);
+  ASSERT_EQ(world->published(kWest).aura.hand_offs.size(), 1u);
+  EXPECT_EQ(world->published(kWest).aura.hand_offs[0].last_sequence, 1u);
+  EXPECT_EQ(world->published(kWest).aura.hand_offs[0].destination, kEast);
   for (int i = 1; i < k(); ++i) {
     world->step();
     EXPECT_EQ(world->host(kBody), std::nullopt);
   }
   world->step();
   EXPECT_EQ(world->now(), sent + k());
-  EXPECT_EQ(world->host(kBody), kRight);
+  EXPECT_EQ(world->host(kBody), kEast);
   EXPECT_EQ(world->epoch(kBody), 1u);
-  EXPECT_EQ(open_bodies(world->protocol(kLeft).departures()), 1u) << "kept until acknowledged";
+  EXPECT_EQ(open_bodies(world->protocol(kWest).departures()), 1u) << "kept until acknowledged";
   world->run_steps(k());
-  EXPECT_EQ(open_bodies(world->protocol(kLeft).departures()), 0u);
+  EXPECT_EQ(open_bodies(world->protocol(kWest).departures()), 0u);
 }
 
 TEST_P(ProjectionTest, ABodySentAwayStaysAsAGhostFor2KSteps) {
   make_world(RegionMap::columns(2, 100));
   place_flying(kBody, Vec3(-2, 0, 0), Vec3(6, 0, 0));
   world->start();
-  const Step sent = run_until_hand_off(kLeft);
-  const AuraRecord* ghost = update_of(kBody, kLeft);
+  const Step sent = run_until_hand_off(kWest);
+  const AuraRecord* ghost = update_of(kBody, kWest);
   ASSERT_TRUE(ghost);
   EXPECT_EQ(ghost->flags & kAuraGhost, kAuraGhost);
-  EXPECT_EQ(ghost->host, kRight);
+  EXPECT_EQ(ghost->host, kEast);
   EXPECT_EQ(ghost->epoch, 1u);
-  EXPECT_EQ(world->protocol(kLeft).projection().ghosts().size(), 1u);
+  EXPECT_EQ(world->protocol(kWest).projection().ghosts().size(), 1u);
   while (world->now() < sent + 2 * k() - 1) {
     world->step();
-    EXPECT_FALSE(deleted(kBody, kLeft));
-    EXPECT_EQ(world->protocol(kLeft).projection().ghosts().size(), 1u);
+    EXPECT_FALSE(deleted(kBody, kWest));
+    EXPECT_EQ(world->protocol(kWest).projection().ghosts().size(), 1u);
   }
   world->step();
-  EXPECT_TRUE(deleted(kBody, kLeft));
-  EXPECT_TRUE(world->protocol(kLeft).projection().ghosts().empty());
-  EXPECT_EQ(counters(kLeft).created, 1u);
-  EXPECT_EQ(counters(kLeft).deleted, 1u);
+  EXPECT_TRUE(deleted(kBody, kWest));
+  EXPECT_TRUE(world->protocol(kWest).projection().ghosts().empty());
+  EXPECT_EQ(counters(kWest).created, 1u);
+  EXPECT_EQ(counters(kWest).deleted, 1u);
 }
 
 TEST_P(ProjectionTest, AHitSendsTheWholeClusterToTheLowerRegion) {
@@ -236,18 +236,18 @@ TEST_P(ProjectionTest, AHitSendsTheWholeClusterToTheLowerRegion) {
   place_at(BodyId{3}, Vec3(4, 0, 0));
   place_at(BodyId{4}, Vec3(45, 0, 0));
   world->start();
-  ASSERT_EQ(world->host(BodyId{2}), kRight);
-  ASSERT_GT(run_until_hand_off(kRight), 0);
-  const HandOff& sent = *hand_off_of(kRight);
+  ASSERT_EQ(world->host(BodyId{2}), kEast);
+  ASSERT_GT(run_until_hand_off(kEast), 0);
+  const HandOff& sent = *hand_off_of(kEast);
   EXPECT_EQ(sent.reason, HandOffReason::kAuraCollision);
-  EXPECT_EQ(sent.destination, kLeft);
+  EXPECT_EQ(sent.destination, kWest);
   ASSERT_EQ(sent.cluster.bodies.size(), 2u);
   EXPECT_EQ(sent.cluster.bodies[0].id, BodyId{2});
   EXPECT_EQ(sent.cluster.bodies[1].id, BodyId{3});
   world->run_steps(k());
-  EXPECT_EQ(world->host(BodyId{2}), kLeft);
-  EXPECT_EQ(world->host(BodyId{1}), kLeft);
-  EXPECT_EQ(world->host(BodyId{4}), kRight);
+  EXPECT_EQ(world->host(BodyId{2}), kWest);
+  EXPECT_EQ(world->host(BodyId{1}), kWest);
+  EXPECT_EQ(world->host(BodyId{4}), kEast);
 }
 
 TEST_P(ProjectionTest, TheNaiveControlSaysNothingAndSendsABodyWhereItsCentreIs) {
@@ -255,11 +255,11 @@ TEST_P(ProjectionTest, TheNaiveControlSaysNothingAndSendsABodyWhereItsCentreIs) 
   make_world(RegionMap::columns(2, 100));
   place_flying(kBody, Vec3(-1.05, 0, 0), Vec3(6, 0, 0));
   world->start();
-  EXPECT_EQ(run_until_hand_off(kLeft), 11);
-  EXPECT_FALSE(update_of(kBody, kLeft));
-  EXPECT_EQ(counters(kLeft).created, 0u);
+  EXPECT_EQ(run_until_hand_off(kWest), 11);
+  EXPECT_FALSE(update_of(kBody, kWest));
+  EXPECT_EQ(counters(kWest).created, 0u);
   world->run_steps(k());
-  EXPECT_EQ(world->host(kBody), kRight);
+  EXPECT_EQ(world->host(kBody), kEast);
   EXPECT_EQ(world->broken(), 0u);
 }
 

@@ -10,14 +10,14 @@
 namespace aurasim::core::testing {
 namespace {
 
-constexpr double kUncertainty = 0.5;
+constexpr double kSweptUncertainty = 0.5;
 
 AuraRules swept_rules(int lookahead, int substeps) {
   AuraRules rules;
   rules.kind = AuraKind::kSwept;
   rules.lookahead = lookahead;
   rules.substeps = substeps;
-  rules.uncertainty = kUncertainty;
+  rules.uncertainty = kSweptUncertainty;
   rules.contact_margin_m = 0;
   return rules;
 }
@@ -26,7 +26,7 @@ AuraRules swept_rules(int lookahead, int substeps) {
 /// differ by more than U times the slower one, gravity aside.
 Traveller on_bent_path(Random& random, const AuraRules& rules, const Vec3& v, Step steps) {
   Traveller t;
-  const double knock = kUncertainty / (2 + kUncertainty) * v.head<2>().norm();
+  const double knock = kSweptUncertainty / (2 + kSweptUncertainty) * v.head<2>().norm();
   const double h = rules.step_s / rules.substeps;
   const bool bends = random.chance(0.5);
   const Step turning_point = 1 + static_cast<Step>(random.below(static_cast<std::uint32_t>(steps)));

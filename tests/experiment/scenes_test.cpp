@@ -18,7 +18,7 @@
 namespace aurasim::experiment {
 namespace {
 
-const std::atomic<bool> kGoOn = false;
+const std::atomic<bool> kUnstopped = false;
 
 class Scenes : public testing::Test {
  protected:
@@ -40,7 +40,7 @@ class Scenes : public testing::Test {
 
   WorldOutcome outcome_of(const World& world, const TrialRules& rules) const {
     write_world(world, folder_);
-    return run_world(folder_, rules, 1, kGoOn).value();
+    return run_world(folder_, rules, 1, kUnstopped).value();
   }
 
   std::filesystem::path folder_;
@@ -162,7 +162,7 @@ TEST_F(Scenes, WithoutAurasAWorldDiffersAndShrinksToOneThatStillDoes) {
   const WorldOutcome failure = outcome_of(world, blind);
   ASSERT_TRUE(failure.first_difference);
   constexpr double kBudget_s = 5;
-  const Shrunk shrunk = shrink(world, failure, blind, 1, kBudget_s, folder_, kGoOn);
+  const Shrunk shrunk = shrink(world, failure, blind, 1, kBudget_s, folder_, kUnstopped);
   EXPECT_LT(shrunk.world.scene["bodies"].size(), world.scene["bodies"].size() / 2);
   EXPECT_LE(shrunk.steps, *failure.first_difference);
   blind.steps = shrunk.steps;
@@ -176,17 +176,17 @@ TEST_F(Scenes, ACampaignGoesOnWhereItStoppedAndRefusesOtherRules) {
   plan.shrink_s = 0;
   int shown = 0;
   const auto show = [&](const Progress&) { ++shown; };
-  EXPECT_TRUE(run_scenes(plan, folder_, 1, show, kGoOn));
+  EXPECT_TRUE(run_scenes(plan, folder_, 1, show, kUnstopped));
   EXPECT_EQ(shown, 2);
   std::ofstream(folder_ / "seeds.csv", std::ios::app) << "3,1,";  // cut off by a crash
   plan.last = 4;
-  EXPECT_TRUE(run_scenes(plan, folder_, 2, show, kGoOn));
+  EXPECT_TRUE(run_scenes(plan, folder_, 2, show, kUnstopped));
   EXPECT_EQ(shown, 4);
   const nlohmann::json sums = summarise_scenes(plan, folder_);
   EXPECT_EQ(sums["seeds"], 4);
   EXPECT_EQ(sums["differ"], 0);
   plan.rules.steps = 21;
-  EXPECT_THROW(run_scenes(plan, folder_, 1, show, kGoOn), std::runtime_error);
+  EXPECT_THROW(run_scenes(plan, folder_, 1, show, kUnstopped), std::runtime_error);
 }
 
 TEST_F(Scenes, AFailingSeedStaysWithItsShrunkWorld) {
@@ -196,7 +196,7 @@ TEST_F(Scenes, AFailingSeedStaysWithItsShrunkWorld) {
   plan.rules.overrides = {"aura.radius=none", "time.redo=off"};
   plan.shrink_s = 1;
   EXPECT_TRUE(run_scenes(
-      plan, folder_, 1, [](const Progress&) {}, kGoOn));
+      plan, folder_, 1, [](const Progress&) {}, kUnstopped));
   EXPECT_EQ(summarise_scenes(plan, folder_)["failed_seeds"], nlohmann::json::array({1}));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "seed_1" / kLaunchFile));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "seed_1" / "shrunk" / "README.md"));

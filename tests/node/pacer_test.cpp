@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
 
-constexpr double kStep_s = 0.1;
+constexpr double kPacedStep_s = 0.1;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kNoon = 1'700'000'000 * kSecond;
 
@@ -26,7 +26,7 @@ struct Host {
 
 TEST(Pacer, StepsFollowTheEpochThatAllHostsHave) {
   Host host;
-  Pacer pacer(kStep_s, true);
+  Pacer pacer(kPacedStep_s, true);
   pacer.set_epoch(5, kNoon + kSecond / 2, 0ns, host.now);
   EXPECT_EQ(pacer.until(5, host.now), 500ms);
   EXPECT_EQ(pacer.until(7, host.now), 700ms);
@@ -38,7 +38,7 @@ TEST(Pacer, StepsFollowTheEpochThatAllHostsHave) {
 TEST(Pacer, AWallClockThatJumpsChangesNothing) {
   for (const nanoseconds jump : {nanoseconds(20s), nanoseconds(-20s)}) {
     Host host;
-    Pacer pacer(kStep_s, true);
+    Pacer pacer(kPacedStep_s, true);
     pacer.set_epoch(0, kNoon, 0ns, host.now);
     host.pass(1s);
     host.set_wall_clock(jump);
@@ -52,7 +52,7 @@ TEST(Pacer, AWallClockThatJumpsChangesNothing) {
 TEST(Pacer, AnEpochFromAHostWithAWrongClockCountsFromWhenItCame) {
   for (const nanoseconds ahead : {nanoseconds(30s), nanoseconds(-30s), nanoseconds(24h)}) {
     Host host;
-    Pacer pacer(kStep_s, true);
+    Pacer pacer(kPacedStep_s, true);
     pacer.set_epoch(0, kNoon + ahead.count() + kSecond / 2, ahead, host.now);
     EXPECT_EQ(pacer.until(0, host.now), 500ms);
   }
@@ -60,14 +60,14 @@ TEST(Pacer, AnEpochFromAHostWithAWrongClockCountsFromWhenItCame) {
 
 TEST(Pacer, WhatAMessageTookIsNotHeldForAWrongClock) {
   Host host;
-  Pacer pacer(kStep_s, true);
+  Pacer pacer(kPacedStep_s, true);
   pacer.set_epoch(0, kNoon + kSecond / 2, -100ms, host.now);
   EXPECT_EQ(pacer.until(0, host.now), 500ms);
 }
 
 TEST(Pacer, ARateHoldsFromItsOwnStepAndTime) {
   Host host;
-  Pacer pacer(kStep_s, true);
+  Pacer pacer(kPacedStep_s, true);
   pacer.set_epoch(0, kNoon, 0ns, host.now);
   pacer.set_rate(0.5, 10, kNoon + kSecond, 0ns, host.now);
   EXPECT_EQ(pacer.until(10, host.now), 1s);
@@ -77,7 +77,7 @@ TEST(Pacer, ARateHoldsFromItsOwnStepAndTime) {
 /// However slow it was: the next step is not minutes away.
 TEST(Pacer, ASlowRateIsUndoneAtOnce) {
   Host host;
-  Pacer pacer(kStep_s, true);
+  Pacer pacer(kPacedStep_s, true);
   pacer.set_rate(0.01, 10, kNoon, 0ns, host.now);
   EXPECT_EQ(pacer.until(12, host.now), 20s);
   pacer.set_rate(1, 11, kNoon + kSecond, 0ns, host.now);
@@ -86,7 +86,7 @@ TEST(Pacer, ASlowRateIsUndoneAtOnce) {
 
 TEST(Pacer, ANewEpochKeepsTheRate) {
   Host host;
-  Pacer pacer(kStep_s, true);
+  Pacer pacer(kPacedStep_s, true);
   pacer.set_rate(2, 10, kNoon, 0ns, host.now);
   pacer.set_epoch(0, kNoon + kSecond, 0ns, host.now);
   EXPECT_EQ(pacer.until(20, host.now), 2s);
@@ -94,7 +94,7 @@ TEST(Pacer, ANewEpochKeepsTheRate) {
 
 TEST(Pacer, WithoutPaceEveryStepIsDue) {
   Host host;
-  Pacer pacer(kStep_s, false);
+  Pacer pacer(kPacedStep_s, false);
   pacer.set_epoch(0, kNoon + kSecond, 0ns, host.now);
   EXPECT_EQ(pacer.until(1000, host.now), 0ns);
 }

@@ -15,7 +15,7 @@ using core::BodyRecord;
 using core::Vec3;
 
 constexpr int kHandOffs = 10'000;
-constexpr int kSteps = 900;
+constexpr int kSwitchingSteps = 900;
 
 core::Scene scene_of_slabs() { return scene_of(core::Box{{0.5, 0.5, 0.25}}); }
 
@@ -89,8 +89,8 @@ class Switching : public ::testing::TestWithParam<int> {
 TEST_P(Switching, TenThousandTimesChangesNoBitAndAddsNoSpeed) {
   double top = 0;
   double top_untouched = 0;
-  for (int step = 1; step <= kSteps; ++step) {
-    const int wanted = static_cast<int>(static_cast<long>(kHandOffs) * step / kSteps);
+  for (int step = 1; step <= kSwitchingSteps; ++step) {
+    const int wanted = static_cast<int>(static_cast<long>(kHandOffs) * step / kSwitchingSteps);
     while (hand_offs < wanted) ASSERT_NO_FATAL_FAILURE(hand_over(piles[random() % 2])) << "before state " << step;
     untouched.step();
     for (RegionWorld& world : worlds) world.step();

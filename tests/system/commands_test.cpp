@@ -1,6 +1,5 @@
 // Commands of clients to a real run: `aurasim send spawn, static, impulse, remove, rate, regions, scene, ray`.
 #include <set>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -52,16 +51,6 @@ class Commands : public SystemTest {
   Words overrides_;
   std::string name_, file_, last_error_;
 };
-
-/// The first line in which two lists of hashes differ; empty if there is none.
-std::string first_difference(const std::string& a, const std::string& b) {
-  std::istringstream in_a(a), in_b(b);
-  std::string line_a, line_b;
-  while (std::getline(in_a, line_a) && std::getline(in_b, line_b)) {
-    if (line_a != line_b) return line_a + " and " + line_b;
-  }
-  return a.size() == b.size() ? "" : "one is longer";
-}
 
 TEST_F(Commands, InDeterministicModeHaveTheSameBitsOnOneNodeAndOnFour) {
   const Words deterministic = {"time.sync=deterministic"};

@@ -1,5 +1,4 @@
 // docs/design.md, "The same bits": the hash of every state is equal on any number of nodes.
-#include <sstream>
 
 #include "system_fixture.h"
 
@@ -20,18 +19,6 @@ class Determinism : public SystemTest {
 
   std::int64_t hand_offs(const std::string& name) const { return report_of(name).count("migrations"); }
 };
-
-/// Where two lists of hashes part; empty if they are equal.
-std::string first_difference(const std::string& a, const std::string& b) {
-  std::istringstream in_a(a), in_b(b);
-  std::string line_a, line_b;
-  for (;;) {
-    const bool more_a = static_cast<bool>(std::getline(in_a, line_a));
-    const bool more_b = static_cast<bool>(std::getline(in_b, line_b));
-    if (!more_a && !more_b) return {};
-    if (more_a != more_b || line_a != line_b) return line_a + " and " + line_b;
-  }
-}
 
 TEST_F(Determinism, DeterministicRunsAreEqual) {
   const std::string first = hashes("first", "demo", 300);

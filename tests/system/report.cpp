@@ -44,4 +44,15 @@ std::int64_t Report::recorded_step(int region) const {
   return std::stoll(split(text.substr(begin + 1, end - begin - 1)).at(1));
 }
 
+std::string first_difference(const std::string& a, const std::string& b) {
+  std::istringstream in_a(a), in_b(b);
+  std::string line_a, line_b;
+  for (;;) {
+    const bool more_a = static_cast<bool>(std::getline(in_a, line_a));
+    const bool more_b = static_cast<bool>(std::getline(in_b, line_b));
+    if (!more_a && !more_b) return {};
+    if (more_a != more_b || line_a != line_b) return line_a + " and " + line_b;
+  }
+}
+
 }  // namespace aurasim::system_test

@@ -52,4 +52,7 @@ class Report {
   std::filesystem::path folder_;
 };
 
+/// Where two lists of hashes part; empty if they are equal.
+std::string first_difference(const std::string& a, const std::string& b);
+
 }  // namespace aurasim::system_test

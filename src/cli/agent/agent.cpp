@@ -126,7 +126,7 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
   if (what == "info") return {info_json(run()), {}};
   if (what == "observe") {
     run().wait_for_listeners(patience);
-    return {{{"observer", run().observe(asked_interest(asked, run().launch().scene))}}, {}};
+    return {{{"observer", run().observe(asked_interest(asked, run().launch().scene), patience)}}, {}};
   }
   if (what == "next") {
     const Observed observed = run().next(asked.value("observer", std::uint64_t{0}), patience);

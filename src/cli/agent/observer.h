@@ -34,6 +34,7 @@ class Observer {
   void turn(const std::set<core::RegionId>& regions, bool stands);
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
+  bool has_next() const { return !ready_.empty(); }
   /// The oldest state that has not been given out.
   std::optional<Observed> next();
 

@@ -18,10 +18,11 @@ using namespace std::chrono_literals;
 using Steer = dds::RunCommandKind;
 
 constexpr auto kRound = 2ms;
-constexpr std::size_t kMostObservers = 16;  ///< of one client
+constexpr auto kPatienceWithObservation = 5s;  ///< that some node does not give
+constexpr std::size_t kMostObservers = 16;     ///< of one client
+constexpr auto kPatienceWithSilence = 5s;      ///< of all nodes, before the run has ended
+constexpr auto kPatienceWithAReader = 1s;      ///< that some node has not found
 constexpr auto kStillHereEvery = 20ms;
-constexpr auto kPatienceWithSilence = 5s;     ///< of all nodes, before the run has ended
-constexpr auto kPatienceWithAReader = 1s;     ///< that some node has not found
 constexpr auto kPatienceWithAPause = 10s;     ///< a world that goes back in a pause computes until it is where it stood
 constexpr auto kPatienceAmongStrangers = 3s;  ///< ours would have been heard as soon as they
 
@@ -83,11 +84,19 @@ core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience)
   return at_step;
 }
 
-std::uint64_t RunLink::observe(AskedInterest asked) {
+/// In a run that stands, all nodes know by the end what is wanted: so no state that is computed next is left out.
+std::uint64_t RunLink::observe(AskedInterest asked, const Patience& patience) {
   if (observers_.size() >= kMostObservers) {
     throw Problem(Kind::kRefused, fmt::format("observers: allowed: {} at a time", kMostObservers));
   }
-  observers_[++last_observer_] = std::make_unique<Observer>(participant_, watch_, std::move(asked));
+  Observer& added =
+      *(observers_[++last_observer_] = std::make_unique<Observer>(participant_, watch_, std::move(asked)));
+  const auto end = Clock::now() + kPatienceWithObservation;
+  while (stands() && !added.has_next() && Clock::now() < end) {
+    patience.check("not all nodes have told the first state");
+    added.wait(kRound);
+    turn(0ms);
+  }
   return last_observer_;
 }
 

@@ -65,7 +65,7 @@ class RunLink {
   /// The process that has taken the region over.
   std::uint32_t drain(core::RegionId region, const Patience& patience);
   /// Begins to observe; returns the observer's number. Throws Problem for what cannot be asked for.
-  std::uint64_t observe(AskedInterest asked);
+  std::uint64_t observe(AskedInterest asked, const Patience& patience);
   /// The next state of it.
   Observed next(std::uint64_t observer, const Patience& patience);
   void end_observer(std::uint64_t observer) { observers_.erase(observer); }
