@@ -89,7 +89,7 @@ struct Silent {
   bool drives;
 };
 
-class ProgramSilence : public testing::TestWithParam<Silent> {};
+class ProgramSilence : public ::testing::TestWithParam<Silent> {};
 
 TEST_P(ProgramSilence, IsWhatTheLaunchFileSays) {
   ControlLog log;
@@ -113,7 +113,7 @@ TEST_P(ProgramSilence, IsWhatTheLaunchFileSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, ProgramSilence,
-                         testing::Values(Silent{OnSilence::kHold, -1, 0, true}, Silent{OnSilence::kZero, -1, -1, false},
+                         ::testing::Values(Silent{OnSilence::kHold, -1, 0, true}, Silent{OnSilence::kZero, -1, -1, false},
                                          Silent{OnSilence::kLast, 5, 2, true}));
 
 TEST(ControlLog, ARecordNeverFallsSilent) {
