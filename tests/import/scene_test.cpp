@@ -19,7 +19,11 @@ void expect_same(const std::optional<core::JointLimits>& found, const std::optio
   ASSERT_EQ(found.has_value(), expected.has_value());
   if (!expected) return;
   const auto expect_side = [](double side, double wanted) {
-    std::isinf(wanted) ? EXPECT_EQ(side, wanted) : EXPECT_NEAR(side, wanted, kAsTheLibrary);
+    if (std::isinf(wanted)) {
+      EXPECT_EQ(side, wanted);
+    } else {
+      EXPECT_NEAR(side, wanted, kAsTheLibrary);
+    }
   };
   expect_side(found->low, expected->low);
   expect_side(found->high, expected->high);
@@ -32,8 +36,9 @@ void expect_same_own(const core::JointKind& found_kind, const core::JointKind& e
   if (expected == nullptr) return;
   expect_same(found->limits, expected->limits);
   EXPECT_EQ(found->resistance.stiffness, expected->resistance.stiffness);
-  if (expected->resistance.stiffness != 0)
+  if (expected->resistance.stiffness != 0) {
     EXPECT_NEAR(found->resistance.rest, expected->resistance.rest, kAsTheLibrary);
+  }
   EXPECT_EQ(found->resistance.damping, expected->resistance.damping);
   EXPECT_EQ(found->resistance.friction, expected->resistance.friction);
   ASSERT_EQ(found->drive.has_value(), expected->drive.has_value());

@@ -18,14 +18,14 @@ using core::Vec3;
 using std::numbers::pi;
 
 constexpr double kGravity = 9.81;
-constexpr double kInertia = 0.5;  ///< kg m^2, of every body here, about each axis
+constexpr double kWheelInertia = 0.5;  ///< kg m^2, of every body here, about each axis
 
 /// One box of 1 kg, joined to the world.
 class Drives : public ::testing::TestWithParam<Solver> {
  protected:
   Drives() {
     scene.materials[0] = {};
-    scene.prototypes[kBox].inertia = Vec3::Constant(kInertia);
+    scene.prototypes[kBox].inertia = Vec3::Constant(kWheelInertia);
     scene.prototypes[kBox].can_sleep = false;
   }
 
@@ -88,7 +88,7 @@ TEST_P(Drives, IsNoStrongerThanItsMostEffort) {
   hinge.drive = JointDrive{.speed = 100, .damping = 1e6, .max_effort = 2};
   place_wheel(hinge);
   run_seconds(1);
-  EXPECT_NEAR(spin(), 2 / kInertia, 0.02);
+  EXPECT_NEAR(spin(), 2 / kWheelInertia, 0.02);
 }
 
 TEST_P(Drives, ASpeedIsReachedAsADamperPulls) {
@@ -96,7 +96,7 @@ TEST_P(Drives, ASpeedIsReachedAsADamperPulls) {
   hinge.drive = JointDrive{.speed = 3, .damping = 0.5};
   place_wheel(hinge);
   run_seconds(1);
-  EXPECT_NEAR(spin(), 3 * (1 - std::exp(-0.5 / kInertia)), 0.02);
+  EXPECT_NEAR(spin(), 3 * (1 - std::exp(-0.5 / kWheelInertia)), 0.02);
 }
 
 TEST_P(Drives, AnEffortAlonePushesSteadily) {
@@ -121,7 +121,7 @@ TEST_P(Drives, DampingSlowsAsItShould) {
   hinge.resistance.damping = 0.5;
   place_wheel(hinge).w_WB = {0, 0, 8};
   run_seconds(1);
-  EXPECT_NEAR(spin(), 8 * std::exp(-0.5 / kInertia), 0.03);
+  EXPECT_NEAR(spin(), 8 * std::exp(-0.5 / kWheelInertia), 0.03);
 }
 
 TEST_P(Drives, FrictionSlowsEvenlyAndThenHolds) {
@@ -162,7 +162,7 @@ TEST_P(Drives, ABallIsSlowedAboutAnyAxis) {
     place({0, 0, 5}, core::BallJoint{0.5}, {0, 0, 5}, Vec3::UnitZ());
     scene.bodies.back().w_WB = 4 * axis;
     run_seconds(1);
-    EXPECT_LT((box().w_WB - 4 * std::exp(-0.5 / kInertia) * axis).norm(), 0.03);
+    EXPECT_LT((box().w_WB - 4 * std::exp(-0.5 / kWheelInertia) * axis).norm(), 0.03);
   }
 }
 
