@@ -113,8 +113,9 @@ TEST_P(ProgramSilence, IsWhatTheLaunchFileSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, ProgramSilence,
-                         ::testing::Values(Silent{OnSilence::kHold, -1, 0, true}, Silent{OnSilence::kZero, -1, -1, false},
-                                         Silent{OnSilence::kLast, 5, 2, true}));
+                         ::testing::Values(Silent{OnSilence::kHold, -1, 0, true},
+                                           Silent{OnSilence::kZero, -1, -1, false},
+                                           Silent{OnSilence::kLast, 5, 2, true}));
 
 TEST(ControlLog, ARecordNeverFallsSilent) {
   ControlLog log;
