@@ -27,7 +27,7 @@ const std::vector<BadCase> kBadLaunches = {
      {"launch.yaml:3:19: control.replay: found \"nowhere.csv\", allowed: setpoints.csv of an earlier run"}},
     {"SilenceOfNoTime",
      kTwo + "control: {silence: 0}\n",
-     {"launch.yaml:3:20: control.silence: found \"0\", allowed: a number from 0.001 to 1e6 s"}},
+     {"launch.yaml:3:20: control.silence: found \"0\", allowed: a number from 0.001 to 1000000"}},
     {"NoScene", "regions: {count: 1}\n", {"launch.yaml:1:1: scene: missing, allowed: a scene file"}},
     {"NoRegions", "scene: scene.yaml\n", {"launch.yaml:1:1: regions: missing, allowed: a map such as"}},
     {"SceneDoesNotExist",

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -41,6 +42,11 @@ class Drives : public ::testing::TestWithParam<Solver> {
   core::InitialBody& place_cart(const core::SliderJoint& slider) {
     place({0, 0, 5}, slider, {0, 0, 5}, Vec3::UnitX());
     return scene.bodies.back();
+  }
+
+  /// docs/limits.md.
+  bool loses_sliders() const {
+    return GetParam() == Solver::kDantzig && RegionWorld::precision() == std::string_view("single");
   }
 
   void run_seconds(double seconds) {
@@ -100,6 +106,7 @@ TEST_P(Drives, ASpeedIsReachedAsADamperPulls) {
 }
 
 TEST_P(Drives, AnEffortAlonePushesSteadily) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   core::SliderJoint slider;
   slider.drive = JointDrive{.effort = 4};
   place_cart(slider);
@@ -125,6 +132,7 @@ TEST_P(Drives, DampingSlowsAsItShould) {
 }
 
 TEST_P(Drives, FrictionSlowsEvenlyAndThenHolds) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   core::SliderJoint slider;
   slider.resistance.friction = 2;
   slider.drive = JointDrive{.effort = 1};
@@ -198,6 +206,7 @@ TEST_P(Drives, LimitsMayLieBeyondATurnOrOnOneSideOnly) {
 }
 
 TEST_P(Drives, ASlidersLimitsMayLieOnOneSideOnly) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   const double inf = std::numeric_limits<double>::infinity();
   core::SliderJoint slider{JointLimits{-0.5, inf}};
   slider.drive = JointDrive{.effort = 3};
