@@ -20,7 +20,7 @@ constexpr std::array<Row, kNodePhases> kTable = {{
     /* waiting    */ {no,          no,          P::kRunning, no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, P::kFenced, P::kRecovering, P::kSpare},
     /* running    */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
     /* paused     */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
-    /* changing   */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, no,         P::kRecovering, no},
+    /* changing   */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, no,         P::kRecovering, P::kSpare},
     /* lingering  */ {no,          no,          no,          no,         no,          no,           no,          no,          no,            P::kDone, no,          no,         P::kRecovering, no},
     /* done       */ {},
     /* refused    */ {},

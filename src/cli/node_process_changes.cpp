@@ -123,6 +123,7 @@ void NodeProcess::begin_anew() {
 /// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.
 void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
+  last_published_ = {};  // the others wait for this state, and whoever comes last goes on at once
   const auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
     const dds::Status& status = entry.second.status;

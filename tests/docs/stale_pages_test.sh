@@ -51,7 +51,7 @@ commit_to README.md
 expect "WhatIsNotMeasuredMakesNoPageStale"
 
 commit_to src/cli/node_process.cpp
-expect "AFileThatFourPagesMeasureMakesThoseStale" docs/recovery.md docs/same_bits.md docs/saved_worlds.md docs/security_cost.md
+expect "AFileThatFivePagesMeasureMakesThoseStale" docs/control_cost.md docs/recovery.md docs/same_bits.md docs/saved_worlds.md docs/security_cost.md
 
 commit_to src/core/aura.cpp
 of_simulation=()

@@ -76,7 +76,7 @@ core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience)
   if (!setpoints_) setpoints_.emplace(participant_);
   wait_until([this] { return setpoints_->listeners() >= live_regions().size(); }, patience,
              "not every node hears this client");
-  if (setpoints.at_step == 0 && stands()) setpoints.at_step = known_standing(patience).step + 1;
+  if (setpoints.at_step == 0 && is_known_to_stand()) setpoints.at_step = known_standing(patience).step + 1;
   setpoints.generation = farthest().generation;
   said_last_ = Clock::now();
   const core::Step at_step = setpoints.at_step;
@@ -171,6 +171,12 @@ std::set<core::RegionId> RunLink::live_regions() {
     if (seen.is_live()) live.insert(region);
   }
   return live;
+}
+
+/// After a step earlier than the statuses say.
+bool RunLink::is_known_to_stand() {
+  const Standing said = farthest();
+  return stands() || (stands_in_ && stands_in_->generation == said.generation && stands_in_->step == said.step);
 }
 
 bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
@@ -286,7 +292,7 @@ WorldState RunLink::seen_state(const Patience& patience) {
 
 WorldState RunLink::state(const Patience& patience) {
   turn(0ms);
-  return stands() ? standing_state(patience) : seen_state(patience);
+  return is_known_to_stand() ? standing_state(patience) : seen_state(patience);
 }
 
 WorldState RunLink::pause(const Patience& patience) {
@@ -308,11 +314,7 @@ const RunLink::Standing& RunLink::known_standing(const Patience& patience) {
 
 WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   const auto begin = Clock::now();
-  const auto is_known_to_stand = [this] {  // earlier than the statuses say
-    const Standing said = farthest();
-    return stands_in_ && stands_in_->generation == said.generation && stands_in_->step == said.step;
-  };
-  while (!stands() && !is_known_to_stand()) {
+  while (!is_known_to_stand()) {
     patience.check("steps are for a run that is paused");
     if (Clock::now() > begin + kPatienceWithAPause) {
       throw Problem(Kind::kRefused, "steps are for a run that is paused");
@@ -356,7 +358,7 @@ void RunLink::wait_for_listeners(const Patience& patience) {
 
 std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Patience& patience) {
   wait_for_listeners(patience);
-  const bool stood = stands();
+  const bool stood = is_known_to_stand();
   bool changes = false;
   std::map<std::uint64_t, std::size_t> places;
   std::vector<Delivery> deliveries(commands.size());

@@ -84,6 +84,7 @@ class RunLink {
   std::set<core::RegionId> live_regions();
   Standing farthest();
   bool stands();
+  bool is_known_to_stand();
   bool all_have_published(const Standing& wanted);
   WorldState standing_state(const Patience& patience);
   bool collect(StandingState& state, const Patience& patience);

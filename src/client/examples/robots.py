@@ -13,7 +13,7 @@ import numpy as np
 
 import aurasim
 
-LEGS = [f"{end}_{side}" for end in ("front", "rear") for side in ("left", "right")]
+LEGS = [f"{end}_{side}" for end in ("front", "hind") for side in ("left", "right")]
 
 
 def yaw_of(q):
