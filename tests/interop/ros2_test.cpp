@@ -19,7 +19,7 @@ statics:
   - {name: ground, shape: {plane: {}}}
 bodies:
   - {prototype: base, name: robot, position: [2, 0, 0.1], orientation: {rpy_deg: [0, 0, 180]}}
-  - {prototype: arm, name: arm, position: [8, 4, 3], orientation: {rpy_deg: [0, 60, 0]}}
+  - {prototype: arm, name: arm, position: [8.8, 4, 3.4], orientation: {rpy_deg: [0, 60, 0]}}
   - {prototype: base, position: [-8, -4, 0.1]}
 joints:
   - {name: swing, bodies: [arm], position: [8, 4, 4], hinge: {axis: [0, 1, 0]}}
