@@ -1,4 +1,4 @@
-"""A car and a quadruped, steered state by state along ways that lead through all regions of a 3 x 3 grid.
+"""A car and a quadruped, steered state by state along ways that lead through all regions of a 3 x 3 grid of cells of 4 m.
 
     python3 robots.py LAUNCH_FILE [STATES=1800] [REPORT]
 
@@ -71,8 +71,8 @@ class Dog:
         p, v, w = bodies.positions[i], bodies.linear_velocities[i], bodies.angular_velocities[i]
         q = bodies.rotations[i].astype(float)
         distance, turn = self.way.error(p[:2], yaw_of(q))
-        wish = (self.way.target(p[:2]) - p[:2]) / max(distance, 1e-9) * min(1.0, distance)
-        force = np.append(np.clip(6 * self.mass * (wish - v[:2]), -80, 80), 0)
+        wish = 1.1 * (self.way.target(p[:2]) - p[:2]) / max(distance, 1e-9)
+        force = np.append(np.clip(6 * self.mass * (wish - v[:2]), -140, 140), 0)
         upright = 60 * np.cross(up_of(q), (0, 0, 1)) - 6 * w
         upright[2] = 8 * turn - 2 * w[2]
         world.control(forces=([self.trunk], [force]), torques=([self.trunk], [np.clip(upright, -40, 40)]))
