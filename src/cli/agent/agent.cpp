@@ -136,7 +136,7 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     run().end_observer(asked.value("observer", std::uint64_t{0}));
     return {json::object(), {}};
   }
-  if (what == "nodes") return {nodes_json(run().nodes()), {}};
+  if (what == "nodes") return {nodes_json(run().nodes(patience)), {}};
   if (what == "act") return {act(asked, patience), {}};
   if (what == "ray") {
     return {ray_json(act_alone(core::Ray{vector_of(asked, "from"), vector_of(asked, "to"), {}}, patience)), {}};

@@ -195,6 +195,27 @@ RunLink::Standing RunLink::farthest() {
   return farthest;
 }
 
+/// What nodes say of themselves comes after the states that they tell.
+bool RunLink::all_say_that_they_stand() {
+  return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
+    const dds::Status& status = watch_.nodes().at(region).status;
+    return status.state == dds::NodeState::kPaused &&
+           std::tuple(status.generation, status.step) >= std::tuple(stands_in_->generation, stands_in_->step);
+  });
+}
+
+const std::map<core::RegionId, dds::SeenStatus>& RunLink::nodes(const Patience& patience) {
+  turn(0ms);
+  const auto end = Clock::now() + kPatienceWithAReader;
+  while (stands_in_ && !all_say_that_they_stand() && Clock::now() < end) {
+    patience.check("not every node says that it stands");
+    const Standing said = farthest();
+    if (std::tuple(said.generation, said.step) > std::tuple(stands_in_->generation, stands_in_->step)) break;
+    turn(kRound);
+  }
+  return nodes();
+}
+
 bool RunLink::all_have_published(const Standing& wanted) {
   const std::set<core::RegionId> live = live_regions();
   return !live.empty() && std::ranges::all_of(live, [&](core::RegionId region) {

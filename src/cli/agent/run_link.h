@@ -52,6 +52,9 @@ class RunLink {
   const std::optional<security::Member>& member() const { return member_; }
   const std::map<core::RegionId, dds::SeenStatus>& nodes() const { return watch_.nodes(); }
 
+  /// Of a run that this client has made stand: as they stand.
+  const std::map<core::RegionId, dds::SeenStatus>& nodes(const Patience& patience);
+
   WorldState state(const Patience& patience);
   WorldState pause(const Patience& patience);
   WorldState step(std::int64_t count, const Patience& patience);
@@ -86,6 +89,7 @@ class RunLink {
   bool stands();
   bool is_known_to_stand();
   bool all_have_published(const Standing& wanted);
+  bool all_say_that_they_stand();
   WorldState standing_state(const Patience& patience);
   bool collect(StandingState& state, const Patience& patience);
   bool collect_key_frames(StandingState& state, const Patience& patience);
