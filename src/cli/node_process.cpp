@@ -252,9 +252,8 @@ void NodeProcess::run_until_end() {
     change_if_due();
     tell_ros2();
     hear_programs();
-    if (!wait_until_due()) continue;
+    if (!wait_until_due()) continue;  // true: it has not waited
     look_for_deaths();
-    hear_programs();
     compute_step();
     plan_checkpoint();
   }

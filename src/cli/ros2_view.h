@@ -9,6 +9,7 @@
 
 #include "config/launch.h"
 #include "core/body_state.h"
+#include "core/joint_motion.h"
 #include "core/scene.h"
 #include "dds/ros2_bus.h"
 
@@ -30,17 +31,6 @@ class FrameNames {
   std::unordered_map<std::string, core::BodyId> ids_;
 };
 
-/// A turn of a hinge, rad and rad/s, or the way of a slider, m and m/s, from the initial poses on. Of a relative to b,
-/// about or along the z axis of J.
-struct JointMotion {
-  double position = 0;
-  double velocity = 0;
-};
-
-/// Nothing: a joint of another kind. `b` null: the world. `X_AJ`, `X_BJ`: where J is in either body.
-std::optional<JointMotion> motion_of(const core::JointKind& kind, const core::Pose& X_AJ, const core::BodyState& a,
-                                     const core::Pose& X_BJ, const core::BodyState* b);
-
 /// The hinges and sliders of a scene.
 class JointRows {
  public:
@@ -52,7 +42,8 @@ class JointRows {
  private:
   struct Row {
     core::JointSpec joint;
-    core::Pose X_AJ, X_BJ;
+    core::JointFrame frame;
+    int coordinate;
   };
   std::vector<Row> rows_;
 };

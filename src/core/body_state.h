@@ -43,6 +43,12 @@ struct Contact {
   std::uint32_t b = 0;
 };
 
+/// Null: it is not among them. `bodies` ascending by id.
+inline const BodyState* find_body(const std::vector<BodyState>& bodies, BodyId id) {
+  const auto place = std::ranges::lower_bound(bodies, id, {}, &BodyState::id);
+  return place != bodies.end() && place->id == id ? &*place : nullptr;
+}
+
 /// All bodies of one node in state `step`, in ascending order of id; never changed after it was taken.
 struct Snapshot {
   Step step = 0;

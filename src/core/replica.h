@@ -23,6 +23,19 @@ struct ReplicaBody {
   Eigen::Vector3f w_WB = Eigen::Vector3f::Zero();  ///< rad/s
 };
 
+/// `host`: of `body`, as told.
+inline ReplicaBody replica_body(const BodyState& body, RegionId host) {
+  return {.id = body.id,
+          .epoch = body.epoch,
+          .host = host,
+          .prototype = body.prototype,
+          .asleep = !body.awake,
+          .p_WB = body.pose.p_WB,
+          .q_WB = body.pose.q_WB.cast<float>(),
+          .v_WB = body.v_WB.cast<float>(),
+          .w_WB = body.w_WB.cast<float>()};
+}
+
 /// A body that is no more. Whoever claims it with a higher epoch knows better.
 struct RemovedBody {
   BodyId id{};

@@ -5,6 +5,7 @@
 
 #include "aurasim.h"
 #include "dds/bearable.h"
+#include "dds/body_columns.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
 
@@ -21,25 +22,13 @@ namespace {
 
 using MaybeError = std::optional<WireError>;
 
-constexpr std::uint8_t kAsleep = 1;
 constexpr std::uint8_t kStale = 2;
-
-void put_floats(const Eigen::Vector3f& v, float* out) {
-  for (int axis = 0; axis < 3; ++axis) out[axis] = v[axis];
-}
 
 MaybeError check_shape(const wire::Observation& in) {
   if (std::max({in.id().size(), in.outside().size(), in.joint().size(), in.contact_a().size()}) > kMaxRows) {
     return WireError::kTooLarge;
   }
-  const bool fits = same_rows(in.id().size(), {{in.epoch().size()},
-                                               {in.host().size()},
-                                               {in.prototype().size()},
-                                               {in.flags().size()},
-                                               {in.p_WB().size(), 3},
-                                               {in.q_WB().size(), 4},
-                                               {in.v_WB().size(), 3},
-                                               {in.w_WB().size(), 3}}) &&
+  const bool fits = body_columns_fit(in) &&
                     same_rows(in.joint().size(), {{in.joint_position().size()}, {in.joint_speed().size()}}) &&
                     same_rows(in.contact_a().size(), {{in.contact_b().size()},
                                                       {in.contact_p().size(), 3},
@@ -49,9 +38,8 @@ MaybeError check_shape(const wire::Observation& in) {
 }
 
 bool all_are_finite(const wire::Observation& in) {
-  return all_finite(in.p_WB()) && all_finite(in.q_WB()) && all_finite(in.v_WB()) && all_finite(in.w_WB()) &&
-         all_finite(in.joint_position()) && all_finite(in.joint_speed()) && all_finite(in.contact_p()) &&
-         all_finite(in.contact_normal()) && all_finite(in.contact_impulse());
+  return body_columns_are_finite(in) && all_finite(in.joint_position()) && all_finite(in.joint_speed()) &&
+         all_finite(in.contact_p()) && all_finite(in.contact_normal()) && all_finite(in.contact_impulse());
 }
 
 /// The first of two is a body, the second another one with a higher id, or a static.
@@ -90,39 +78,12 @@ MaybeError check(const wire::Observation& in, const Expected& expected) {
   return check_values(in, expected);
 }
 
-ObservedBody body_at(const wire::Observation& in, std::size_t i) {
-  const float* q = in.q_WB().data() + 4 * i;
-  const float* v = in.v_WB().data() + 3 * i;
-  const float* w = in.w_WB().data() + 3 * i;
-  return {.row = {.id = static_cast<BodyId>(in.id()[i]),
-                  .epoch = in.epoch()[i],
-                  .host = static_cast<core::RegionId>(in.host()[i]),
-                  .prototype = static_cast<core::PrototypeId>(in.prototype()[i]),
-                  .asleep = (in.flags()[i] & kAsleep) != 0,
-                  .p_WB = vector_at(in.p_WB(), i),
-                  .q_WB = Eigen::Quaternionf(q[0], q[1], q[2], q[3]),
-                  .v_WB = {v[0], v[1], v[2]},
-                  .w_WB = {w[0], w[1], w[2]}},
-          .stale = (in.flags()[i] & kStale) != 0};
-}
-
 void put_bodies(const std::vector<ObservedBody>& bodies, wire::Observation& out) {
-  fill(out.id(), bodies, [](const ObservedBody& b) { return value_of(b.row.id); });
-  fill(out.epoch(), bodies, [](const ObservedBody& b) { return b.row.epoch; });
-  fill(out.host(), bodies, [](const ObservedBody& b) { return value_of(b.row.host); });
-  fill(out.prototype(), bodies, [](const ObservedBody& b) { return value_of(b.row.prototype); });
+  put_body_columns(
+      bodies, [](const ObservedBody& b) -> const core::ReplicaBody& { return b.row; }, out);
   fill(out.flags(), bodies, [](const ObservedBody& b) {
     return static_cast<std::uint8_t>((b.row.asleep ? kAsleep : 0) | (b.stale ? kStale : 0));
   });
-  fill_wide<3>(out.p_WB(), bodies, [](const ObservedBody& b, double* to) { put_vector(b.row.p_WB, to); });
-  fill_wide<4>(out.q_WB(), bodies, [](const ObservedBody& b, float* to) {
-    to[0] = b.row.q_WB.w();
-    to[1] = b.row.q_WB.x();
-    to[2] = b.row.q_WB.y();
-    to[3] = b.row.q_WB.z();
-  });
-  fill_wide<3>(out.v_WB(), bodies, [](const ObservedBody& b, float* to) { put_floats(b.row.v_WB, to); });
-  fill_wide<3>(out.w_WB(), bodies, [](const ObservedBody& b, float* to) { put_floats(b.row.w_WB, to); });
 }
 
 void put_contacts(const std::vector<ContactImpulse>& contacts, wire::Observation& out) {
@@ -163,7 +124,9 @@ Decoded<Observation> decode(const wire::Observation& in, const Expected& expecte
   observation.sequence = in.sequence_number();
   observation.kind = static_cast<Observation::Kind>(in.kind());
   observation.bodies.reserve(in.id().size());
-  for (std::size_t i = 0; i < in.id().size(); ++i) observation.bodies.push_back(body_at(in, i));
+  for (std::size_t i = 0; i < in.id().size(); ++i) {
+    observation.bodies.push_back({body_at(in, i), (in.flags()[i] & kStale) != 0});
+  }
   for (const std::uint64_t id : in.outside()) observation.outside.push_back(static_cast<BodyId>(id));
   for (std::size_t i = 0; i < in.joint().size(); ++i) {
     observation.joints.push_back(

@@ -13,6 +13,10 @@ namespace aurasim::dds {
 inline constexpr double kWordsASecond = 500;
 inline constexpr double kWordsAtOnce = 1000;
 
+/// Of setpoints, by one program: four messages for each of 240 states a second.
+inline constexpr double kSetpointsASecond = 1000;
+inline constexpr double kSetpointsAtOnce = 4000;
+
 inline std::string words_of_ration() { return fmt::format("{:g} a second, {:g} at once", kWordsASecond, kWordsAtOnce); }
 
 }  // namespace aurasim::dds

@@ -18,7 +18,7 @@
 
 #include "dds/datagram_guard.h"
 #include "dds/participant_qos.h"
-#include "dds/rate_limit.h"
+#include "dds/rations.h"
 #include "dds/ros2_topics.h"
 #include "dds/speakers.h"
 #include "dds/watch.h"
@@ -43,8 +43,6 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-/// Of one publisher of one topic.
-constexpr double kMessagesASecond = 1000, kMessagesAtOnce = 4000;
 /// A message of so many transforms fits into a datagram of 64 kB, with names of usual length.
 constexpr std::size_t kTransformsAtOnce = 400;
 
@@ -224,7 +222,7 @@ struct Ros2Bus::Impl {
   OwnParticipant participant;                     // after what listens to its endpoints
   Publisher* publisher = nullptr;
   Subscriber* subscriber = nullptr;
-  RateLimit<Guid> rates{kMessagesASecond, kMessagesAtOnce};
+  RateLimit<Guid> rates{kSetpointsASecond, kSetpointsAtOnce};
   std::uint64_t refused = 0;
   rosgraph_msgs::msg::dds_::Clock_ clock_message;
   tf2_msgs::msg::dds_::TFMessage_ tf_message;  // reused

@@ -5,15 +5,13 @@
 #include <fmt/format.h>
 
 #include "dds/random_id.h"
-#include "dds/rate_limit.h"
+#include "dds/rations.h"
 #include "dds/setpoint_codec.h"
 #include "dds/typed_endpoints.h"
 
 namespace aurasim::dds {
 namespace {
 
-/// Of one program: four messages for each of 240 states a second.
-constexpr double kMessagesASecond = 1000, kMessagesAtOnce = 4000;
 /// Of one message: both fit into a datagram of 64 kB.
 constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
 
@@ -24,7 +22,7 @@ struct SetpointReader::Impl {
 
   Wakeup wakeup;
   TypedReader<wire::Setpoints> reader;
-  RateLimit<ProcessPrefix> rates{kMessagesASecond, kMessagesAtOnce};
+  RateLimit<ProcessPrefix> rates{kSetpointsASecond, kSetpointsAtOnce};
   std::uint64_t too_many = 0;
 };
 
@@ -41,7 +39,7 @@ std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
     const bool is_a_program = setpoints.client != core::kRecordedClient;
     if (!is_a_program || !impl_->rates.allows(origin.writer.guidPrefix, now)) {
       ++impl_->too_many;
-      impl_->reader.ration(origin, fmt::format("{:g} a second, {:g} at once", kMessagesASecond, kMessagesAtOnce));
+      impl_->reader.ration(origin, fmt::format("{:g} a second, {:g} at once", kSetpointsASecond, kSetpointsAtOnce));
       return;
     }
     taken.push_back(std::move(setpoints));

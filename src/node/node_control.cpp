@@ -26,10 +26,10 @@ void Node::note_effects() {
   const core::Step n = current_step();
   // What has been in effect on a body since it has come, or what is new.
   const auto is_told = [&](core::BodyId id, core::Step step, bool is_new) {
-    if (!world_.contains(id)) return false;
     const auto row = std::ranges::find(report_.arrivals, id, &HandOffRow::body);
-    if (row == report_.arrivals.end()) return step == n && is_new;
-    return step == row->stamp + 1 || (step > row->stamp && is_new);
+    const bool has_come = row != report_.arrivals.end();
+    const bool is_news = has_come ? step == row->stamp + 1 || (step > row->stamp && is_new) : step == n && is_new;
+    return is_news && world_.contains(id);
   };
   core::Step oldest = n;
   for (const HandOffRow& row : report_.arrivals) oldest = std::min(oldest, row.stamp + 1);

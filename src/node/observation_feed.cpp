@@ -12,26 +12,8 @@ using core::Interest;
 using core::Observation;
 using core::ObservedBody;
 
-core::ReplicaBody observed_row(const BodyState& body, core::RegionId host) {
-  return {.id = body.id,
-          .epoch = body.epoch,
-          .host = host,
-          .prototype = body.prototype,
-          .asleep = !body.awake,
-          .p_WB = body.pose.p_WB,
-          .q_WB = body.pose.q_WB.cast<float>(),
-          .v_WB = body.v_WB.cast<float>(),
-          .w_WB = body.w_WB.cast<float>()};
-}
-
 bool wants(const Interest& interest, const BodyState& body) {
   return interest.wants(body.id, body.prototype, body.pose.p_WB);
-}
-
-/// Null: not here. `bodies` ascending by id.
-const BodyState* find(const std::vector<BodyState>& bodies, BodyId id) {
-  const auto place = std::ranges::lower_bound(bodies, id, {}, &BodyState::id);
-  return place != bodies.end() && place->id == id ? &*place : nullptr;
 }
 
 /// Of which one end at least is wanted. `bodies`: both ends of each, ascending.
@@ -44,7 +26,7 @@ void add_contacts(const Interest& interest, const std::vector<BodyState>& bodies
   }
   const auto is_wanted = [&](core::ObjectRef ref) {
     const BodyState* const body =
-        ref < 0 ? nullptr : find(bodies, static_cast<BodyId>(static_cast<std::uint64_t>(ref)));
+        ref < 0 ? nullptr : core::find_body(bodies, static_cast<BodyId>(static_cast<std::uint64_t>(ref)));
     return body != nullptr && wants(interest, *body);
   };
   for (const core::ContactImpulse& contact : contacts) {
@@ -120,11 +102,11 @@ Observation ObservationFeed::begin(const Interest& interest, core::Step stamp, s
 /// Those that leave in a state are exactly known in it. Of others nobody can say here where they are by now.
 void ObservationFeed::add_left(const Interest& interest, const core::Snapshot& snapshot, Observation& to) const {
   for (const auto& [id, left] : left_) {
-    if (left.body.birth > snapshot.step || find(snapshot.bodies, id) != nullptr) continue;
+    if (left.body.birth > snapshot.step || core::find_body(snapshot.bodies, id) != nullptr) continue;
     const bool stale = left.stamp < snapshot.step;
     const bool may_be_in_a_box = stale && !interest.boxes.empty();
     if (may_be_in_a_box || wants(interest, left.body)) {
-      to.bodies.push_back({observed_row(left.body, left.destination), stale});
+      to.bodies.push_back({core::replica_body(left.body, left.destination), stale});
     } else if (!stale) {
       to.outside.push_back(id);
     }
@@ -133,7 +115,7 @@ void ObservationFeed::add_left(const Interest& interest, const core::Snapshot& s
 
 void ObservationFeed::add_outside(const Interest& interest, const core::Snapshot& snapshot, Observation& to) const {
   for (const auto& [id, since] : arrived_) {
-    const BodyState* const body = find(snapshot.bodies, id);
+    const BodyState* const body = core::find_body(snapshot.bodies, id);
     const bool is_shown = body != nullptr && body->birth <= snapshot.step && wants(interest, *body);
     if (!is_shown && !left_.contains(id)) to.outside.push_back(id);
   }
@@ -143,8 +125,8 @@ void ObservationFeed::add_joints(const Interest& interest, const std::vector<Bod
                                  Observation& to) const {
   if (!interest.joints) return;
   for (const Joint& joint : joints_) {
-    const BodyState* const a = find(bodies, joint.a);
-    const BodyState* const b = joint.b ? find(bodies, *joint.b) : nullptr;
+    const BodyState* const a = core::find_body(bodies, joint.a);
+    const BodyState* const b = joint.b ? core::find_body(bodies, *joint.b) : nullptr;
     if (a == nullptr || (joint.b && b == nullptr)) continue;
     if (!wants(interest, *a) && !(b != nullptr && wants(interest, *b))) continue;
     const core::JointMotion motion =
@@ -158,7 +140,7 @@ Observation ObservationFeed::compose(const Interest& interest, const core::Snaps
   Observation observation = begin(interest, snapshot.step, redo);
   for (const BodyState& body : snapshot.bodies) {
     if (body.birth <= snapshot.step && wants(interest, body)) {
-      observation.bodies.push_back({observed_row(body, settings_.self), false});
+      observation.bodies.push_back({core::replica_body(body, settings_.self), false});
     }
   }
   add_left(interest, snapshot, observation);
@@ -170,7 +152,7 @@ Observation ObservationFeed::compose(const Interest& interest, const core::Snaps
   std::ranges::copy_if(snapshot.bodies, std::back_inserter(known),
                        [&](const BodyState& body) { return body.birth <= snapshot.step; });
   for (const auto& [id, left] : left_) {
-    if (left.stamp == snapshot.step && find(snapshot.bodies, id) == nullptr) known.push_back(left.body);
+    if (left.stamp == snapshot.step && core::find_body(snapshot.bodies, id) == nullptr) known.push_back(left.body);
   }
   std::ranges::sort(known, {}, &BodyState::id);
   add_joints(interest, known, observation);
@@ -185,7 +167,7 @@ Observation ObservationFeed::compose(const Interest& interest, const MadeUp& sta
   for (const core::BodyRecord& record : state.bodies) bodies.push_back(core::state_of(record));
   for (const BodyState& body : bodies) {
     if (wants(interest, body)) {
-      observation.bodies.push_back({observed_row(body, settings_.self), false});
+      observation.bodies.push_back({core::replica_body(body, settings_.self), false});
     } else {
       observation.outside.push_back(body.id);
     }

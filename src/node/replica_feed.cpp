@@ -11,25 +11,11 @@ namespace {
 constexpr double kStillM = 1e-4;
 constexpr float kStillQuaternion = 2e-4F;
 
-core::ReplicaBody row_of(const core::BodyState& body, core::RegionId host) {
-  return {.id = body.id,
-          .epoch = body.epoch,
-          .host = host,
-          .prototype = body.prototype,
-          .asleep = !body.awake,
-          .p_WB = body.pose.p_WB,
-          .q_WB = body.pose.q_WB.cast<float>(),
-          .v_WB = body.v_WB.cast<float>(),
-          .w_WB = body.w_WB.cast<float>()};
-}
-
 bool ascending(const core::ReplicaBody& a, const core::ReplicaBody& b) { return a.id < b.id; }
 
 bool is_here(const core::Snapshot& snapshot, core::BodyId id) {
-  const auto place =
-      std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
-                       [](const core::BodyState& body, core::BodyId wanted) { return body.id < wanted; });
-  return place != snapshot.bodies.end() && place->id == id && place->birth <= snapshot.step;
+  const core::BodyState* const body = core::find_body(snapshot.bodies, id);
+  return body != nullptr && body->birth <= snapshot.step;
 }
 
 }  // namespace
@@ -44,7 +30,7 @@ ReplicaFeed::ReplicaFeed(core::RegionId self, core::Generation generation, std::
 void ReplicaFeed::note(const StepReport& report) {
   for (std::size_t i = 0; i < report.departed.size(); ++i) {
     const core::BodyRecord& body = report.departed[i];
-    core::ReplicaBody row = row_of(core::state_of(body), report.departures[i].destination);
+    core::ReplicaBody row = core::replica_body(core::state_of(body), report.departures[i].destination);
     row.epoch = report.departures[i].epoch;
     left_.insert_or_assign(body.id, Left{row, body.birth});
   }
@@ -77,7 +63,7 @@ const core::Replica& ReplicaFeed::compose_changes(const core::Snapshot& snapshot
   begin(changes_, snapshot.step, false);
   for (const core::BodyState& body : snapshot.bodies) {
     if (body.birth > snapshot.step || !is_news(body)) continue;
-    changes_.bodies.push_back(row_of(body, self_));
+    changes_.bodies.push_back(core::replica_body(body, self_));
     const core::ReplicaBody& row = changes_.bodies.back();
     published_.insert_or_assign(body.id, Published{row.epoch, row.asleep, row.p_WB, row.q_WB});
     left_.erase(body.id);  // it has come back
@@ -116,13 +102,13 @@ const core::Replica& ReplicaFeed::compose_key_frame(const core::Snapshot& snapsh
                                                     const std::deque<core::HandOff>& under_way) {
   begin(all_, snapshot.step, true);
   for (const core::BodyState& body : snapshot.bodies) {
-    if (body.birth <= snapshot.step) all_.bodies.push_back(row_of(body, self_));
+    if (body.birth <= snapshot.step) all_.bodies.push_back(core::replica_body(body, self_));
   }
   const std::size_t hosted = all_.bodies.size();
   for (const core::HandOff& hand_off : under_way) {
     for (const core::BodyRecord& body : hand_off.cluster.bodies) {
       if (body.birth <= snapshot.step && !is_here(snapshot, body.id))
-        all_.bodies.push_back(row_of(core::state_of(body), hand_off.destination));
+        all_.bodies.push_back(core::replica_body(core::state_of(body), hand_off.destination));
     }
   }
   // A body that went out twice is on its way under the higher epoch.

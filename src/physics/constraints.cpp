@@ -28,7 +28,7 @@ btTransform with_x_along_z(const Pose& X_BJ) {
 
 class Maker {
  public:
-  Maker(const JointFrames& frames, btRigidBody& a, btRigidBody& b, double substep_s)
+  Maker(const core::JointFrame& frames, btRigidBody& a, btRigidBody& b, double substep_s)
       : frames_(frames), a_(a), b_(b), substep_s_(substep_s), times_(substep_s / kImpulseTime_s) {}
 
   std::unique_ptr<btTypedConstraint> operator()(const core::BallJoint&) const {
@@ -85,7 +85,7 @@ class Maker {
   }
 
  private:
-  const JointFrames& frames_;
+  const core::JointFrame& frames_;
   btRigidBody& a_;
   btRigidBody& b_;
   double substep_s_;
@@ -94,7 +94,7 @@ class Maker {
 
 }  // namespace
 
-std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
+std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const core::JointFrame& frames,
                                                    btRigidBody& a, btRigidBody& b, double substep_s) {
   const double times = substep_s / kImpulseTime_s;
   auto constraint = std::visit(Maker(frames, a, b, substep_s), joint.kind);

@@ -16,7 +16,7 @@ namespace aurasim::physics {
 /// start from impulse 0 in every solve, angles and positions are measured anew from the poses. How strong motors are
 /// and what joints bear follows from the scene alone: as the impulses that it names in kImpulseTime_s, so in a substep
 /// of `substep_s` by its share of that.
-std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const JointFrames& frames,
+std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const core::JointFrame& frames,
                                                    btRigidBody& a, btRigidBody& b, double substep_s);
 
 }  // namespace aurasim::physics

@@ -73,7 +73,7 @@ class Maker {
 
 }  // namespace
 
-JointAxes axes_of(const core::JointSpec& joint, const JointFrames& frames, double substep_s) {
+JointAxes axes_of(const core::JointSpec& joint, const core::JointFrame& frames, double substep_s) {
   JointAxes axes;
   const double times = substep_s / kImpulseTime_s;
   axes.frames = frames;

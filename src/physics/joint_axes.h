@@ -19,7 +19,7 @@ struct JointAxes {
     double stiffness = 0, damping = 0, rest = 0;  ///< as core::SpringAxis
   };
 
-  JointFrames frames;
+  core::JointFrame frames;
   bool b_is_first = false;  ///< in Bullet's constraint
   std::array<Axis, 6> axes;
   bool has_motor = false;    ///< about z, unless there is a drive
@@ -43,7 +43,7 @@ struct JointAxes {
 };
 
 /// Impulses as in make_constraint().
-JointAxes axes_of(const core::JointSpec& joint, const JointFrames& frames, double substep_s);
+JointAxes axes_of(const core::JointSpec& joint, const core::JointFrame& frames, double substep_s);
 
 /// A spring with a damper in a substep, solved implicitly: its impulse is stiffness (position - q) + steady - give
 /// dq/dt, q as the substep begins and dq/dt as it ends; at most `most` either way.

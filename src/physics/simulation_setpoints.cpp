@@ -134,8 +134,9 @@ double Simulation::coming_push(const HostedBody& body) const {
   const core::ControlLog& controls = timeline_.controls();
   if (!body.born || controls.empty()) return 0;
   const btRigidBody& rigid = *body.rigid;
-  const double radius =
-      core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+  const auto radius = [&] {  // of bodies that are turned; of a hull it is looked for
+    return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+  };
   double most[core::kQuantities] = {};
   controls.for_each_ahead(body.id, step_ + 1, [&](core::Quantity quantity, const core::Vec3& value) {
     double kick = 0;
@@ -144,17 +145,17 @@ double Simulation::coming_push(const HostedBody& body) const {
         kick = settings_.foresight_s / 2 * static_cast<double>(rigid.getInvMass()) * value.norm();
         break;
       case core::Quantity::kTorque:
-        kick = settings_.foresight_s / 2 * radius *
+        kick = settings_.foresight_s / 2 * radius() *
                static_cast<double>((rigid.getInvInertiaTensorWorld() * to_bullet(value)).length());
         break;
       case core::Quantity::kVelocity:
         kick = (value - from_bullet(rigid.getLinearVelocity())).norm();
         break;
       case core::Quantity::kSpin:
-        kick = radius * (value - from_bullet(rigid.getAngularVelocity())).norm();
+        kick = radius() * (value - from_bullet(rigid.getAngularVelocity())).norm();
         break;
       case core::Quantity::kDriving:
-        kick = coming_turn(rigid, value, radius, settings_.foresight_s);
+        kick = coming_turn(rigid, value, radius(), settings_.foresight_s);
         break;
     }
     double& of_quantity = most[static_cast<std::size_t>(quantity)];

@@ -47,6 +47,16 @@ struct Joined {
   Vec3 place_W() const { return whole.p_WB + whole.q_WB * X_WJ.p_WB; }
 };
 
+/// As JointRows measures; `b` null: the world.
+std::optional<core::JointMotion> motion_of(const core::JointKind& kind, const Pose& X_AJ, const BodyState& a,
+                                           const Pose& X_BJ, const BodyState* b) {
+  core::JointSpec joint;
+  joint.kind = kind;
+  const std::optional<int> coordinate = core::coordinate_of(joint);
+  if (!coordinate) return std::nullopt;
+  return core::joint_motion({X_AJ, X_BJ}, *coordinate, a, b != nullptr ? *b : BodyState{});
+}
+
 /// The whole turns by `w` about the world's origin and moves by `v`.
 void carry(BodyState& body, const Vec3& v, const Vec3& w) {
   body.v_WB += v + w.cross(body.pose.p_WB);
@@ -62,7 +72,7 @@ TEST(Ros2View, AHingeTurnsFromItsInitialPoseOn) {
   const auto motion = motion_of(core::HingeJoint{}, joined.X_AJ(), a, joined.X_BJ(), &b);
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->position, kTurn, 1e-12);
-  EXPECT_NEAR(motion->velocity, kSpin, 1e-12);
+  EXPECT_NEAR(motion->speed, kSpin, 1e-12);
 }
 
 TEST(Ros2View, ASliderSlidesFromItsInitialPoseOn) {
@@ -73,7 +83,7 @@ TEST(Ros2View, ASliderSlidesFromItsInitialPoseOn) {
   const auto motion = motion_of(core::SliderJoint{}, joined.X_AJ(), a, joined.X_BJ(), &b);
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->position, kTurn, 1e-12);
-  EXPECT_NEAR(motion->velocity, kSpin, 1e-12);
+  EXPECT_NEAR(motion->speed, kSpin, 1e-12);
 }
 
 TEST(Ros2View, AJointToTheWorldIsMeasuredInIt) {
@@ -84,7 +94,7 @@ TEST(Ros2View, AJointToTheWorldIsMeasuredInIt) {
     const auto motion = motion_of(core::HingeJoint{}, joined.X_AJ(), a, joined.X_WJ, nullptr);
     ASSERT_TRUE(motion);
     EXPECT_NEAR(motion->position, turn, 1e-12);
-    EXPECT_EQ(motion->velocity, 0);
+    EXPECT_EQ(motion->speed, 0);
   }
 }
 

@@ -51,20 +51,8 @@ Pushed pushed(const btRigidBody& body) {
   return {body.getInvMass() * body.getTotalForce(), body.getInvInertiaTensorWorld() * body.getTotalTorque(), true};
 }
 
-void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s);
-
-/// A torque acts one half before the turn, and one after.
-void fly_pushed(btRigidBody& body, const btVector3& gravity, btScalar step_s, const Pushed& push) {
-  const btVector3 half = push.w * (step_s / 2);
-  body.clearForces();
-  body.setAngularVelocity(body.getAngularVelocity() + half);
-  fly(body, gravity + push.v, step_s);
-  body.setAngularVelocity(body.getAngularVelocity() + half);
-}
-
 /// On the parabola, and as a free body turns.
-void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
-  if (const Pushed push = pushed(body); push.any) return fly_pushed(body, gravity, step_s, push);
+void fly_freely(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
   const btTransform& start = body.getWorldTransform();
   const btVector3 v = body.getLinearVelocity();
   const btVector3 p = start.getOrigin() + step_s * (v + gravity * (step_s / 2));
@@ -80,6 +68,16 @@ void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
   } else {
     body.proceedToTransform(btTransform(start.getBasis(), p));
   }
+}
+
+/// Of a torque, one half acts before the turn and one after.
+void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
+  const Pushed push = pushed(body);
+  if (!push.any) return fly_freely(body, gravity, step_s);
+  const btVector3 half = push.w * (step_s / 2);
+  body.setAngularVelocity(body.getAngularVelocity() + half);
+  fly_freely(body, gravity + push.v, step_s);
+  body.setAngularVelocity(body.getAngularVelocity() + half);
 }
 
 }  // namespace
