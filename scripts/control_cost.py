@@ -6,8 +6,11 @@ import json
 import pathlib
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
+
+import numpy as np
 
 from report_parts import machine_line, measured_line, table
 
@@ -24,7 +27,14 @@ client. {repeats} times each by turns; medians of the runs, of the nodes' frames
 {costs}
 Setpoints that came late: {late} of {heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state
 for {bodies} of them, to each node, in {messages} messages. Slowest frames (p99) with the torques against the client alone: {more}.
-"""
+
+## How soon it acts
+
+Beside the demo on four nodes, paced by the clock: a Python program sees each state (`World.observe`) and answers it with a force on
+each of {answered} bodies for the state that is so many later. Every node counts what comes when it has computed that state. K, by
+which neighbours have to know of it for their auras, is {lookahead} in the demo.
+
+{delays}"""
 
 KINDS = ("left alone", "looked at", "steered")
 
@@ -77,6 +87,41 @@ def one_run(options, file, kind):
         return {"kind": kind, **frames(report, 300), "real_time_factor": summary["real_time_factor"], **said}
 
 
+def answer_states(options, world, lead, states):
+    """How many states it has answered, and what the nodes have counted meanwhile."""
+    ids = world.bodies().ids[: options.answered]
+    before = world.nodes()
+    answered = 0
+    with world.observe(bodies=ids) as observer:
+        while answered < states:
+            step = observer.next().step
+            phase = ids.astype(float)[:, None] * (1.3, 2.1, 0.7) + 0.1 * step
+            world.control(forces=(ids, 5 * np.sin(phase)), at=step + lead)
+            answered += 1
+    world.control(forces=(ids, None))
+    time.sleep(1.5)
+    after = world.nodes()
+
+    def more(key):
+        return sum(getattr(node, key) for node in after) - sum(getattr(node, key) for node in before)
+
+    return {"lead": lead, "answered": answered, "heard": more("setpoints_heard"), "late": more("setpoints_late")}
+
+
+def measure_delays(options):
+    sys.path.insert(0, str(pathlib.Path(options.program).resolve().parent / "src/python"))
+    import aurasim
+
+    setting = {"dds.domain": options.domain}
+    with aurasim.World.launch("launch_configs/demo.yaml", set=setting, program=str(options.program)) as world, \
+            (options.out / "delays.jsonl").open("w") as out:
+        lookahead = world.info().lookahead
+        for lead in (1, 2, lookahead + 2, lookahead + 4):
+            row = {"lookahead": lookahead, **answer_states(options, world, lead, 60 * options.seconds)}
+            out.write(json.dumps(row) + "\n")
+            print(json.dumps(row), flush=True)
+
+
 def measure(options):
     with tempfile.TemporaryDirectory() as temporary, (options.out / "runs.jsonl").open("w") as out:
         file = scene(pathlib.Path(temporary), options.bodies)
@@ -95,12 +140,17 @@ def write(options):
 
     wanted = [("real-time factor", "real_time_factor"), ("frame p50, ms", "p50"), ("p99", "p99")]
     costs = table(["", *KINDS], [[name, *[f"{of(kind, key):.3g}" for kind in KINDS]] for name, key in wanted])
+    delays = [json.loads(line) for line in (options.out / "delays.jsonl").read_text().splitlines()]
+    rows_of_delays = [[row["lead"] if row["lead"] <= 2 else f"{row['lead']} = K + {row['lead'] - row['lookahead']}",
+                       row["answered"], row["heard"], row["late"]] for row in delays]
     steered = [row for row in rows if row["kind"] == "steered"]
     text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=options.bodies,
                        seconds=options.seconds, repeats=len(steered), costs=costs,
                        late=sum(row["late"] for row in steered), heard=sum(row["heard"] for row in steered),
                        refused=sum(row["refused"] for row in steered), per_step=33 * options.bodies,
                        messages=-(-options.bodies // 800),
+                       answered=options.answered, lookahead=delays[0]["lookahead"],
+                       delays=table(["states later", "states answered", "heard by nodes", "late"], rows_of_delays).strip() + "\n",
                        more=f"{100 * (of('steered', 'p99') / of('looked at', 'p99') - 1):+.0f}%")
     pathlib.Path("docs/control_cost.md").write_text(text)
 
@@ -110,6 +160,7 @@ def main():
     parser.add_argument("--program", default="build/release/aurasim")
     parser.add_argument("--client", default="build/release/control_client")
     parser.add_argument("--bodies", type=int, default=1000)
+    parser.add_argument("--answered", type=int, default=20)
     parser.add_argument("--seconds", type=int, default=20)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--domain", type=int, default=75)
@@ -117,6 +168,7 @@ def main():
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     measure(options)
+    measure_delays(options)
     write(options)
 
 

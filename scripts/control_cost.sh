@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What it costs to steer 1,000 bodies, 60 times a second, by one client. Writes docs/control_cost.md. About 8 minutes on 2
+# What it costs to steer 1,000 bodies, 60 times a second, by one client, and how soon control acts. Writes docs/control_cost.md. About 8 minutes on 2
 # cores, where nothing else runs.
 #   scripts/control_cost.sh [--repeats N=5] [--domain N=75] [--out DIR=build/control_cost]
 set -euo pipefail
@@ -13,6 +13,6 @@ done
 
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/control_cost.md "$out" double control_client
+begin_measuring docs/control_cost.md "$out" double control_client _aurasim
 /usr/bin/python3 scripts/control_cost.py "${arguments[@]}"
 echo "written: docs/control_cost.md" >&2

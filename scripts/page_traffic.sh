@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# What a page is sent of 10,000 bodies that all move: everything, and only what its camera may see. Writes
+# docs/page_traffic.md. About 3 minutes.
+#   scripts/page_traffic.sh [--bodies N=10000] [--domain N=76] [--out DIR=build/page_traffic]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out=build/page_traffic arguments=("$@")
+while [[ ${1:-} == --* ]]; do
+  [[ $1 != --out ]] || out=$2
+  shift 2
+done
+
+# shellcheck source=scripts/measured.sh
+source scripts/measured.sh
+begin_measuring docs/page_traffic.md "$out" double
+scripts/build_web.sh --tests
+/usr/bin/python3 scripts/page_traffic.py "${arguments[@]}"
+echo "written: docs/page_traffic.md" >&2
