@@ -4,7 +4,7 @@
 # Metres: so small that bodies change hosts.
 declare -A cell=([card_house]=6 [columns_rain]=15 [corner_stacks]=6 [demo]=12 [domino_line]=20 [falling_piles]=8
   [island]=10 [newtons_cradle]=6 [ragdoll_stairs]=6 [three_way]=8 [tower]=8 [tug_of_war]=10 [two_spheres]=10
-  [vehicle_tour]=9 [far_out]=6)
+  [sorting_hall]=8 [vehicle_tour]=9 [far_out]=6)
 
 # The overrides that cut a scene into so many regions, one per line.
 regions_of() {

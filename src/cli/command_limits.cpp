@@ -148,6 +148,20 @@ struct Problem {
     const bool known = core::value_of(ask.id) < c.scene.statics.size();
     return known ? std::string() : fmt::format("there is no static {}", core::value_of(ask.id));
   }
+  /// How far it is from where it will be by then is not known: as far as anything may be from its place at the start.
+  std::string operator()(const core::SendStatic& ask) const {
+    if (const std::string unknown = (*this)(core::RemoveStatic{ask.id}); !unknown.empty()) return unknown;
+    if (!c.launch.physics.looks_once())
+      return fmt::format("the solver {} knows no statics that move", c.launch.physics.solver);
+    const core::StaticBody& fixed = c.scene.statics[core::value_of(ask.id)];
+    if (std::holds_alternative<core::Plane>(c.scene.shapes[fixed.shape].shape)) return "a plane cannot move";
+    if (const std::string where = problem_with_pose(ask.to); !where.empty()) return where;
+    if (!(ask.duration_s >= 0 && ask.duration_s <= kMostStepsAhead * c.launch.step_s())) {
+      return fmt::format("a way of {:.4g} s, allowed: 0 to {:.4g} s", ask.duration_s,
+                         kMostStepsAhead * c.launch.step_s());
+    }
+    return {};
+  }
   std::string operator()(const core::Impulse& ask) const {
     if (!(ask.J_W.norm() <= kHardestImpulse_Ns)) {
       return fmt::format("an impulse of {:.4g} N s, allowed: {:g} N s", ask.J_W.norm(), kHardestImpulse_Ns);

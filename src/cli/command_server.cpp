@@ -9,6 +9,7 @@
 
 #include "cli/command_limits.h"
 #include "config/meshes.h"
+#include "core/static_moves.h"
 #include "node/scene_additions.h"
 
 namespace aurasim::cli {
@@ -298,7 +299,9 @@ void CommandServer::publish_additions(const node::StepReport& report) {
     if (node::changes_scene(order.action)) additions_.orders.push_back(order);
     issuer_.note(order);
   }
-  if (additions_.orders.size() > before && leads_) send_additions();
+  if (additions_.orders.size() == before) return;
+  core::forget_moves_before(report.step - physics::kOrderMemory, additions_.orders);
+  if (leads_) send_additions();
 }
 
 /// Who brought a mesh may be gone when somebody comes who wants to see it.

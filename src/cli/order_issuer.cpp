@@ -1,6 +1,7 @@
 #include "cli/order_issuer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "cli/command_limits.h"
@@ -82,6 +83,7 @@ Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, con
   if (std::string why = problem_with(command, context); !why.empty()) return refusal(std::move(why));
   if (const auto* body = std::get_if<core::NewBody>(&command.ask)) return spawn(command, *body, node);
   if (const auto* fixed = std::get_if<core::NewStatic>(&command.ask)) return place(command, *fixed, node);
+  if (const auto* sent = std::get_if<core::SendStatic>(&command.ask)) return move(command, *sent, node);
   const std::optional<core::Action> action = std::visit(
       [](const auto& ask) -> std::optional<core::Action> {
         if constexpr (std::is_constructible_v<core::Action, decltype(ask)>) return ask;
@@ -106,6 +108,12 @@ Issued OrderIssuer::place(const core::Command& command, const core::NewStatic& f
   return {{},
           node.order(core::AddStatic{id, shape, sound(fixed.pose)}, command.request, command.at_step),
           core::ref_of(id)};
+}
+
+Issued OrderIssuer::move(const core::Command& command, const core::SendStatic& sent, node::Node& node) {
+  const auto states = std::max<core::Step>(1, std::llround(sent.duration_s / launch_.step_s()));
+  const core::MoveStatic move{sent.id, {}, sound(sent.to), states};
+  return {{}, node.order(move, command.request, command.at_step), core::ref_of(sent.id)};
 }
 
 std::uint32_t OrderIssuer::shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node) {

@@ -44,6 +44,7 @@ class OrderIssuer {
  private:
   Issued spawn(const core::Command& command, const core::NewBody& body, node::Node& node);
   Issued place(const core::Command& command, const core::NewStatic& fixed, node::Node& node);
+  Issued move(const core::Command& command, const core::SendStatic& sent, node::Node& node);
   std::uint32_t shape_index(const core::ClientShape& shape, std::uint64_t request, node::Node& node);
   core::PrototypeId prototype_id(const core::NewBody& body, std::uint64_t request, node::Node& node);
   std::optional<core::Shape> shape_of(const core::ClientShape& shape, const node::MeshSource& meshes,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -51,6 +52,8 @@ struct SendArguments {
   std::uint32_t fixed = 0;
   std::uint32_t region = 0;
   bool is_static = false;
+  std::string named;
+  double duration_s = 0;
   double radius_m = 0;
   double height_m = 0;
   double mass_kg = 1;
@@ -82,7 +85,17 @@ core::ClientShape shape(const SendArguments& a, core::MeshUse use, CommandClient
   fail("which shape? --size X Y Z, --radius R [--height H] or --mesh FILE");
 }
 
-core::Ask ask_for(const SendArguments& a, CommandClient& client) {
+core::StaticId static_named(const std::string& named, const core::Scene& scene) {
+  const auto found = std::ranges::find(scene.statics, named, &core::StaticBody::name);
+  if (found != scene.statics.end()) return core::StaticId{static_cast<std::uint32_t>(found - scene.statics.begin())};
+  std::uint32_t id = 0;
+  const auto [end, error] = std::from_chars(named.data(), named.data() + named.size(), id);
+  if (error != std::errc() || end != named.data() + named.size())
+    fail("--static " + named + ": neither a name of the scene nor a number");
+  return core::StaticId{id};
+}
+
+core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClient& client) {
   if (a.what == "spawn") {
     core::NewBody body;
     body.prototype = a.prototype;
@@ -96,6 +109,7 @@ core::Ask ask_for(const SendArguments& a, CommandClient& client) {
   }
   if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, client), pose(a)};
   if (a.what == "remove" && a.is_static) return core::RemoveStatic{core::StaticId{a.fixed}};
+  if (a.what == "move") return core::SendStatic{static_named(a.named, scene), pose(a), a.duration_s};
   if (a.what == "remove") return core::RemoveBody{core::BodyId{a.body}};
   if (a.what == "impulse") {
     return core::Impulse{core::BodyId{a.body}, vector(a.J), a.p.empty() ? std::nullopt : std::optional(vector(a.p))};
@@ -147,14 +161,14 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
 }
 
 [[noreturn]] void carry(const SendArguments& arguments, dds::Participant& participant, dds::ControlBus& control,
-                        std::uint64_t agreement) {
-  CommandClient client(participant, control, agreement);
+                        const config::Launch& launch) {
+  CommandClient client(participant, control, launch.agreement());
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
   while (!client.all_listen() && in_time()) client.wait(20ms);
   core::Command command;
   command.at_step = arguments.at_step;
-  command.ask = ask_for(arguments, client);
+  command.ask = ask_for(arguments, launch.scene, client);
   client.send(std::move(command));
   while (in_time()) {
     client.wait(20ms);
@@ -205,7 +219,7 @@ int send(const SendArguments& arguments) {
   leave_after([&]() -> ExitCode {
     if (arguments.what == "drain") drain(arguments, control);
     if (kSteering.contains(arguments.what)) steer(arguments, steering);
-    carry(arguments, participant, control, launch.agreement());
+    carry(arguments, participant, control, launch);
   });
 }
 
@@ -247,6 +261,12 @@ void remove_options(CLI::App& command, SendArguments& a) {
   command.add_option("--static", a.fixed, "id")->excludes(body)->each([&a](const std::string&) { a.is_static = true; });
 }
 
+void move_options(CLI::App& command, SendArguments& a) {
+  command.add_option("--static", a.named, "its name in the scene, or its id")->required();
+  place_options(command, a);
+  command.add_option("--seconds", a.duration_s, "of simulated time, until it is there");
+}
+
 void impulse_options(CLI::App& command, SendArguments& a) {
   command.add_option("--body", a.body, "id")->required();
   vector_option(command, "--J", a.J, "impulse, N s");
@@ -270,6 +290,7 @@ const std::map<std::string, std::string> kExamples = {
     {"spawn", "--radius 0.5 --p 0 0 10 --v 5 0 0"},
     {"static", "--size 4 4 1 --p 0 0 0.5"},
     {"remove", "--body 3"},
+    {"move", "--static gate --p 0 0 3 --seconds 2"},
     {"impulse", "--body 3 --J 0 0 20"},
     {"velocity", "--body 3 --v 0 0 8"},
     {"rate", "--value 0.5"},
@@ -306,6 +327,7 @@ void add_send(CLI::App& program, Action& action) {
       {"spawn", "a new body", spawn_options},
       {"static", "a new static, on every node", static_options},
       {"remove", "take a body or a static out", remove_options},
+      {"move", "send a static somewhere: a gate, a lift", move_options},
       {"impulse", "push a body", impulse_options},
       {"velocity", "set a body's velocity", velocity_options},
       {"rate", "slow motion and the like",

@@ -223,6 +223,13 @@ Acknowledgement World::remove_body(std::uint64_t body, std::int64_t at_step, Sec
 Acknowledgement World::remove_static(std::uint32_t fixed, std::int64_t at_step, Seconds time_out) {
   return impl_->act_one({{"kind", "remove"}, {"static", fixed}}, at_step, time_out);
 }
+Acknowledgement World::move_static(const std::variant<std::uint32_t, std::string>& fixed, const Vec3& position,
+                                   const Quaternion& rotation, double duration, std::int64_t at_step,
+                                   Seconds time_out) {
+  json ask = {{"kind", "move"}, {"p", position}, {"q", rotation}, {"duration", duration}};
+  std::visit([&ask](const auto& named) { ask["static"] = named; }, fixed);
+  return impl_->act_one(std::move(ask), at_step, time_out);
+}
 Acknowledgement World::impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point,
                                std::int64_t at_step, Seconds time_out) {
   return impl_->act_one(impulse_json(body, impulse, point), at_step, time_out);

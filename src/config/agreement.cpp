@@ -112,6 +112,12 @@ void add_bodies(const core::Scene& scene, Digest& d) {
     d.bytes(s.shape);
     d.bytes(s.material);
     d.add(s.pose);
+    d.add(s.belt_S);
+    d.bytes(s.path ? s.path->stops.size() : 0);
+    if (!s.path) continue;
+    d.bytes(s.path->repeats);
+    d.bytes(s.path->smooth);
+    for (const core::PathStop& stop : s.path->stops) d.add(stop.at_s), d.add(stop.X_SP);
   }
   d.bytes(scene.bodies.size());
   for (const core::InitialBody& b : scene.bodies) {

@@ -8,6 +8,8 @@
 
 #include "config/keys_of.h"
 #include "config/shapes.h"
+#include "config/static_paths.h"
+#include "core/limits.h"
 
 namespace aurasim::config {
 namespace {
@@ -70,6 +72,23 @@ const KeysOf<core::InitialBody>& keys_of_body() {
   return keys;
 }
 
+const KeysOf<core::StaticBody>& keys_of_static() {
+  using core::limits::kFastestStatic_m_s;
+  static const KeysOf<core::StaticBody> keys(
+      "static", "A thing that nothing moves, the same on every node. It stands, or goes as its path says.",
+      {
+          shape_key("any shape"),
+          own_name_key("by which commands and reports refer to it; each once",
+                       "`static N`, N from 0 in the order of the file"),
+          material_key(),
+          optional("path", map(path_keys), "where it goes: a lift, a gate, a turntable").otherwise("it stands"),
+          optional("belt", &core::StaticBody::belt_S,
+                   vec3("m/s", Range::from_to(-kFastestStatic_m_s, kFastestStatic_m_s)),
+                   "how its surface runs along itself, in its axes: a conveyor. Solver soft_step only"),
+      });
+  return keys;
+}
+
 constexpr double kRoundedMoments = 1e-9;  ///< relative: what a thin plate's may be off by
 
 /// No more than the two others together, as of any real body.
@@ -118,6 +137,13 @@ core::StaticBody read_static(const Field& field, std::size_t index, SceneDraft& 
   }
   body.material = read_material_reference(fields["material"], draft).value_or(0);
   body.pose = read_pose(fields);
+  keys_of_static().read_members(fields, body);
+  const Field path = fields["path"];
+  body.path = read_path(path);
+  const std::vector<core::NamedShape>& shapes = draft.scene.shapes;
+  if (body.path && body.shape < shapes.size() && std::holds_alternative<core::Plane>(shapes[body.shape].shape)) {
+    path.complain("found the path of a plane, allowed: of shapes that end somewhere");
+  }
   fields.close();
   return body;
 }
@@ -143,15 +169,7 @@ const KeyTable& material_keys() { return keys_of_material(); }
 
 const KeyTable& prototype_keys() { return keys_of_prototype(); }
 
-const KeyTable& static_keys() {
-  static const KeyTable keys{.title = "static",
-                             .about = "A thing that never moves, and is the same on every node.",
-                             .keys = {shape_key("any shape"),
-                                      own_name_key("by which commands and reports refer to it; each once",
-                                                   "`static N`, N from 0 in the order of the file"),
-                                      material_key()}};
-  return keys;
-}
+const KeyTable& static_keys() { return keys_of_static(); }
 
 const KeyTable& body_keys() { return keys_of_body(); }
 

@@ -151,6 +151,7 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
   read_overseer(fields["overseer"], launch.file.parent_path(), launch.overseer);
   if (fields.given()) read_scene_of(fields["scene"], of_scene, {.is_known = true, .layout = layout}, launch, errors);
   read_ros2(fields["ros2"], launch);
+  check_statics(fields["physics"], launch);
   fields.close();
   if (!errors.empty()) return;
   launch.regions = layout->map;

@@ -68,6 +68,14 @@ void read_ros2(const Field& ros2, Launch& launch) {
   }
 }
 
+void check_statics(const Field& physics, const Launch& launch) {
+  if (launch.physics.looks_once()) return;
+  const auto mover = std::ranges::find_if(launch.scene.statics, &core::StaticBody::moves);
+  if (mover == launch.scene.statics.end()) return;
+  physics.complain(fmt::format("found the solver {} and the static \"{}\", which moves; allowed: soft_step",
+                               launch.physics.solver, mover->name));
+}
+
 double reach_m(const Launch& launch) { return top_speed_aura(launch).reach(1) + 2 * largest_radius_m(launch.scene); }
 
 // A body projects near foreign bodies wherever they are, also where pulls chain through two regions

@@ -22,6 +22,9 @@ double zone_m(const Launch& launch);
 /// Regions wide enough for their auras, K and the number of neighbours in bounds; sets neighbour_distance_m.
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch);
 
+/// Statics that move need a solver that knows them.
+void check_statics(const Field& physics, const Launch& launch);
+
 /// `ros2`, once scene and DDS have been read.
 void read_ros2(const Field& ros2, Launch& launch);
 

@@ -31,7 +31,7 @@ const KeysOf<core::Scene>& scene_keys() {
           optional("materials", named("a map of materials by name", map(material_keys)), "surfaces, by name"),
           optional("shapes", named("a map of shapes by name", map(shape_keys)), "shapes, by name"),
           optional("prototypes", named("a map of prototypes by name", map(prototype_keys)), "kinds of bodies, by name"),
-          optional("statics", list(0, kMostStatics, map(static_keys).with(pose_keys)), "what never moves"),
+          optional("statics", list(0, kMostStatics, map(static_keys).with(pose_keys)), "what nothing moves"),
           optional("bodies", list(0, kMostBodies, map(body_keys).with(pose_keys)), "what is there at the start"),
           optional("generators", list(0, kMostGenerators, map(generator_keys)), "bodies in regular formations"),
           optional("joints", list(0, kMostJoints, map(joint_keys)), "what holds bodies together"),

@@ -28,6 +28,12 @@ struct NewStatic {
   ClientShape shape;
   Pose pose;
 };
+/// A static goes evenly from where it is, and stays there.
+struct SendStatic {
+  StaticId id{};
+  Pose to;
+  double duration_s = 0;  ///< at least one state
+};
 /// At once, this many simulated seconds per second: of the clocks, so it is not an order.
 struct SetRate {
   double rate = 1;
@@ -41,7 +47,7 @@ struct Ray {
 };
 
 using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity, SetRate, Repartition,
-                         ChangeScene, Ray, Save, Load>;
+                         ChangeScene, Ray, Save, Load, SendStatic>;
 
 struct Command {
   std::uint64_t request = 0;  ///< random; copies carry the same

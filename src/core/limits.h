@@ -14,6 +14,10 @@ inline constexpr double kFarthestBody_m = 1e7;
 inline constexpr double kFastestBody_m_s = 1e6;
 inline constexpr double kFastestSpin_rad_s = 1e6;
 
+// Of statics on paths, and of belts: what they push gets as fast.
+inline constexpr double kFastestStatic_m_s = 100;
+inline constexpr double kFastestStatic_rad_s = 50;
+
 // Of commands.
 inline constexpr double kFarthestPlace_m = 1e6;
 inline constexpr double kHardestImpulse_Ns = 1e7;

@@ -58,6 +58,12 @@ struct RemoveBody {
 struct RemoveStatic {
   StaticId id{};
 };
+/// It goes evenly from where it is in the state before the order's to where it then stays, whatever its path was.
+struct MoveStatic {
+  StaticId id{};
+  Pose from, to;
+  Step states = 1;  ///< until it is there
+};
 /// Before the order's state is computed. Wakes the body.
 struct Impulse {
   BodyId id{};
@@ -97,7 +103,7 @@ struct Load {
 };
 
 using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, RemoveBody, RemoveStatic, Impulse,
-                            SetVelocity, Repartition, ChangeScene, Redo, Save, Load>;
+                            SetVelocity, Repartition, ChangeScene, Redo, Save, Load, MoveStatic>;
 
 struct Order {
   std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders

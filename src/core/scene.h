@@ -93,12 +93,29 @@ struct InitialBody {
   Vec3 w_WB = Vec3::Zero();
 };
 
-/// Never moves; the same on every node. Its StaticId is the index in Scene::statics.
+/// Where a static is at a time; `X_SP`: seen from where it stands at the start, S.
+struct PathStop {
+  double at_s = 0;
+  Pose X_SP;
+};
+
+/// From where a static stands in state 0 straight from stop to stop, on the shorter turn.
+struct StaticPath {
+  std::vector<PathStop> stops;  ///< at least one; ascending at_s > 0
+  bool repeats = false;         ///< from the start again after the last stop, which is there; else it stays there
+  bool smooth = true;           ///< it rests at each stop, and its speed has no jumps; else it is even between two
+};
+
+/// Nothing moves it; the same on every node. Its StaticId is the index in Scene::statics.
 struct StaticBody {
   std::string name;
   std::uint32_t shape = 0;
   std::uint32_t material = 0;
-  Pose pose;
+  Pose pose;  ///< at the start
+  std::optional<StaticPath> path = {};
+  Vec3 belt_S = Vec3::Zero();  ///< m/s, in its axes: the surface runs so along itself, as a conveyor's does
+
+  bool moves() const { return path.has_value() || !belt_S.isZero(); }
 };
 
 /// Creates bodies from a seeded sequence: body i is the same on every node, whoever creates it.

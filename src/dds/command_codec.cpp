@@ -76,6 +76,11 @@ struct Put {
   void operator()(const core::ChangeScene& a) const { out.name(a.name); }
   void operator()(const core::Save& a) const { out.name(a.file); }
   void operator()(const core::Load& a) const { out.name(a.file); }
+  void operator()(const core::SendStatic& a) const {
+    out.subject(value_of(a.id));
+    put_pose(a.to);
+    out.duration_s(a.duration_s);
+  }
   void operator()(const core::Ray& a) const {
     out.p(numbers(a.from_W));
     out.v(numbers(a.to_W));
@@ -104,9 +109,7 @@ class Get {
       case 2:
         return core::RemoveBody{body};
       case 3:
-        return in_.subject() <= 0xffff'ffff
-                   ? std::optional<Ask>(core::RemoveStatic{StaticId{static_cast<std::uint32_t>(in_.subject())}})
-                   : std::nullopt;
+        return names_a_static() ? std::optional<Ask>(core::RemoveStatic{fixed()}) : std::nullopt;
       case 4:
         return is_vector(in_.v()) ? std::optional<Ask>(core::Impulse{body, vector_at(in_.v(), 0), maybe(in_.p())})
                                   : std::nullopt;
@@ -125,6 +128,9 @@ class Get {
         return core::Save{in_.name().to_string()};
       case 11:
         return core::Load{in_.name().to_string()};
+      case 12:
+        return names_a_static() && has_pose() ? std::optional<Ask>(core::SendStatic{fixed(), pose(), in_.duration_s()})
+                                              : std::nullopt;
       default:
         return {};
     }
@@ -132,6 +138,8 @@ class Get {
 
  private:
   static bool is_vector(const std::vector<double>& v) { return v.size() == 3; }
+  bool names_a_static() const { return in_.subject() <= 0xffff'ffff; }
+  StaticId fixed() const { return StaticId{static_cast<std::uint32_t>(in_.subject())}; }
   static std::optional<Vec3> maybe(const std::vector<double>& v) {
     return is_vector(v) ? std::optional(vector_at(v, 0)) : std::nullopt;
   }
@@ -190,7 +198,8 @@ class Get {
 
 bool numbers_are_finite(const wire::Command& in) {
   return all_finite(in.size()) && all_finite(in.p()) && all_finite(in.q()) && all_finite(in.v()) &&
-         all_finite(in.w()) && std::isfinite(in.mass_kg()) && std::isfinite(in.rate());
+         all_finite(in.w()) && std::isfinite(in.mass_kg()) && std::isfinite(in.rate()) &&
+         std::isfinite(in.duration_s());
 }
 
 bool is_rotation(const std::vector<double>& q) {

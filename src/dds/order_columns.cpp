@@ -78,6 +78,12 @@ struct ToRow {
   }
   void operator()(const core::RemoveBody& a) const { row.subject = value_of(a.id); }
   void operator()(const core::RemoveStatic& a) const { row.subject = value_of(a.id); }
+  void operator()(const core::MoveStatic& a) const {
+    row.subject = value_of(a.id);
+    row.index = static_cast<std::uint32_t>(a.states);
+    put(row, a.from);
+    put(row, a.to);
+  }
   void operator()(const core::Impulse& a) const {
     row.subject = value_of(a.id);
     put(row, a.J_W);
@@ -133,6 +139,14 @@ Maybe shape_of(const Row& row, const Numbers& n) {
 Maybe spawn_of(const Row& row, const Numbers& n) {
   if (n.all.size() != 13 || !n.have_rotation()) return {};
   return core::Spawn{BodyId{row.subject}, core::PrototypeId{row.index}, n.pose(), n.vector(7), n.vector(10)};
+}
+
+Maybe move_of(const Row& row, const Numbers& n) {
+  constexpr std::size_t kPose = 7;
+  if (n.all.size() != 2 * kPose || row.index == 0) return {};
+  const Numbers from{n.all.first(kPose)}, to{n.all.subspan(kPose)};
+  if (!from.have_rotation() || !to.have_rotation()) return {};
+  return core::MoveStatic{StaticId{static_cast<std::uint32_t>(row.subject)}, from.pose(), to.pose(), row.index};
 }
 
 Maybe regions_of(const Numbers& n) {
@@ -204,6 +218,8 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
       return count == 0 && !row.text.empty() ? Maybe(core::Save{row.text}) : Maybe();
     case 12:
       return count == 0 && !row.text.empty() ? Maybe(core::Load{row.text}) : Maybe();
+    case 13:
+      return move_of(row, n);
     default:
       return {};
   }

@@ -166,6 +166,8 @@ class SdfWriter {
     open("link", {{"name", "link"}});
     write_collisions(scene_.shapes[body.shape].shape, scene_.materials[body.material], sdf_name(body.name));
     close(), close();
+    if (body.path) lose("static", body.name, "its path");
+    if (!body.belt_S.isZero()) lose("static", body.name, "its belt");
   }
 
   void write_model(const std::vector<std::size_t>& places) {

@@ -1,9 +1,11 @@
 #include "node/node.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/horizon.h"
+#include "core/limits.h"
 #include "node/scene_additions.h"
 #include "node/timed.h"
 #include "physics/clearance.h"
@@ -73,7 +75,23 @@ const core::Order& Node::order(const core::Action& action, std::uint64_t request
   order.request = request;
   order.at_step = std::max(at_step, protocol_->earliest_effect());
   order.action = action;
+  if (auto* const move = std::get_if<core::MoveStatic>(&order.action)) complete(*move, order);
   return protocol_->announce(std::move(order));
+}
+
+/// From where it is by then, and no faster than may be; of several moves of a static the one that is ordered later
+/// begins no earlier.
+void Node::complete(core::MoveStatic& move, core::Order& order) const {
+  core::StaticMoves moves = world_.moves();
+  for (const core::Order& other : protocol_->orders_to_come()) {
+    if (const auto* known = std::get_if<core::MoveStatic>(&other.action)) moves.add(*known, other.at_step);
+  }
+  order.at_step = std::max(order.at_step, moves.newest(move.id));
+  move.from = moves.pose(scene_.statics.at(core::value_of(move.id)), move.id, order.at_step - 1, setup_.physics.step_s);
+  const core::Twist at_once = core::twist_between(move.from, move.to, setup_.physics.step_s);
+  const double states = std::max(at_once.v_W.norm() / core::limits::kFastestStatic_m_s,
+                                 at_once.w_W.norm() / core::limits::kFastestStatic_rad_s);
+  move.states = std::max(move.states, static_cast<core::Step>(std::ceil(states)));
 }
 
 /// What an order changes at once; the rest waits for its state.

@@ -236,6 +236,7 @@ class Node {
   std::vector<core::BodyRecord> initial_bodies();
   std::vector<core::RegionId> hosts_at_start(core::Snapshot all);
   void announce_births(core::Step state);
+  void complete(core::MoveStatic& move, core::Order& order) const;
   void heed(const core::Order& order);
   void heed_saved();
   void remember(const core::Order& order);

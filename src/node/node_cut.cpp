@@ -129,6 +129,7 @@ void Node::remember(const core::Order& order) {
   std::erase_if(orders_, [&](const core::Order& old) {
     return !changes_scene(old.action) && old.at_step < current_step() - physics::kOrderMemory && old.sequence != newest;
   });
+  core::forget_moves_before(current_step() - physics::kOrderMemory, orders_);
   orders_kept_ = std::max<std::size_t>(orders_kept_, orders_.size());
 }
 

@@ -31,6 +31,8 @@ class OrderCheck {
       if (added->shape >= shapes_ || core::value_of(added->id) != statics_) refuse("an order adds an unknown static");
       ++statics_;
     }
+    const auto* moved = std::get_if<core::MoveStatic>(&order.action);
+    if (moved != nullptr && core::value_of(moved->id) >= statics_) refuse("an order moves a static that is not there");
     const auto* spawn = std::get_if<core::Spawn>(&order.action);
     if (spawn != nullptr && core::value_of(spawn->prototype) >= prototypes_) {
       refuse("an order makes a body of a kind that is not there");

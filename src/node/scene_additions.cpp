@@ -29,7 +29,7 @@ void extend(core::Scene& scene, const core::Action& action, const Meshes& meshes
   } else if (const auto* prototype = std::get_if<core::DefinePrototype>(&action)) {
     scene.prototypes.push_back({"client", prototype->shape, 0, prototype->mass_kg, true});
   } else if (const auto* added = std::get_if<core::AddStatic>(&action)) {
-    scene.statics.push_back({"client", added->shape, 0, added->pose});
+    scene.statics.push_back({.name = "client", .shape = added->shape, .pose = added->pose});
   }
 }
 
@@ -39,7 +39,8 @@ core::BodyRecord record_of(const core::Spawn& spawn, core::Step birth) {
 
 bool changes_scene(const core::Action& action) {
   return std::holds_alternative<core::DefineShape>(action) || std::holds_alternative<core::DefinePrototype>(action) ||
-         std::holds_alternative<core::AddStatic>(action) || std::holds_alternative<core::RemoveStatic>(action);
+         std::holds_alternative<core::AddStatic>(action) || std::holds_alternative<core::RemoveStatic>(action) ||
+         std::holds_alternative<core::MoveStatic>(action);
 }
 
 }  // namespace aurasim::node

@@ -18,7 +18,7 @@ void extend(core::Scene& scene, const core::Action& action,
 /// The body that an order makes, epoch 0.
 core::BodyRecord record_of(const core::Spawn& spawn, core::Step birth);
 
-/// Does it add to what observers have to know of the scene, or take from it?
+/// Does it add to what observers have to know of the scene, take from it, or move it?
 bool changes_scene(const core::Action& action);
 
 }  // namespace aurasim::node

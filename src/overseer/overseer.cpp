@@ -81,7 +81,9 @@ void Overseer::publish_scene() {
   write_down(ChunkKind::kScene, text);
 }
 
-std::string Overseer::scene_text() const { return scene_message(scene_, published_generation_, removed_statics_); }
+std::string Overseer::scene_text() const {
+  return scene_message(scene_, published_generation_, removed_statics_, static_moves_);
+}
 
 /// What clients have added to the scene, once the run shows that generation; again when a mesh has come later.
 void Overseer::grow() {
@@ -98,9 +100,11 @@ void Overseer::grow() {
   };
   scene_ = watch_.launch().scene;
   removed_statics_.clear();
+  static_moves_.clear();
   for (const core::Order& order : additions_->orders) {
     node::extend(scene_, order.action, mesh);
     if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) removed_statics_.insert(removed->id);
+    if (std::holds_alternative<core::MoveStatic>(order.action)) static_moves_.push_back(order);
   }
   additions_are_shown_ = true;
   if (has_all) additions_.reset();
@@ -142,6 +146,7 @@ void Overseer::compose_frames() {
       scene_is_published_ = true;
       scene_ = watch_.launch().scene;
       removed_statics_.clear();
+      static_moves_.clear();
       publish_scene();
       grow();
     }

@@ -64,6 +64,7 @@ class Overseer {
   dds::MeshReader meshes_;
   core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
+  std::vector<core::Order> static_moves_;
   std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
   bool additions_are_shown_ = false;              ///< with balls where meshes are missing
   OverlayView overlays_;

@@ -23,6 +23,30 @@ Json rotation_json(const Quaternion& q) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
+Json path_json(const core::StaticPath& path) {
+  Json stops = Json::array();
+  for (const core::PathStop& stop : path.stops) {
+    stops.push_back({{"at", stop.at_s}, {"p", vector_json(stop.X_SP.p_WB)}, {"q", rotation_json(stop.X_SP.q_WB)}});
+  }
+  return {{"stops", std::move(stops)}, {"repeats", path.repeats}, {"smooth", path.smooth}};
+}
+
+Json place_json(const core::Pose& pose) { return {{"p", vector_json(pose.p_WB)}, {"q", rotation_json(pose.q_WB)}}; }
+
+/// Of one static, in the order of time.
+Json moves_json(core::StaticId id, std::span<const core::Order> orders) {
+  Json moves = Json::array();
+  for (const core::Order& order : orders) {
+    const auto& move = std::get<core::MoveStatic>(order.action);
+    if (move.id != id) continue;
+    moves.push_back({{"step", order.at_step},
+                     {"states", move.states},
+                     {"from", place_json(move.from)},
+                     {"to", place_json(move.to)}});
+  }
+  return moves;
+}
+
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// JSON has no infinity.
@@ -85,7 +109,7 @@ std::string hello_message(const Hello& hello) {
 }
 
 std::string scene_message(const core::Scene& scene, core::Generation generation,
-                          const std::set<core::StaticId>& removed) {
+                          const std::set<core::StaticId>& removed, std::span<const core::Order> moves) {
   Json shapes = Json::array(), prototypes = Json::array(), statics = Json::array();
   for (const core::NamedShape& shape : scene.shapes) {
     shapes.push_back(shape_to_json(shape.shape));
@@ -101,6 +125,10 @@ std::string scene_message(const core::Scene& scene, core::Generation generation,
                        {"shape", body.shape},
                        {"p", vector_json(body.pose.p_WB)},
                        {"q", rotation_json(body.pose.q_WB)}});
+    if (body.path) statics.back()["path"] = path_json(*body.path);
+    if (Json of_body = moves_json(core::StaticId{static_cast<std::uint32_t>(i)}, moves); !of_body.empty()) {
+      statics.back()["moves"] = std::move(of_body);
+    }
   }
   return text_of({{"type", "scene"},
                   {"generation", generation},

@@ -5,9 +5,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/order.h"
 #include "core/region_map.h"
 #include "core/scene.h"
 #include "dds/control.h"
@@ -28,7 +30,7 @@ std::string hello_message(const Hello& hello);
 
 /// `removed`: statics that are there no longer; the others keep their ids.
 std::string scene_message(const core::Scene& scene, core::Generation generation,
-                          const std::set<core::StaticId>& removed = {});
+                          const std::set<core::StaticId>& removed, std::span<const core::Order> moves = {});
 std::string map_message(const core::RegionMap& map);
 
 struct RunStatus {

@@ -14,6 +14,7 @@
 #include "physics/bullet_convert.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
+#include "physics/moving_static.h"
 #include "physics/prefetch.h"
 #include "physics/soft/world.h"
 #include "physics/solvers.h"
@@ -56,7 +57,8 @@ struct DynamicsWorld::Bullet {
   explicit Bullet(const Settings& settings)
       : solver(make_solver(settings.solver)),
         world((settings.looks_once() ? make_soft_world : make_stepper)(
-            {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses}, settings)),
+            {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses, moving_statics},
+            settings)),
         sums_itself(settings.looks_once()) {}
 
   btDefaultCollisionConfiguration configuration;
@@ -66,6 +68,7 @@ struct DynamicsWorld::Bullet {
   std::unique_ptr<btConstraintSolver> solver;
   FirstContacts first_contacts;
   ContactImpulses contact_impulses;
+  std::vector<btRigidBody*> moving_statics;
   std::unique_ptr<btDiscreteDynamicsWorld> world;
   bool sums_itself;  ///< what presses
 };
@@ -94,6 +97,7 @@ DynamicsWorld::~DynamicsWorld() {
 void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
   bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
   bullet_->world->addRigidBody(&body);
+  if (is_moving_static(body)) begin_moving(body);
   if (!collides) {  // of no group, and with none; what has been paired with it is not any more
     btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
     proxy->m_collisionFilterGroup = proxy->m_collisionFilterMask = 0;
@@ -106,7 +110,21 @@ void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
   std::vector<btBroadphaseProxy*> proxies;
   for (btRigidBody* body : bodies) proxies.push_back(body->getBroadphaseProxy());
   bullet_->pairs.remove_pairs_of(proxies, bullet_->dispatcher);
-  for (btRigidBody* body : bodies) bullet_->world->removeRigidBody(body);
+  for (btRigidBody* body : bodies) {
+    if (is_moving_static(*body)) std::erase(bullet_->moving_statics, body);
+    bullet_->world->removeRigidBody(body);
+  }
+}
+
+void DynamicsWorld::begin_moving(btRigidBody& fixed) { bullet_->moving_statics.push_back(&fixed); }
+
+void DynamicsWorld::bound(btRigidBody& moving_static, const btTransform& until) {
+  const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  btVector3 low, high, low_then, high_then;
+  moving_static.getAabb(low, high);
+  moving_static.getCollisionShape()->getAabb(until, low_then, high_then);
+  low.setMin(low_then), high.setMax(high_then);
+  bullet_->broadphase.setAabb(moving_static.getBroadphaseProxy(), low - margin, high + margin, &bullet_->dispatcher);
 }
 
 void DynamicsWorld::connect(btTypedConstraint& joint, int order, bool bodies_collide) {

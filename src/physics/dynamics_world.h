@@ -30,6 +30,11 @@ class DynamicsWorld {
   /// With all contacts.
   void remove(std::span<btRigidBody* const> bodies);
 
+  /// A static that is in the world is from now on one that moves (physics/moving_static.h).
+  void begin_moving(btRigidBody& fixed);
+  /// Of a static that goes to `until` in the next step: what it may meet on the way.
+  void bound(btRigidBody& moving_static, const btTransform& until);
+
   /// `order` fixes the order in which the solver sees the joints; the same in every world. Unless they collide, the
   /// two bodies may not have contacts yet.
   void connect(btTypedConstraint& joint, int order, bool bodies_collide);

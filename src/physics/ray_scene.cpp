@@ -61,7 +61,9 @@ bool may_meet(const Target& target, const core::Vec3& direction, double farthest
 
 class RayScene::Impl {
  public:
-  explicit Impl(const core::Scene& scene_in) : scene(scene_in), shapes(scene_in) { measure(); }
+  Impl(const core::Scene& scene_in, double step_s_in) : scene(scene_in), step_s(step_s_in), shapes(scene_in) {
+    measure();
+  }
 
   void measure() {
     for (std::size_t i = radii.size(); i < scene.shapes.size(); ++i) {
@@ -75,13 +77,14 @@ class RayScene::Impl {
            std::vector<Target>& to) const;
 
   const core::Scene& scene;
+  double step_s;
   ShapeSet shapes;
   Timeline timeline;
   std::vector<double> radii;  ///< as Scene::shapes
   double largest = 0;
 };
 
-RayScene::RayScene(const core::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+RayScene::RayScene(const core::Scene& scene, double step_s) : impl_(std::make_unique<Impl>(scene, step_s)) {}
 
 RayScene::~RayScene() = default;
 
@@ -106,7 +109,8 @@ std::vector<Target> RayScene::Impl::targets(core::Step step, std::span<const Pla
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
     if (!timeline.stands(static_cast<std::uint32_t>(i), step)) continue;
     const core::StaticBody& body = scene.statics[i];
-    add(core::ref_of(core::StaticId{static_cast<std::uint32_t>(i)}), body.shape, body.pose, fan, all);
+    add(core::ref_of(core::StaticId{static_cast<std::uint32_t>(i)}), body.shape,
+        timeline.moves().pose(body, core::StaticId{static_cast<std::uint32_t>(i)}, step, step_s), fan, all);
   }
   for (const PlacedBody& body : bodies) {
     if (body.id == fan.carrier || core::value_of(body.prototype) >= scene.prototypes.size()) continue;

@@ -31,8 +31,9 @@ struct PlacedBody {
 
 class RayScene {
  public:
-  /// The scene outlives it, and may grow. Throws std::invalid_argument for shapes that Bullet cannot use.
-  explicit RayScene(const core::Scene& scene);
+  /// The scene outlives it, and may grow; its states are step_s apart. Throws std::invalid_argument for shapes that
+  /// Bullet cannot use.
+  RayScene(const core::Scene& scene, double step_s);
   ~RayScene();
 
   /// An order about a static, or one that has defined a shape, prototype or static in the scene before. Throws

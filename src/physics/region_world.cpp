@@ -80,6 +80,8 @@ void RegionWorld::schedule(const core::Order& order) {
   impl_->timeline.forget_before(step_number() - kOrderMemory);
 }
 
+const core::StaticMoves& RegionWorld::moves() const { return impl_->timeline.moves(); }
+
 std::vector<Removal> RegionWorld::take_removed() {
   std::vector<Removal> removed = impl_->simulation.take_removed();
   const std::vector<Removal> on_the_way = impl_->scratch.take_removed();

@@ -13,6 +13,7 @@
 #include "core/ids.h"
 #include "core/order.h"
 #include "core/scene.h"
+#include "core/static_moves.h"
 #include "physics/results.h"
 #include "physics/settings.h"
 
@@ -64,6 +65,8 @@ class RegionWorld {
   /// An order to apply in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
   /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
   void schedule(const core::Order& order);
+  /// Of statics that orders have told to move.
+  const core::StaticMoves& moves() const;
   /// Since the last call: bodies taken out, by orders or because no world can bear them; requests that were
   /// applied to bodies here, and those that were not.
   std::vector<Removal> take_removed();

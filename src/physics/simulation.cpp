@@ -12,31 +12,11 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/construction.h"
 #include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
-
-btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btCollisionShape* shape,
-                                                         const core::Vec3& inertia, const core::Material& material) {
-  const auto scalar = [](double x) { return static_cast<btScalar>(x); };
-  btRigidBody::btRigidBodyConstructionInfo info(scalar(mass), nullptr, shape, to_bullet(inertia));
-  info.m_friction = scalar(material.friction);
-  info.m_rollingFriction = scalar(material.rolling_friction);
-  info.m_spinningFriction = scalar(material.spinning_friction);
-  info.m_restitution = scalar(material.restitution);
-  info.m_linearDamping = scalar(material.linear_damping);
-  info.m_angularDamping = scalar(material.angular_damping);
-  return info;
-}
-
-/// Where a static is put. A plane may slide along itself: far out, its origin would cost digits for nothing.
-core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const core::Vec3& p_WO) {
-  const auto* const plane = std::get_if<core::Plane>(&shape);
-  if (plane == nullptr || p_WO.isZero()) return body.pose;
-  const core::Vec3 normal_W = body.pose.q_WB.normalized() * plane->normal.normalized();
-  return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
-}
 
 /// Half of the shortest side of the box around the shape, m: Bullet sweeps a ball that fits into it.
 btScalar half_thickness(const btCollisionShape& shape) {
@@ -76,20 +56,6 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
 
 Simulation::~Simulation() = default;
 
-/// Those that the scene has got since the last time; not yet in the world.
-void Simulation::make_statics() {
-  for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
-    const core::StaticBody& body = scene_->statics[i];
-    const core::Pose X_WS = placed(body, scene_->shapes.at(body.shape).shape, settings_.p_WO);
-    slid_.push_back(body.pose.q_WB.normalized().conjugate() * (X_WS.p_WB - body.pose.p_WB));
-    auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
-    info.m_startWorldTransform = frame_.to_local(X_WS);
-    statics_.push_back(std::make_unique<btRigidBody>(info));
-    statics_.back()->setUserIndex(-1 - static_cast<int>(i));
-    static_is_in_.push_back(false);
-  }
-}
-
 /// Statics come first, then bodies by id. There is room for statics that come later: ranks never change.
 int Simulation::rank_of(core::BodyId id) const {
   const auto room = static_cast<std::uint64_t>(std::numeric_limits<int>::max()) - kRoomForStatics - 1;
@@ -105,6 +71,7 @@ void Simulation::start_at(core::Step step) {
   step_ = step;
   joints_.forget();
   if (timeline_.statics_change()) show_statics(step);
+  place_moving_statics();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
@@ -235,6 +202,7 @@ void Simulation::step() {
   world_.contact_impulses().clear();
   apply_orders(step_ + 1);
   heed_setpoints(step_ + 1);
+  start_moving_statics();
   for (int i = 0; i < settings_.looks(); ++i) {
     push();
     world_.step(settings_.step_s / settings_.looks());
@@ -242,6 +210,7 @@ void Simulation::step() {
   }
   stop_pushing();
   ++step_;
+  place_moving_statics();
   collect_collisions();
   collect_contact_impulses();
   take_out_what_broke();
@@ -271,11 +240,13 @@ const core::Snapshot& Simulation::snapshot() {
     snapshot_.bodies.clear();
     const std::vector<std::uint32_t> coming_statics = timeline_.statics_coming(step_);
     if (!coming_statics.empty()) make_statics();
+    note_moving_statics();
+    const std::vector<Shove> shoves = coming_shoves();
     const bool something_comes = !coming_statics.empty() || !timeline_.coming(step_).empty();
     for (const HostedBody& body : table_.bodies()) {
       core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
       if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
-      state.coming_kick_m_s += coming_push(body);
+      state.coming_kick_m_s += coming_push(body) + coming_shove(body, shoves);
       state.awake = state.awake || state.coming_kick_m_s > 0;
     }
     list_contacts();

@@ -10,10 +10,13 @@
 #include "core/body_state.h"
 #include "core/observation.h"
 #include "core/scene.h"
+#include "core/static_path.h"
 #include "physics/body_table.h"
+#include "physics/bounds.h"
 #include "physics/bullet_convert.h"
 #include "physics/dynamics_world.h"
 #include "physics/joint_table.h"
+#include "physics/moving_static.h"
 #include "physics/results.h"
 #include "physics/settings.h"
 #include "physics/shapes.h"
@@ -70,7 +73,21 @@ class Simulation {
   void take_out(const Removal& removal);
   void take_out_what_broke();
   void show_statics(core::Step n);
-  void wake_around(const btRigidBody& changing);
+  void wake_near(std::span<const Bounds> changing);
+  btTransform pose_of_static(std::uint32_t index, core::Step n) const;
+  core::Twist twist_of_static(std::uint32_t index, core::Step n) const;
+  void make_moving(std::uint32_t index);
+  void note_moving_statics();
+  bool goes(std::uint32_t index) const;
+  void place_moving_statics();
+  void start_moving_statics();
+  /// By a static that moves.
+  struct Shove {
+    Bounds where;
+    double speed_m_s;
+  };
+  std::vector<Shove> coming_shoves() const;
+  double coming_shove(const HostedBody& body, std::span<const Shove> shoves) const;
   double coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const;
   void heed_setpoints(core::Step n);
   bool heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value);
@@ -100,7 +117,12 @@ class Simulation {
   const Timeline& timeline_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
   std::vector<bool> static_is_in_;                     ///< the world, as Scene::statics
-  std::vector<core::Vec3> slid_;                       ///< as Scene::statics; not zero for planes far out only
+  struct MovingStatic {
+    std::uint32_t index;
+    std::unique_ptr<Belt> belt;
+  };
+  std::vector<MovingStatic> moving_statics_;  ///< ascending index
+  std::vector<core::Vec3> slid_;              ///< as Scene::statics; not zero for planes far out only
   BodyTable table_;
   JointTable joints_;
   DynamicsWorld world_;

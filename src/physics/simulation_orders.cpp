@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/awaken.h"
+#include "physics/bounds.h"
 #include "physics/breakdown.h"
 #include "physics/bullet_convert.h"
 #include "physics/prefetch.h"
@@ -14,26 +15,14 @@
 namespace aurasim::physics {
 namespace {
 
-/// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
-/// lets those fall that rested on it.
-constexpr double kShove_m_s = 2;
-
-/// Do the boxes around two objects come within 10 cm of each other?
-bool near(const btRigidBody& a, const btRigidBody& b) {
-  btVector3 low_a, high_a, low_b, high_b;
-  a.getAabb(low_a, high_a);
-  b.getAabb(low_b, high_b);
-  constexpr btScalar kNear = btScalar(0.1);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (low_a[axis] - kNear > high_b[axis] || high_a[axis] + kNear < low_b[axis]) return false;
-  }
-  return true;
-}
-
 btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const LocalFrame& frame) {
   if (!impulse.p_W) return {0, 0, 0};
   return frame.to_local(*impulse.p_W) - body.getCenterOfMassPosition();
 }
+
+/// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
+/// lets those fall that rested on it.
+constexpr double kShove_m_s = 2;
 
 double fastest_spin(const Settings& settings) {
   return core::limits::fastest_spin_rad_s(settings.step_s / settings.substeps);
@@ -142,36 +131,12 @@ void Simulation::take_out(const Removal& removal) {
   removed_.push_back(removal);
 }
 
-/// Puts in and takes out what stands in state `n`; wakes the bodies that it touches or that rested on it.
-void Simulation::show_statics(core::Step n) {
-  make_statics();
-  for (std::size_t i = 0; i < statics_.size(); ++i) {
-    const bool stands = timeline_.stands(static_cast<std::uint32_t>(i), n);
-    if (stands == static_is_in_[i]) continue;
-    btRigidBody* const changing = statics_[i].get();
-    wake_around(*changing);
-    if (stands) {
-      world_.insert(*changing, 1 + static_cast<int>(i));
-    } else {
-      world_.remove({&changing, 1});
-    }
-    static_is_in_[i] = stands;
-  }
-}
-
-void Simulation::wake_around(const btRigidBody& changing) {
-  for (HostedBody& body : table_.bodies()) {
-    if (body.born && near(*body.rigid, changing)) awaken(*body.rigid);
-  }
-  snapshot_is_fresh_ = records_are_fresh_ = false;
-}
-
 /// How much an order that is still to come will change the velocity of the body's surface, m/s.
 double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const {
   if (!body.born) return 0;
   double kick = 0;
   for (const std::uint32_t index : coming_statics) {
-    if (near(*body.rigid, *statics_[index])) kick += kShove_m_s;
+    if (bounds_of(*body.rigid).is_near(bounds_of(*statics_[index]))) kick += kShove_m_s;
   }
   for (const core::Order& order : timeline_.coming(step_)) {
     if (core::body_of(order.action) != body.id) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -19,6 +20,7 @@ struct WorldParts {
   btCollisionConfiguration& configuration;
   FirstContacts& first_contacts;
   ContactImpulses& contact_impulses;
+  const std::vector<btRigidBody*>& moving_statics;
 };
 
 std::unique_ptr<btDiscreteDynamicsWorld> make_stepper(const WorldParts& parts, const Settings& settings);

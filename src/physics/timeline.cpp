@@ -27,6 +27,8 @@ void Timeline::add(const core::Order& order) {
   } else if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) {
     Life& life = life_of(core::value_of(removed->id));
     life.until = std::min(life.until, order.at_step);
+  } else if (const auto* moved = std::get_if<core::MoveStatic>(&order.action)) {
+    moves_.add(*moved, order.at_step);
   } else if (core::body_of(order.action)) {
     orders_.insert(std::upper_bound(orders_.begin(), orders_.end(), order, earlier), order);
   }
@@ -64,6 +66,7 @@ std::vector<std::uint32_t> Timeline::statics_coming(core::Step step) const {
 
 void Timeline::forget_before(core::Step step) {
   std::erase_if(orders_, [step](const core::Order& order) { return order.at_step < step; });
+  moves_.forget_before(step);
 }
 
 }  // namespace aurasim::physics

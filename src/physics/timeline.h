@@ -9,6 +9,7 @@
 
 #include "core/control_log.h"
 #include "core/order.h"
+#include "core/static_moves.h"
 
 namespace aurasim::physics {
 
@@ -26,6 +27,8 @@ class Timeline {
   std::span<const core::Order> due(core::Step step) const;
   /// Those due later than `step`.
   std::span<const core::Order> coming(core::Step step) const;
+
+  const core::StaticMoves& moves() const { return moves_; }
 
   /// Statics that come or go later than `step`.
   std::vector<std::uint32_t> statics_coming(core::Step step) const;
@@ -45,6 +48,7 @@ class Timeline {
 
   std::vector<Life> lives_;          ///< of statics that come or go, ascending index
   std::vector<core::Order> orders_;  ///< ascending (at_step, sequence)
+  core::StaticMoves moves_;
   core::ControlLog controls_;
 };
 

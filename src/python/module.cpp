@@ -429,6 +429,10 @@ void add_acting(PyWorld& world) {
   world.def("remove_static", [](SharedWorld& w, std::uint32_t fixed, Step at, double t) {
     return w.with([=](World& o) { return o.remove_static(fixed, at, Seconds(t)); });
   });
+  world.def("move_static", [](SharedWorld& w, const std::variant<std::uint32_t, std::string>& fixed, const Vec3& p,
+                              const Quaternion& q, double duration, Step at, double t) {
+    return w.with([&](World& o) { return o.move_static(fixed, p, q, duration, at, Seconds(t)); });
+  });
   world.def("impulse",
             [](SharedWorld& w, std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point, Step at,
                double t) { return w.with([&](World& o) { return o.impulse(body, impulse, point, at, Seconds(t)); }); });

@@ -93,7 +93,7 @@ class Commands {
     return scene_.bodies[std::uniform_int_distribution<std::size_t>(0, scene_.bodies.size() - 1)(random_)].id;
   }
   core::Ask ask() {
-    switch (std::uniform_int_distribution(0, 9)(random_)) {
+    switch (std::uniform_int_distribution(0, 10)(random_)) {
       case 0: {
         core::NewBody ask;
         ask.shape = shape();
@@ -108,8 +108,10 @@ class Commands {
       case 2:
         return core::RemoveStatic{core::StaticId{std::uniform_int_distribution(1u, 20u)(random_)}};
       case 3:
+        return core::SendStatic{core::StaticId{std::uniform_int_distribution(0u, 5u)(random_)}, pose(), number(5)};
       case 4:
       case 5:
+      case 6:
         return core::Impulse{body(), vector(10), sane() ? std::nullopt : std::optional(vector(20))};
       default:
         return core::SetVelocity{body(), vector(15), sane() ? std::nullopt : std::optional(vector(30))};
@@ -153,6 +155,7 @@ class CommandFuzz : public ::testing::TestWithParam<int> {
     options.aura.top_speed_m_s = launch_.tolerances.speed_m_s;
     options.neighbour_distance_m = 1e9;
     options.over_the_wire = true;
+    options.solver = physics::Solver::kSoftStep;  // as the launch file's
     FuzzRun run;
     OrderIssuer issuer(launch_);
     Commands commands(static_cast<std::uint64_t>(GetParam()), scene_);

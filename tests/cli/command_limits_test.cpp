@@ -50,6 +50,20 @@ class CommandLimits : public ::testing::Test {
   std::uint64_t bodies_ = 1;
 };
 
+TEST_F(CommandLimits, AStaticIsSentWhereItCanGo) {
+  launch_.scene.shapes.push_back({"ground", core::Plane{}});
+  launch_.scene.statics.resize(2);
+  launch_.scene.statics[1].shape = 1;
+  const core::Pose there{{1, 2, 3}, core::Quat::Identity()};
+  EXPECT_EQ(problem(core::SendStatic{core::StaticId{0}, there, 2}), "");
+  expect_refusal(core::SendStatic{core::StaticId{1}, there, 2}, "a plane cannot move");
+  expect_refusal(core::SendStatic{core::StaticId{2}, there, 2}, "there is no static 2");
+  expect_refusal(core::SendStatic{core::StaticId{0}, {{1e9, 0, 0}, core::Quat::Identity()}, 2}, "too far out");
+  expect_refusal(core::SendStatic{core::StaticId{0}, there, -1}, "allowed: 0 to");
+  launch_.physics.solver = "nncg";
+  expect_refusal(core::SendStatic{core::StaticId{0}, there, 2}, "nncg knows no statics that move");
+}
+
 TEST_F(CommandLimits, ASpinIsAtMostAQuarterTurnInASubstep) {
   EXPECT_EQ(problem(core::SetVelocity{BodyId{1}, Vec3::Zero(), Vec3(376, 0, 0)}), "");
   expect_refusal(core::SetVelocity{BodyId{1}, Vec3::Zero(), Vec3(378, 0, 0)}, "allowed: 377 rad/s");

@@ -75,6 +75,11 @@ class Steering(WorldTest):
         self.assertTrue(hit.hit and hit.complete)
         self.assertEqual(hit.fixed, fixed.fixed)
         self.assertAlmostEqual(hit.distance, 19, delta=0.01)
+        sent = world.move_static(fixed.fixed, (10, 10, 4.5), duration=0.5)
+        world.step(sent.step + 40 - world.bodies().step)
+        self.assertAlmostEqual(world.ray((10, 10, 20), (10, 10, -1)).distance, 15, delta=0.01)
+        with self.assertRaisesRegex(aurasim.Refused, "name or number"):
+            world.move_static("no such gate", (0, 0, 0))
         gone = world.remove_static(fixed.fixed)
         world.step(gone.step - world.bodies().step)
         self.assertNotEqual(world.ray((10, 10, 20), (10, 10, -1)).fixed, fixed.fixed)

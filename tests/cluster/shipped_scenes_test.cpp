@@ -22,11 +22,22 @@ struct ShippedScene {
   double centre_x_m = 0;
 };
 
-constexpr ShippedScene kScenes[] = {
-    {"card_house", 1, 400},        {"columns_rain", 15, 240},     {"corner_stacks", 6, 300},      {"demo", 12, 300},
-    {"domino_line", 20, 900},      {"falling_piles", 8, 400},     {"far_out", 3, 300, 1, 100000}, {"island", 10, 500},
-    {"newtons_cradle", 4, 600, 3}, {"ragdoll_stairs", 5, 360, 3}, {"three_way", 8, 400},          {"tower", 8, 400},
-    {"tug_of_war", 10, 480, 3},    {"two_spheres", 10, 300},      {"vehicle_tour", 9, 850, 3}};
+constexpr ShippedScene kScenes[] = {{"card_house", 1, 400},
+                                    {"columns_rain", 15, 240},
+                                    {"corner_stacks", 6, 300},
+                                    {"demo", 12, 300},
+                                    {"domino_line", 20, 900},
+                                    {"falling_piles", 8, 400},
+                                    {"far_out", 3, 300, 1, 100000},
+                                    {"island", 10, 500},
+                                    {"newtons_cradle", 4, 600, 3},
+                                    {"ragdoll_stairs", 5, 360, 3},
+                                    {"sorting_hall", 10, 900},
+                                    {"three_way", 8, 400},
+                                    {"tower", 8, 400},
+                                    {"tug_of_war", 10, 480, 3},
+                                    {"two_spheres", 10, 300},
+                                    {"vehicle_tour", 9, 850, 3}};
 
 struct ShippedCut {
   const char* name;

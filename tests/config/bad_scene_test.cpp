@@ -8,6 +8,9 @@ std::string with_ball(const std::string& rest) {
   return "shapes:\n  ball: {sphere: {radius: 0.5}}\nprototypes:\n  ball: {shape: ball, mass: 1}\n" + rest;
 }
 
+/// A static with `rest`.
+std::string moving(const std::string& rest) { return "statics: [{shape: {sphere: {radius: 1}}, " + rest + "}]\n"; }
+
 std::string shape(const std::string& text) { return "shapes:\n  it: " + text + "\n"; }
 
 std::string injector(const std::string& rest) {
@@ -21,6 +24,26 @@ const std::vector<BadCase> kBadScenes = {
     {"IsAList", "[1, 2]\n", {"scene.yaml:1:1: the file: found a list of 2, allowed: a map of name, gravity"}},
     {"GravityOfTwo", "gravity: [0, -9.81]\n", {"scene.yaml:1:10: gravity: found a list of 2, allowed: a list of 3"}},
     {"GravityAWord", "gravity: [0, 0, down]\n", {"scene.yaml:1:17: gravity[2]: found \"down\", allowed: a number"}},
+    {"PathOfAPlane",
+     "statics: [{shape: {plane: {}}, path: {stops: [{at: 1}]}}]\n",
+     {"scene.yaml:1:38: statics[0].path: found the path of a plane, allowed: of shapes that end somewhere"}},
+    {"PathWithoutStops",
+     moving("path: {stops: []}"),
+     {"scene.yaml:1:56: statics[0].path.stops: found a list of 0, allowed: a list of 1 to 1000"}},
+    {"PathBackInTime",
+     moving("path: {stops: [{at: 2}, {at: 1.5}]}"),
+     {"scene.yaml:1:66: statics[0].path.stops[1]: found at: 1.5, allowed: at least 0.01 s after the stop before"}},
+    {"PathTooFast",
+     moving("path: {smooth: false, stops: [{at: 1, position: [101, 0, 0]}]}"),
+     {"scene.yaml:1:72: statics[0].path.stops[0]: found a way of up to 101 m/s and 0 rad/s to here, allowed: 100 m/s "
+      "and 50 rad/s"}},
+    {"PathThatRepeatsElsewhere",
+     moving("path: {repeats: true, stops: [{at: 1, position: [1, 0, 0]}]}"),
+     {"scene.yaml:1:48: statics[0].path: found a last stop elsewhere, allowed: with `repeats`, the one where it stands "
+      "at the start"}},
+    {"BeltTooFast",
+     moving("belt: [0, 0, 200]"),
+     {"scene.yaml:1:55: statics[0].belt[2]: found \"200\", allowed: a number from -100 to 100"}},
     {"NegativeFriction",
      "materials: {ice: {friction: -1}}\n",
      {"scene.yaml:1:29: materials.ice.friction: found \"-1\", allowed: a number from 0 to 100"}},

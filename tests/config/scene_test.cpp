@@ -40,6 +40,36 @@ TEST(SceneFile, ACompoundHasPlacedParts) {
   EXPECT_TRUE(std::holds_alternative<core::Box>(compound.parts[1].shape));
 }
 
+TEST(SceneFile, AStaticMayHaveAPathAndABelt) {
+  const Workspace workspace;
+  const std::string text =
+      "statics: [{shape: {box: {size: [1, 1, 1]}}, position: [5, 0, 0], belt: [0, 2, 0], path: {smooth: false, "
+      "stops: [{at: 2, position: [0, 0, 3]}, {at: 4}]}}, {shape: {sphere: {radius: 1}}}]\n";
+  const std::vector<core::StaticBody> statics = workspace.scene(text).statics;
+  ASSERT_TRUE(statics.at(0).path);
+  EXPECT_EQ(statics[0].belt_S, core::Vec3(0, 2, 0));
+  EXPECT_EQ(statics[0].pose.p_WB, core::Vec3(5, 0, 0));
+  EXPECT_FALSE(statics[0].path->smooth);
+  EXPECT_FALSE(statics[0].path->repeats);
+  ASSERT_EQ(statics[0].path->stops.size(), 2u);
+  EXPECT_EQ(statics[0].path->stops[0].at_s, 2);
+  EXPECT_EQ(statics[0].path->stops[0].X_SP.p_WB, core::Vec3(0, 0, 3));
+  EXPECT_TRUE(statics[0].moves());
+  EXPECT_FALSE(statics.at(1).moves());
+}
+
+TEST(SceneFile, WhatMovesNeedsASolverThatKnowsIt) {
+  const Workspace workspace;
+  const std::string text = "statics: [{name: belt, shape: {box: {size: [1, 1, 1]}}, belt: [0, 2, 0]}]\n";
+  EXPECT_NO_THROW(workspace.scene(text));
+  try {
+    workspace.scene(text, {"physics.solver=dantzig"});
+    FAIL();
+  } catch (const BadConfig& bad) {
+    EXPECT_THAT(bad.what(), testing::HasSubstr("the solver dantzig and the static \"belt\", which moves"));
+  }
+}
+
 TEST(SceneFile, AHeightfieldBecomesTrianglesAroundTheOrigin) {
   const auto mesh =
       std::get<core::TriangleMesh>(shape_of("{heightfield: {cell: [2, 4], heights: [[0, 1, 2], [3, 4, 5]]}}"));

@@ -49,6 +49,7 @@ std::vector<core::Ask> one_of_each() {
           core::ChangeScene{"tower"},
           core::Save{"world.cut"},
           core::Load{"world.cut"},
+          core::SendStatic{core::StaticId{9}, pose, 2.5},
           core::Ray{Vec3(0, 0, 10), Vec3(0, 0, -10), {core::RegionId{0}, core::RegionId{2}}}};
 }
 

@@ -55,6 +55,7 @@ inline std::vector<core::Order> one_order_of_each_kind() {
       core::ChangeScene{"tower"},
       core::Save{"world.cut"},
       core::Load{"world.cut"},
+      core::MoveStatic{core::StaticId{7}, pose, {-pose.p_WB, turn(1.1)}, 90},
       core::Redo{30, {{core::BodyId{3}, core::BodyId{1'000'000'007}, 47}}}};
   std::vector<core::Order> orders;
   for (const core::Action& action : actions) {

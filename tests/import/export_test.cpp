@@ -71,12 +71,19 @@ INSTANTIATE_TEST_SUITE_P(Models, ThereAndBack,
                          [](const auto& info) { return info.param.substr(0, info.param.find('.')); });
 
 TEST(Export, WhatSdfCannotSayIsNamed) {
-  const core::Scene scene = scene_of(model_of("hips.xml"));
+  core::Scene scene = scene_of(model_of("hips.xml"));
+  scene.shapes.push_back({"gate", core::Sphere{}});
+  core::StaticBody& gate = scene.statics.emplace_back();
+  gate.name = "gate";
+  gate.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+  gate.belt_S = {1, 0, 0};
+  gate.path = {{{1, {}}}, false, true};
   const SdfText text =
       sdf_text(scene, std::vector<std::string>(scene.bodies.size()), "x.sdf", overseer::hull_triangles);
   std::vector<std::string> elements;
   for (const Finding& finding : text.lost) elements.push_back(finding.element);
-  EXPECT_THAT(elements, ::testing::UnorderedElementsAre("joint 'hip_z'", "joint 'strut'", "joint 'puck_x'"));
+  EXPECT_THAT(elements, ::testing::UnorderedElementsAre("joint 'hip_z'", "joint 'strut'", "joint 'puck_x'",
+                                                        "static 'gate'", "static 'gate'"));
 }
 
 }  // namespace

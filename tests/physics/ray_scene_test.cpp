@@ -24,7 +24,7 @@ class Rays : public ::testing::Test {
   }
 
   core::Scene scene_ = scene_of_all_shapes();
-  RayScene rays_{scene_};
+  RayScene rays_{scene_, 1.0 / 60};
 };
 
 TEST_F(Rays, MeetWhatIsNearest) {
@@ -89,6 +89,26 @@ TEST_F(Rays, AgreeWithTheWorldsOwn) {
       EXPECT_NEAR(mine.distance_m, its.distance_m, 1e-4);
     }
   }
+}
+
+TEST_F(Rays, MeetStaticsWhereTheyHaveGone) {
+  core::StaticBody& lift = scene_.statics.emplace_back();
+  lift.shape = scene_.prototypes[kBox].shape;
+  lift.pose.p_WB = {5, 0, 5};
+  lift.path = {{{1, {{0, 0, 3}, core::Quat::Identity()}}}, false, false};
+  RayScene rays(scene_, 1.0 / 60);
+  const std::vector<core::Vec3> directions = {core::Vec3::UnitX()};
+  const auto sees = [&](double z, core::Step step) {
+    const RayFan fan{{{0, 0, z}, core::Quat::Identity()}, directions, 30, {}};
+    return rays.cast(step, {}, fan).front().object == -2;
+  };
+  EXPECT_TRUE(sees(5, 0));
+  EXPECT_TRUE(sees(6.5, 30));
+  EXPECT_FALSE(sees(5, 60));
+  EXPECT_TRUE(sees(8, 60));
+  rays.add({1, 1, 101, core::MoveStatic{core::StaticId{1}, {{5, 0, 8}, {}}, {{5, 0, 4}, core::Quat::Identity()}, 10}});
+  EXPECT_TRUE(sees(8, 100));
+  EXPECT_TRUE(sees(4, 110));
 }
 
 TEST_F(Rays, MeetStaticsWhileTheyStand) {

@@ -21,7 +21,7 @@ void fill_lanes(AnyBlock& block, soft::Lanes* first, std::mt19937_64& random) {
   const auto lanes = static_cast<std::size_t>(reinterpret_cast<soft::Lanes*>(&block + 1) - first);
   for (std::size_t i = 0; i < lanes; ++i) {
     for (int lane = 0; lane < soft::kLanes; ++lane) {
-      first[i][lane] = random() % 8 == 0 ? 0 : static_cast<soft::Real>(uniform(random, -1, 2));
+      first[i][lane] = random() % 8 == 0 ? 0 : static_cast<soft::Real>(uniform(random, -0.5, 1));
     }
   }
 }
@@ -33,8 +33,8 @@ std::vector<AnyBlock> random_blocks(std::mt19937_64& random, std::size_t count, 
   for (AnyBlock& block : blocks) {
     std::memset(static_cast<void*>(&block), 0, sizeof block);
     for (int lane = 0; lane < soft::kLanes; ++lane) {
-      block.a[lane] = static_cast<std::uint32_t>(random() % movers);
-      block.b[lane] = static_cast<std::uint32_t>(random() % movers);
+      block.a[lane] = static_cast<std::int32_t>(random() % movers);
+      block.b[lane] = static_cast<std::int32_t>(random() % movers);
     }
     fill_lanes(block, &block.inv_mass_a, random);
   }

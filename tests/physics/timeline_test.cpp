@@ -51,6 +51,36 @@ TEST_F(TimelineTest, OrdersThatAreNoBodysAreNothingToPhysics) {
   EXPECT_THAT(sequences(timeline.due(5)), IsEmpty());
 }
 
+TEST_F(TimelineTest, AStaticGoesWhereItIsSentAndStaysThere) {
+  const core::Pose home{{1, 0, 0}, core::Quat::Identity()}, away{{5, 0, 0}, core::Quat::Identity()};
+  core::StaticBody body;
+  body.pose = home;
+  order(101, core::MoveStatic{StaticId{3}, home, away, 4});
+  order(201, core::MoveStatic{StaticId{3}, away, home, 1});
+  const auto x = [&](core::Step step) { return timeline.moves().pose(body, StaticId{3}, step, 1.0 / 60).p_WB.x(); };
+  EXPECT_EQ(x(100), 1);
+  EXPECT_EQ(x(101), 2);
+  EXPECT_EQ(x(104), 5);
+  EXPECT_EQ(x(200), 5);
+  EXPECT_EQ(x(201), 1);
+  EXPECT_EQ(timeline.moves().newest(StaticId{3}), 201);
+  EXPECT_EQ(timeline.moves().newest(StaticId{4}), 0);
+  timeline.forget_before(150);
+  EXPECT_EQ(x(150), 5);
+  EXPECT_EQ(x(300), 1);
+}
+
+TEST_F(TimelineTest, MovesThatOthersHaveReplacedNeedNotBeKnown) {
+  const core::MoveStatic gate{StaticId{1}, {}, {}, 1}, lift{StaticId{2}, {}, {}, 1};
+  std::vector<core::Order> orders = {{1, 1, 10, gate},
+                                     {2, 2, 20, gate},
+                                     {3, 3, 20, lift},
+                                     {4, 4, 30, gate},
+                                     {5, 5, 5, core::AddStatic{StaticId{9}, 0, {}}}};
+  core::forget_moves_before(25, orders);
+  EXPECT_THAT(sequences(orders), ElementsAre(2, 3, 4, 5));
+}
+
 TEST_F(TimelineTest, AStaticOfTheSceneStandsForEver) {
   EXPECT_TRUE(timeline.stands(0, 0));
   EXPECT_TRUE(timeline.stands(3, 1'000'000));

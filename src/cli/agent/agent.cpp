@@ -200,7 +200,7 @@ json Agent::act(const json& asked, const Patience& patience) {
   for (const json& ask : asked.at("asks")) {
     core::Command command;
     command.at_step = asked.value("at", core::Step{0});
-    command.ask = ask_of(ask, run_->client());
+    command.ask = ask_of(ask, run_->launch().scene, run_->client());
     commands.push_back(std::move(command));
   }
   json acts = json::array();

@@ -84,6 +84,19 @@ core::NewBody body_of(const json& of, CommandClient& client) {
   return body;
 }
 
+/// By its number, or the name that the scene gives it.
+core::StaticId static_of(const json& of, const core::Scene& scene) {
+  const json& found = member(of, "static");
+  if (found.is_string()) {
+    const auto named = std::ranges::find(scene.statics, found.get<std::string>(), &core::StaticBody::name);
+    if (named == scene.statics.end()) refuse("static", found, "the name or number of a static");
+    return core::StaticId{static_cast<std::uint32_t>(named - scene.statics.begin())};
+  }
+  const std::uint64_t id = id_of(of, "static");
+  if (id > std::numeric_limits<std::uint32_t>::max()) refuse("static", found, "the name or number of a static");
+  return core::StaticId{static_cast<std::uint32_t>(id)};
+}
+
 core::Repartition regions_of(const json& of) {
   core::Repartition regions;
   const auto side = [](const json& found, double beyond) {
@@ -104,15 +117,12 @@ core::Vec3 vector_of(const json& of, const char* key) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
-core::Ask ask_of(const json& of, CommandClient& client) {
+core::Ask ask_of(const json& of, const core::Scene& scene, CommandClient& client) {
   const std::string kind = of.value("kind", "");
   if (kind == "spawn") return body_of(of, client);
   if (kind == "static") return core::NewStatic{shape_of(of, false, client), pose_of(of)};
-  if (kind == "remove" && of.contains("static")) {
-    const std::uint64_t id = id_of(of, "static");
-    if (id > std::numeric_limits<std::uint32_t>::max()) refuse("static", of["static"], "the number of a static");
-    return core::RemoveStatic{core::StaticId{static_cast<std::uint32_t>(id)}};
-  }
+  if (kind == "remove" && of.contains("static")) return core::RemoveStatic{static_of(of, scene)};
+  if (kind == "move") return core::SendStatic{static_of(of, scene), pose_of(of), number_of(of, "duration")};
   if (kind == "remove") return core::RemoveBody{core::BodyId{id_of(of, "body")}};
   if (kind == "impulse") {
     return core::Impulse{core::BodyId{id_of(of, "body")}, vector_of(of, "J"), optional_vector(of, "p")};

@@ -9,7 +9,7 @@
 namespace aurasim::cli::agent {
 
 /// Gives meshes to the nodes. Throws Problem (kRefused) with what is wrong.
-core::Ask ask_of(const nlohmann::json& json, CommandClient& client);
+core::Ask ask_of(const nlohmann::json& json, const core::Scene& scene, CommandClient& client);
 
 /// Three numbers, all finite. Throws Problem.
 core::Vec3 vector_of(const nlohmann::json& json, const char* key);

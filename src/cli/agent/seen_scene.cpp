@@ -17,7 +17,7 @@ void SeenScene::begin() {
   scene_ = watch_.launch().scene;
   map_version_ = watch_.launch().regions.version();
   added_ = 0;
-  rays_.emplace(scene_);
+  rays_.emplace(scene_, watch_.launch().step_s());
 }
 
 bool SeenScene::has_meshes_of(const core::Order& order) {

@@ -91,7 +91,59 @@ void add_ramps(const RandomLayout& layout, Json& statics, Chance& chance) {
   }
 }
 
+Json stop(double at_s, const Vec3& p, double yaw_deg = 0) {
+  return {{"at", rounded(at_s)}, {"position", json_vec3(p)}, {"orientation", {{"rpy_deg", {0, 0, yaw_deg}}}}};
+}
+
+/// There, a rest, and back again.
+Json to_and_fro(const Vec3& way, Chance& chance) {
+  const double there_s = chance.between(0.8, 3), rest_s = chance.between(0.1, 1);
+  return {{"repeats", true},
+          {"smooth", chance.below(2) == 0},
+          {"stops", {stop(there_s, way), stop(there_s + rest_s, way), stop(2 * there_s + rest_s, Vec3::Zero())}}};
+}
+
+/// In thirds, of which the way back is the shorter turn.
+Json round_and_round(Chance& chance) {
+  const double third_s = chance.between(0.6, 2), sign = chance.below(2) == 0 ? 1 : -1;
+  return {{"repeats", true},
+          {"smooth", false},
+          {"stops",
+           {stop(third_s, Vec3::Zero(), 120 * sign), stop(2 * third_s, Vec3::Zero(), -120 * sign),
+            stop(3 * third_s, Vec3::Zero())}}};
+}
+
 }  // namespace
+
+void add_moving_statics(const RandomLayout& layout, Json& scene, Chance& chance) {
+  Json& statics = scene["statics"];
+  for (std::uint32_t left = 1 + chance.below(3); left > 0; --left) {
+    const Vec3 spot = layout.spots[chance.below(static_cast<std::uint32_t>(layout.spots.size()))];
+    const Vec3 p = spot + Vec3(0, chance.between(-0.3, 0.3) * layout.half_y_m, 0);
+    switch (chance.below(4)) {
+      case 0: {  // a lift, out of the ground
+        statics.push_back(static_box({chance.between(1, 3), chance.between(1, 3), 0.4}, p - Vec3(0, 0, 0.2)));
+        statics.back()["path"] = to_and_fro({0, 0, chance.between(0.3, 2)}, chance);
+        break;
+      }
+      case 1: {  // a gate, across the border
+        statics.push_back(static_box({0.3, chance.between(1, 3), 1.5}, p + Vec3(chance.between(-1, 1), 0, 0.8)));
+        statics.back()["path"] = to_and_fro({chance.between(-2, 2), chance.between(-1, 1), 0}, chance);
+        break;
+      }
+      case 2: {  // a turnstile
+        statics.push_back(static_box({chance.between(2, 4), 0.2, 0.6}, p + Vec3(0, 0, 0.35)));
+        statics.back()["path"] = round_and_round(chance);
+        break;
+      }
+      default: {  // a belt, along or across the border
+        statics.push_back(static_box({chance.between(2, 5), chance.between(1, 2), 0.3}, p));
+        statics.back()["belt"] = json_vec3({chance.between(-3, 3), chance.below(3) == 0 ? 1.0 : 0.0, 0});
+        break;
+      }
+    }
+  }
+}
 
 void add_ground(const RandomLayout& layout, Json& scene, MeshTexts& meshes, Chance& chance) {
   Json& statics = scene["statics"] = Json::array();

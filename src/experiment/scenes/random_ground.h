@@ -16,4 +16,7 @@ using MeshTexts = std::map<std::string, std::string>;
 /// "statics" of the scene: a plane, boxes, a heightfield or a mesh, none above z = 0, and at times walls around it all.
 void add_ground(const RandomLayout& layout, Json& scene, MeshTexts& meshes, Chance& chance);
 
+/// Lifts, gates, turnstiles and belts where regions meet, in "statics". For worlds that soft_step solves.
+void add_moving_statics(const RandomLayout& layout, Json& scene, Chance& chance);
+
 }  // namespace aurasim::experiment

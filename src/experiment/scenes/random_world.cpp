@@ -202,6 +202,8 @@ World random_world(std::uint64_t seed) {
   add_bodies({kinds, dials.speed_m_s, region_m}, dials.mechanisms, layout, world.scene, chance);
   world.launch = launch_of(dials, layout.regions, chance);
   world.interference = random_interference(kinds, layout, world.scene, dials.speed_m_s, chance);
+  Chance of_statics(~seed);  // of its own: without statics that move, each seed is the world that it has always been
+  if (dials.solver == kUsualSolver && of_statics.below(3) == 0) add_moving_statics(layout, world.scene, of_statics);
   return world;
 }
 

@@ -13,6 +13,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "physics/first_contacts.h"
+#include "physics/moving_static.h"
 #include "physics/prefetch.h"
 #include "physics/soft/ahead.h"
 #include "physics/soft/convert.h"
@@ -81,6 +82,10 @@ SoftTouch touch_of(btPersistentManifold& manifold) {
   return touch;
 }
 
+void set_belt(SoftPatch& patch, const btCollisionObject& a, const btCollisionObject& b) {
+  if (is_moving_static(a) || is_moving_static(b)) soft::from_bullet(belt_of(b) - belt_of(a), patch.belt);
+}
+
 /// Valid until the next call.
 btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& space) {
   space.resizeNoInitialize(0);
@@ -91,6 +96,7 @@ btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& spa
 }  // namespace
 
 btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gravity) const {
+  if (is_moving_static(object)) return step_s_ * btRigidBody::upcast(&object)->getLinearVelocity();
   if (object.isStaticObject() || !object.isActive()) return {0, 0, 0};
   const btRigidBody& body = *btRigidBody::upcast(&object);
   btVector3 pull = gravity;
@@ -229,6 +235,7 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     SoftPatch& patch = list.patches.emplace_back();
     patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
     soft::from_bullet(meeting.normal, patch.normal);
+    set_belt(patch, a, b);
     patch.friction = static_cast<Real>(btManifoldResult::calculateCombinedFriction(&a, &b));
     patch.restitution = static_cast<Real>(btManifoldResult::calculateCombinedRestitution(&a, &b));
     patch.count = 1;
@@ -288,6 +295,7 @@ void SoftContacts::read(List& list, SoftTouch& touch, const btVector3& shift) {
       SoftPatch& made = patches.emplace_back();
       made.manifold = touch.manifold, made.a = touch.a, made.b = touch.b;
       soft::from_bullet(-point.m_normalWorldOnB, made.normal);
+      set_belt(made, *manifold.getBody0(), *manifold.getBody1());
       made.friction = static_cast<Real>(point.m_combinedFriction);
       made.restitution = static_cast<Real>(point.m_combinedRestitution);
       made.spinning_m = static_cast<Real>(point.m_combinedSpinningFriction);

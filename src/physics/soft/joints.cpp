@@ -62,7 +62,7 @@ void set_own(soft::JointBlock& block, int lane, const JointAxes& axes, double su
 
 SoftJoints::SoftJoints(double substep_s) : substep_s_(substep_s), h_s_(static_cast<Real>(substep_s)) {}
 
-void SoftJoints::add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second) {
+void SoftJoints::add(btTypedConstraint& joint, std::int32_t first, std::int32_t second) {
   joints_.push_back({&joint, first, second, 0});
   if (axes_of(joint).b_is_first) std::swap(joints_.back().a, joints_.back().b);
 }

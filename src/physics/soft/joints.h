@@ -25,7 +25,7 @@ class SoftJoints {
 
   void clear() { joints_.clear(); }
   /// Between two movers, as the joint names them. Those of an island in an order that follows from the island alone.
-  void add(btTypedConstraint& joint, std::uint32_t first, std::uint32_t second);
+  void add(btTypedConstraint& joint, std::int32_t first, std::int32_t second);
   /// Lays out all that was added, between bodies that are where the step began.
   void build(std::size_t movers, std::span<const SoftInertia> inertias, int threads);
 
@@ -43,8 +43,8 @@ class SoftJoints {
  private:
   struct Joint {
     btTypedConstraint* joint;
-    std::uint32_t a, b;  ///< movers
-    unsigned what;       ///< soft::kHeldAxis and so on
+    std::int32_t a, b;  ///< movers
+    unsigned what;      ///< soft::kHeldAxis and so on
   };
 
   void fill(std::size_t at, std::span<const SoftInertia> inertias);

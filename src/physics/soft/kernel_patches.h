@@ -45,7 +45,8 @@ AURASIM_INLINE void rub_roll(Block& block, Pair& p, const Lanes& pressed) {
 AURASIM_INLINE void rub(Block& block, Pair& p, const Lanes& pressed) {
   const Vec r_a = load(block.centre_a), r_b = load(block.centre_b);
   const Vec sliding = speed(p, r_a, r_b);
-  const Lanes v_1 = dot(sliding, load(block.first)), v_2 = dot(sliding, load(block.second));
+  const Lanes v_1 = dot(sliding, load(block.first)) + block.belt_1;
+  const Lanes v_2 = dot(sliding, load(block.second)) + block.belt_2;
   const Lanes wanted_1 = block.rub_1 - (block.mass_11 * v_1 + block.mass_12 * v_2);
   const Lanes wanted_2 = block.rub_2 - (block.mass_12 * v_1 + block.mass_22 * v_2);
   const Lanes scale = share(root(wanted_1 * wanted_1 + wanted_2 * wanted_2), block.friction * pressed);

@@ -75,16 +75,16 @@ AURASIM_INLINE Half load_half(const Who& who, const Mover* movers, std::size_t h
   transpose(h.columns);
   return h;
 }
-/// But not into the one that never moves.
+/// But not into the one that never moves, nor into statics that nothing moves.
 template <class Who>
 AURASIM_INLINE void store_half(Half h, const Who& who, Mover* movers, std::size_t half) {
   transpose(h.columns);
   for (int i = 0; i < kLanes; ++i) {
-    if (who(i) == 0) continue;
+    if (static_cast<std::ptrdiff_t>(who(i)) <= 0) continue;
     __builtin_memcpy(reinterpret_cast<Lanes*>(&movers[who(i)]) + half, &h.columns[i], sizeof(Lanes));
   }
 }
-AURASIM_INLINE auto those(const std::uint32_t (&who)[kLanes]) {
+AURASIM_INLINE auto those(const std::int32_t (&who)[kLanes]) {
   return [&who](int lane) { return who[lane]; };
 }
 
@@ -110,7 +110,7 @@ AURASIM_INLINE Turned turned(const Half& h) {
   const Lanes(&c)[kLanes] = h.columns;
   return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, c[6]};
 }
-AURASIM_INLINE Turned moved(const std::uint32_t (&who)[kLanes], const Mover* movers) {
+AURASIM_INLINE Turned moved(const std::int32_t (&who)[kLanes], const Mover* movers) {
   return turned(load_half(those(who), movers, 1));
 }
 /// By how much the turn since the start of the step changes r.

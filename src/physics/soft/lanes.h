@@ -52,10 +52,11 @@ struct alignas(64) Block {
     Lanes approach;               ///< along the normal at the start of the step, m/s; negative: they come closer
   };
 
-  std::uint32_t a[kLanes], b[kLanes];        ///< movers; 0 never moves
+  std::int32_t a[kLanes], b[kLanes];         ///< movers; 0 never moves, below: statics that do
   Lanes inv_mass_a, inv_mass_b;              ///< 1/kg
   Lanes inv_inertia_a[6], inv_inertia_b[6];  ///< xx, xy, xz, yy, yz, zz, world frame
   Lanes normal[3], first[3], second[3];      ///< from a to b; directions of friction
+  Lanes belt_1, belt_2;                      ///< of the surface of b from that of a, by belts, m/s
   Lanes rate_per_s;                          ///< of the overlap that springs undo
   Lanes soft_mass, soft_impulse;             ///< share of a rigid contact's impulse; of the impulse that is given back
   Lanes friction, restitution;
@@ -100,7 +101,7 @@ struct alignas(64) JointBlock {
     Lanes impulse;  ///< in this substep so far
   };
 
-  std::uint32_t a[kLanes], b[kLanes];            ///< movers; 0 never moves
+  std::int32_t a[kLanes], b[kLanes];             ///< movers; 0 never moves
   Lanes inv_mass_a, inv_mass_b;                  ///< 1/kg
   Lanes start_inertia_a[6], start_inertia_b[6];  ///< inverse, as in Block, at the start of the step
   Lanes r_a[3], r_b[3];                ///< of J in a and b, from the centres of mass, at the start of the step, m

@@ -1,5 +1,6 @@
 #include "physics/soft/layout.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "physics/soft/lanes.h"
@@ -21,10 +22,11 @@ void SoftLayout::clear(std::size_t movers, std::size_t kinds) {
 }
 
 /// The first colour that is free. Without one it is solved by itself, after the others.
-void SoftLayout::add(std::uint32_t a, std::uint32_t b, std::size_t kind) {
-  const std::uint64_t free = ~(used_[a] | used_[b]) & (a != 0 && b != 0 ? kOfBodies : ~kOfBodies);
-  used_[a] |= free & -free;
-  used_[b] |= free & -free;
+void SoftLayout::add(std::int32_t a, std::int32_t b, std::size_t kind) {
+  const auto body_a = static_cast<std::size_t>(std::max(0, a)), body_b = static_cast<std::size_t>(std::max(0, b));
+  const std::uint64_t free = ~(used_[body_a] | used_[body_b]) & (a > 0 && b > 0 ? kOfBodies : ~kOfBodies);
+  used_[body_a] |= free & -free;
+  used_[body_b] |= free & -free;
   used_[0] = 0;
   const auto colour = static_cast<std::size_t>(std::countr_zero(free));
   entries_.push_back({a, b, static_cast<std::uint32_t>(colour * kinds_ + kind), 0});

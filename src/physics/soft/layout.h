@@ -14,16 +14,17 @@ class SoftLayout {
  public:
   /// `kinds`: how many there are. Of bodies that are all movers below `movers`.
   void clear(std::size_t movers, std::size_t kinds);
-  /// Between two movers; 0 is a static. Those of an island in an order that follows from the island alone: so do the
-  /// colours. Those of statics have colours of their own, which come last: what cannot give way has the last word.
-  void add(std::uint32_t a, std::uint32_t b, std::size_t kind);
+  /// Between two movers; 0 and below are statics. Those of an island in an order that follows from the island alone: so
+  /// do the colours. Those of statics have colours of their own, which come last: what cannot give way has the last
+  /// word.
+  void add(std::int32_t a, std::int32_t b, std::size_t kind);
   /// Of all that were added. Returns the number of blocks.
   std::size_t place();
 
   std::size_t size() const { return entries_.size(); }
   /// Of the i-th that was added.
-  std::uint32_t a(std::size_t i) const { return entries_[i].a; }
-  std::uint32_t b(std::size_t i) const { return entries_[i].b; }
+  std::int32_t a(std::size_t i) const { return entries_[i].a; }
+  std::int32_t b(std::size_t i) const { return entries_[i].b; }
   std::size_t block(std::size_t i) const;
   int lane(std::size_t i) const;
 
@@ -40,7 +41,7 @@ class SoftLayout {
 
  private:
   struct Entry {
-    std::uint32_t a, b;   ///< movers
+    std::int32_t a, b;    ///< movers
     std::uint32_t kind;   ///< colour * kinds + kind
     std::uint32_t place;  ///< block * lanes + lane
   };

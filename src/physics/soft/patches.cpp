@@ -104,7 +104,7 @@ void SoftPatches::clear(std::size_t movers) {
   layout_.clear(movers, soft::kMostPoints + 1);
 }
 
-void SoftPatches::add(SoftPatch& patch, std::uint32_t a, std::uint32_t b) {
+void SoftPatches::add(SoftPatch& patch, std::int32_t a, std::int32_t b) {
   patches_.push_back(&patch);
   layout_.add(a, b, static_cast<std::size_t>(patch.count));
 }
@@ -129,8 +129,9 @@ void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* i
   const SoftPatch& patch = *patches_[at];
   soft::Block& block = blocks_[layout_.block(at)];
   const int lane = layout_.lane(at);
-  const std::uint32_t mover_a = layout_.a(at), mover_b = layout_.b(at);
-  const Side a{movers[mover_a], inertias[mover_a]}, b{movers[mover_b], inertias[mover_b]};
+  const std::int32_t mover_a = layout_.a(at), mover_b = layout_.b(at);
+  const SoftInertia &inertia_a = inertias[std::max(0, mover_a)], &inertia_b = inertias[std::max(0, mover_b)];
+  const Side a{movers[mover_a], inertia_a}, b{movers[mover_b], inertia_b};
   const Vec n = vec(patch.normal), t1 = across(n), t2 = cross(n, t1);
   block.a[lane] = mover_a, block.b[lane] = mover_b;
   block.inv_mass_a[lane] = a.inertia.inv_mass, block.inv_mass_b[lane] = b.inertia.inv_mass;
@@ -141,13 +142,14 @@ void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* i
       load(patch, std::max(a.inertia.inv_mass, b.inertia.inv_mass), std::sqrt(dot(vec(gravity), vec(gravity))));
   const Real heavy = std::clamp((borne - kLight) / (kHeavy - kLight), Real(0), Real(1));
   const Real hertz = light_hertz_ + heavy * std::max(Real(0), heavy_hertz_ - light_hertz_);
-  const Stiffness stiff((mover_a != 0 && mover_b != 0 ? 1 : 2) * hertz, substep_s_);
+  const Stiffness stiff((mover_a > 0 && mover_b > 0 ? 1 : 2) * hertz, substep_s_);
+  block.belt_1[lane] = dot(vec(patch.belt), t1), block.belt_2[lane] = dot(vec(patch.belt), t2);
   block.rate_per_s[lane] = stiff.rate_per_s, block.soft_mass[lane] = stiff.mass;
   block.soft_impulse[lane] = stiff.impulse;
   block.friction[lane] = patch.friction, block.restitution[lane] = patch.restitution;
   block.spinning_m[lane] = patch.spinning_m, block.rolling_m[lane] = patch.rolling_m;
 
-  const Real fall_a = mover_a != 0 ? dot(vec(gravity), n) : 0, fall_b = mover_b != 0 ? dot(vec(gravity), n) : 0;
+  const Real fall_a = mover_a > 0 ? dot(vec(gravity), n) : 0, fall_b = mover_b > 0 ? dot(vec(gravity), n) : 0;
   Vec centre_a, centre_b;
   const auto count = static_cast<std::size_t>(patch.count);
   const Real share = 1 / static_cast<Real>(count);

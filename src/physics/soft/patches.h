@@ -26,8 +26,8 @@ class SoftPatches {
   void clear(std::size_t movers);
   /// Of bodies with these movers. The patches of an island come in an order that follows from the island alone: so do
   /// the colours.
-  void add(SoftPatch& patch, std::uint32_t a, std::uint32_t b);
-  /// Lays out all that was added. `inertias` as movers; gravity in m/s^2.
+  void add(SoftPatch& patch, std::int32_t a, std::int32_t b);
+  /// Lays out all that was added. `inertias` of bodies, as movers; gravity in m/s^2.
   void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], int threads);
 
   // By each worker, for its share. When they return, all have done theirs.
@@ -42,8 +42,8 @@ class SoftPatches {
   void tally(const soft::Worker& worker);
   std::size_t size() const { return patches_.size(); }
   const SoftPatch& patch(std::size_t i) const { return *patches_[i]; }
-  std::uint32_t mover_a(std::size_t i) const { return layout_.a(i); }
-  std::uint32_t mover_b(std::size_t i) const { return layout_.b(i); }
+  std::int32_t mover_a(std::size_t i) const { return layout_.a(i); }
+  std::int32_t mover_b(std::size_t i) const { return layout_.b(i); }
   /// Of a patch's point, N s.
   soft::Real tallied(std::size_t i, int point) const;
 

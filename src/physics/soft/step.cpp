@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -83,7 +82,7 @@ void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
 }  // namespace
 
 struct SoftStep::Impl {
-  static constexpr std::uint32_t kHeld = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::int32_t kHeld = -1;
 
   Impl(double step_s, int substeps, int threads)
       : threads(threads),
@@ -109,14 +108,16 @@ struct SoftStep::Impl {
     const auto place = static_cast<std::size_t>(user_index);
     return user_index >= 0 && place < mover_at.size() && mover_at[place] != 0;
   }
-  /// 0 for statics and sleepers.
-  std::uint32_t mover_of(int user_index) const {
-    if (!is_held(user_index)) return 0;
-    const std::uint32_t mover = mover_at[static_cast<std::size_t>(user_index)];
-    return mover != kHeld ? mover : 0;
+  /// Below 0 for statics that move, 0 for those that stand and for sleepers.
+  std::int32_t mover_of(int user_index) const {
+    const auto of_static = static_cast<std::size_t>(-1 - user_index);
+    if (user_index < 0) return of_static < mover_of_static.size() ? mover_of_static[of_static] : 0;
+    return is_held(user_index) ? std::max(0, mover_at[static_cast<std::size_t>(user_index)]) : 0;
   }
-  void take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
-               std::span<btTypedConstraint* const> joint_list);
+  void take_in(std::span<btRigidBody* const> awake, std::span<btRigidBody* const> moving_statics,
+               std::span<const SoftTouch> touches, std::span<btTypedConstraint* const> joint_list);
+  void make_room(std::size_t moving_statics);
+  void take_in_statics(std::span<btRigidBody* const> moving_statics);
   void hold(int user_index);
   void take_in(std::size_t i);
   void take_in_row(std::size_t row);
@@ -131,10 +132,13 @@ struct SoftStep::Impl {
   Real h_s;
   int substeps;
   btVector3 gravity{0, 0, 0};
-  std::vector<std::uint32_t> mover_at;  ///< by user index; 0: touches nothing; kHeld: does, and has no mover
+  std::vector<std::int32_t> mover_at;         ///< by user index; 0: touches nothing; kHeld: does, and has no mover
+  std::vector<std::int32_t> mover_of_static;  ///< by -1 - user index; 0: it stands
   std::vector<btRigidBody*> flying;
   std::vector<btRigidBody*> held;        ///< as movers
-  std::vector<Mover> movers;             ///< in whole rows; the first never moves
+  std::vector<Mover> all_movers;         ///< in whole rows: an empty one and those of statics that move, if any; bodies
+  Mover* movers = nullptr;               ///< of bodies, of which the first never moves; of statics before them
+  std::vector<soft::Tumblers> steady;    ///< by row of statics
   std::vector<soft::Tumblers> tumblers;  ///< by row
   std::vector<SoftInertia> inertias;     ///< as movers
   std::vector<Body> bodies;              ///< as movers
@@ -155,8 +159,8 @@ void SoftStep::Impl::hold(int user_index) {
 }
 
 /// Whoever touches nothing, and is held by no joint, flies at once.
-void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<const SoftTouch> touches,
-                             std::span<btTypedConstraint* const> joint_list) {
+void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRigidBody* const> moving_statics,
+                             std::span<const SoftTouch> touches, std::span<btTypedConstraint* const> joint_list) {
   mover_at.clear();
   for (const SoftTouch& touch : touches) hold(touch.a), hold(touch.b);
   for (const btTypedConstraint* joint : joint_list) {
@@ -166,17 +170,14 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<cons
   flying.clear();
   for (btRigidBody* body : awake) {
     if (is_held(body->getUserIndex())) {
-      mover_at[static_cast<std::size_t>(body->getUserIndex())] = static_cast<std::uint32_t>(held.size());
+      mover_at[static_cast<std::size_t>(body->getUserIndex())] = static_cast<std::int32_t>(held.size());
       held.push_back(body);
     } else {
       flying.push_back(body);
     }
   }
-  held.resize((held.size() + soft::kLanes - 1) / soft::kLanes * soft::kLanes, nullptr);
-  movers.resize(held.size());
-  tumblers.resize(held.size() / soft::kLanes);
-  inertias.resize(held.size());
-  bodies.resize(held.size());
+  make_room(moving_statics.size());
+  take_in_statics(moving_statics);
   soft::side_by_side(threads, [this](const soft::Worker& worker) {
     const auto [first_flying, last_flying] = worker.share(flying.size());
     for (std::size_t i = first_flying; i < last_flying; ++i) fly(*flying[i], gravity, step_s);
@@ -184,6 +185,31 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<cons
     for (std::size_t row = first; row < last; ++row) take_in_row(row);
   });
   take_in_pushes();
+}
+
+void SoftStep::Impl::make_room(std::size_t moving_statics) {
+  const auto rows = [](std::size_t count) { return (count + soft::kLanes - 1) / soft::kLanes; };
+  held.resize(rows(held.size()) * soft::kLanes, nullptr);
+  steady.assign(moving_statics > 0 ? 1 + rows(moving_statics) : 0, soft::Tumblers{});
+  all_movers.resize(steady.size() * soft::kLanes + held.size());
+  movers = all_movers.data() + steady.size() * soft::kLanes;
+  tumblers.resize(held.size() / soft::kLanes);
+  inertias.resize(held.size());
+  bodies.resize(held.size());
+}
+
+/// They go on evenly, whatever they touch.
+void SoftStep::Impl::take_in_statics(std::span<btRigidBody* const> moving_statics) {
+  mover_of_static.clear();
+  std::fill(all_movers.data(), movers, Mover{});
+  for (std::size_t i = 0; i < moving_statics.size(); ++i) {
+    const auto mover = -1 - static_cast<std::int32_t>(i);
+    const auto place = static_cast<std::size_t>(-1 - moving_statics[i]->getUserIndex());
+    if (mover_of_static.size() <= place) mover_of_static.resize(place + 1, 0);
+    mover_of_static[place] = mover;
+    soft::from_bullet(moving_statics[i]->getLinearVelocity(), movers[mover].v);
+    soft::from_bullet(moving_statics[i]->getAngularVelocity(), movers[mover].w);
+  }
 }
 
 void SoftStep::Impl::take_in_pushes() {
@@ -242,7 +268,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
   const auto [first_row, last_row] = worker.share(tumblers.size());
   const Real fall[3] = {h_s * static_cast<Real>(gravity[0]), h_s * static_cast<Real>(gravity[1]),
                         h_s * static_cast<Real>(gravity[2])};
-  joints.look(movers.data(), worker);
+  joints.look(movers, worker);
   soft::Substep substep{1 / h_s, kTopPush_m_s, true};
   for (int s = 0; s < substeps; ++s) {
     for (std::size_t i = std::max<std::size_t>(1, first_row * soft::kLanes); i < last_row * soft::kLanes; ++i) {
@@ -253,21 +279,24 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
       for (int k = 0; k < 3; ++k) movers[push.mover].v[k] += push.v[k], movers[push.mover].w[k] += push.w[k];
     }
     worker.wait();
-    patches.warm_start(movers.data(), worker);
-    joints.begin(movers.data(), worker);
-    for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers.data(), worker);
+    patches.warm_start(movers, worker);
+    joints.begin(movers, worker);
+    for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers, worker);
     substep.pushes = true;
-    patches.solve(movers.data(), substep, worker);
-    soft::kernel().move(movers.data(), tumblers.data(), first_row, last_row, h_s,
+    patches.solve(movers, substep, worker);
+    soft::kernel().move(movers, tumblers.data(), first_row, last_row, h_s,
                         {static_cast<Real>(kTurn), Real{kMostTurns}});
+    if (worker.is_first()) {
+      soft::kernel().move(all_movers.data(), steady.data(), 1, std::max<std::size_t>(1, steady.size()), h_s, {});
+    }
     worker.wait();
-    joints.look(movers.data(), worker);
-    for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers.data(), worker);
+    joints.look(movers, worker);
+    for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers, worker);
     substep.pushes = false;
-    patches.solve(movers.data(), substep, worker);
+    patches.solve(movers, substep, worker);
     if (s + 1 < substeps) patches.tally(worker);
   }
-  patches.bounce(movers.data(), worker);
+  patches.bounce(movers, worker);
   patches.tally(worker);
 }
 
@@ -275,10 +304,11 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
 void SoftStep::Impl::tell(ContactImpulses& impulses) const {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const SoftPatch& patch = patches.patch(i);
-    const std::uint32_t a = patches.mover_a(i), b = patches.mover_b(i);
+    const std::int32_t a = patches.mover_a(i), b = patches.mover_b(i);
     for (int k = 0; k < patch.count; ++k) {
       const SoftPatch::Point& point = patch.points[static_cast<std::size_t>(k)];
-      const btVector3 p = a != 0 ? bodies[a].p + soft::to_bullet(point.r_a) : bodies[b].p + soft::to_bullet(point.r_b);
+      const btVector3& centre = bodies[static_cast<std::size_t>(a > 0 ? a : b)].p;
+      const btVector3 p = centre + soft::to_bullet(a > 0 ? point.r_a : point.r_b);
       impulses.add(patch.a, patch.b, p, soft::to_bullet(patch.normal), static_cast<double>(patches.tallied(i, k)));
     }
   }
@@ -301,31 +331,32 @@ void SoftStep::Impl::show(std::size_t i) const {
   held[i]->proceedToTransform(btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
 }
 
-void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
+void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
+                     std::span<const SoftTouch> touches, SoftContacts& contacts,
                      std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses) {
   Impl& impl = *impl_;
   impl.gravity = gravity;
-  impl.take_in(bodies, touches, joints);
-  impl.patches.clear(impl.movers.size());
+  impl.take_in(bodies, moving_statics, touches, joints);
+  impl.patches.clear(impl.held.size());
   for (const SoftTouch& touch : touches) {
-    const std::uint32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
+    const std::int32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
     for (SoftPatch& patch : contacts.patches_of(touch)) impl.patches.add(patch, a, b);
   }
   Real pull[3];
   soft::from_bullet(gravity, pull);
-  impl.patches.build(impl.movers.data(), impl.inertias.data(), pull, impl.threads);
+  impl.patches.build(impl.movers, impl.inertias.data(), pull, impl.threads);
   impl.patches.begin_tally(impulses.wanted());
   impl.joints.clear();
   for (btTypedConstraint* joint : joints) {
     impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
                     impl.mover_of(joint->getRigidBodyB().getUserIndex()));
   }
-  impl.joints.build(impl.movers.size(), impl.inertias, impl.threads);
+  impl.joints.build(impl.held.size(), impl.inertias, impl.threads);
   soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
   impl.joints.finish();
   impl.patches.remember(impl.threads);
   if (impulses.wanted()) impl.tell(impulses);
-  soft::for_each_side_by_side(impl.threads, impl.movers.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
+  soft::for_each_side_by_side(impl.threads, impl.held.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }
 
 }  // namespace aurasim::physics

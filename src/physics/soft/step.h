@@ -22,11 +22,12 @@ class SoftStep {
   SoftStep(double step_s, int substeps, int threads);
   ~SoftStep();
 
-  /// Moves and turns `bodies`: all that are awake. Each island's touches and joints come in an order that follows from
-  /// the island alone; all awake touches have their patches in `contacts`. Gravity in m/s^2. Tells `impulses` what has
-  /// pressed on what, if it wants to know.
-  void solve(std::span<btRigidBody* const> bodies, std::span<const SoftTouch> touches, SoftContacts& contacts,
-             std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses);
+  /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and are where they were afterwards. Each
+  /// island's touches and joints come in an order that follows from the island alone; all awake touches have their
+  /// patches in `contacts`. Gravity in m/s^2. Tells `impulses` what has pressed on what, if it wants to know.
+  void solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
+             std::span<const SoftTouch> touches, SoftContacts& contacts, std::span<btTypedConstraint* const> joints,
+             const btVector3& gravity, ContactImpulses& impulses);
 
  private:
   struct Impl;

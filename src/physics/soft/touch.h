@@ -27,6 +27,7 @@ struct SoftPatch {
   std::array<std::int8_t, soft::kMostPoints> of = {};  ///< the points in the manifold
   std::int8_t count = 0;
   soft::Real normal[3] = {};  ///< from a to b
+  soft::Real belt[3] = {};    ///< of the surface of b from that of a, by belts, m/s
   soft::Real friction = 0, restitution = 0, spinning_m = 0, rolling_m = 0;
   soft::Real rub_1 = 0, rub_2 = 0, twist = 0;  ///< impulses of friction of the last substep, N s and N m s
   std::array<Point, soft::kMostPoints> points;

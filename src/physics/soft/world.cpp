@@ -29,6 +29,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
         first_contacts_(parts.first_contacts),
         contact_impulses_(parts.contact_impulses),
         contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
+        moving_statics_(parts.moving_statics),
         step_(settings.step_s, settings.substeps, settings.threads),
         looks_ahead_(settings.continuous) {}
 
@@ -43,7 +44,8 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
     if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
     islands_.sort(contacts_.touches());
-    step_.solve(islands_.awake(), islands_.touches(), contacts_, islands_.joints(), getGravity(), contact_impulses_);
+    step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
+                contact_impulses_);
     report_met();
     rest(step_s);
     return 1;
@@ -118,6 +120,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   SoftIslands islands_;
   SoftContacts contacts_;
   std::vector<btPersistentManifold*> manifolds_;
+  const std::vector<btRigidBody*>& moving_statics_;
   SoftStep step_;
   bool looks_ahead_;
 };

@@ -245,6 +245,12 @@ class World:
     def remove_static(self, fixed: int, *, at: int = 0, timeout: float = 60.0) -> Acknowledgement:
         return self._world.remove_static(fixed, at, timeout)
 
+    def move_static(self, fixed: int | str, position: Vector, *, rotation: Vector = _UPRIGHT, duration: float = 0.0,
+                    at: int = 0, timeout: float = 60.0) -> Acknowledgement:
+        """Sends a static, by its number or its name in the scene, to a place: it goes there evenly in `duration` seconds
+        of simulated time, pushes what is in its way, and stays there. Solver soft_step only."""
+        return self._world.move_static(fixed, position, rotation, duration, at, timeout)
+
     def impulse(self, body: int, impulse: Vector, *, point: Vector | None = None, at: int = 0,
                 timeout: float = 60.0) -> Acknowledgement:
         """N s, at a point or the centre of mass."""

@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <aurasim/bodies.h>
@@ -232,6 +233,11 @@ class AURASIM_API World {
   Acknowledgement add_static(const NewStatic& fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   Acknowledgement remove_body(std::uint64_t body, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   Acknowledgement remove_static(std::uint32_t fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
+  /// It goes evenly from where it is and stays there; `fixed`: its number, or the name that the scene gives it. It
+  /// pushes what is in its way. m, quaternion w x y z, s of simulated time.
+  Acknowledgement move_static(const std::variant<std::uint32_t, std::string>& fixed, const Vec3& position,
+                              const Quaternion& rotation, double duration, std::int64_t at_step = 0,
+                              Seconds time_out = kUsualTimeOut);
   /// N s, at a point (m) or the centre of mass. World frame.
   Acknowledgement impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point = {},
                           std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);

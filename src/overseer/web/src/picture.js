@@ -155,6 +155,7 @@ export class Picture {
     const stamp = this.clock.tick(now_ms);
     const { origin } = this.view;
     this.instances.update(stamp, origin, now_ms);
+    this.view.moveStatics(stamp, this.step_s);
     this.overlays.update(stamp, origin, 1 / this.step_s);
     const distance = this.selectedSlot === null ? 1
       : this.view.toPicture(this.world.position(this.selectedSlot)).distanceTo(this.rig.camera.position);

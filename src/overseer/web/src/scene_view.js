@@ -2,6 +2,7 @@
 // outside and relative to `origin` inside, since single precision is too coarse far out.
 import * as THREE from "three";
 import { HORIZON, groundFor, sky } from "./ground.js";
+import { placeOfStatic } from "./paths.js";
 import { LEVELS, Quality } from "./quality.js";
 import { partsOf, placeOf } from "./shapes.js";
 
@@ -69,6 +70,7 @@ export class SceneView {
     this.sceneMessage = message;
     this.prepare();
     for (const group of [this.statics, this.grounds]) dispose(group);
+    this.moving = [];
     for (const body of message.statics) this.#addStatic(body, message.shapes[body.shape]);
     if (this.grounds.children.length === 0) this.grounds.add(groundFor(null, this.origin, this.lit));
     this.#alignGrids();
@@ -79,13 +81,25 @@ export class SceneView {
     const place = placeOf(body.p, body.q);
     if (shape.kind === "plane") return void this.grounds.add(groundFor(planeAt(shape, place), this.origin, this.lit));
     place.premultiply(new THREE.Matrix4().makeTranslation(...this.origin.map((x) => -x)));
-    for (const part of partsOf(shape, 3, place)) {
+    for (const part of partsOf(shape, 3, new THREE.Matrix4())) {
       const mesh = new THREE.Mesh(part.geometry, this.lit ? this.litStatic : this.plainStatic);
-      mesh.applyMatrix4(part.place ?? new THREE.Matrix4());
+      const inStatic = part.place ?? new THREE.Matrix4();
+      mesh.applyMatrix4(place.clone().multiply(inStatic));
+      if (body.path || body.moves) this.moving.push({ mesh, body, inStatic });
       mesh.castShadow = mesh.receiveShadow = true;
       mesh.userData.staticId = body.id;
       mesh.add(new THREE.LineSegments(new THREE.EdgesGeometry(part.geometry, 25), this.edgeMaterial));
       this.statics.add(mesh);
+    }
+  }
+
+  /** Puts the statics that move where they are. */
+  moveStatics(stamp, step_s) {
+    if (!(stamp >= 0)) return;
+    const origin = new THREE.Matrix4().makeTranslation(...this.origin.map((x) => -x));
+    for (const { mesh, body, inStatic } of this.moving) {
+      origin.clone().multiply(placeOfStatic(body, stamp, step_s)).multiply(inStatic)
+        .decompose(mesh.position, mesh.quaternion, mesh.scale);
     }
   }
 

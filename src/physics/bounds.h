@@ -1,0 +1,37 @@
+// Boxes around objects.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+namespace aurasim::physics {
+
+struct Bounds {
+  btVector3 low{BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT};
+  btVector3 high{-BT_LARGE_FLOAT, -BT_LARGE_FLOAT, -BT_LARGE_FLOAT};
+
+  void add(const Bounds& other) { low.setMin(other.low), high.setMax(other.high); }
+  Bounds grown(btScalar by) const { return {low - btVector3(by, by, by), high + btVector3(by, by, by)}; }
+  /// Do they come within 10 cm of each other?
+  bool is_near(const Bounds& other) const {
+    constexpr btScalar kNear = btScalar(0.1);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (low[axis] - kNear > other.high[axis] || high[axis] + kNear < other.low[axis]) return false;
+    }
+    return true;
+  }
+};
+
+inline Bounds bounds_of(const btCollisionShape& shape, const btTransform& pose) {
+  Bounds bounds;
+  shape.getAabb(pose, bounds.low, bounds.high);
+  return bounds;
+}
+inline Bounds bounds_of(const btRigidBody& body) {
+  return bounds_of(*body.getCollisionShape(), body.getWorldTransform());
+}
+/// Those of the broadphase hold the body's own.
+inline Bounds bounds_of(const btBroadphaseProxy& proxy) { return {proxy.m_aabbMin, proxy.m_aabbMax}; }
+
+}  // namespace aurasim::physics

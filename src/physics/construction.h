@@ -1,0 +1,25 @@
+// What Bullet makes bodies and statics of.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "core/scene.h"
+#include "physics/bullet_convert.h"
+
+namespace aurasim::physics {
+
+inline btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btCollisionShape* shape,
+                                                                const core::Vec3& inertia,
+                                                                const core::Material& material) {
+  const auto scalar = [](double x) { return static_cast<btScalar>(x); };
+  btRigidBody::btRigidBodyConstructionInfo info(scalar(mass), nullptr, shape, to_bullet(inertia));
+  info.m_friction = scalar(material.friction);
+  info.m_rollingFriction = scalar(material.rolling_friction);
+  info.m_spinningFriction = scalar(material.spinning_friction);
+  info.m_restitution = scalar(material.restitution);
+  info.m_linearDamping = scalar(material.linear_damping);
+  info.m_angularDamping = scalar(material.angular_damping);
+  return info;
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,177 @@
+// The statics of a simulation: which stand in which state, and where those are that move.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/static_path.h"
+#include "physics/awaken.h"
+#include "physics/bounds.h"
+#include "physics/construction.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Where a static is put. A plane may slide along itself: far out, its origin would cost digits for nothing.
+core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const core::Vec3& p_WO) {
+  const auto* const plane = std::get_if<core::Plane>(&shape);
+  if (plane == nullptr || p_WO.isZero()) return body.pose;
+  const core::Vec3 normal_W = body.pose.q_WB.normalized() * plane->normal.normalized();
+  return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
+}
+
+/// So much faster than what pushes it a body that bounces gets at most.
+constexpr double kBounced = 2;
+
+}  // namespace
+
+/// Those that the scene has got since the last time; not yet in the world.
+void Simulation::make_statics() {
+  for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
+    const core::StaticBody& body = scene_->statics[i];
+    const core::Pose X_WS = placed(body, scene_->shapes.at(body.shape).shape, settings_.p_WO);
+    slid_.push_back(body.pose.q_WB.normalized().conjugate() * (X_WS.p_WB - body.pose.p_WB));
+    auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
+    info.m_startWorldTransform = frame_.to_local(X_WS);
+    statics_.push_back(std::make_unique<btRigidBody>(info));
+    statics_.back()->setUserIndex(-1 - static_cast<int>(i));
+    static_is_in_.push_back(false);
+    if (body.moves()) make_moving(static_cast<std::uint32_t>(i));
+  }
+}
+
+void Simulation::make_moving(std::uint32_t index) {
+  const auto place = std::ranges::lower_bound(moving_statics_, index, {}, &MovingStatic::index);
+  if (place != moving_statics_.end() && place->index == index) return;
+  if (!settings_.looks_once()) {
+    throw std::invalid_argument(scene_->statics[index].name + " moves, which this solver does not know");
+  }
+  const MovingStatic& made = *moving_statics_.insert(place, {index, std::make_unique<Belt>()});
+  physics::make_moving(*statics_[index], *made.belt);
+  if (static_is_in_[index]) world_.begin_moving(*statics_[index]);
+}
+
+/// Also those that have been told to since the last time.
+void Simulation::note_moving_statics() {
+  if (!settings_.looks_once()) return;  // nobody sends them there: command_limits.cpp
+  timeline_.moves().for_each([this](core::StaticId id) {
+    if (core::value_of(id) < statics_.size()) make_moving(core::value_of(id));
+  });
+}
+
+/// Puts in and takes out what stands in state `n`; wakes the bodies that it touches or that rested on it.
+void Simulation::show_statics(core::Step n) {
+  make_statics();
+  for (std::size_t i = 0; i < statics_.size(); ++i) {
+    const bool stands = timeline_.stands(static_cast<std::uint32_t>(i), n);
+    if (stands == static_is_in_[i]) continue;
+    btRigidBody* const changing = statics_[i].get();
+    const Bounds there = bounds_of(*changing);
+    wake_near({&there, 1});
+    if (stands) {
+      world_.insert(*changing, 1 + static_cast<int>(i));
+    } else {
+      world_.remove({&changing, 1});
+    }
+    static_is_in_[i] = stands;
+  }
+}
+
+void Simulation::wake_near(std::span<const Bounds> changing) {
+  const auto is_near_any = [&](const Bounds& of_body) {
+    return std::ranges::any_of(changing, [&](const Bounds& there) { return of_body.is_near(there); });
+  };
+  for (HostedBody& body : table_.bodies()) {
+    if (!body.born || !is_near_any(bounds_of(*body.rigid->getBroadphaseProxy()))) continue;  // quick to see
+    if (is_near_any(bounds_of(*body.rigid))) awaken(*body.rigid);
+  }
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+btTransform Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
+  return frame_.to_local(timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s));
+}
+
+/// Else it has a belt alone.
+bool Simulation::goes(std::uint32_t index) const {
+  return scene_->statics[index].path || timeline_.moves().newest(core::StaticId{index}) > 0;
+}
+
+/// In the present state.
+void Simulation::place_moving_statics() {
+  note_moving_statics();
+  for (const MovingStatic& moving : moving_statics_) {
+    if (!goes(moving.index)) continue;
+    const btTransform pose = pose_of_static(moving.index, step_);
+    statics_[moving.index]->setWorldTransform(pose);
+    if (static_is_in_[moving.index]) world_.bound(*statics_[moving.index], pose);
+  }
+}
+
+/// On the way to the next state. Whom they may push is awake.
+void Simulation::start_moving_statics() {
+  std::vector<Bounds> ways;
+  note_moving_statics();
+  for (const MovingStatic& moving : moving_statics_) {
+    if (!static_is_in_[moving.index]) continue;
+    const core::StaticBody& body = scene_->statics[moving.index];
+    btRigidBody& rigid = *statics_[moving.index];
+    const core::Twist twist = twist_of_static(moving.index, step_);
+    const btTransform after = pose_of_static(moving.index, step_ + 1);
+    rigid.setLinearVelocity(to_bullet(twist.v_W));
+    rigid.setAngularVelocity(to_bullet(twist.w_W));
+    moving.belt->v_W = rigid.getWorldTransform().getBasis() * to_bullet(body.belt_S);
+    if (goes(moving.index)) world_.bound(rigid, after);
+    if (twist.v_W.isZero() && twist.w_W.isZero() && body.belt_S.isZero()) continue;
+    ways.push_back(bounds_of(rigid));
+    ways.back().add(bounds_of(*rigid.getCollisionShape(), after));
+  }
+  if (!ways.empty()) wake_near(ways);
+}
+
+/// From state `n` to the next one.
+core::Twist Simulation::twist_of_static(std::uint32_t index, core::Step n) const {
+  const core::StaticBody& body = scene_->statics[index];
+  const auto pose = [&](core::Step step) {
+    return timeline_.moves().pose(body, core::StaticId{index}, step, settings_.step_s);
+  };
+  return core::twist_between(pose(n), pose(n + 1), settings_.step_s);
+}
+
+/// What may push whom for as long as others go by what they are told now.
+std::vector<Simulation::Shove> Simulation::coming_shoves() const {
+  std::vector<Shove> shoves;
+  const auto ahead = static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s));
+  for (const MovingStatic& moving : moving_statics_) {
+    if (!static_is_in_[moving.index]) continue;
+    const core::StaticBody& body = scene_->statics[moving.index];
+    const btCollisionShape& shape = *statics_[moving.index]->getCollisionShape();
+    Shove shove{bounds_of(*statics_[moving.index]), 0};
+    for (core::Step n = step_; goes(moving.index) && n < step_ + ahead; ++n) {
+      shove.where.add(bounds_of(shape, pose_of_static(moving.index, n + 1)));
+      const core::Twist twist = twist_of_static(moving.index, n);
+      const double arm = twist.w_W.isZero() ? 0 : core::bounding_radius(scene_->shapes[body.shape].shape);
+      shove.speed_m_s = std::max(shove.speed_m_s, twist.v_W.norm() + twist.w_W.norm() * arm);
+    }
+    shove.speed_m_s += body.belt_S.norm();
+    if (shove.speed_m_s > 0) shoves.push_back(shove);
+  }
+  return shoves;
+}
+
+/// How much they will change the velocity of the body's surface at most, m/s.
+double Simulation::coming_shove(const HostedBody& body, std::span<const Shove> shoves) const {
+  if (!body.born || shoves.empty()) return 0;
+  const btScalar way = body.rigid->getLinearVelocity().length() * btScalar(settings_.foresight_s);
+  const auto most_in = [&](const Bounds& where) {
+    double most = 0;
+    for (const Shove& shove : shoves) {
+      if (kBounced * shove.speed_m_s > most && where.is_near(shove.where)) most = kBounced * shove.speed_m_s;
+    }
+    return most;
+  };
+  if (most_in(bounds_of(*body.rigid->getBroadphaseProxy()).grown(way)) == 0) return 0;  // quick to see
+  return most_in(bounds_of(*body.rigid).grown(way));
+}
+
+}  // namespace aurasim::physics
