@@ -27,7 +27,7 @@ declare -A measures=(
     launch_configs scripts/security_cost.py"
   [docs/control_cost.md]="$uncounted src/dds src/client src/cli/agent src/cli/node_process* idl qos tests/bench/control_client.cpp
     scripts/control_cost.py"
-  [docs/page_traffic.md]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h idl tests/web/traffic.mjs
+  [docs/page_traffic.md]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h tests/web/traffic.mjs
     scripts/page_traffic.py"
   # Of core, what physics computes with; the compiler and its flags are in the line itself.
   [docs/speed.md]="src/core/body_state.h src/core/scene.* src/core/joint.h src/core/limits.h src/physics src/experiment/speed src/config/presets.h tests/bench/peers

@@ -46,7 +46,7 @@ commit_to src/core/aura.cpp
 stamp_all
 expect "APageThatWasMeasuredNowIsNotStale"
 
-commit_to src/overseer/world_view.cpp
+commit_to src/import/model.cpp
 commit_to README.md
 expect "WhatIsNotMeasuredMakesNoPageStale"
 

@@ -46,7 +46,11 @@ class RequestReader {
  private:
   core::Action action_in(const Json& order) const {
     if (order.contains("remove_body")) return core::RemoveBody{body_in(order["remove_body"])};
-    if (order.contains("remove_static")) return core::RemoveStatic{named_.at(order["remove_static"])};
+    if (order.contains("remove_static")) return core::RemoveStatic{static_named(order["remove_static"])};
+    if (order.contains("move_static")) {
+      const Json& move = order["move_static"];
+      return core::MoveStatic{static_named(move.at("name")), {}, pose_in(move), move.at("states")};
+    }
     if (order.contains("impulse")) {
       const Json& impulse = order["impulse"];
       return core::Impulse{body_in(impulse.at("body")), vec3_in(impulse.at("value")), {}};
@@ -77,6 +81,14 @@ class RequestReader {
     request.actions.push_back(core::DefineShape{core::Box{vec3_in(what.at("box").at("size")) / 2}});
     request.actions.push_back(core::AddStatic{id, shapes_++, pose_in(what)});
     return request;
+  }
+
+  /// One that has been added, or else one of the scene's.
+  core::StaticId static_named(const std::string& name) const {
+    if (const auto added = named_.find(name); added != named_.end()) return added->second;
+    const auto found = std::ranges::find(scene_.statics, name, &core::StaticBody::name);
+    if (found == scene_.statics.end()) throw std::runtime_error(fmt::format("no static \"{}\"", name));
+    return core::StaticId{static_cast<std::uint32_t>(found - scene_.statics.begin())};
   }
 
   core::PrototypeId prototype_named(const std::string& name) const {

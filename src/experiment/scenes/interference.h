@@ -6,6 +6,7 @@
 //               {"at_step": 150, "impulse": {"body": 3, "value": [..]}},
 //               {"at_step": 150, "set_velocity": {"body": 3, "value": [..], "spin": [..]}},
 //               {"at_step": 200, "add_static": {"name": "wall_0", "box": {"size": [..]}, "position": [..]}},
+//               {"at_step": 250, "move_static": {"name": "wall_0", "position": [..], "states": 60}},
 //               {"at_step": 300, "remove_static": "wall_0"}]}
 #pragma once
 

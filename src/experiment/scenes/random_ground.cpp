@@ -127,7 +127,8 @@ void add_moving_statics(const RandomLayout& layout, Json& scene, Chance& chance)
         break;
       }
       case 1: {  // a gate, across the border
-        statics.push_back(static_box({0.3, chance.between(1, 3), 1.5}, p + Vec3(chance.between(-1, 1), 0, 0.8)));
+        const double wide = chance.between(1, 3);
+        statics.push_back(static_box({0.3, wide, 1.5}, p + Vec3(chance.between(-1, 1), 0, 0.8)));
         statics.back()["path"] = to_and_fro({chance.between(-2, 2), chance.between(-1, 1), 0}, chance);
         break;
       }
@@ -142,6 +143,7 @@ void add_moving_statics(const RandomLayout& layout, Json& scene, Chance& chance)
         break;
       }
     }
+    statics.back()["name"] = fmt::format("mover_{}", left);
   }
 }
 

@@ -183,6 +183,22 @@ void add_bodies(const Makings& makings, bool mechanisms, const RandomLayout& lay
   }
 }
 
+/// Half of those that move are sent elsewhere under way, whatever their paths are.
+void send_statics(World& world, Chance& chance) {
+  for (const Json& moving : world.scene["statics"]) {
+    if (!moving.contains("path") && !moving.contains("belt")) continue;
+    for (std::uint32_t left = chance.below(3); left > 0; --left) {
+      const Vec3 way = {chance.between(-2, 2), chance.between(-2, 2), chance.between(0, 1)};
+      const Json& p = moving["position"];
+      Json order = {{"at_step", kFirstOrder + chance.below(kLastOrder - kFirstOrder)}};
+      order["move_static"] = {{"name", moving["name"]},
+                              {"position", json_vec3(Vec3(p[0], p[1], p[2]) + way)},
+                              {"states", 30 + chance.below(120)}};
+      world.interference["orders"].push_back(std::move(order));
+    }
+  }
+}
+
 }  // namespace
 
 World random_world(std::uint64_t seed) {
@@ -203,7 +219,10 @@ World random_world(std::uint64_t seed) {
   world.launch = launch_of(dials, layout.regions, chance);
   world.interference = random_interference(kinds, layout, world.scene, dials.speed_m_s, chance);
   Chance of_statics(~seed);  // of its own: without statics that move, each seed is the world that it has always been
-  if (dials.solver == kUsualSolver && of_statics.below(3) == 0) add_moving_statics(layout, world.scene, of_statics);
+  if (dials.solver == kUsualSolver && of_statics.below(3) == 0) {
+    add_moving_statics(layout, world.scene, of_statics);
+    send_statics(world, of_statics);
+  }
   return world;
 }
 
