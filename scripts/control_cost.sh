@@ -13,6 +13,6 @@ done
 
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/control_cost.md "$out" double control_client _aurasim
+begin_measuring docs/control_cost.md "$out" double control_client aurasim_python
 /usr/bin/python3 scripts/control_cost.py "${arguments[@]}"
 echo "written: docs/control_cost.md" >&2

@@ -24,9 +24,9 @@ A picture of 1280 x 800 pixels; all that comes over TCP.
 {pages}"""
 
 KINDS = (("all, as a page that does not say what it sees", []),
-         ("the whole plane, from 1.5 widths away", ["--eye", "{far},0,{high}", "--towards", "{far_x},0,{far_z}"]),
-         ("from within, at eye level", ["--eye", "0,0,2", "--towards", "1,0,-0.05"]),
-         ("from within, 10 m high, looking down by 45 degrees", ["--eye", "0,0,10", "--towards", "0.7071,0,-0.7071"]),
+         ("the whole plane, from 1.5 widths away", ["--eye={far},0,{high}", "--towards={far_x},0,{far_z}"]),
+         ("from within, at eye level", ["--eye=0,0,2", "--towards=1,0,-0.05"]),
+         ("from within, 10 m high, looking down by 45 degrees", ["--eye=0,0,10", "--towards=0.7071,0,-0.7071"]),
          ("a tab that is hidden", ["--hidden"]))
 
 
