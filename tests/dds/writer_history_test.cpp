@@ -67,7 +67,7 @@ TEST_F(WriterHistory, KeepsNothingForEver) {
   one.listen();
   ASSERT_TRUE(holds_in_time([&] { return writer_.reader_count() == 1; }));
   std::size_t forgotten = 0;
-  for (std::uint64_t i = 0; i < 20 && forgotten == 0; ++i) {
+  for (std::uint64_t i = 0; i < 200 && forgotten == 0; ++i) {  // a race: now and then it takes more than 20
     Listener other(2 + i);
     std::this_thread::sleep_for(100ms);
     send();
@@ -79,7 +79,7 @@ TEST_F(WriterHistory, KeepsNothingForEver) {
     int taken = 0;
     EXPECT_TRUE(holds_in_time([&] { return (taken += other.taken()) > 0; }));
   }
-  if (forgotten == 0) GTEST_SKIP() << "no reader joined at the moment in which Fast DDS keeps a sample";
+  EXPECT_GT(forgotten, 0U) << "Fast DDS forgets by itself now: forget_acknowledged() can go";
   EXPECT_TRUE(holds_in_time([&] { return writer_.forget_acknowledged() == 0; }));
 }
 
