@@ -52,6 +52,17 @@ changes_since() {
   git log --format='%h %s' "$1..HEAD" -- "${paths[@]}"
 }
 
+# DIR [--OPTION VALUE]...: the folder that --out names, or else DIR.
+out_of() {
+  local out=$1
+  shift
+  while [[ ${1:-} == --* ]]; do
+    [[ $1 != --out ]] || out=$2
+    shift 2
+  done
+  printf '%s\n' "$out"
+}
+
 # "Measured: commit ...; build ...; precision ...", of the release build as it is now.
 measured_line() {
   local page=$1 precision=$2 build=build/release commit=unknown paths compiler build_type

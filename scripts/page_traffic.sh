@@ -5,15 +5,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-out=build/page_traffic arguments=("$@")
-while [[ ${1:-} == --* ]]; do
-  [[ $1 != --out ]] || out=$2
-  shift 2
-done
-
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
+out=$(out_of build/page_traffic "$@")
 begin_measuring docs/page_traffic.md "$out" double
 scripts/build_web.sh --tests
-/usr/bin/python3 scripts/page_traffic.py "${arguments[@]}"
+/usr/bin/python3 scripts/page_traffic.py "$@"
 echo "written: docs/page_traffic.md" >&2

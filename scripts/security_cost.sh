@@ -5,14 +5,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-out=build/security_cost arguments=("$@")
-while [[ ${1:-} == --* ]]; do
-  [[ $1 != --out ]] || out=$2
-  shift 2
-done
-
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
+out=$(out_of build/security_cost "$@")
 begin_measuring docs/security_cost.md "$out" double
-/usr/bin/python3 scripts/security_cost.py "${arguments[@]}"
+/usr/bin/python3 scripts/security_cost.py "$@"
 echo "written: docs/security_cost.md" >&2

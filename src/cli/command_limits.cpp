@@ -148,7 +148,7 @@ struct Problem {
     const bool known = core::value_of(ask.id) < c.scene.statics.size();
     return known ? std::string() : fmt::format("there is no static {}", core::value_of(ask.id));
   }
-  /// How far it is from where it will be by then is not known: as far as anything may be from its place at the start.
+  /// How fast it may go is seen to once it is known where it starts (Node::complete).
   std::string operator()(const core::SendStatic& ask) const {
     if (const std::string unknown = (*this)(core::RemoveStatic{ask.id}); !unknown.empty()) return unknown;
     if (!c.launch.physics.looks_once())

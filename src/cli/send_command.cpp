@@ -86,8 +86,7 @@ core::ClientShape shape(const SendArguments& a, core::MeshUse use, CommandClient
 }
 
 core::StaticId static_named(const std::string& named, const core::Scene& scene) {
-  const auto found = std::ranges::find(scene.statics, named, &core::StaticBody::name);
-  if (found != scene.statics.end()) return core::StaticId{static_cast<std::uint32_t>(found - scene.statics.begin())};
+  if (const auto found = core::find_static(scene, named)) return *found;
   std::uint32_t id = 0;
   const auto [end, error] = std::from_chars(named.data(), named.data() + named.size(), id);
   if (error != std::errc() || end != named.data() + named.size())

@@ -18,10 +18,6 @@ constexpr std::size_t kDeepest = 16;
 constexpr std::size_t kMostFiles = 10'000;  ///< in all, each as often as it is included
 constexpr std::array kOtherFormats = {".urdf", ".sdf", ".world", ".xml", ".mjcf"};
 
-Pose posed(const Pose& X_WI, const Pose& X_IB) {
-  return {X_WI.p_WB + X_WI.q_WB * X_IB.p_WB, (X_WI.q_WB * X_IB.q_WB).normalized()};
-}
-
 std::string name_in(const Included& included, const std::string& name) { return included.name + "/" + name; }
 
 /// Says why the file cannot be included, if so.
@@ -107,7 +103,7 @@ core::PrototypeId shifted(core::PrototypeId prototype, const Included& included)
 void take_over_statics(const Included& included, std::unordered_set<std::string>& names, SceneDraft& draft) {
   for (core::StaticBody body : included.draft.scene.statics) {
     body.name = name_in(included, body.name);
-    body.pose = posed(included.X_WI, body.pose);
+    body.pose = included.X_WI * body.pose;
     shift(body, included);
     if (!names.insert(body.name).second) {
       included.blame.complain(
@@ -121,7 +117,7 @@ void take_over_moving(const Included& included, SceneDraft& draft) {
   for (DraftBody body : included.draft.bodies) {
     body.id = std::nullopt;
     body.body.prototype = shifted(body.body.prototype, included);
-    body.body.pose = posed(included.X_WI, body.body.pose);
+    body.body.pose = included.X_WI * body.body.pose;
     body.body.v_WB = included.X_WI.q_WB * body.body.v_WB;
     body.body.w_WB = included.X_WI.q_WB * body.body.w_WB;
     const std::string name = body.source.name.empty() ? "" : name_in(included, body.source.name);
@@ -181,7 +177,7 @@ void take_over_joints(std::vector<Included>& includes, SceneDraft& draft) {
     const std::size_t first = included.first_body;
     for (DraftJoint joint : included.draft.joints) {
       joint.joint.name = name_in(included, joint.joint.name);
-      joint.joint.X_WJ = posed(included.X_WI, joint.joint.X_WJ);
+      joint.joint.X_WJ = included.X_WI * joint.joint.X_WJ;
       joint.a += first;
       if (joint.b) *joint.b += first;
       if (joint.a < draft.bodies.size()) draft.joints.push_back(std::move(joint));

@@ -22,6 +22,11 @@ struct Pose {
   Quat q_WB = Quat::Identity();
 };
 
+/// X_AC.
+inline Pose operator*(const Pose& X_AB, const Pose& X_BC) {
+  return {X_AB.p_WB + X_AB.q_WB * X_BC.p_WB, (X_AB.q_WB * X_BC.q_WB).normalized()};
+}
+
 /// One body in one state, as the protocol sees it.
 struct BodyState {
   BodyId id{};

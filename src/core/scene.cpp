@@ -107,6 +107,12 @@ const InitialBody* find_body(const Scene& scene, BodyId id) {
   return place != scene.bodies.end() && place->id == id ? &*place : nullptr;
 }
 
+std::optional<StaticId> find_static(const Scene& scene, std::string_view name) {
+  const auto found = std::ranges::find(scene.statics, name, &StaticBody::name);
+  if (found == scene.statics.end()) return std::nullopt;
+  return StaticId{static_cast<std::uint32_t>(found - scene.statics.begin())};
+}
+
 std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies) {
   const auto place_of = [&](BodyId id) -> std::optional<std::uint32_t> {
     const auto place = std::ranges::lower_bound(bodies, id, {}, &BodyState::id);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -151,6 +152,9 @@ double bounding_radius(const Shape& shape);
 
 /// Null if the scene has no such body in state 0.
 const InitialBody* find_body(const Scene& scene, BodyId id);
+
+/// By its name; nothing: the scene has none of it.
+std::optional<StaticId> find_static(const Scene& scene, std::string_view name);
 
 /// Pairs that joints of the scene hold together, of which both bodies are in `bodies` (ascending by id).
 std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies);

@@ -1,7 +1,6 @@
 #include "core/static_moves.h"
 
 #include <algorithm>
-#include <set>
 
 namespace aurasim::core {
 
@@ -37,15 +36,15 @@ void StaticMoves::forget_before(Step step) {
 }
 
 void forget_moves_before(Step step, std::vector<Order>& orders) {
-  std::set<StaticId> replaced;
-  std::vector<std::uint64_t> useless;
-  for (auto order = orders.rbegin(); order != orders.rend(); ++order) {
-    const auto* const move = std::get_if<MoveStatic>(&order->action);
-    if (move == nullptr || order->at_step >= step) continue;
-    if (!replaced.insert(move->id).second) useless.push_back(order->sequence);
+  std::map<StaticId, std::uint64_t> newest;  // sequence of the one that is in effect then
+  for (const Order& order : orders) {
+    const auto* const move = std::get_if<MoveStatic>(&order.action);
+    if (move != nullptr && order.at_step < step) newest[move->id] = order.sequence;
   }
-  std::erase_if(orders,
-                [&](const Order& order) { return std::ranges::find(useless, order.sequence) != useless.end(); });
+  std::erase_if(orders, [&](const Order& order) {
+    const auto* const move = std::get_if<MoveStatic>(&order.action);
+    return move != nullptr && order.at_step < step && order.sequence != newest.at(move->id);
+  });
 }
 
 }  // namespace aurasim::core

@@ -37,9 +37,7 @@ Pose pose_between(const Pose& from, const Pose& to, double share) {
 
 Pose pose_at(const StaticBody& body, double t_s) {
   if (!body.path) return body.pose;
-  const Pose X_SP = along(*body.path, t_s);
-  const Quat q_WS = body.pose.q_WB.normalized();
-  return {body.pose.p_WB + q_WS * X_SP.p_WB, (q_WS * X_SP.q_WB).normalized()};
+  return Pose{body.pose.p_WB, body.pose.q_WB.normalized()} * along(*body.path, t_s);
 }
 
 Twist twist_between(const Pose& before, const Pose& after, double duration_s) {

@@ -11,10 +11,6 @@ namespace aurasim::importing {
 BadModel::BadModel(std::vector<std::string> errors)
     : std::runtime_error(fmt::format("{}", fmt::join(errors, "\n"))), errors_(std::move(errors)) {}
 
-core::Pose operator*(const core::Pose& X_AB, const core::Pose& X_BC) {
-  return {X_AB.p_WB + X_AB.q_WB * X_BC.p_WB, (X_AB.q_WB * X_BC.q_WB).normalized()};
-}
-
 core::Pose inverse(const core::Pose& X_AB) {
   const core::Quat q_BA = X_AB.q_WB.conjugate();
   return {-(q_BA * X_AB.p_WB), q_BA};

@@ -97,8 +97,6 @@ class BadModel : public std::runtime_error {
   std::vector<std::string> errors_;
 };
 
-/// X_AC of X_AB and X_BC.
-core::Pose operator*(const core::Pose& X_AB, const core::Pose& X_BC);
 core::Pose inverse(const core::Pose& X_AB);
 
 /// "KIND 'NAME'".

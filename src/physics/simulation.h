@@ -10,7 +10,6 @@
 #include "core/body_state.h"
 #include "core/observation.h"
 #include "core/scene.h"
-#include "core/static_path.h"
 #include "physics/body_table.h"
 #include "physics/bounds.h"
 #include "physics/bullet_convert.h"
@@ -74,8 +73,7 @@ class Simulation {
   void take_out_what_broke();
   void show_statics(core::Step n);
   void wake_near(std::span<const Bounds> changing);
-  btTransform pose_of_static(std::uint32_t index, core::Step n) const;
-  core::Twist twist_of_static(std::uint32_t index, core::Step n) const;
+  core::Pose pose_of_static(std::uint32_t index, core::Step n) const;
   void make_moving(std::uint32_t index);
   void note_moving_statics();
   bool goes(std::uint32_t index) const;

@@ -88,8 +88,8 @@ void Simulation::wake_near(std::span<const Bounds> changing) {
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
-btTransform Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
-  return frame_.to_local(timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s));
+core::Pose Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
+  return timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s);
 }
 
 /// Else it has a belt alone.
@@ -102,7 +102,7 @@ void Simulation::place_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
     if (!goes(moving.index)) continue;
-    const btTransform pose = pose_of_static(moving.index, step_);
+    const btTransform pose = frame_.to_local(pose_of_static(moving.index, step_));
     statics_[moving.index]->setWorldTransform(pose);
     if (static_is_in_[moving.index]) world_.bound(*statics_[moving.index], pose);
   }
@@ -116,8 +116,9 @@ void Simulation::start_moving_statics() {
     if (!static_is_in_[moving.index]) continue;
     const core::StaticBody& body = scene_->statics[moving.index];
     btRigidBody& rigid = *statics_[moving.index];
-    const core::Twist twist = twist_of_static(moving.index, step_);
-    const btTransform after = pose_of_static(moving.index, step_ + 1);
+    const core::Pose X_WS = pose_of_static(moving.index, step_ + 1);
+    const core::Twist twist = core::twist_between(pose_of_static(moving.index, step_), X_WS, settings_.step_s);
+    const btTransform after = frame_.to_local(X_WS);
     rigid.setLinearVelocity(to_bullet(twist.v_W));
     rigid.setAngularVelocity(to_bullet(twist.w_W));
     moving.belt->v_W = rigid.getWorldTransform().getBasis() * to_bullet(body.belt_S);
@@ -129,15 +130,6 @@ void Simulation::start_moving_statics() {
   if (!ways.empty()) wake_near(ways);
 }
 
-/// From state `n` to the next one.
-core::Twist Simulation::twist_of_static(std::uint32_t index, core::Step n) const {
-  const core::StaticBody& body = scene_->statics[index];
-  const auto pose = [&](core::Step step) {
-    return timeline_.moves().pose(body, core::StaticId{index}, step, settings_.step_s);
-  };
-  return core::twist_between(pose(n), pose(n + 1), settings_.step_s);
-}
-
 /// What may push whom for as long as others go by what they are told now.
 std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   std::vector<Shove> shoves;
@@ -147,11 +139,15 @@ std::vector<Simulation::Shove> Simulation::coming_shoves() const {
     const core::StaticBody& body = scene_->statics[moving.index];
     const btCollisionShape& shape = *statics_[moving.index]->getCollisionShape();
     Shove shove{bounds_of(*statics_[moving.index]), 0};
-    for (core::Step n = step_; goes(moving.index) && n < step_ + ahead; ++n) {
-      shove.where.add(bounds_of(shape, pose_of_static(moving.index, n + 1)));
-      const core::Twist twist = twist_of_static(moving.index, n);
+    const core::Step last = goes(moving.index) ? step_ + ahead : step_;
+    core::Pose before = pose_of_static(moving.index, step_);
+    for (core::Step n = step_ + 1; n <= last; ++n) {
+      const core::Pose after = pose_of_static(moving.index, n);
+      shove.where.add(bounds_of(shape, frame_.to_local(after)));
+      const core::Twist twist = core::twist_between(before, after, settings_.step_s);
       const double arm = twist.w_W.isZero() ? 0 : core::bounding_radius(scene_->shapes[body.shape].shape);
       shove.speed_m_s = std::max(shove.speed_m_s, twist.v_W.norm() + twist.w_W.norm() * arm);
+      before = after;
     }
     shove.speed_m_s += body.belt_S.norm();
     if (shove.speed_m_s > 0) shoves.push_back(shove);

@@ -88,9 +88,9 @@ core::NewBody body_of(const json& of, CommandClient& client) {
 core::StaticId static_of(const json& of, const core::Scene& scene) {
   const json& found = member(of, "static");
   if (found.is_string()) {
-    const auto named = std::ranges::find(scene.statics, found.get<std::string>(), &core::StaticBody::name);
-    if (named == scene.statics.end()) refuse("static", found, "the name or number of a static");
-    return core::StaticId{static_cast<std::uint32_t>(named - scene.statics.begin())};
+    const auto named = core::find_static(scene, found.get<std::string>());
+    if (!named) refuse("static", found, "the name or number of a static");
+    return *named;
   }
   const std::uint64_t id = id_of(of, "static");
   if (id > std::numeric_limits<std::uint32_t>::max()) refuse("static", found, "the name or number of a static");

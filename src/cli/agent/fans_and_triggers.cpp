@@ -22,8 +22,7 @@ std::optional<core::Pose> Mount::pose_in(const std::vector<WorldBody>& bodies) c
   if (!carrier) return X_CS;
   const WorldBody* const body = find(bodies, *carrier);
   if (body == nullptr) return std::nullopt;
-  const core::Quat q_WC = body->row.q_WB.cast<double>().normalized();
-  return core::Pose{body->row.p_WB + q_WC * X_CS.p_WB, (q_WC * X_CS.q_WB).normalized()};
+  return core::Pose{body->row.p_WB, body->row.q_WB.cast<double>().normalized()} * X_CS;
 }
 
 bool TriggerSpec::holds(const core::Pose& X_WS, const core::Vec3& p_WB) const {

@@ -138,7 +138,7 @@ void RunLink::meet(const Patience& patience) {
     return steering_.is_complete() &&
            std::ranges::all_of(live,
                                [this](core::RegionId region) {
-                                 const dds::NodeState state = nodes().at(region).status.state;
+                                 const dds::NodeState state = watch_.nodes().at(region).status.state;
                                  return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
                                }) &&
            !live.empty();
@@ -174,10 +174,7 @@ std::set<core::RegionId> RunLink::live_regions() {
 }
 
 /// After a step earlier than the statuses say.
-bool RunLink::is_known_to_stand() {
-  const Standing said = farthest();
-  return stands() || (stands_in_ && stands_in_->generation == said.generation && stands_in_->step == said.step);
-}
+bool RunLink::is_known_to_stand() { return stands() || stands_in_ == farthest(); }
 
 bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
 
@@ -199,8 +196,7 @@ RunLink::Standing RunLink::farthest() {
 bool RunLink::all_say_that_they_stand() {
   return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
     const dds::Status& status = watch_.nodes().at(region).status;
-    return status.state == dds::NodeState::kPaused &&
-           std::tuple(status.generation, status.step) >= std::tuple(stands_in_->generation, stands_in_->step);
+    return status.state == dds::NodeState::kPaused && Standing{status.generation, status.step} >= *stands_in_;
   });
 }
 
@@ -209,11 +205,10 @@ const std::map<core::RegionId, dds::SeenStatus>& RunLink::nodes(const Patience& 
   const auto end = Clock::now() + kPatienceWithAReader;
   while (stands_in_ && !all_say_that_they_stand() && Clock::now() < end) {
     patience.check("not every node says that it stands");
-    const Standing said = farthest();
-    if (std::tuple(said.generation, said.step) > std::tuple(stands_in_->generation, stands_in_->step)) break;
+    if (farthest() > *stands_in_) break;  // somebody else has moved it
     turn(kRound);
   }
-  return nodes();
+  return watch_.nodes();
 }
 
 bool RunLink::all_have_published(const Standing& wanted) {

@@ -50,8 +50,6 @@ class RunLink {
   /// As the run is now.
   const config::Launch& launch() const { return watch_.launch(); }
   const std::optional<security::Member>& member() const { return member_; }
-  const std::map<core::RegionId, dds::SeenStatus>& nodes() const { return watch_.nodes(); }
-
   /// Of a run that this client has made stand: as they stand.
   const std::map<core::RegionId, dds::SeenStatus>& nodes(const Patience& patience);
 
@@ -80,6 +78,8 @@ class RunLink {
   struct Standing {
     core::Generation generation = 0;
     core::Step step = 0;
+
+    auto operator<=>(const Standing&) const = default;
   };
 
   void wait_until(const std::function<bool()>& condition, const Patience& patience, const std::string& what);

@@ -86,9 +86,9 @@ class RequestReader {
   /// One that has been added, or else one of the scene's.
   core::StaticId static_named(const std::string& name) const {
     if (const auto added = named_.find(name); added != named_.end()) return added->second;
-    const auto found = std::ranges::find(scene_.statics, name, &core::StaticBody::name);
-    if (found == scene_.statics.end()) throw std::runtime_error(fmt::format("no static \"{}\"", name));
-    return core::StaticId{static_cast<std::uint32_t>(found - scene_.statics.begin())};
+    const auto found = core::find_static(scene_, name);
+    if (!found) throw std::runtime_error(fmt::format("no static \"{}\"", name));
+    return *found;
   }
 
   core::PrototypeId prototype_named(const std::string& name) const {

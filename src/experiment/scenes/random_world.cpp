@@ -183,7 +183,7 @@ void add_bodies(const Makings& makings, bool mechanisms, const RandomLayout& lay
   }
 }
 
-/// Half of those that move are sent elsewhere under way, whatever their paths are.
+/// Two of three of those that move are sent elsewhere under way, once or twice, whatever their paths are.
 void send_statics(World& world, Chance& chance) {
   for (const Json& moving : world.scene["statics"]) {
     if (!moving.contains("path") && !moving.contains("belt")) continue;

@@ -1,5 +1,6 @@
 // Statics that move as their scene says (core/static_path.h): where they are at a time.
 import * as THREE from "three";
+import { placeOf } from "./shapes.js";
 
 /**
  * @param {{stops: {at: number, p: number[], q: number[]}[], repeats: boolean, smooth: boolean}} path  p in m, q as
@@ -25,7 +26,7 @@ export function placeOnPath(path, t_s) {
 export function placeOfStatic(body, stamp, step_s) {
   const move = body.moves?.findLast(({ step }) => stamp >= step - 1);
   if (move) return at(move.from, move.to, Math.min(1, (stamp + 1 - move.step) / move.states));
-  const place = at(body, body, 0);
+  const place = placeOf(body.p, body.q);
   return body.path ? place.multiply(placeOnPath(body.path, stamp * step_s)) : place;
 }
 
