@@ -52,7 +52,10 @@ constexpr std::uint64_t kNasty[] = {0,
                                     0xffff'fffe,
                                     0x2000'0000,
                                     0x7ff0'0000'0000'0000,
-                                    0x7ff8'0000'0000'0000};
+                                    0x7ff8'0000'0000'0000,
+                                    0x7fff'ffff'ffff'ffff,
+                                    0x8000'0000'0000'0000,
+                                    0x8000'0000'0000'0001};
 
 void mutate(Bytes& bytes, std::mt19937& random) {
   const auto below = [&](std::size_t bound) {
