@@ -34,7 +34,7 @@ class Driven final : public Joint {
 
   void getInfo1(btTypedConstraint::btConstraintInfo1* info) override {
     if constexpr (std::is_same_v<Joint, btHingeConstraint>) {
-      if (axes().drive) this->enableMotor(false);
+      this->enableMotor(axes().has_motor && !axes().drive);  // until the drive is let go of
     }
     Joint::getInfo1(info);
     rows_of_bullet_ = info->m_numConstraintRows;

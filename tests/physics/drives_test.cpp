@@ -105,6 +105,21 @@ TEST_P(Drives, ASpeedIsReachedAsADamperPulls) {
   EXPECT_NEAR(spin(), 3 * (1 - std::exp(-0.5 / kWheelInertia)), 0.02);
 }
 
+/// Found by random worlds with programs: seed 124.
+TEST_P(Drives, LetGoOfAJointHasItsMotorAgain) {
+  core::HingeJoint hinge;
+  hinge.motor = core::JointMotor{.speed = 4, .max_impulse = 1};
+  place_wheel(hinge);
+  run_seconds(0.5);
+  EXPECT_NEAR(spin(), 4, 0.01);
+  world->controls().recall({1, 1, 0, 31, {}, {{core::JointId{0}, JointDrive{.speed = -3, .damping = 100}}}});
+  run_seconds(0.4);
+  EXPECT_NEAR(spin(), -3, 0.01);
+  world->controls().recall({1, 2, 0, 55, {}, {{core::JointId{0}, {}}}});
+  run_seconds(0.5);
+  EXPECT_NEAR(spin(), 4, 0.01);
+}
+
 TEST_P(Drives, AnEffortAlonePushesSteadily) {
   if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   core::SliderJoint slider;
