@@ -9,6 +9,7 @@ ClusterRules launch_rules(const config::Launch& launch, const SetupOf& setup_of)
   rules.sync = setup.protocol.sync;
   rules.neighbour_distance_m = setup.protocol.neighbour_distance_m;
   rules.physics = setup.physics;
+  rules.control = setup.control;
   return rules;
 }
 

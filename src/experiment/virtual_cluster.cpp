@@ -30,6 +30,7 @@ node::NodeSetup node_setup(const ClusterRules& rules) {
   setup.protocol.neighbour_distance_m = rules.neighbour_distance_m;
   setup.protocol.shuffle_ranks_steps = rules.shuffle_ranks_steps;
   setup.physics = rules.physics;
+  setup.control = rules.control;
   setup.physics.step_s = rules.aura.step_s;
   setup.physics.substeps = rules.aura.substeps;
   setup.hash_states = rules.hash_states;

@@ -10,6 +10,7 @@
 
 #include "core/region_map.h"
 #include "core/scene.h"
+#include "core/setpoint.h"
 #include "experiment/wire_post.h"
 #include "node/node.h"
 #include "transport/memory_transport.h"
@@ -29,6 +30,7 @@ struct ClusterRules {
   core::AuraRules aura;
   core::SyncMode sync = core::SyncMode::kBounded;
   physics::Settings physics;  ///< but for steps and substeps, which are the aura's
+  core::ControlRules control;
   double neighbour_distance_m = kEverywhere_m;
   bool hash_states = false;
   node::PhaseClock clock = node::PhaseClock::kWall;

@@ -55,7 +55,7 @@ class KeptWorlds : public testing::Test {
   Played play_on(std::size_t nodes, Step until, const core::WorldCut* world) {
     const core::RegionMap map = nodes == 4 ? launch_->regions : core::RegionMap::columns(nodes, 12);
     VirtualCluster cluster(launch_->scene, map, rules_, world);
-    std::vector<Request> none;
+    Interference none;
     return play(cluster, none, until, launch_->lookahead(), kGoOn, nullptr, world).value();
   }
 

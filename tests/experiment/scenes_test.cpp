@@ -67,7 +67,7 @@ TEST_F(Scenes, ASeedMeansTheSameWorldEverywhere) {
       hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
     }
   }
-  EXPECT_EQ(hash, 11192002049667294400ull);
+  EXPECT_EQ(hash, 15321473570293822407ull);
 }
 
 TEST_F(Scenes, EveryWorldIsRead) {
@@ -127,6 +127,15 @@ TEST_F(Scenes, TheWorldsHaveAllThatHurts) {
                            R"("move_static":)",
                            R"("path":)",
                            R"("belt":)",
+                           R"("quantity":"force")",
+                           R"("quantity":"torque")",
+                           R"("quantity":"velocity")",
+                           R"("quantity":"spin")",
+                           R"("quantity":"driving")",
+                           R"("drive":)",
+                           R"("on_silence":"hold")",
+                           R"("on_silence":"zero")",
+                           R"("on_silence":"last")",
                            R"("shuffle_ranks_steps":0)",
                            R"("shuffle_ranks_steps":3)",
                            R"("can_sleep":false)",

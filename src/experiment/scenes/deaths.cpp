@@ -24,12 +24,14 @@ class Life {
   }
 
   /// Until `victim` has computed state `last`. False when `stop` became true.
-  bool run(std::vector<Request>& requests, std::size_t victim, core::Step last, const std::atomic<bool>& stop) {
-    ImpatientClient client(requests);
+  bool run(Interference& interference, std::size_t victim, core::Step last, const std::atomic<bool>& stop) {
+    ImpatientClient client(interference.requests);
+    Programs programs(interference.words, cluster_.size(), world_ != nullptr ? world_->step : 0);
     if (world_ != nullptr) client.speak_after(*world_, cluster_.node(0));
     while (cluster_.node(victim).current_step() < last) {
       if (stop) return false;
       if (world_ == nullptr) client.speak(cluster_.node(0));
+      for (std::size_t r = 0; r < cluster_.size(); ++r) programs.speak(r, cluster_.node(r));
       const VirtualCluster::Event event = cluster_.next();
       const std::size_t r = core::value_of(event.region);
       for (core::WorldCut& part : cluster_.node(r).take_saved()) {
@@ -87,7 +89,7 @@ void take_over(const Played& part, core::Step from, core::Step until, Played& wh
 }  // namespace
 
 std::optional<Played> play_with_deaths(const Disasters& disasters, const config::Launch& launch,
-                                       const ClusterRules& rules, std::vector<Request>& requests,
+                                       const ClusterRules& rules, Interference& interference,
                                        const std::atomic<bool>& stop, std::optional<VirtualCluster>& cluster) {
   std::mt19937_64 random(disasters.seed);
   Played whole;
@@ -106,7 +108,7 @@ std::optional<Played> play_with_deaths(const Disasters& disasters, const config:
     const core::Step last =
         first + static_cast<core::Step>(random() % static_cast<std::uint64_t>(disasters.steps - first + 1));
     Life life(*cluster, disasters, launch.lookahead(), world ? &*world : nullptr);
-    if (!life.run(requests, victim, last, stop)) return std::nullopt;
+    if (!life.run(interference, victim, last, stop)) return std::nullopt;
     std::optional<core::WorldCut> saved = life.saved(victim);
     if (!saved) continue;  // all over again
     take_over(life.played(), from, saved->step, whole);
@@ -115,7 +117,7 @@ std::optional<Played> play_with_deaths(const Disasters& disasters, const config:
   }
   bring_up();
   const auto rest =
-      play(*cluster, requests, disasters.steps, launch.lookahead(), stop, nullptr, world ? &*world : nullptr);
+      play(*cluster, interference, disasters.steps, launch.lookahead(), stop, nullptr, world ? &*world : nullptr);
   if (!rest) return std::nullopt;
   take_over(*rest, from, disasters.steps, whole);
   whole.bodies = rest->bodies;

@@ -21,7 +21,7 @@ struct Disasters {
 
 /// Nothing when `stop` became true. `cluster` is the last one that has run.
 std::optional<Played> play_with_deaths(const Disasters& disasters, const config::Launch& launch,
-                                       const ClusterRules& rules, std::vector<Request>& requests,
+                                       const ClusterRules& rules, Interference& interference,
                                        const std::atomic<bool>& stop, std::optional<VirtualCluster>& cluster);
 
 }  // namespace aurasim::experiment

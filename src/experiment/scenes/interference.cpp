@@ -1,9 +1,11 @@
 #include "experiment/scenes/interference.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -102,15 +104,50 @@ class RequestReader {
   std::map<std::string, core::StaticId> named_;
 };
 
-/// In the order in which they will be given, since what they add is numbered.
-Interference interference_in(Json json, const core::Scene& scene) {
+core::BodySetpoint body_setpoint_in(const Json& json) {
+  constexpr std::array<std::string_view, core::kQuantities> kNames = {"force", "torque", "velocity", "spin", "driving"};
+  const auto name = std::ranges::find(kNames, json.at("quantity").get<std::string>());
+  if (name == kNames.end()) throw std::runtime_error(fmt::format("no quantity {}", json.at("quantity").dump()));
+  core::BodySetpoint body{body_in(json.at("body")), static_cast<core::Quantity>(name - kNames.begin()), {}};
+  if (json.contains("value")) body.value = vec3_in(json["value"]);
+  return body;
+}
+
+core::JointSetpoint joint_setpoint_in(const Json& json, const core::Scene& scene) {
+  const auto joint = std::ranges::find(scene.joints, json.at("joint").get<std::string>(), &core::JointSpec::name);
+  if (joint == scene.joints.end()) throw std::runtime_error(fmt::format("no joint {}", json.at("joint").dump()));
+  core::JointSetpoint setpoint{core::JointId{static_cast<std::uint32_t>(joint - scene.joints.begin())}, {}};
+  if (json.contains("drive")) {
+    const auto d = json["drive"].get<std::array<double, 6>>();
+    setpoint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
+  }
+  return setpoint;
+}
+
+Word word_in(const Json& json, const core::Scene& scene, std::uint64_t number) {
+  Word word{json.at("said_step"), {json.at("client"), number, 0, json.at("at_step"), {}, {}}};
+  for (const Json& body : json.at("bodies")) word.setpoints.bodies.push_back(body_setpoint_in(body));
+  for (const Json& joint : json.at("joints")) word.setpoints.joints.push_back(joint_setpoint_in(joint, scene));
+  return word;
+}
+
+/// Ascending by the state that `key` names.
+std::vector<Json> sorted(const Json& json, const char* list, const char* key) {
+  if (!json.contains(list)) return {};
+  auto entries = json[list].get<std::vector<Json>>();
+  std::ranges::stable_sort(entries, {}, [key](const Json& entry) { return entry.at(key).get<core::Step>(); });
+  return entries;
+}
+
+/// Orders in the order in which they will be given, since what they add is numbered.
+Interference interference_in(const Json& json, const core::Scene& scene) {
   Interference interference;
   interference.shuffle_ranks_steps = json.value("shuffle_ranks_steps", core::Step{0});
-  if (!json.contains("orders")) return interference;
-  auto orders = json["orders"].get<std::vector<Json>>();
-  std::ranges::stable_sort(orders, {}, [](const Json& order) { return order.at("at_step").get<core::Step>(); });
   RequestReader reader(scene);
-  for (const Json& order : orders) interference.requests.push_back(reader.read(order));
+  for (const Json& order : sorted(json, "orders", "at_step")) interference.requests.push_back(reader.read(order));
+  for (const Json& word : sorted(json, "programs", "said_step")) {
+    interference.words.push_back(word_in(word, scene, interference.words.size() + 1));
+  }
   return interference;
 }
 
@@ -146,6 +183,17 @@ void ImpatientClient::ask(node::Node& lead) {
     const bool is_last = i + 1 == request.actions.size();
     const core::Order& order = lead.order(request.actions[i], next_, is_last ? request.at_step : 0);
     if (is_last) request.at_step = order.at_step;
+  }
+}
+
+Programs::Programs(const std::vector<Word>& words, std::size_t nodes, core::Step from)
+    : words_(words), from_(from), next_(nodes, 0) {}
+
+void Programs::speak(std::size_t index, node::Node& node) {
+  for (std::size_t& next = next_[index]; next < words_.size(); ++next) {
+    const Word& word = words_[next];
+    if (word.said_step > node.current_step()) return;
+    if (word.setpoints.at_step > from_) node.hear(word.setpoints);
   }
 }
 

@@ -7,7 +7,10 @@
 //               {"at_step": 150, "set_velocity": {"body": 3, "value": [..], "spin": [..]}},
 //               {"at_step": 200, "add_static": {"name": "wall_0", "box": {"size": [..]}, "position": [..]}},
 //               {"at_step": 250, "move_static": {"name": "wall_0", "position": [..], "states": 60}},
-//               {"at_step": 300, "remove_static": "wall_0"}]}
+//               {"at_step": 300, "remove_static": "wall_0"}],
+//    "programs": [{"client": 1, "said_step": 80, "at_step": 84,
+//                  "bodies": [{"body": 3, "quantity": "force", "value": [..]}, {"body": 4, "quantity": "spin"}],
+//                  "joints": [{"joint": "j0", "drive": [position, speed, stiffness, damping, effort, max_effort]}]}]}
 #pragma once
 
 #include <cstdint>
@@ -16,6 +19,7 @@
 
 #include "core/order.h"
 #include "core/scene.h"
+#include "core/setpoint.h"
 #include "core/world_cut.h"
 
 namespace aurasim::node {
@@ -30,9 +34,16 @@ struct Request {
   std::vector<core::Action> actions;
 };
 
+/// What a program says once the run is in state `said_step`.
+struct Word {
+  core::Step said_step = 0;
+  core::Setpoints setpoints;
+};
+
 struct Interference {
   core::Step shuffle_ranks_steps = 0;
   std::vector<Request> requests;  ///< ascending at_step
+  std::vector<Word> words;        ///< ascending said_step
 };
 
 /// The scene that the launch file names, as it is at the start: orders refer to its prototypes by name, and add to
@@ -55,6 +66,22 @@ class ImpatientClient {
 
   std::vector<Request>& requests_;
   std::size_t next_ = 0;
+};
+
+/// Tells every node what programs say, each in the node's own state `said_step`: some compute, some wait, and some
+/// are put back by then.
+class Programs {
+ public:
+  /// `from`: the state that the run begins or goes on from; what has acted by then is in the saved world.
+  Programs(const std::vector<Word>& words, std::size_t nodes, core::Step from);
+
+  /// Before each step of the node.
+  void speak(std::size_t index, node::Node& node);
+
+ private:
+  const std::vector<Word>& words_;
+  core::Step from_;
+  std::vector<std::size_t> next_;  ///< by node
 };
 
 }  // namespace aurasim::experiment

@@ -58,7 +58,7 @@ void note_redo(const VirtualCluster::Event& event, Played& played) {
   played.again += static_cast<std::uint64_t>(*event.report->put_back_from - event.report->step);
 }
 
-std::optional<Played> play(VirtualCluster& cluster, std::vector<Request>& requests, core::Step steps, int lookahead,
+std::optional<Played> play(VirtualCluster& cluster, Interference& interference, core::Step steps, int lookahead,
                            const std::atomic<bool>& stop, Saver* saver, const core::WorldCut* world) {
   const core::Step more = 4 * lookahead + 2;  // by then, whoever was under way has arrived
   Played played;
@@ -68,12 +68,14 @@ std::optional<Played> play(VirtualCluster& cluster, std::vector<Request>& reques
     for (const node::StepReport& report : reports) note_report(report, played);
   };
   for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).confirmed());
-  ImpatientClient client(requests);
+  ImpatientClient client(interference.requests);
+  Programs programs(interference.words, cluster.size(), world != nullptr ? world->step : 0);
   if (saver != nullptr) saver->begin(cluster);
   if (world != nullptr) client.speak_after(*world, cluster.node(0));
   while (cluster.slowest() < steps + more || cluster.confirmed() < steps) {
     if (stop) return std::nullopt;
     if (world == nullptr) client.speak(cluster.node(0));
+    for (std::size_t r = 0; r < cluster.size(); ++r) programs.speak(r, cluster.node(r));
     const VirtualCluster::Event event = cluster.next();
     if (saver != nullptr) saver->collect(cluster.node(core::value_of(event.region)));
     note_reports(cluster.node(core::value_of(event.region)).confirmed());

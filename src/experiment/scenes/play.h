@@ -51,7 +51,7 @@ void note_report(const node::StepReport& report, Played& played);
 void note_redo(const VirtualCluster::Event& event, Played& played);
 
 /// State 0, or that of a saved world, and what comes after it. Nothing when `stop` became true.
-std::optional<Played> play(VirtualCluster& cluster, std::vector<Request>& requests, core::Step steps, int lookahead,
+std::optional<Played> play(VirtualCluster& cluster, Interference& interference, core::Step steps, int lookahead,
                            const std::atomic<bool>& stop, Saver* saver = nullptr,
                            const core::WorldCut* world = nullptr);
 

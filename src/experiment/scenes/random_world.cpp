@@ -7,6 +7,7 @@
 
 #include "experiment/scenes/formations.h"
 #include "experiment/scenes/random_orders.h"
+#include "experiment/scenes/random_programs.h"
 #include "physics/region_world.h"
 
 namespace aurasim::experiment {
@@ -16,6 +17,7 @@ using core::Vec3;
 
 constexpr std::size_t kMostBodies = 70;
 constexpr const char* kUsualSolver = "soft_step";
+constexpr std::uint64_t kProgramsOf = 0x9E3779B97F4A7C15;  ///< sets their chances apart from the rest
 
 /// What the rest of a world hangs on.
 struct Dials {
@@ -218,10 +220,17 @@ World random_world(std::uint64_t seed) {
   add_bodies({kinds, dials.speed_m_s, region_m}, dials.mechanisms, layout, world.scene, chance);
   world.launch = launch_of(dials, layout.regions, chance);
   world.interference = random_interference(kinds, layout, world.scene, dials.speed_m_s, chance);
-  Chance of_statics(~seed);  // of its own: without statics that move, each seed is the world that it has always been
+  // Chances of their own: without statics that move and programs, each seed is the world that it has always been.
+  Chance of_statics(~seed);
   if (dials.solver == kUsualSolver && of_statics.below(3) == 0) {
     add_moving_statics(layout, world.scene, of_statics);
     send_statics(world, of_statics);
+  }
+  Chance of_programs(seed ^ kProgramsOf);
+  if (of_programs.below(3) == 0) {
+    world.interference["programs"] =
+        random_programs({kinds, dials.speed_m_s, region_m}, world.scene, dials.lookahead, of_programs);
+    world.launch["control"] = random_control_rules(of_programs);
   }
   return world;
 }

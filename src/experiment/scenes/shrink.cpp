@@ -31,10 +31,11 @@ struct Part {
     return entries != nullptr ? entries->size() : 0;
   }
 };
-constexpr Part kOrders = {&World::interference, "orders"}, kInjectors = {&World::scene, "injectors"},
-               kJoints = {&World::scene, "joints"}, kBodies = {&World::scene, "bodies"},
-               kStatics = {&World::scene, "statics"}, kPrototypes = {&World::scene, "prototypes"},
-               kShapes = {&World::scene, "shapes"}, kMaterials = {&World::scene, "materials"};
+constexpr Part kOrders = {&World::interference, "orders"}, kPrograms = {&World::interference, "programs"},
+               kInjectors = {&World::scene, "injectors"}, kJoints = {&World::scene, "joints"},
+               kBodies = {&World::scene, "bodies"}, kStatics = {&World::scene, "statics"},
+               kPrototypes = {&World::scene, "prototypes"}, kShapes = {&World::scene, "shapes"},
+               kMaterials = {&World::scene, "materials"};
 
 /// The entries of a list, or of a map, but for [begin, end).
 Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
@@ -62,6 +63,20 @@ void drop_joints_without_bodies(World& world) {
     }
   }
   joints = std::move(rest);
+}
+
+/// What programs say of joints that are not there any more.
+void drop_words_without_joints(World& world) {
+  if (!world.interference.contains("programs")) return;
+  std::set<std::string> names;
+  for (const Json& joint : world.scene["joints"]) names.insert(joint["name"].get<std::string>());
+  for (Json& word : world.interference["programs"]) {
+    Json rest = Json::array();
+    for (const Json& setpoint : word["joints"]) {
+      if (names.contains(setpoint["joint"].get<std::string>())) rest.push_back(setpoint);
+    }
+    word["joints"] = std::move(rest);
+  }
 }
 
 /// Left out bit by bit, and kept out if the world still fails.
@@ -108,6 +123,7 @@ class Shrinker {
         Json& entries = *part.in(smaller);
         entries = without_entries(entries, begin, begin + chunk);
         drop_joints_without_bodies(smaller);
+        drop_words_without_joints(smaller);
         if (accept(std::move(smaller))) {
           any = true;
         } else {
@@ -169,7 +185,7 @@ void make_plain(Shrinker& shrinker) {
 
 Shrunk shrink(const World& world, const WorldOutcome& failure, const TrialRules& rules, std::uint64_t seed,
               double budget_s, const std::filesystem::path& directory, const std::atomic<bool>& stop) {
-  constexpr std::array kParts = {kOrders, kInjectors, kBodies, kJoints, kStatics};
+  constexpr std::array kParts = {kOrders, kPrograms, kInjectors, kBodies, kJoints, kStatics};
   Shrinker shrinker(world, failure, rules, seed, budget_s, directory, stop);
   for (bool again = true; again && !shrinker.time_is_up();) {
     again = false;

@@ -80,12 +80,12 @@ core::RegionMap map_of(int nodes, const core::RegionMap& like) {
 
 /// A saved world goes on with the bits that it would have had. False when `stop` became true.
 bool compare_loaded(const config::Launch& launch, const ClusterRules& cluster_rules, const core::WorldCut& world,
-                    const std::vector<std::uint64_t>& wanted, const std::vector<Request>& all_requests,
-                    const TrialRules& rules, const std::atomic<bool>& stop, WorldOutcome& outcome) {
+                    const std::vector<std::uint64_t>& wanted, const Interference& given, const TrialRules& rules,
+                    const std::atomic<bool>& stop, WorldOutcome& outcome) {
   for (const int nodes : rules.load_on) {
-    std::vector<Request> requests = all_requests;
+    Interference interference = given;
     VirtualCluster cluster(launch.scene, map_of(nodes, launch.regions), cluster_rules, &world);
-    const auto loaded = play(cluster, requests, rules.steps, launch.lookahead(), stop, nullptr, &world);
+    const auto loaded = play(cluster, interference, rules.steps, launch.lookahead(), stop, nullptr, &world);
     if (!loaded) return false;
     const auto from = static_cast<std::ptrdiff_t>(world.step);
     const auto first = std::mismatch(wanted.begin() + from, wanted.end(), loaded->hash.begin() + from).first;
@@ -114,10 +114,10 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   std::optional<Played> many;
   if (rules.deaths > 0) {
     const Disasters disasters{rules.deaths, rules.steps, seed};
-    many = play_with_deaths(disasters, launch, cluster_rules, interference.requests, stop, regions);
+    many = play_with_deaths(disasters, launch, cluster_rules, interference, stop, regions);
   } else {
     regions.emplace(launch.scene, launch.regions, cluster_rules);
-    many = play(*regions, interference.requests, rules.steps, lookahead, stop, saver ? &*saver : nullptr);
+    many = play(*regions, interference, rules.steps, lookahead, stop, saver ? &*saver : nullptr);
   }
   if (!many) return false;
   count_faults(*regions, outcome);
@@ -126,15 +126,15 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   outcome.regions_s = many->cpu_s;
   outcome.redos = many->redos;
   outcome.computed_again = many->again;
-  if (saver && !compare_loaded(launch, loaded_rules, saver->take(regions->size()), many->hash, interference.requests,
-                               rules, stop, outcome)) {
+  if (saver && !compare_loaded(launch, loaded_rules, saver->take(regions->size()), many->hash, interference, rules,
+                               stop, outcome)) {
     return false;
   }
   ClusterRules single_rules = std::move(loaded_rules);
   single_rules.aura.redo = false;
   single_rules.bandwidth_B_s.reset();
   VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), single_rules);
-  const auto one = play(single, interference.requests, rules.steps, launch.lookahead(), stop);
+  const auto one = play(single, interference, rules.steps, launch.lookahead(), stop);
   if (!one) return false;
   outcome.unflagged_on_one = single.node(0).collision_watch().unflagged();
   outcome.broken = one->broken;

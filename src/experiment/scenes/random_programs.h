@@ -1,0 +1,15 @@
+// Programs of a random world that steer its bodies and joints in mid-run.
+#pragma once
+
+#include "experiment/scenes/formations.h"
+#include "experiment/scenes/json.h"
+
+namespace aurasim::experiment {
+
+/// "programs" of interference.json (interference.h) for a scene that has its bodies and joints. `lookahead`: K.
+Json random_programs(const Makings& makings, const Json& scene, int lookahead, Chance& chance);
+
+/// "control" of the launch file: what becomes of a program that says nothing any more.
+Json random_control_rules(Chance& chance);
+
+}  // namespace aurasim::experiment
