@@ -3,7 +3,7 @@
     python3 robots.py LAUNCH_FILE [STATES=1800] [REPORT]
 
 The launch file's scene has a car with wheel joints car/turn_fl, fr, rl, rr (skid steering) and a quadruped with joints
-dog/front_left_hip_joint ... (a trot: its legs are held by drives, and a force on its trunk steers). docs/client.md.
+dog/front_left_hip_joint ... (which trots). docs/client.md.
 """
 
 import math
@@ -19,12 +19,6 @@ LEGS = [f"{end}_{side}" for end in ("front", "hind") for side in ("left", "right
 def yaw_of(q):
     w, x, y, z = q
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-
-
-def up_of(q):
-    """The body's z axis."""
-    w, x, y, z = q
-    return np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
 
 
 class Way:
@@ -62,30 +56,66 @@ class Car:
 
 
 class Dog:
-    def __init__(self, trunk, way, mass):
-        self.trunk, self.way, self.mass = trunk, way, mass
+    """A trot: two legs at a time, crosswise, stand and push the trunk on while the others swing ahead. A foot is put down half of
+    the way ahead that its leg will stand, and farther where the trunk is faster than it should be (Raibert, Legged Robots
+    That Balance, 1986). Nothing but the drives of its twelve joints moves it."""
+
+    PERIOD = 24  # states
+    HEIGHT, LIFT = 0.33, 0.07  # m: of the hips, of a swinging foot
+    THIGH, SHANK, OUTWARD = 0.22, 0.20, 0.08  # m; each thigh hangs so far outside of its hip
+    HIPS = np.array([[0.25, 0.12], [0.25, -0.12], [-0.25, 0.12], [-0.25, -0.12]])  # in the trunk, as LEGS
+    REST = np.array([0.0, 0.6, -1.1])  # rad: how the joints of a leg stand where they read 0
+    SPEED, TURN = 1.15, 1.8  # m/s, rad/s: at most
+
+    def __init__(self, trunk, way):
+        self.trunk, self.way = trunk, way
+        self.side = np.sign(self.HIPS[:, 1])
+        self.feet = self.HIPS + np.outer(self.side, (0, self.OUTWARD))  # in the trunk's heading, on the ground
+        self.lifted = self.feet.copy()
 
     def steer(self, world, bodies):
         i = int(np.flatnonzero(bodies.ids == self.trunk)[0])
-        self.hold_legs(world, bodies.step)
-        p, v, w = bodies.positions[i], bodies.linear_velocities[i], bodies.angular_velocities[i]
         q = bodies.rotations[i].astype(float)
-        distance, turn = self.way.error(p[:2], yaw_of(q))
-        wish = 1.1 * (self.way.target(p[:2]) - p[:2]) / max(distance, 1e-9)
-        force = np.append(np.clip(6 * self.mass * (wish - v[:2]), -140, 140), 0)
-        upright = 60 * np.cross(up_of(q), (0, 0, 1)) - 6 * w
-        upright[2] = 8 * turn - 2 * w[2]
-        world.control(forces=([self.trunk], [force]), torques=([self.trunk], [np.clip(upright, -40, 40)]))
+        yaw = yaw_of(q)
+        heading = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
+        v = heading @ bodies.linear_velocities[i][:2]
+        distance, turn = self.way.error(bodies.positions[i][:2], yaw)
+        pace = min(self.SPEED, 2 * distance) * max(0.0, math.cos(turn)) ** 2
+        self.walk(world, bodies.step, v, bodies.angular_velocities[i][2], np.array([pace, 0]),
+                  float(np.clip(2.5 * turn, -self.TURN, self.TURN)))
 
-    def hold_legs(self, world, step):
-        """Two legs at a time, crosswise."""
+    def walk(self, world, step, v, w, wish_v, wish_w):
+        """`v`, `wish_v`: m/s in its heading; `w`, `wish_w`: rad/s about the vertical."""
         names, positions = [], []
-        for number, leg in enumerate(LEGS):
-            phase = 2 * math.pi * (step / 24 + (0.5 if number in (1, 2) else 0))
-            lift = max(0.0, math.sin(phase))
-            names += [f"dog/{leg}_hip_joint", f"dog/{leg}_thigh_joint", f"dog/{leg}_shank_joint"]
-            positions += [0, 0.25 * math.cos(phase) + 0.2 * lift, -0.4 * lift]
-        world.drive(names, position=positions, stiffness=120, damping=4, max_effort=40)
+        stands_s = self.PERIOD / 2 / 60
+        for leg, name in enumerate(LEGS):
+            phase = (step / self.PERIOD + (0.5 if leg in (1, 2) else 0)) % 1
+            under = self.HIPS[leg] + (0, self.side[leg] * self.OUTWARD)
+            going = wish_v + wish_w * np.array([-under[1], under[0]])
+            height = self.HEIGHT
+            if phase < 0.5:  # it stands
+                self.feet[leg] -= going / 60
+                self.lifted[leg] = self.feet[leg]
+            else:
+                share = 2 * phase - 1
+                slip = v + w * np.array([-under[1], under[0]]) - going
+                target = under + going * stands_s / 2 + 0.06 * slip
+                gently = share - math.sin(2 * math.pi * share) / (2 * math.pi)
+                self.feet[leg] = self.lifted[leg] + gently * (target - self.lifted[leg])
+                height -= self.LIFT * math.sin(math.pi * share)
+            names += [f"dog/{name}_{joint}_joint" for joint in ("hip", "thigh", "shank")]
+            positions += list(self.joints_of(leg, *(self.feet[leg] - self.HIPS[leg]), height))
+        world.drive(names, position=positions, stiffness=300, damping=8, max_effort=40)
+
+    def joints_of(self, leg, x, y, below):
+        """The three joints that put its foot there, metres from its hip."""
+        outward = self.side[leg] * self.OUTWARD
+        length = math.sqrt(max(y * y + below * below - outward * outward, 0.01))
+        hip = math.atan2(-below, y) - math.atan2(-length, outward)
+        reach = min(math.hypot(x, length), self.THIGH + self.SHANK - 1e-3)
+        knee = math.acos((self.THIGH**2 + self.SHANK**2 - reach**2) / (2 * self.THIGH * self.SHANK)) - math.pi
+        thigh = math.atan2(-x, length) + math.acos((self.THIGH**2 + reach**2 - self.SHANK**2) / (2 * self.THIGH * reach))
+        return np.array([hip, thigh, knee]) - self.REST
 
 
 def steer(world, states):
@@ -93,8 +123,7 @@ def steer(world, states):
     bodies = world.bodies()
     near = lambda x, y: int(bodies.ids[np.argmin(np.linalg.norm(bodies.positions[:, :2] - (x, y), axis=1))])
     car = Car(near(-6, -6), Way([(0, -6), (6, -6), (6, 0), (6, 6), (0, 6), (-6, 6), (-6, 0), (0, 0)], 1.5))
-    dog = Dog(near(0, 0), Way([(2.7, 0), (2.7, 2.7), (0, 2.7), (-2.7, 2.7), (-2.7, 0), (-2.7, -2.7), (0, -2.7),
-                               (2.7, -2.7)], 0.4), mass=20)
+    dog = Dog(near(0, 0), Way([(2.8, 0.4), (2.8, 2.8), (-2.8, 2.8), (-2.8, -2.8), (2.8, -2.8)], 0.3))
     seen = {"car": set(), "dog": set()}
     for _ in range(states):
         for name, robot, body in (("car", car, car.chassis), ("dog", dog, dog.trunk)):
