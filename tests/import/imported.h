@@ -30,10 +30,11 @@ inline const Model& model_of(const std::string& name) {
 
 inline const std::vector<std::string>& all_models() {
   static const std::vector<std::string> names = {
-      "arm.urdf",   "bracket.urdf",  "gripper.urdf",     "quadruped.urdf",   "trolley.urdf",
-      "car.sdf",    "nested.sdf",    "pendulum.sdf",     "room.sdf",         "screw.sdf",
-      "shapes.sdf", "universal.sdf", "defaults.xml",     "hips.xml",         "joints.xml",
-      "servos.xml", "statics.xml",   "meshes/angle.obj", "meshes/block.stl", "meshes/pyramid.dae"};
+      "arm.urdf",          "bracket.urdf",  "gripper.urdf",     "quadruped.urdf",   "trolley.urdf",
+      "car.sdf",           "nested.sdf",    "pendulum.sdf",     "room.sdf",         "screw.sdf",
+      "shapes.sdf",        "universal.sdf", "defaults.xml",     "hips.xml",         "joints.xml",
+      "servos.xml",        "statics.xml",   "meshes/angle.obj", "meshes/block.stl", "meshes/pyramid.dae",
+      "meshes/corner.gltf"};
   return names;
 }
 

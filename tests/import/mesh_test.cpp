@@ -21,6 +21,19 @@ TEST(Meshes, ColladaIsWrittenBesideTheScene) {
   EXPECT_EQ(std::get<core::TriangleMesh>(scene_of(model).shapes.front().shape).triangles.size(), 4u);
 }
 
+/// Its nodes are posed and scaled, and its y axis is up, as glTF has it.
+TEST(Meshes, GltfIsTurnedUpright) {
+  const Model model = read_model(kModels / "meshes/corner.gltf", {.paths = {}, .mass_kg = 6});
+  const core::Scene scene = scene_of(model);
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  EXPECT_LT(distance(scene.bodies.front().pose.p_WB, core::Vec3(0.5, 0.75, 1.5)), 1e-9);
+  const auto mesh = read_triangles(kModels / "meshes/corner.gltf", core::Vec3::Ones());
+  core::Vec3 low = core::Vec3::Constant(9), high = -low;
+  for (const core::Vec3& p : std::get<core::TriangleMesh>(mesh).points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  EXPECT_LT(distance(low, core::Vec3(0, 0, 1)), 1e-9);
+  EXPECT_LT(distance(high, core::Vec3(2, 3, 3)), 1e-9);
+}
+
 TEST(Meshes, WithAMassAFileIsABodyAboutItsCentre) {
   const Model model = read_model(kModels / "meshes/wedge.obj", {.paths = {}, .mass_kg = 3});
   const core::Scene scene = scene_of(model);
