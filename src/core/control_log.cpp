@@ -49,7 +49,8 @@ void ControlLog::add(std::vector<Track<Key, Value>>& tracks, const Key& key, Ent
   auto track = std::ranges::lower_bound(tracks, key, {}, &Track<Key, Value>::key);
   if (track == tracks.end() || track->key != key) track = tracks.insert(track, {key, {}});
   const auto place_of = [](const Entry<Value>& e) { return std::tuple(e.from, e.client, e.sequence); };
-  const auto place = std::ranges::lower_bound(track->entries, place_of(entry), {}, place_of);
+  auto place = track->entries.end();  // where it mostly belongs
+  while (place != track->entries.begin() && place_of(*(place - 1)) >= place_of(entry)) --place;
   if (place != track->entries.end() && place_of(*place) == place_of(entry)) {
     *place = entry;
     return;
@@ -60,7 +61,7 @@ void ControlLog::add(std::vector<Track<Key, Value>>& tracks, const Key& key, Ent
 
 void ControlLog::note_word(std::uint64_t client, Step from) {
   if (client == kRecordedClient) return;
-  std::vector<Step>& words = words_[client];
+  std::deque<Step>& words = words_[client];
   const auto place = std::ranges::lower_bound(words, from);
   if (place == words.end() || *place != from) words.insert(place, from);
 }
@@ -68,7 +69,7 @@ void ControlLog::note_word(std::uint64_t client, Step from) {
 bool ControlLog::is_silent(std::uint64_t client, Step step) const {
   const auto words = words_.find(client);
   if (words == words_.end()) return client != kRecordedClient;
-  const auto later = std::ranges::upper_bound(words->second, step);
+  const auto later = first_later(words->second, step, std::identity{});
   return later == words->second.begin() || step - *(later - 1) > rules_.silence;
 }
 
@@ -106,11 +107,9 @@ std::vector<Setpoints> ControlLog::since(Step step) const {
   };
   // From the newest that is in effect by then.
   const auto each = [&](const auto& track, const auto& put) {
-    const auto* first = newest(track, step);
-    if (first == nullptr) first = track.entries.data();
-    for (; first != track.entries.data() + track.entries.size(); ++first) {
-      put(message(first->from, first->client, first->sequence), *first);
-    }
+    auto entry = std::ranges::upper_bound(track.entries, step, {}, [](const auto& entry) { return entry.from; });
+    if (entry != track.entries.begin()) --entry;
+    for (; entry != track.entries.end(); ++entry) put(message(entry->from, entry->client, entry->sequence), *entry);
   };
   for (const BodyTrack& track : bodies_) {
     each(track, [&](Setpoints& to, const Entry<Vec3>& entry) {
@@ -131,11 +130,10 @@ std::vector<Setpoints> ControlLog::since(Step step) const {
 template <class Key, class Value>
 void ControlLog::forget_before(std::vector<Track<Key, Value>>& tracks, Step step) {
   std::erase_if(tracks, [&](Track<Key, Value>& track) {
-    const Entry<Value>* const kept = newest(track, step);
-    if (kept == nullptr) return false;
-    const auto forgotten = kept - track.entries.data();
-    track.entries.erase(track.entries.begin(), track.entries.begin() + forgotten);
-    entries_ -= static_cast<std::size_t>(forgotten);
+    const auto later = std::ranges::upper_bound(track.entries, step, {}, &Entry<Value>::from);
+    if (later == track.entries.begin()) return false;
+    entries_ -= static_cast<std::size_t>(later - 1 - track.entries.begin());
+    track.entries.erase(track.entries.begin(), later - 1);
     const Entry<Value>& first = track.entries.front();
     const bool is_over = track.entries.size() == 1 && first.from < step - 1 &&
                          (!first.value || (rules_.on_silence == OnSilence::kZero && is_silenced(first, step - 1)));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -40,6 +42,12 @@ class ControlLog {
       visit_track(track, step,
                   [&](const auto& value, bool is_new) { visit(track.key.first, track.key.second, value, is_new); });
   }
+  /// visit(quantity, value, is_new): likewise for one body.
+  template <class Visit>
+  void for_each_of(BodyId id, Step step, Visit&& visit) const {
+    for (auto track = first_of(id); track != bodies_.end() && track->key.first == id; ++track)
+      visit_track(*track, step, [&](const auto& value, bool is_new) { visit(track->key.second, value, is_new); });
+  }
   /// visit(id, drive, is_new): likewise for joints.
   template <class Visit>
   void for_each_joint(Step step, Visit&& visit) const {
@@ -49,8 +57,7 @@ class ControlLog {
   /// What is in effect on one body in state `step`, and what is known to come: visit(quantity, value).
   template <class Visit>
   void for_each_ahead(BodyId id, Step step, Visit&& visit) const {
-    auto track = std::ranges::lower_bound(bodies_, std::pair(id, Quantity{}), {}, &BodyTrack::key);
-    for (; track != bodies_.end() && track->key.first == id; ++track) {
+    for (auto track = first_of(id); track != bodies_.end() && track->key.first == id; ++track) {
       if (const auto value = in_effect(*track, step)) visit(track->key.second, *value);
       for (auto entry = track->entries.rbegin(); entry != track->entries.rend() && entry->from > step; ++entry) {
         if (entry->value) visit(track->key.second, *entry->value);
@@ -76,7 +83,7 @@ class ControlLog {
   template <class Key, class Value>
   struct Track {
     Key key;
-    std::vector<Entry<Value>> entries;  ///< ascending (from, client, sequence)
+    std::deque<Entry<Value>> entries;  ///< ascending (from, client, sequence)
   };
   using BodyTrack = Track<std::pair<BodyId, Quantity>, Vec3>;
   using JointTrack = Track<JointId, JointDrive>;
@@ -90,10 +97,25 @@ class ControlLog {
   std::optional<Vec3> in_silence(const Vec3& value, Quantity quantity) const;
   std::optional<JointDrive> in_silence(const JointDrive& value) const;
 
+  auto first_of(BodyId id) const {
+    return std::ranges::lower_bound(bodies_, std::pair(id, Quantity{}), {}, &BodyTrack::key);
+  }
+  /// The first that is later than state `step`. Mostly it is asked for the newest states, so it is looked for from the
+  /// end: a search through all of them would touch memory that nobody else does.
+  template <class List, class StepOf>
+  static auto first_later(const List& list, Step step, StepOf step_of) {
+    constexpr int kNewest = 8;
+    auto later = list.end();
+    for (int i = 0; i < kNewest; ++i) {
+      if (later == list.begin() || std::invoke(step_of, *(later - 1)) <= step) return later;
+      --later;
+    }
+    return std::ranges::upper_bound(list.begin(), later, step, {}, step_of);
+  }
   /// The newest of state `step` or before; null: none.
   template <class Key, class Value>
   static const Entry<Value>* newest(const Track<Key, Value>& track, Step step) {
-    const auto later = std::ranges::upper_bound(track.entries, step, {}, &Entry<Value>::from);
+    const auto later = first_later(track.entries, step, &Entry<Value>::from);
     return later == track.entries.begin() ? nullptr : &*(later - 1);
   }
   template <class Value>
@@ -123,9 +145,9 @@ class ControlLog {
   }
 
   ControlRules rules_;
-  std::vector<BodyTrack> bodies_;                     ///< ascending key
-  std::vector<JointTrack> joints_;                    ///< ascending key
-  std::map<std::uint64_t, std::vector<Step>> words_;  ///< by client: states that it has said something for, ascending
+  std::vector<BodyTrack> bodies_;                    ///< ascending key
+  std::vector<JointTrack> joints_;                   ///< ascending key
+  std::map<std::uint64_t, std::deque<Step>> words_;  ///< by client: states that it has said something for, ascending
   std::size_t entries_ = 0;
 };
 

@@ -19,27 +19,36 @@ core::Heard Node::hear(const core::Setpoints& setpoints) {
   return world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
 }
 
-/// Whoever has come was told of in other states by others: all that is in effect on it is told anew.
+/// What is new. Whoever has come was told of in other states by others: all that has been in effect on it since then.
 void Node::note_effects() {
   const core::ControlLog& controls = world_.controls();
   if (controls.empty()) return;
   const core::Step n = current_step();
-  // What has been in effect on a body since it has come, or what is new.
-  const auto is_told = [&](core::BodyId id, core::Step step, bool is_new) {
-    const auto row = std::ranges::find(report_.arrivals, id, &HandOffRow::body);
-    const bool has_come = row != report_.arrivals.end();
-    const bool is_news = has_come ? step == row->stamp + 1 || (step > row->stamp && is_new) : step == n && is_new;
-    return is_news && world_.contains(id);
-  };
-  core::Step oldest = n;
-  for (const HandOffRow& row : report_.arrivals) oldest = std::min(oldest, row.stamp + 1);
+  const auto arrival = [&](core::BodyId id) { return std::ranges::find(report_.arrivals, id, &HandOffRow::body); };
+  const auto has_come = [&](core::BodyId id) { return arrival(id) != report_.arrivals.end(); };
+  controls.for_each_body(n, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
+    if (is_new && world_.contains(id) && !has_come(id)) report_.effects.bodies.push_back({n, {id, quantity, value}});
+  });
+  controls.for_each_joint(n, [&](core::JointId id, const auto& drive, bool is_new) {
+    const core::BodyId body = scene_.joints[core::value_of(id)].a;
+    if (is_new && world_.contains(body) && !has_come(body)) report_.effects.joints.push_back({n, {id, drive}});
+  });
+  core::Step oldest = n + 1;
+  for (const HandOffRow& row : report_.arrivals) {
+    if (!world_.contains(row.body)) continue;
+    const core::Step first = row.stamp + 1;
+    oldest = std::min(oldest, first);
+    for (core::Step step = first; step <= n; ++step) {
+      controls.for_each_of(row.body, step, [&](core::Quantity quantity, const auto& value, bool is_new) {
+        if (is_new || step == first) report_.effects.bodies.push_back({step, {row.body, quantity, value}});
+      });
+    }
+  }
   for (core::Step step = oldest; step <= n; ++step) {
-    controls.for_each_body(step, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
-      if (is_told(id, step, is_new)) report_.effects.bodies.push_back({step, {id, quantity, value}});
-    });
     controls.for_each_joint(step, [&](core::JointId id, const auto& drive, bool is_new) {
-      const core::BodyId body = scene_.joints[core::value_of(id)].a;
-      if (is_told(body, step, is_new)) report_.effects.joints.push_back({step, {id, drive}});
+      const auto row = arrival(scene_.joints[core::value_of(id)].a);
+      if (row == report_.arrivals.end() || step <= row->stamp || !world_.contains(row->body)) return;
+      if (is_new || step == row->stamp + 1) report_.effects.joints.push_back({step, {id, drive}});
     });
   }
 }
@@ -47,14 +56,12 @@ void Node::note_effects() {
 /// Its next host may have heard less. Drives of joints go along.
 void Node::note_left_behind(const core::ClusterState& cluster) {
   const core::ControlLog& controls = world_.controls();
-  if (controls.empty()) return;
   const core::Step n = current_step();
-  const auto has_left = [&](core::BodyId id) {
-    return std::ranges::binary_search(cluster.bodies, id, {}, &core::BodyRecord::id);
-  };
-  controls.for_each_body(n, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool) {
-    if (value && has_left(id)) report_.effects.bodies.push_back({n + 1, {id, quantity, {}}});
-  });
+  for (const core::BodyRecord& body : cluster.bodies) {
+    controls.for_each_of(body.id, n, [&](core::Quantity quantity, const auto& value, bool) {
+      if (value) report_.effects.bodies.push_back({n + 1, {body.id, quantity, {}}});
+    });
+  }
 }
 
 void Node::forget_setpoints() {
