@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""What it costs to steer 1,000 bodies: balls that roll over four regions, left alone and with a torque on each of them, 60
-times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/control_cost.md."""
+"""What it costs to steer 1,000 bodies: balls that roll about over four regions, left alone and with a torque on each of
+them, 60 times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/control_cost.md."""
 import argparse
 import json
 import pathlib
+import shutil
 import statistics
 import subprocess
 import sys
@@ -20,13 +21,17 @@ TEXT = """# What steering costs: measured
 
 Written by `scripts/control_cost.sh`; do not edit. {machine}.
 
-{bodies} balls that roll over four regions of one host, `deterministic`, {seconds} s paced by the clock: *left alone*; beside a
-client that only looks on ([`World.connect`](client.md)); and with a torque on each ball, said anew 60 times a second by that
-client. {repeats} times each by turns; medians of the runs, of the nodes' frames while the client was there.
+{bodies} balls that roll about in a pen over four regions of one host, `deterministic`, {seconds} s paced by the clock: *left
+alone*; beside a client that only looks on ([`World.connect`](client.md)); *told*: with a torque on each ball, said anew 60 times a
+second by that client, of {weak:g} N m, too weak to change where anybody goes, so that what is simulated is the same; *pushed*: likewise
+with {strong:g} N m, by which the balls gather speed, meet more often and change their hosts; and *replayed*: what was recorded of
+*pushed* ([`control.replay`](client.md)), the same motion without the client. {repeats} times each by turns; medians of the runs, of the
+nodes' frames while the client was there.
 
 {costs}
-Setpoints that came late: {late} of {heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state
-for {bodies} of them, to each node, in {messages} messages. Slowest frames (p99) with the torques against the client alone: {more}.
+Slowest frames (p99): told against the client alone {told}; pushed against replayed {pushed}. Setpoints that came late: {late} of
+{heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state for {bodies} of them, to each node, in
+{messages} messages.
 
 ## How soon it acts
 
@@ -36,17 +41,32 @@ which neighbours have to know of it for their auras, is {lookahead} in the demo.
 
 {delays}"""
 
-KINDS = ("left alone", "looked at", "steered")
+KINDS = ("left alone", "looked at", "told", "pushed", "replayed")
+WEAK_N_M, STRONG_N_M = 1e-4, 1.0
 
 
 def scene(folder, bodies):
+    """Balls 1.3 m apart that start in all directions, between four walls."""
     side = int(bodies**0.5 + 0.999)
-    rows = "\n".join(f"  - {{prototype: ball, position: [{1.3 * (i % side - side / 2):.2f}, {1.3 * (i // side - side / 2):.2f}, 0.4]}}"
-                     for i in range(bodies))
+    wall = 1.3 * side / 2 + 2
+
+    def ball(i):
+        x, y = (1.3 * (place - (side - 1) / 2) for place in (i % side, i // side))
+        return (f"  - {{prototype: ball, position: [{x:.2f}, {y:.2f}, 0.4], "
+                f"velocity: [{1.5 * np.cos(2.4 * i):.3f}, {1.5 * np.sin(2.4 * i):.3f}, 0]}}")
+
+    rows = "\n".join(ball(i) for i in range(bodies))
+    walls = "\n".join(f"  - {{name: wall {i}, shape: wall {along}, position: [{x:.2f}, {y:.2f}, 1]}}"
+                      for i, (along, x, y) in enumerate((("y", wall, 0), ("y", -wall, 0), ("x", 0, wall), ("x", 0, -wall))))
     (folder / "balls.yaml").write_text(f"""name: balls
-shapes: {{ball: {{sphere: {{radius: 0.4}}}}}}
+shapes:
+  ball: {{sphere: {{radius: 0.4}}}}
+  wall x: {{box: {{size: [{2 * wall:.2f}, 0.5, 2]}}}}
+  wall y: {{box: {{size: [0.5, {2 * wall:.2f}, 2]}}}}
 prototypes: {{ball: {{shape: ball, mass: 1, can_sleep: false}}}}
-statics: [{{name: ground, shape: {{plane: {{}}}}}}]
+statics:
+  - {{name: ground, shape: {{plane: {{}}}}}}
+{walls}
 bodies:
 {rows}
 """)
@@ -68,23 +88,31 @@ def frames(folder, first):
 
 
 def one_run(options, file, kind):
+    """Of a run; what was recorded of it is kept beside `file` if it was pushed, and given to one that is replayed."""
+    record = file.parent / "setpoints.csv"
     with tempfile.TemporaryDirectory() as temporary:
         report = pathlib.Path(temporary) / "report"
         steps = int(60 * (options.seconds + 8))
+        setting = [f"dds.domain={options.domain}"] + ([f"control.replay={record}"] if kind == "replayed" else [])
         run = subprocess.Popen([options.program, "launch", str(file), "--headless", "--steps", str(steps), "--report",
-                                str(report), "--set", f"dds.domain={options.domain}"], stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
+                                str(report), *[word for one in setting for word in ("--set", one)]],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         time.sleep(3)
         said = {}
-        if kind != "left alone":
-            bodies = options.bodies if kind == "steered" else 0
-            client = subprocess.run([options.client, str(file), str(options.domain), str(bodies), str(options.seconds)],
+        if kind in ("looked at", "told", "pushed"):
+            bodies = 0 if kind == "looked at" else options.bodies
+            torque = STRONG_N_M if kind == "pushed" else WEAK_N_M
+            client = subprocess.run([options.client, str(file), str(options.domain), str(bodies), str(torque),
+                                     str(options.seconds)],
                                     capture_output=True, text=True, check=True, timeout=options.seconds + 120)
             said = json.loads(client.stdout)
         if run.wait(options.seconds + 120) != 0:
             raise RuntimeError("the run has failed")
+        if kind == "pushed":
+            shutil.copy(report / "setpoints.csv", record)
         summary = json.loads((report / "summary.json").read_text())
-        return {"kind": kind, **frames(report, 300), "real_time_factor": summary["real_time_factor"], **said}
+        return {"kind": kind, **frames(report, 300), "real_time_factor": summary["real_time_factor"],
+                "hand_offs": summary["migrations"], **said}
 
 
 def answer_states(options, world, lead, states):
@@ -138,20 +166,25 @@ def write(options):
     def of(kind, key):
         return statistics.median(row[key] for row in rows if row["kind"] == kind)
 
-    wanted = [("real-time factor", "real_time_factor"), ("frame p50, ms", "p50"), ("p99", "p99")]
+    wanted = [("real-time factor", "real_time_factor"), ("hand-offs", "hand_offs"), ("frame p50, ms", "p50"),
+              ("p99", "p99")]
     costs = table(["", *KINDS], [[name, *[f"{of(kind, key):.3g}" for kind in KINDS]] for name, key in wanted])
     delays = [json.loads(line) for line in (options.out / "delays.jsonl").read_text().splitlines()]
     rows_of_delays = [[row["lead"] if row["lead"] <= 2 else f"{row['lead']} = K + {row['lead'] - row['lookahead']}",
                        row["answered"], row["heard"], row["late"]] for row in delays]
-    steered = [row for row in rows if row["kind"] == "steered"]
+    steered = [row for row in rows if row["kind"] in ("told", "pushed")]
+
+    def more(kind, base):
+        return f"{100 * (of(kind, 'p99') / of(base, 'p99') - 1):+.0f}%"
+
     text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=options.bodies,
-                       seconds=options.seconds, repeats=len(steered), costs=costs,
+                       seconds=options.seconds, repeats=len(steered) // 2, weak=WEAK_N_M, strong=STRONG_N_M, costs=costs,
                        late=sum(row["late"] for row in steered), heard=sum(row["heard"] for row in steered),
                        refused=sum(row["refused"] for row in steered), per_step=33 * options.bodies,
                        messages=-(-options.bodies // 800),
                        answered=options.answered, lookahead=delays[0]["lookahead"],
                        delays=table(["states later", "states answered", "heard by nodes", "late"], rows_of_delays).strip() + "\n",
-                       more=f"{100 * (of('steered', 'p99') / of('looked at', 'p99') - 1):+.0f}%")
+                       told=more("told", "looked at"), pushed=more("pushed", "replayed"))
     pathlib.Path("docs/control_cost.md").write_text(text)
 
 
