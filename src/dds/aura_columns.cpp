@@ -127,8 +127,8 @@ MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expect
   const bool in_range = none_negative(in.speed_m_s()) && all_body_ids(in.id()) && all_within(in.p_WB(), kFarthest_m) &&
                         all_within(in.v_WB(), kFastest_m_s) && all_within(in.w_WB(), kFastestSpin_rad_s) &&
                         all_within(in.speed_m_s(), kFastestReach_m_s) && all_below(in.epoch(), kMostEpochs) &&
-                        std::ranges::all_of(in.elsewhere_stamp(), not_later) &&
-                        none_negative(in.unborn_birth()) && std::ranges::all_of(in.unborn_birth(), soon) &&
+                        std::ranges::all_of(in.elsewhere_stamp(), not_later) && none_negative(in.unborn_birth()) &&
+                        std::ranges::all_of(in.unborn_birth(), soon) &&
                         all_below(in.prototype(), expected.prototype_count) && all_below(in.elsewhere_row(), rows) &&
                         all_below(in.elsewhere_host(), expected.region_count) && none_negative(in.elsewhere_stamp()) &&
                         all_below(in.unborn_row(), rows);
