@@ -28,6 +28,7 @@ void WorldView::begin_generation(core::Generation generation) {
   for (Source& source : sources_) {
     source.published = -1;
     source.sequence = 0;
+    source.is_whole = false;
     source.pending.clear();
   }
   bodies_.clear();
@@ -119,7 +120,9 @@ void WorldView::apply(const Replica& replica) {
   }
   for (const ReplicaBody& row : replica.bodies) apply_row(row, replica);
   for (const core::RemovedBody& removed : replica.removed) apply_removal(removed);
-  if (replica.key_frame) doubt_missing(replica);
+  if (!replica.key_frame) return;
+  source.is_whole = true;
+  doubt_missing(replica);
 }
 
 void WorldView::apply_row(const ReplicaBody& row, const Replica& replica) {

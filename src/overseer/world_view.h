@@ -50,6 +50,8 @@ class WorldView {
 
   core::Generation generation() const { return generation_; }
   core::Step stamp() const { return stamp_; }
+  /// A key frame of this generation has been taken in from it: since then all that it has is here.
+  bool is_whole(core::RegionId region) const { return sources_.at(core::value_of(region)).is_whole; }
   std::size_t body_count() const { return slots_.size(); }
   template <class Visit>
   void for_each(Visit&& visit) const {
@@ -76,6 +78,7 @@ class WorldView {
     RegionState state = RegionState::kAbsent;
     core::Step published = -1;
     std::uint64_t sequence = 0;
+    bool is_whole = false;
     std::deque<Pending> pending;  ///< by stamp; deltas before key frames
   };
   struct Tombstone {

@@ -75,17 +75,8 @@ void WorldWatch::look(std::chrono::nanoseconds time_out) {
 
 void WorldWatch::note(const core::Replica& replica) {
   Published& known = published_[replica.source];
-  if (replica.generation != known.generation) known = {replica.generation, -1, false};
-  if (replica.key_frame) {
-    known.whole = true;
-  } else {
-    known.step = replica.stamp;
-  }
-}
-
-bool WorldWatch::is_whole(core::RegionId region, core::Generation generation) const {
-  const auto known = published_.find(region);
-  return known != published_.end() && known->second.generation == generation && known->second.whole;
+  if (replica.generation != known.generation) known = {replica.generation, -1};
+  if (!replica.key_frame) known.step = replica.stamp;
 }
 
 core::Step WorldWatch::published(core::RegionId region, core::Generation generation) const {

@@ -38,15 +38,12 @@ class WorldWatch {
   bool take_change() { return std::exchange(changed_, false); }
   /// The newest state of this generation that this region has published; -1: none.
   core::Step published(core::RegionId region, core::Generation generation) const;
-  /// A key frame of this generation has come from it: since then all that it has is known.
-  bool is_whole(core::RegionId region, core::Generation generation) const;
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Published {
     core::Generation generation = 0;
     core::Step step = -1;
-    bool whole = false;
   };
 
   void note(const core::Replica& replica);

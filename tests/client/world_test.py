@@ -66,6 +66,13 @@ class Steering(WorldTest):
         self.assertEqual(second.step(2).step, stood.step + 2)
         self.assertEqual(first.step().step, stood.step + 3)
 
+    def test_who_comes_later_sees_all_bodies_from_the_first_word_on(self):
+        every = self.launch(paused=False).bodies().ids.tolist()
+        for _ in range(4):
+            late = self.connect()
+            self.assertEqual(late.bodies().ids.tolist(), every)
+            late.close()
+
     def test_the_rest_of_what_send_can_ask_for(self):
         world = self.launch()
         fixed = world.add_static(aurasim.Shape.box((4, 4, 1)), position=(10, 10, 0.5))

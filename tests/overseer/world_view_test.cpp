@@ -169,6 +169,24 @@ TEST_F(View, AKeyFrameBringsWhatWasMissedAndItsSilenceIsDoubt) {
   EXPECT_EQ(view_.counters().given_up, 1U);
 }
 
+/// A key frame that has come is no part of what is seen before its tick has been composed.
+TEST_F(View, ARegionIsWholeOnceItsKeyFrameIsInAFrame) {
+  publish(0, 3, {body(1, 0, 0)}, true);
+  publish(0, 3, {});
+  publish(1, 3, {body(2, 1, 0)}, true);
+  EXPECT_EQ(compose(), nullptr);
+  EXPECT_FALSE(view_.is_whole(RegionId{0}));
+  quiet(3, {1, 2});
+  ASSERT_NE(compose(), nullptr);
+  EXPECT_TRUE(view_.is_whole(RegionId{0}));
+  EXPECT_TRUE(view_.is_whole(RegionId{1}));
+  EXPECT_FALSE(view_.is_whole(RegionId{2}));
+  EXPECT_EQ(view_.body_count(), 2u);
+  ++generation_;
+  publish(0, 3, {});
+  EXPECT_FALSE(view_.is_whole(RegionId{0}));
+}
+
 TEST_F(View, AnOldKeyFrameDoesNotUndoWhatIsKnownBetter) {
   publish(0, 9, {body(1, 0, 0, 9), body(2, 0, 0, 9)});
   quiet(9, {1, 2});

@@ -135,7 +135,8 @@ void RunLink::meet(const Patience& patience) {
   const auto begin = Clock::now();
   const auto computes = [this] {
     const std::set<core::RegionId> live = live_regions();
-    return steering_.is_complete() &&
+    // What has come is looked at now and then only: a region that is not there yet would count for none.
+    return steering_.is_complete() && watch_.nodes().size() >= launch_.regions.size() &&
            std::ranges::all_of(live,
                                [this](core::RegionId region) {
                                  const dds::NodeState state = watch_.nodes().at(region).status.state;
@@ -289,10 +290,9 @@ WorldState RunLink::standing_state(const Patience& patience) {
 /// Of a run that goes on.
 WorldState RunLink::seen_state(const Patience& patience) {
   const auto all_are_seen = [this] {
-    const core::Generation generation = watch_.view().generation();
-    return watch_.view().stamp() >= 0 && std::ranges::all_of(live_regions(), [&](core::RegionId region) {
-             return watch_.is_whole(region, generation);
-           });
+    const overseer::WorldView& view = watch_.view();
+    return view.stamp() >= 0 &&
+           std::ranges::all_of(live_regions(), [&](core::RegionId region) { return view.is_whole(region); });
   };
   wait_until(all_are_seen, patience, "no state of all regions has been published");
   const overseer::WorldView& view = watch_.view();
