@@ -35,27 +35,32 @@ Heard ControlLog::hear(const Setpoints& setpoints, Step computed, Step notice, s
 
 void ControlLog::recall(const Setpoints& setpoints) {
   const auto& [client, sequence, generation, from, bodies, joints] = setpoints;
+  std::size_t of_body = 0, of_joint = 0;
   for (const BodySetpoint& body : bodies) {
-    add(bodies_, std::pair(body.id, body.quantity), Entry<Vec3>{from, client, sequence, body.value});
+    add(bodies_, std::pair(body.id, body.quantity), Entry<Vec3>{from, client, sequence, body.value}, of_body);
   }
   for (const JointSetpoint& joint : joints) {
-    add(joints_, joint.id, Entry<JointDrive>{from, client, sequence, joint.drive});
+    add(joints_, joint.id, Entry<JointDrive>{from, client, sequence, joint.drive}, of_joint);
   }
   note_word(client, from);
 }
 
 template <class Key, class Value>
-void ControlLog::add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry) {
-  auto track = std::ranges::lower_bound(tracks, key, {}, &Track<Key, Value>::key);
-  if (track == tracks.end() || track->key != key) track = tracks.insert(track, {key, {}});
-  const auto place_of = [](const Entry<Value>& e) { return std::tuple(e.from, e.client, e.sequence); };
-  auto place = track->entries.end();  // where it mostly belongs
-  while (place != track->entries.begin() && place_of(*(place - 1)) >= place_of(entry)) --place;
-  if (place != track->entries.end() && place_of(*place) == place_of(entry)) {
-    *place = entry;
+void ControlLog::add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry, std::size_t& place) {
+  if (place >= tracks.size() || tracks[place].key != key) {
+    auto found = std::ranges::lower_bound(tracks, key, {}, &Track<Key, Value>::key);
+    if (found == tracks.end() || found->key != key) found = tracks.insert(found, {key, {}});
+    place = static_cast<std::size_t>(found - tracks.begin());
+  }
+  auto& entries = tracks[place++].entries;
+  const auto order_of = [](const Entry<Value>& e) { return std::tuple(e.from, e.client, e.sequence); };
+  auto later = entries.end();  // where it mostly belongs
+  while (later != entries.begin() && order_of(*(later - 1)) >= order_of(entry)) --later;
+  if (later != entries.end() && order_of(*later) == order_of(entry)) {
+    *later = entry;
     return;
   }
-  track->entries.insert(place, std::move(entry));
+  entries.insert(later, std::move(entry));
   ++entries_;
 }
 

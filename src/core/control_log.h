@@ -35,12 +35,15 @@ class ControlLog {
   bool empty() const { return bodies_.empty() && joints_.empty(); }
 
   /// visit(id, quantity, value, is_new) for what is in effect on bodies in state `step`, ascending (id, quantity).
-  /// `is_new`: it was not in the state before. Then also for what is let go of, without value.
-  template <class Visit>
-  void for_each_body(Step step, Visit&& visit) const {
-    for (const BodyTrack& track : bodies_)
+  /// `is_new`: it was not in the state before. Then also for what is let go of, without value. Only for bodies that
+  /// is_wanted(id).
+  template <class IsWanted, class Visit>
+  void for_each_body(Step step, IsWanted&& is_wanted, Visit&& visit) const {
+    for (const BodyTrack& track : bodies_) {
+      if (!is_wanted(track.key.first)) continue;
       visit_track(track, step,
                   [&](const auto& value, bool is_new) { visit(track.key.first, track.key.second, value, is_new); });
+    }
   }
   /// visit(quantity, value, is_new): likewise for one body.
   template <class Visit>
@@ -54,12 +57,14 @@ class ControlLog {
     for (const JointTrack& track : joints_)
       visit_track(track, step, [&](const auto& value, bool is_new) { visit(track.key, value, is_new); });
   }
-  /// What is in effect on one body in state `step`, and what is known to come: visit(quantity, value).
+  /// What is in effect on one body in state `step`, and what is known to come up to state `last`: visit(quantity,
+  /// value).
   template <class Visit>
-  void for_each_ahead(BodyId id, Step step, Visit&& visit) const {
+  void for_each_ahead(BodyId id, Step step, Step last, Visit&& visit) const {
     for (auto track = first_of(id); track != bodies_.end() && track->key.first == id; ++track) {
       if (const auto value = in_effect(*track, step)) visit(track->key.second, *value);
-      for (auto entry = track->entries.rbegin(); entry != track->entries.rend() && entry->from > step; ++entry) {
+      auto entry = first_later(track->entries, last, &Entry<Vec3>::from);
+      while (entry != track->entries.begin() && (--entry)->from > step) {
         if (entry->value) visit(track->key.second, *entry->value);
       }
     }
@@ -88,8 +93,9 @@ class ControlLog {
   using BodyTrack = Track<std::pair<BodyId, Quantity>, Vec3>;
   using JointTrack = Track<JointId, JointDrive>;
 
+  /// `place`: of the track to look at first, and afterwards of the one behind: messages mostly go on from key to key.
   template <class Key, class Value>
-  void add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry);
+  void add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry, std::size_t& place);
   template <class Key, class Value>
   void forget_before(std::vector<Track<Key, Value>>& tracks, Step step);
   void note_word(std::uint64_t client, Step from);

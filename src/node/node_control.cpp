@@ -26,8 +26,9 @@ void Node::note_effects() {
   const core::Step n = current_step();
   const auto arrival = [&](core::BodyId id) { return std::ranges::find(report_.arrivals, id, &HandOffRow::body); };
   const auto has_come = [&](core::BodyId id) { return arrival(id) != report_.arrivals.end(); };
-  controls.for_each_body(n, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
-    if (is_new && world_.contains(id) && !has_come(id)) report_.effects.bodies.push_back({n, {id, quantity, value}});
+  const auto is_here = [this](core::BodyId id) { return world_.contains(id); };
+  controls.for_each_body(n, is_here, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
+    if (is_new && !has_come(id)) report_.effects.bodies.push_back({n, {id, quantity, value}});
   });
   controls.for_each_joint(n, [&](core::JointId id, const auto& drive, bool is_new) {
     const core::BodyId body = scene_.joints[core::value_of(id)].a;

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -21,12 +22,15 @@ constexpr std::string_view kDrive = "drive";
 constexpr std::size_t kColumns = 10, kFirstNumber = 4;
 
 std::string row(core::RegionId region, core::Step step, std::string_view what, std::uint64_t id,
-                const std::vector<double>& numbers) {
-  std::string text = fmt::format("{},{},{},{}", core::value_of(region), step, what, id);
+                std::span<const double> numbers) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{},{},{},{}", core::value_of(region), step, what, id);
   for (std::size_t i = 0; i < kColumns - kFirstNumber; ++i) {
-    text += i < numbers.size() ? fmt::format(",{}", numbers[i]) : ",";
+    text += ',';
+    if (i < numbers.size()) fmt::format_to(out, "{}", numbers[i]);
   }
-  return text + '\n';
+  return text += '\n';
 }
 
 std::optional<double> finite_or_infinite(std::string_view cell) {
@@ -81,18 +85,18 @@ std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells)
 
 std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect) {
   const core::BodySetpoint& body = effect.setpoint;
-  std::vector<double> numbers;
-  if (body.value) numbers = {body.value->x(), body.value->y(), body.value->z()};
+  std::span<const double> numbers;
+  if (body.value) numbers = {body.value->data(), 3};
   return row(region, effect.step, kQuantityNames.at(static_cast<std::size_t>(body.quantity)), core::value_of(body.id),
              numbers);
 }
 
 std::string setpoint_row(core::RegionId region, const core::JointEffect& effect) {
-  std::vector<double> numbers;
-  if (const auto& d = effect.setpoint.drive) {
-    numbers = {d->position, d->speed, d->stiffness, d->damping, d->effort, d->max_effort};
-  }
-  return row(region, effect.step, kDrive, core::value_of(effect.setpoint.id), numbers);
+  std::array<double, 6> numbers{};
+  const auto& d = effect.setpoint.drive;
+  if (d) numbers = {d->position, d->speed, d->stiffness, d->damping, d->effort, d->max_effort};
+  return row(region, effect.step, kDrive, core::value_of(effect.setpoint.id),
+             d ? std::span<const double>(numbers) : std::span<const double>());
 }
 
 core::Setpoints as_heard_again(const core::BodyEffect& effect) {

@@ -1,6 +1,7 @@
 // Bodies in a Bullet world, as records in and out: what the world of a region and the scratch world have in common.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -92,6 +93,8 @@ class Simulation {
   void push();
   void stop_pushing();
   double coming_push(const HostedBody& body) const;
+  /// States for which others go by what they are told now.
+  core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
   int rank_of(core::BodyId id) const;

@@ -56,10 +56,11 @@ void Simulation::heed_setpoints(core::Step n) {
   pushed_.clear();
   const core::ControlLog& controls = timeline_.controls();
   if (controls.empty()) return;
+  HostedBody* body = nullptr;
+  const auto is_here = [&](core::BodyId id) { return (body = table_.find(id)) != nullptr && body->born; };
   controls.for_each_body(
-      n, [&](core::BodyId id, core::Quantity quantity, const std::optional<core::Vec3>& value, bool is_new) {
-        HostedBody* const body = table_.find(id);
-        if (body == nullptr || !body->born || (is_nothing(quantity, value) && !is_new)) return;
+      n, is_here, [&](core::BodyId, core::Quantity quantity, const std::optional<core::Vec3>& value, bool is_new) {
+        if (is_nothing(quantity, value) && !is_new) return;
         awaken(*body->rigid);
         snapshot_is_fresh_ = records_are_fresh_ = false;
         if (value && !heed(*body->rigid, quantity, *value)) ++unbearable_;
@@ -138,7 +139,8 @@ double Simulation::coming_push(const HostedBody& body) const {
     return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
   };
   double most[core::kQuantities] = {};
-  controls.for_each_ahead(body.id, step_ + 1, [&](core::Quantity quantity, const core::Vec3& value) {
+  const core::Step last = step_ + foreseen();
+  controls.for_each_ahead(body.id, step_ + 1, last, [&](core::Quantity quantity, const core::Vec3& value) {
     double kick = 0;
     switch (quantity) {
       case core::Quantity::kForce:  // in the time t it comes t^2 / 2 off its path

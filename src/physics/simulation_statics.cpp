@@ -1,6 +1,5 @@
 // The statics of a simulation: which stand in which state, and where those are that move.
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/static_path.h"
@@ -133,13 +132,12 @@ void Simulation::start_moving_statics() {
 /// What may push whom for as long as others go by what they are told now.
 std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   std::vector<Shove> shoves;
-  const auto ahead = static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s));
   for (const MovingStatic& moving : moving_statics_) {
     if (!static_is_in_[moving.index]) continue;
     const core::StaticBody& body = scene_->statics[moving.index];
     const btCollisionShape& shape = *statics_[moving.index]->getCollisionShape();
     Shove shove{bounds_of(*statics_[moving.index]), 0};
-    const core::Step last = goes(moving.index) ? step_ + ahead : step_;
+    const core::Step last = goes(moving.index) ? step_ + foreseen() : step_;
     core::Pose before = pose_of_static(moving.index, step_);
     for (core::Step n = step_ + 1; n <= last; ++n) {
       const core::Pose after = pose_of_static(moving.index, n);

@@ -1,6 +1,10 @@
 // What is in effect in which state, of all that programs have said.
 #include "core/control_log.h"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace aurasim::core {
@@ -70,10 +74,12 @@ TEST(ControlLog, LettingGoIsToldOnce) {
   log.recall({1, 2, 0, 20, {{kBody, Quantity::kForce, {}}}, {}});
   const auto told = [&log](Step step) {
     std::string text;
-    log.for_each_body(step, [&](BodyId, Quantity, const auto& value, bool is_new) {
-      text += value ? "value" : "none";
-      if (is_new) text += " new";
-    });
+    log.for_each_body(
+        step, [](BodyId) { return true; },
+        [&](BodyId, Quantity, const auto& value, bool is_new) {
+          text += value ? "value" : "none";
+          if (is_new) text += " new";
+        });
     return text;
   };
   EXPECT_EQ(told(9), "");
@@ -116,6 +122,32 @@ INSTANTIATE_TEST_SUITE_P(Rules, ProgramSilence,
                          ::testing::Values(Silent{OnSilence::kHold, -1, 0, true},
                                            Silent{OnSilence::kZero, -1, -1, false},
                                            Silent{OnSilence::kLast, 5, 2, true}));
+
+TEST(ControlLog, WhatIsKnownToComeIsToldOfUpToAState) {
+  ControlLog log;
+  for (Step step = 10; step <= 1000; step += 10) log.recall(force(1, static_cast<std::uint64_t>(step), step, step));
+  std::vector<double> told;
+  log.for_each_ahead(kBody, 25, 50, [&](Quantity, const Vec3& value) { told.push_back(value.x()); });
+  std::ranges::sort(told);
+  EXPECT_EQ(told, (std::vector<double>{20, 30, 40, 50}));
+}
+
+/// Also long after the newest one, and between old ones.
+TEST(ControlLog, OfABodyOnlyItsOwnIsVisited) {
+  ControlLog log;
+  for (Step step = 10; step <= 400; step += 10) {
+    log.recall(force(1, static_cast<std::uint64_t>(step), step, step));
+    log.recall({1, static_cast<std::uint64_t>(step), 0, step, {{BodyId{8}, Quantity::kSpin, Vec3(0, 0, step)}}, {}});
+  }
+  for (const Step step : {10, 11, 205, 400, 401}) {
+    std::string told;
+    log.for_each_of(kBody, step, [&](Quantity quantity, const auto& value, bool is_new) {
+      EXPECT_EQ(quantity, Quantity::kForce);
+      told = std::to_string(static_cast<int>(value->x())) + (is_new ? " new" : "");
+    });
+    EXPECT_EQ(told, std::to_string(step / 10 * 10) + (step % 10 == 0 ? " new" : "")) << step;
+  }
+}
 
 TEST(ControlLog, ARecordNeverFallsSilent) {
   ControlLog log;
