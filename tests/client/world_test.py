@@ -67,10 +67,10 @@ class Steering(WorldTest):
         self.assertEqual(first.step().step, stood.step + 3)
 
     def test_who_comes_later_sees_all_bodies_from_the_first_word_on(self):
-        every = self.launch(paused=False).bodies().ids.tolist()
+        before = set(self.launch(paused=False).bodies().ids.tolist())
         for _ in range(4):
             late = self.connect()
-            self.assertEqual(late.bodies().ids.tolist(), every)
+            self.assertEqual(before - set(late.bodies().ids.tolist()), set())  # others may have been injected since
             late.close()
 
     def test_the_rest_of_what_send_can_ask_for(self):
