@@ -39,6 +39,7 @@ set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ programs that drive a world of aurasim
 A library, its headers and find_package(aurasim): join or launch a run, see
 its bodies, act, and step the world in lock-step with a program.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "aurasim (= ${CPACK_PACKAGE_VERSION})")
+set(CPACK_DEBIAN_DEV_PACKAGE_CONTROL_EXTRA "${own}/triggers")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-aurasim)
