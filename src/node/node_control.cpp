@@ -25,21 +25,16 @@ void Node::note_effects() {
   if (controls.empty()) return;
   const core::Step n = current_step();
   const auto arrival = [&](core::BodyId id) { return std::ranges::find(report_.arrivals, id, &HandOffRow::body); };
-  const auto has_come = [&](core::BodyId id) { return arrival(id) != report_.arrivals.end(); };
   const auto is_here = [this](core::BodyId id) { return world_.contains(id); };
   controls.for_each_body(n, is_here, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
-    if (is_new && !has_come(id)) report_.effects.bodies.push_back({n, {id, quantity, value}});
+    const bool is_told = is_new && arrival(id) == report_.arrivals.end();
+    if (is_told) report_.effects.bodies.push_back({n, {id, quantity, value}});
   });
-  controls.for_each_joint(n, [&](core::JointId id, const auto& drive, bool is_new) {
-    const core::BodyId body = scene_.joints[core::value_of(id)].a;
-    if (is_new && world_.contains(body) && !has_come(body)) report_.effects.joints.push_back({n, {id, drive}});
-  });
-  core::Step oldest = n + 1;
+  core::Step oldest = n;
   for (const HandOffRow& row : report_.arrivals) {
-    if (!world_.contains(row.body)) continue;
     const core::Step first = row.stamp + 1;
     oldest = std::min(oldest, first);
-    for (core::Step step = first; step <= n; ++step) {
+    for (core::Step step = first; is_here(row.body) && step <= n; ++step) {
       controls.for_each_of(row.body, step, [&](core::Quantity quantity, const auto& value, bool is_new) {
         if (is_new || step == first) report_.effects.bodies.push_back({step, {row.body, quantity, value}});
       });
@@ -47,9 +42,11 @@ void Node::note_effects() {
   }
   for (core::Step step = oldest; step <= n; ++step) {
     controls.for_each_joint(step, [&](core::JointId id, const auto& drive, bool is_new) {
-      const auto row = arrival(scene_.joints[core::value_of(id)].a);
-      if (row == report_.arrivals.end() || step <= row->stamp || !world_.contains(row->body)) return;
-      if (is_new || step == row->stamp + 1) report_.effects.joints.push_back({step, {id, drive}});
+      const core::BodyId body = scene_.joints[core::value_of(id)].a;
+      const auto row = arrival(body);
+      const bool has_come = row != report_.arrivals.end();
+      const bool is_told = has_come ? step == row->stamp + 1 || (step > row->stamp && is_new) : step == n && is_new;
+      if (is_told && is_here(body)) report_.effects.joints.push_back({step, {id, drive}});
     });
   }
 }

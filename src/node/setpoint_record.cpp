@@ -45,9 +45,9 @@ std::uint64_t sequence_of(bool says_something) { return says_something ? 2 : 1; 
 
 std::optional<core::BodyEffect> body_effect(std::string_view what, core::Step step, std::uint64_t id,
                                             const std::vector<double>& numbers) {
-  const auto name = std::ranges::find(kQuantityNames, what);
-  if (name == kQuantityNames.end() || (!numbers.empty() && numbers.size() != 3)) return {};
-  core::BodyEffect effect{step, {core::BodyId{id}, static_cast<core::Quantity>(name - kQuantityNames.begin()), {}}};
+  const std::optional<core::Quantity> quantity = quantity_named(what);
+  if (!quantity || (!numbers.empty() && numbers.size() != 3)) return {};
+  core::BodyEffect effect{step, {core::BodyId{id}, *quantity, {}}};
   if (!numbers.empty()) effect.setpoint.value = core::Vec3(numbers[0], numbers[1], numbers[2]);
   return effect;
 }
@@ -82,6 +82,12 @@ std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells)
 }
 
 }  // namespace
+
+std::optional<core::Quantity> quantity_named(std::string_view name) {
+  const auto found = std::ranges::find(kQuantityNames, name);
+  if (found == kQuantityNames.end()) return {};
+  return static_cast<core::Quantity>(found - kQuantityNames.begin());
+}
 
 std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect) {
   const core::BodySetpoint& body = effect.setpoint;

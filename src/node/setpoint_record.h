@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,9 @@ inline constexpr const char* kSetpointsFile = "setpoints.csv";
 /// `what`: force, torque, velocity, spin (of body `id`: N, N m, m/s, rad/s) or drive (of joint `id`: position, speed,
 /// stiffness, damping, effort, max_effort). Without numbers: let go of.
 inline constexpr std::string_view kSetpointsHeader = "region,step,what,id,x0,x1,x2,x3,x4,x5\n";
+
+/// As the record calls it; nothing: there is none of that name.
+std::optional<core::Quantity> quantity_named(std::string_view name);
 
 /// With every digit.
 std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect);

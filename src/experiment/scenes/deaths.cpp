@@ -26,12 +26,12 @@ class Life {
   /// Until `victim` has computed state `last`. False when `stop` became true.
   bool run(Interference& interference, std::size_t victim, core::Step last, const std::atomic<bool>& stop) {
     ImpatientClient client(interference.requests);
-    Programs programs(interference.words, cluster_.size(), world_ != nullptr ? world_->step : 0);
+    Programs programs(interference.words, cluster_, world_ != nullptr ? world_->step : 0);
     if (world_ != nullptr) client.speak_after(*world_, cluster_.node(0));
     while (cluster_.node(victim).current_step() < last) {
       if (stop) return false;
       if (world_ == nullptr) client.speak(cluster_.node(0));
-      for (std::size_t r = 0; r < cluster_.size(); ++r) programs.speak(r, cluster_.node(r));
+      programs.speak();
       const VirtualCluster::Event event = cluster_.next();
       const std::size_t r = core::value_of(event.region);
       for (core::WorldCut& part : cluster_.node(r).take_saved()) {

@@ -5,12 +5,13 @@
 #include <fstream>
 #include <map>
 #include <stdexcept>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include "experiment/scenes/json.h"
+#include "experiment/virtual_cluster.h"
 #include "node/node.h"
+#include "node/setpoint_record.h"
 
 namespace aurasim::experiment {
 namespace {
@@ -105,10 +106,9 @@ class RequestReader {
 };
 
 core::BodySetpoint body_setpoint_in(const Json& json) {
-  constexpr std::array<std::string_view, core::kQuantities> kNames = {"force", "torque", "velocity", "spin", "driving"};
-  const auto name = std::ranges::find(kNames, json.at("quantity").get<std::string>());
-  if (name == kNames.end()) throw std::runtime_error(fmt::format("no quantity {}", json.at("quantity").dump()));
-  core::BodySetpoint body{body_in(json.at("body")), static_cast<core::Quantity>(name - kNames.begin()), {}};
+  const auto quantity = node::quantity_named(json.at("quantity").get<std::string>());
+  if (!quantity) throw std::runtime_error(fmt::format("no quantity {}", json.at("quantity").dump()));
+  core::BodySetpoint body{body_in(json.at("body")), *quantity, {}};
   if (json.contains("value")) body.value = vec3_in(json["value"]);
   return body;
 }
@@ -186,11 +186,15 @@ void ImpatientClient::ask(node::Node& lead) {
   }
 }
 
-Programs::Programs(const std::vector<Word>& words, std::size_t nodes, core::Step from)
-    : words_(words), from_(from), next_(nodes, 0) {}
+Programs::Programs(const std::vector<Word>& words, VirtualCluster& listeners, core::Step from)
+    : words_(words), listeners_(listeners), from_(from), next_(listeners.size(), 0) {}
 
-void Programs::speak(std::size_t index, node::Node& node) {
-  for (std::size_t& next = next_[index]; next < words_.size(); ++next) {
+void Programs::speak() {
+  for (std::size_t r = 0; r < listeners_.size(); ++r) speak(listeners_.node(r), next_[r]);
+}
+
+void Programs::speak(node::Node& node, std::size_t& next) const {
+  for (; next < words_.size(); ++next) {
     const Word& word = words_[next];
     if (word.said_step > node.current_step()) return;
     if (word.setpoints.at_step > from_) node.hear(word.setpoints);

@@ -28,6 +28,8 @@ class Node;
 
 namespace aurasim::experiment {
 
+class VirtualCluster;
+
 /// Orders that are given together: a new kind of body and the first one of it.
 struct Request {
   core::Step at_step = 0;  ///< of the last one; the others hold from when they are known
@@ -73,13 +75,16 @@ class ImpatientClient {
 class Programs {
  public:
   /// `from`: the state that the run begins or goes on from; what has acted by then is in the saved world.
-  Programs(const std::vector<Word>& words, std::size_t nodes, core::Step from);
+  Programs(const std::vector<Word>& words, VirtualCluster& listeners, core::Step from);
 
-  /// Before each step of the node.
-  void speak(std::size_t index, node::Node& node);
+  /// Before each step of a node.
+  void speak();
 
  private:
+  void speak(node::Node& node, std::size_t& next) const;
+
   const std::vector<Word>& words_;
+  VirtualCluster& listeners_;
   core::Step from_;
   std::vector<std::size_t> next_;  ///< by node
 };

@@ -69,13 +69,13 @@ std::optional<Played> play(VirtualCluster& cluster, Interference& interference, 
   };
   for (std::size_t r = 0; r < cluster.size(); ++r) note_reports(cluster.node(r).confirmed());
   ImpatientClient client(interference.requests);
-  Programs programs(interference.words, cluster.size(), world != nullptr ? world->step : 0);
+  Programs programs(interference.words, cluster, world != nullptr ? world->step : 0);
   if (saver != nullptr) saver->begin(cluster);
   if (world != nullptr) client.speak_after(*world, cluster.node(0));
   while (cluster.slowest() < steps + more || cluster.confirmed() < steps) {
     if (stop) return std::nullopt;
     if (world == nullptr) client.speak(cluster.node(0));
-    for (std::size_t r = 0; r < cluster.size(); ++r) programs.speak(r, cluster.node(r));
+    programs.speak();
     const VirtualCluster::Event event = cluster.next();
     if (saver != nullptr) saver->collect(cluster.node(core::value_of(event.region)));
     note_reports(cluster.node(core::value_of(event.region)).confirmed());
