@@ -175,6 +175,10 @@ class JointDigest {
          {drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, drive.max_effort}) {
       d_.add(value);
     }
+    d_.bytes(joint.follows.has_value());
+    if (!joint.follows) return;
+    d_.bytes(value_of(joint.follows->leader));
+    d_.add(joint.follows->ratio);
   }
   void add(const std::optional<core::JointLimits>& limits) const {
     d_.bytes(limits.has_value());

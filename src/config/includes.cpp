@@ -175,9 +175,14 @@ void take_over_bodies(std::vector<Included>& includes, SceneDraft& draft) {
 void take_over_joints(std::vector<Included>& includes, SceneDraft& draft) {
   for (Included& included : includes) {
     const std::size_t first = included.first_body;
+    const auto first_joint = static_cast<std::uint32_t>(draft.joints.size());
     for (DraftJoint joint : included.draft.joints) {
       joint.joint.name = name_in(included, joint.joint.name);
       joint.joint.X_WJ = included.X_WI * joint.joint.X_WJ;
+      if (auto coupling = core::coupling_of(joint.joint.kind)) {
+        coupling->leader = core::JointId{first_joint + core::value_of(coupling->leader)};
+        core::couple(joint.joint.kind, *coupling);
+      }
       joint.a += first;
       if (joint.b) *joint.b += first;
       if (joint.a < draft.bodies.size()) draft.joints.push_back(std::move(joint));

@@ -13,6 +13,8 @@ using core::JointMotor;
 using core::JointSpec;
 using core::SpringAxis;
 
+const KeyTable& coupling_keys() { return keys_of_coupling(); }
+
 Key axis_key(std::string_view meaning) { return optional("axis", vec3(), meaning).usual("[0, 0, 1]"); }
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -100,6 +102,10 @@ KeyOf<T> drive_key(const KeysOf<core::JointDrive>& (*table)()) {
           [table](const Field& field, T& joint) { table().read(field, joint.drive.emplace()); }};
 }
 
+Key follows_key() {
+  return optional("follows", map(coupling_keys), "its drive strives for where another joint is").otherwise("none");
+}
+
 const KeyTable& ball_keys() { return keys_of_ball(); }
 const KeyTable& hinge_keys() { return keys_of_hinge(); }
 const KeyTable& slider_keys() { return keys_of_slider(); }
@@ -150,7 +156,7 @@ const KeysOf<core::HingeJoint>& keys_of_hinge() {
       joined<core::HingeJoint>(
           {axis_key("[x, y, z] in the world at the start; of any length but 0"), turning_limits_key(),
            optional("motor", map(motor_keys), "turns it; not beside a drive").otherwise("none"),
-           drive_key<core::HingeJoint>(turning_drive_keys)},
+           drive_key<core::HingeJoint>(turning_drive_keys), follows_key()},
           resistance_keys<core::HingeJoint>(true)));
   return keys;
 }
@@ -159,7 +165,7 @@ const KeysOf<core::SliderJoint>& keys_of_slider() {
   static const KeysOf<core::SliderJoint> keys(
       "joint: slider", "Slides along an axis and does not turn. Its way is 0 at the start.",
       joined<core::SliderJoint>({axis_key("[x, y, z] in the world at the start; of any length but 0"),
-                                 sliding_limits_key(), drive_key<core::SliderJoint>(sliding_drive_keys)},
+                                 sliding_limits_key(), drive_key<core::SliderJoint>(sliding_drive_keys), follows_key()},
                                 resistance_keys<core::SliderJoint>(false)));
   return keys;
 }
@@ -177,6 +183,24 @@ const KeysOf<core::JointDrive>& sliding_drive_keys() {
                                              "stiffness (position - way) + damping (speed - its rate) + effort; solved "
                                              "implicitly, so any stiffness is stable.",
                                              drive_rows(false));
+  return keys;
+}
+
+const KeysOf<core::JointCoupling>& keys_of_coupling() {
+  using core::JointCoupling;
+  static const KeysOf<JointCoupling> keys(
+      "joint: hinge, slider: follows",
+      "Its drive strives for `position` and `ratio` times where the other joint is, and likewise for the speed: a "
+      "gear, "
+      "or fingers of a gripper. Nothing pushes back on the other joint. The drive rests once a joint between the two "
+      "is "
+      "gone.",
+      {
+          required("joint", name_of("joint"),
+                   "a hinge or slider of the same file that a chain of joints binds to this one"),
+          optional("ratio", &JointCoupling::ratio, number(Range::from_to(-1e6, 1e6), "rad or m for each rad or m"),
+                   "its way for each unit of the other's"),
+      });
   return keys;
 }
 

@@ -14,6 +14,8 @@ const KeysOf<core::HingeJoint>& keys_of_hinge();
 const KeysOf<core::SliderJoint>& keys_of_slider();
 const KeysOf<core::JointDrive>& turning_drive_keys();
 const KeysOf<core::JointDrive>& sliding_drive_keys();
+/// Of what a hinge or slider follows, but for its name.
+const KeysOf<core::JointCoupling>& keys_of_coupling();
 /// Of an axis along which a spring lets move, and of one about which it lets turn.
 const KeysOf<core::SpringAxis>& sliding_axis_keys();
 const KeysOf<core::SpringAxis>& turning_axis_keys();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "config/joint_keys.h"
+#include "core/joint_ways.h"
 
 namespace aurasim::config {
 namespace {
@@ -59,29 +60,48 @@ core::Quat read_axis(const Field& field) {
   return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis);
 }
 
-core::JointKind read_ball(const Fields& fields, core::Quat&) {
+/// What else is read of a kind.
+struct Reading {
+  core::Quat q_WJ = core::Quat::Identity();
+  std::optional<Field> leader;  ///< the name of the joint that it follows
+};
+
+std::optional<core::JointCoupling> read_coupling(const Field& field, bool has_drive, Reading& joint) {
+  if (!field.given()) return std::nullopt;
+  if (!has_drive) field.complain("found no drive beside it, allowed: `follows` of a joint with a drive");
+  const Fields fields(field);
+  core::JointCoupling coupling;
+  keys_of_coupling().read_members(fields, coupling);
+  joint.leader = fields["joint"];
+  fields.close();
+  return coupling;
+}
+
+core::JointKind read_ball(const Fields& fields, Reading&) {
   core::BallJoint ball;
   keys_of_ball().read_members(fields, ball);
   return ball;
 }
 
-core::JointKind read_fixed(const Fields&, core::Quat&) { return core::FixedJoint{}; }
+core::JointKind read_fixed(const Fields&, Reading&) { return core::FixedJoint{}; }
 
-core::JointKind read_hinge(const Fields& fields, core::Quat& q_WJ) {
+core::JointKind read_hinge(const Fields& fields, Reading& joint) {
   core::HingeJoint hinge;
-  q_WJ = read_axis(fields["axis"]);
+  joint.q_WJ = read_axis(fields["axis"]);
   hinge.limits = read_open_limits(fields["limits_deg"], kDegree);
   keys_of_hinge().read_members(fields, hinge);
   const Field motor = fields["motor"];
   if (motor.given()) motor_keys().read(motor, hinge.motor.emplace());
   if (motor.given() && hinge.drive) motor.complain("found a motor beside a drive, allowed: one of them");
+  hinge.follows = read_coupling(fields["follows"], hinge.drive.has_value(), joint);
   return hinge;
 }
 
-core::JointKind read_slider(const Fields& fields, core::Quat& q_WJ) {
-  q_WJ = read_axis(fields["axis"]);
+core::JointKind read_slider(const Fields& fields, Reading& joint) {
+  joint.q_WJ = read_axis(fields["axis"]);
   core::SliderJoint slider{read_open_limits(fields["limits"], 1)};
   keys_of_slider().read_members(fields, slider);
+  slider.follows = read_coupling(fields["follows"], slider.drive.has_value(), joint);
   return slider;
 }
 
@@ -98,9 +118,9 @@ core::SpringAxis read_spring_axis(const Field& field, bool turns) {
   return axis;
 }
 
-core::JointKind read_spring(const Fields& fields, core::Quat& q_WJ) {
+core::JointKind read_spring(const Fields& fields, Reading& joint) {
   core::SpringJoint spring;
-  q_WJ = read_orientation(fields["orientation"]);
+  joint.q_WJ = read_orientation(fields["orientation"]);
   std::size_t i = 0;
   for (const char* name : {"x", "y", "z", "rx", "ry", "rz"}) {
     spring.axes[i] = read_spring_axis(fields[name], i >= 3);
@@ -109,20 +129,24 @@ core::JointKind read_spring(const Fields& fields, core::Quat& q_WJ) {
   return spring;
 }
 
-using KindReader = core::JointKind (*)(const Fields&, core::Quat&);
+using KindReader = core::JointKind (*)(const Fields&, Reading&);
 constexpr std::pair<std::string_view, KindReader> kKinds[] = {{"ball", read_ball},
                                                               {"hinge", read_hinge},
                                                               {"slider", read_slider},
                                                               {"fixed", read_fixed},
                                                               {"spring", read_spring}};
 
-void read_kinds(const Fields& fields, core::JointSpec& joint) {
+/// The field of the name of a joint that it follows.
+std::optional<Field> read_kinds(const Fields& fields, core::JointSpec& joint) {
+  Reading reading;
   for (const auto& [name, read] : kKinds) {
     if (!fields.has(name)) continue;
     const Fields settings(fields[name]);
-    joint.kind = read(settings, joint.X_WJ.q_WB);
+    joint.kind = read(settings, reading);
     settings.close();
   }
+  joint.X_WJ.q_WB = reading.q_WJ;
+  return reading.leader;
 }
 
 /// The places of one or two bodies in the draft.
@@ -143,11 +167,17 @@ std::vector<std::size_t> read_ends(const Field& field, const SceneDraft& draft) 
   return places.size() == items.size() ? places : std::vector<std::size_t>{};
 }
 
-void read_joint(const Field& field, SceneDraft& draft) {
+/// A joint in SceneDraft::joints whose leader is still a name.
+struct DraftFollower {
+  std::size_t place = 0;
+  Field leader;
+};
+
+void read_joint(const Field& field, SceneDraft& draft, std::vector<DraftFollower>& followers) {
   DraftJoint draft_joint;
   core::JointSpec& joint = draft_joint.joint;
   const Fields fields(field);
-  read_kinds(fields, joint);
+  const std::optional<Field> leader = read_kinds(fields, joint);
   const std::vector<std::size_t> ends = read_ends(fields["bodies"], draft);
   joint.name = fields["name"].text().value_or(fmt::format("joint {}", draft.joints.size()));
   if (!ends.empty()) joint.X_WJ.p_WB = draft.bodies[ends[0]].body.pose.p_WB;
@@ -160,14 +190,50 @@ void read_joint(const Field& field, SceneDraft& draft) {
   if (ends.empty()) return;
   draft_joint.a = ends[0];
   if (ends.size() == 2) draft_joint.b = ends[1];
+  if (leader && leader->given()) followers.push_back({draft.joints.size(), *leader});
   draft.joints.push_back(std::move(draft_joint));
+}
+
+core::JointWays ways_of(const SceneDraft& draft) {
+  std::vector<core::JointEnds> ends;
+  for (const DraftJoint& joint : draft.joints) {
+    ends.push_back({joint.a, joint.b ? std::optional<std::uint64_t>(*joint.b) : std::nullopt});
+  }
+  return core::JointWays(std::move(ends));
+}
+
+/// Until the joints are numbered, a leader is its place among those of the file.
+void find_leaders(const std::vector<DraftFollower>& followers, SceneDraft& draft) {
+  if (followers.empty()) return;
+  Names names("joint");
+  for (const DraftJoint& joint : draft.joints) names.add(joint.joint.name);
+  const core::JointWays ways = ways_of(draft);
+  for (const DraftFollower& follower : followers) {
+    const auto leader = names.find(follower.leader);
+    if (!leader) continue;
+    core::JointKind& kind = draft.joints[follower.place].joint.kind;
+    const core::JointKind& lead = draft.joints[*leader].joint.kind;
+    core::JointCoupling coupling = *core::coupling_of(kind);
+    coupling.leader = core::JointId{*leader};
+    core::couple(kind, coupling);
+    if (!std::holds_alternative<core::HingeJoint>(lead) && !std::holds_alternative<core::SliderJoint>(lead)) {
+      follower.leader.complain("found a joint of another kind, allowed: a hinge or slider");
+    } else if (*leader == follower.place) {
+      follower.leader.complain("found the joint itself, allowed: another one");
+    } else if (ways.way(core::JointId{static_cast<std::uint32_t>(follower.place)}, coupling.leader).empty()) {
+      follower.leader.complain(
+          "found a joint of something else, allowed: one that a chain of joints binds to this one");
+    }
+  }
 }
 
 }  // namespace
 
 void read_joints(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  for (const Field& item : field.items()) read_joint(item, draft);
+  std::vector<DraftFollower> followers;
+  for (const Field& item : field.items()) read_joint(item, draft, followers);
+  find_leaders(followers, draft);
 }
 
 void number_joints(SceneDraft& draft) {

@@ -55,6 +55,14 @@ struct JointMotion {
   double effort = 0;  ///< of its drive or motor, in the last substep
 };
 
+/// A hinge or slider whose drive strives for where another one of its mechanism is: for its own position and `ratio`
+/// times the leader's, and likewise for the speed. Nothing pushes back on the leader. While some joint between the two
+/// is gone, the drive rests; whoever drives the joint anew lets it go its own way.
+struct JointCoupling {
+  JointId leader{};
+  double ratio = 1;  ///< rad or m for each rad or m of the leader
+};
+
 /// Holds the two origins together; turns freely.
 struct BallJoint {
   double damping = 0;  ///< N m s/rad
@@ -65,7 +73,8 @@ struct HingeJoint {
   std::optional<JointLimits> limits;  ///< of the angle, which goes on beyond half a turn
   std::optional<JointMotor> motor;
   JointResistance resistance = {};
-  std::optional<JointDrive> drive = {};  ///< without a motor
+  std::optional<JointDrive> drive = {};       ///< without a motor
+  std::optional<JointCoupling> follows = {};  ///< with a drive
 };
 
 /// Slides along the z axis of J and does not turn.
@@ -73,6 +82,7 @@ struct SliderJoint {
   std::optional<JointLimits> limits;
   JointResistance resistance = {};
   std::optional<JointDrive> drive = {};
+  std::optional<JointCoupling> follows = {};  ///< with a drive
 };
 
 /// Neither moves nor turns.
@@ -92,6 +102,25 @@ struct SpringJoint {
 };
 
 using JointKind = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, SpringJoint>;
+
+/// Of hinges and sliders, which have one axis of their own; nothing of others.
+template <class Part>
+Part part_of(const JointKind& kind, Part HingeJoint::*of_hinge, Part SliderJoint::*of_slider) {
+  if (const auto* hinge = std::get_if<HingeJoint>(&kind)) return hinge->*of_hinge;
+  if (const auto* slider = std::get_if<SliderJoint>(&kind)) return slider->*of_slider;
+  return {};
+}
+inline std::optional<JointDrive> drive_of(const JointKind& kind) {
+  return part_of(kind, &HingeJoint::drive, &SliderJoint::drive);
+}
+inline std::optional<JointCoupling> coupling_of(const JointKind& kind) {
+  return part_of(kind, &HingeJoint::follows, &SliderJoint::follows);
+}
+/// Of a hinge or slider.
+inline void couple(JointKind& kind, const JointCoupling& coupling) {
+  if (auto* hinge = std::get_if<HingeJoint>(&kind)) hinge->follows = coupling;
+  if (auto* slider = std::get_if<SliderJoint>(&kind)) slider->follows = coupling;
+}
 
 /// Binds bodies that are there in state 0. Its JointId is the index in Scene::joints.
 struct JointSpec {

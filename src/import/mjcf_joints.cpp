@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "import/couplings.h"
 #include "import/joints.h"
 
 namespace aurasim::importing {
@@ -140,10 +141,27 @@ bool holds_as_it_stands(const mjData& d, const mjtNum* data, int body1, int body
   return (held - relpos).norm() < 1e-6 && X_12.q_WB.angularDistance(mj_quat(data + 6)) < 1e-6;
 }
 
+/// One joint that is a polynomial of another.
+void couple_joints(const mjModel& m, int equality, const std::string& element, Model& model) {
+  const int joint1 = m.eq_obj1id[equality], joint2 = m.eq_obj2id[equality];
+  const mjtNum* data = m.eq_data + mjNEQDATA * equality;
+  if (joint2 < 0) return model.lose(element, "joint: it holds a joint at a place; in a scene it moves");
+  const std::string name = mjcf_name(m, mjOBJ_JOINT, joint1, "joint"),
+                    other = mjcf_name(m, mjOBJ_JOINT, joint2, "joint");
+  const auto here = find_joint(model, name), there = find_joint(model, other);
+  const std::string what = fmt::format("joint: '{}' and '{}' move together", name, other);
+  const auto lose = [&](std::string_view why) {
+    model.lose(element, fmt::format("{} ({}); in a scene each moves on its own", what, why));
+  };
+  if (!here || !there) return lose("one of them is left out");
+  if (std::any_of(data + 2, data + 5, [](mjtNum coefficient) { return coefficient != 0; }))
+    return lose("by a curve, not a line");
+  if (const std::string why = follow(*here, *there, data[1], data[0], model); !why.empty()) return lose(why);
+  model.lose(element, what + "; in a scene the first follows the second, which nothing holds back");
+}
+
 const char* equality_kind(int type) {
   switch (type) {
-    case mjEQ_JOINT:
-      return "joint: one joint that follows another (a gear, a mimic)";
     case mjEQ_TENDON:
       return "tendon: a tendon of a given length";
     default:
@@ -192,6 +210,10 @@ void add_mjcf_equalities(const mjModel& m, const mjData& d, const LinkOfBody& li
     const std::string element = element_name("equality", name);
     if (!m.eq_active[e]) {
       model.note(element, "it is not active");
+      continue;
+    }
+    if (m.eq_type[e] == mjEQ_JOINT) {
+      couple_joints(m, e, element, model);
       continue;
     }
     const int type = m.eq_type[e], body1 = m.eq_obj1id[e], body2 = m.eq_obj2id[e];

@@ -56,7 +56,7 @@ struct Link {
 
 struct Joint {
   std::string name;
-  core::JointKind kind;
+  core::JointKind kind;               ///< what it follows: an index in Model::joints
   std::size_t child = 0;              ///< index in Model::links; what the joint moves
   std::optional<std::size_t> parent;  ///< nothing: the world
   core::Pose X_WJ;

@@ -108,7 +108,9 @@ class ShapeWriter {
 /// Ways and turns of a joint, within its map.
 class JointWriter {
  public:
-  JointWriter(YAML::Emitter& out, const core::Quat& q_WJ) : out_(out), q_WJ_(q_WJ) {}
+  /// `leader`: the name of the joint that it follows, if it does.
+  JointWriter(YAML::Emitter& out, const core::Quat& q_WJ, std::string leader)
+      : out_(out), q_WJ_(q_WJ), leader_(std::move(leader)) {}
 
   void operator()(const core::BallJoint& joint) {
     out_ << YAML::Key << "ball" << YAML::Value << YAML::Flow << YAML::BeginMap;
@@ -184,10 +186,16 @@ class JointWriter {
     number("effort", joint.drive->effort);
     number("max_effort", joint.drive->max_effort, usual.max_effort);
     out_ << YAML::EndMap;
+    if (!joint.follows) return;
+    out_ << YAML::Key << "follows" << YAML::Value << YAML::Flow << YAML::BeginMap;
+    out_ << YAML::Key << "joint" << YAML::Value << leader_;
+    number("ratio", joint.follows->ratio, 1);
+    out_ << YAML::EndMap;
   }
 
   YAML::Emitter& out_;
   core::Quat q_WJ_;
+  std::string leader_;
 };
 
 }  // namespace

@@ -187,7 +187,9 @@ class SceneWriter {
     const core::Pose X_WJ = instance.X_WM * joint.X_WJ;
     out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << name_in(instance, joint.name);
     write_ends(instance, joint.child, joint.parent);
-    std::visit(JointWriter(out_, X_WJ.q_WB), joint.kind);
+    const auto coupling = core::coupling_of(joint.kind);
+    const std::string leader = coupling ? model_.joints[core::value_of(coupling->leader)].name : "";
+    std::visit(JointWriter(out_, X_WJ.q_WB, name_in(instance, leader)), joint.kind);
     out_ << YAML::Key << "position" << YAML::Value << X_WJ.p_WB;
     if (joint.collide) out_ << YAML::Key << "collide" << YAML::Value << true;
     out_ << YAML::EndMap;
@@ -198,7 +200,7 @@ class SceneWriter {
     const std::string name = fmt::format("{} apart from {}", model_.links[a].name, model_.links[b].name);
     out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << name_in(instance, name);
     write_ends(instance, a, b);
-    std::visit(JointWriter(out_, core::Quat::Identity()), core::JointKind(core::SpringJoint{}));
+    std::visit(JointWriter(out_, core::Quat::Identity(), ""), core::JointKind(core::SpringJoint{}));
     out_ << YAML::EndMap;
   }
 

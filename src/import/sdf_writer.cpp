@@ -81,13 +81,6 @@ std::optional<SdfKind> sdf_kind(const core::JointKind& kind) {
   return sdf_kind(std::get<core::SpringJoint>(kind));
 }
 
-/// What drives a joint, which SDF leaves to plugins.
-std::optional<core::JointDrive> drive_of(const core::JointKind& kind) {
-  if (const auto* hinge = std::get_if<core::HingeJoint>(&kind)) return hinge->drive;
-  if (const auto* slider = std::get_if<core::SliderJoint>(&kind)) return slider->drive;
-  return std::nullopt;
-}
-
 class SdfWriter {
  public:
   SdfWriter(const core::Scene& scene, const std::vector<std::string>& names, const fs::path& file,
@@ -278,7 +271,10 @@ class SdfWriter {
     if (!kind) return lose("joint", joint.name, "axes that no joint of SDF has: it is left out");
     const auto* hinge = std::get_if<core::HingeJoint>(&joint.kind);
     if (hinge != nullptr && hinge->motor) lose("joint", joint.name, "its motor");
-    if (const auto drive = drive_of(joint.kind); drive && *drive != core::JointDrive{.max_effort = drive->max_effort})
+    // Drives and gears are left to plugins there.
+    if (core::coupling_of(joint.kind)) lose("joint", joint.name, "that it follows another joint");
+    if (const auto drive = core::drive_of(joint.kind);
+        drive && *drive != core::JointDrive{.max_effort = drive->max_effort})
       lose("joint", joint.name, "its drive");
     if (const auto* ball = std::get_if<core::BallJoint>(&joint.kind); ball != nullptr && ball->damping != 0)
       lose("joint", joint.name, "its damping");

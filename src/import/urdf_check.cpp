@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "import/couplings.h"
 #include "import/xml_file.h"
 
 namespace aurasim::importing {
@@ -202,11 +203,22 @@ const XMLElement& load_robot(const std::filesystem::path& file, tinyxml2::XMLDoc
   return *robot;
 }
 
+void read_mimic(const XMLElement& joint, const XMLElement& mimic, Model& model) {
+  const std::string name = text_of(joint, "name"), leader = text_of(mimic, "joint");
+  const std::string element = element_name("joint", name) + "/mimic";
+  const auto here = find_joint(model, name), there = find_joint(model, leader);
+  const auto lose = [&](std::string_view why) {
+    model.lose(element, fmt::format("it follows joint '{}' ({}); in a scene it moves on its own", leader, why));
+  };
+  if (!here || !there) return lose("one of them is left out");
+  const double ratio = mimic.DoubleAttribute("multiplier", 1), offset = mimic.DoubleAttribute("offset", 0);
+  if (const std::string why = follow(*here, *there, ratio, offset, model); !why.empty()) return lose(why);
+  model.note(element, fmt::format("what holds it back does not hold back joint '{}'", leader));
+}
+
 void tell_of_urdf_joint(const XMLElement& joint, Model& model) {
   const std::string name = element_name("joint", text_of(joint, "name"));
-  if (const XMLElement* mimic = joint.FirstChildElement("mimic"))
-    model.lose(name + "/mimic",
-               fmt::format("it follows joint '{}'; in a scene it moves on its own", text_of(*mimic, "joint")));
+  if (const XMLElement* mimic = joint.FirstChildElement("mimic")) read_mimic(joint, *mimic, model);
   if (text_of(joint, "type") == "planar") model.lose(name, "a planar joint: it is left out");
   if (joint.FirstChildElement("safety_controller") != nullptr)
     model.note(name + "/safety_controller", "a bound for a controller");

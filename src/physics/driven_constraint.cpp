@@ -110,7 +110,7 @@ void write_own_rows(const JointAxes& joint, double substep_s, const btRigidBody&
   }
   if (has_spring(joint)) aim(), rows.pull(pull_of(joint.resistance, substep_s), joint.position);
   if (const double most = substep_s * joint.resistance.friction; most > 0) aim(), rows.push(0, -most, most);
-  if (joint.is_driven()) aim(), rows.pull(pull_of(*joint.drive, substep_s), joint.position);
+  if (joint.is_driven()) aim(), rows.pull(drive_pull_of(joint, substep_s), joint.position);
 }
 
 void let_give(btSolverConstraint& row) {

@@ -83,7 +83,7 @@ JointAxes axes_of(const core::JointSpec& joint, const core::JointFrame& frames, 
 }
 
 bool JointAxes::is_driven() const {
-  return drive && (drive->stiffness > 0 || drive->damping > 0 || drive->effort != 0);
+  return drive && !lost_its_leader && (drive->stiffness > 0 || drive->damping > 0 || drive->effort != 0);
 }
 
 bool JointAxes::counts_turns() const {
@@ -93,14 +93,23 @@ bool JointAxes::counts_turns() const {
   return is_wide || resistance.stiffness > 0 || (drive && drive->stiffness > 0);
 }
 
-ImplicitPull pull_of(const core::JointDrive& drive, double substep_s) {
-  return {drive.position, substep_s * drive.stiffness, substep_s * (drive.damping * drive.speed + drive.effort),
-          substep_s * (drive.damping + substep_s * drive.stiffness), substep_s * drive.max_effort};
+/// The leader is where it will be when a substep ends, as `give` has it of the joint itself.
+ImplicitPull drive_pull_of(const JointAxes& joint, double substep_s) {
+  const core::JointDrive& drive = *joint.drive;
+  const double drift = substep_s * joint.lead_speed;
+  return {.position = drive.position + (joint.lead + drift),
+          .drift = drift,
+          .stiffness = substep_s * drive.stiffness,
+          .steady = substep_s * (drive.damping * (drive.speed + joint.lead_speed) + drive.effort),
+          .give = substep_s * (drive.damping + substep_s * drive.stiffness),
+          .most = substep_s * drive.max_effort};
 }
 
 ImplicitPull pull_of(const core::JointResistance& resistance, double substep_s) {
-  return {resistance.rest, substep_s * resistance.stiffness, 0,
-          substep_s * (resistance.damping + substep_s * resistance.stiffness), std::numeric_limits<double>::infinity()};
+  return {.position = resistance.rest,
+          .stiffness = substep_s * resistance.stiffness,
+          .give = substep_s * (resistance.damping + substep_s * resistance.stiffness),
+          .most = std::numeric_limits<double>::infinity()};
 }
 
 core::JointMotion measure(const JointAxes& joint, const btRigidBody& a, const btRigidBody& b) {

@@ -36,6 +36,10 @@ struct JointAxes {
   double turns_rad = 0;      ///< what of them the angle of the six axes leaves out
   double drive_impulse = 0;  ///< of drive or motor in the last substep
 
+  /// What its drive strives for besides, of a joint that follows another: rad or m as a step begins, and rad/s or m/s.
+  double lead = 0, lead_speed = 0;
+  bool lost_its_leader = false;  ///< then the drive rests
+
   /// Whether its drive pushes at all.
   bool is_driven() const;
   /// Whether it matters how often a hinge has turned.
@@ -48,13 +52,15 @@ JointAxes axes_of(const core::JointSpec& joint, const core::JointFrame& frames, 
 /// A spring with a damper in a substep, solved implicitly: its impulse is stiffness (position - q) + steady - give
 /// dq/dt, q as the substep begins and dq/dt as it ends; at most `most` either way.
 struct ImplicitPull {
-  double position = 0;   ///< rad or m
+  double position = 0;   ///< rad or m, in the first substep of a step
+  double drift = 0;      ///< rad or m: so much more in each after it
   double stiffness = 0;  ///< N m s/rad or N s/m
   double steady = 0;     ///< N m s or N s
   double give = 0;       ///< N m s^2/rad or N s^2/m
   double most = 0;       ///< N m s or N s
 };
-ImplicitPull pull_of(const core::JointDrive& drive, double substep_s);
+/// Of its drive, which it has.
+ImplicitPull drive_pull_of(const JointAxes& joint, double substep_s);
 ImplicitPull pull_of(const core::JointResistance& resistance, double substep_s);
 
 /// How a hinge or slider of a constraint between these bodies stands and moves; of a hinge the angle is within half a

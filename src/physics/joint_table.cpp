@@ -7,6 +7,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
+#include "core/joint_ways.h"
 #include "physics/awaken.h"
 #include "physics/bullet_convert.h"
 
@@ -50,13 +51,6 @@ core::JointDrive bounded(const core::JointDrive& d) {
           .max_effort = most};
 }
 
-/// As the scene has it.
-std::optional<core::JointDrive> drive_in(const core::JointSpec& joint) {
-  if (const auto* hinge = std::get_if<core::HingeJoint>(&joint.kind)) return hinge->drive;
-  if (const auto* slider = std::get_if<core::SliderJoint>(&joint.kind)) return slider->drive;
-  return std::nullopt;
-}
-
 void wake_both(btTypedConstraint* constraint) {
   if (constraint == nullptr) return;
   for (btRigidBody* body : {&constraint->getRigidBodyA(), &constraint->getRigidBodyB()}) {
@@ -78,6 +72,13 @@ JointTable::JointTable(const core::Scene& scene, const Settings& settings)
     entries_[i].axes = axes_of(joint, frames_of(joint, scene, settings.p_WO), substep_s_);
     joints_of_[joint.a].push_back(core::JointId{i});
     if (joint.b) joints_of_[*joint.b].push_back(core::JointId{i});
+  }
+  std::optional<core::JointWays> ways;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    const std::optional<core::JointCoupling> coupling = core::coupling_of(scene.joints[i].kind);
+    if (!coupling) continue;
+    if (!ways) ways.emplace(core::ends_of(scene.joints));
+    followers_.push_back({core::JointId{i}, *coupling, ways->way(core::JointId{i}, coupling->leader)});
   }
 }
 
@@ -179,6 +180,28 @@ void JointTable::measure_again(Entry& entry, double since_s) {
   axes.drive_impulse = is_pushed ? static_cast<double>(entry.constraint->internalGetAppliedImpulse()) : 0;
 }
 
+/// Only bodies and joints that go together wherever they go decide about it.
+void JointTable::follow() {
+  for (const Follower& follower : followers_) {
+    Entry& entry = entries_[core::value_of(follower.joint)];
+    if (!entry.constraint) continue;
+    JointAxes& axes = entry.axes;
+    axes.lead = axes.lead_speed = 0;
+    axes.lost_its_leader = false;
+    if (entry.driven_anew) continue;
+    axes.lost_its_leader = follower.way.empty() || !std::ranges::all_of(follower.way, [this](core::JointId id) {
+                             return entries_[core::value_of(id)].constraint != nullptr;
+                           });
+    if (axes.lost_its_leader) continue;
+    const Entry& leader = entries_[core::value_of(follower.coupling.leader)];
+    const btTypedConstraint& joint = *leader.constraint;
+    const JointMotion now = measure(leader.axes, joint.getRigidBodyA(), joint.getRigidBodyB());
+    if (!std::isfinite(now.position) || !std::isfinite(now.speed)) continue;  // of what is breaking down
+    axes.lead = follower.coupling.ratio * (now.position + leader.axes.turns_rad);
+    axes.lead_speed = follower.coupling.ratio * now.speed;
+  }
+}
+
 void JointTable::finish_look(DynamicsWorld& world) {
   std::erase_if(connected_, [&](core::JointId id) {
     Entry& entry = entries_[core::value_of(id)];
@@ -194,7 +217,7 @@ void JointTable::finish_look(DynamicsWorld& world) {
 
 void JointTable::forget(core::JointId id) {
   Entry& entry = entries_[core::value_of(id)];
-  if (entry.driven_anew) entry.axes.drive = drive_in(scene_->joints[core::value_of(id)]);
+  if (entry.driven_anew) entry.axes.drive = core::drive_of(scene_->joints[core::value_of(id)].kind);
   entry.broken = entry.driven_anew = false;
   entry.axes.position = entry.axes.turns_rad = entry.axes.drive_impulse = entry.speed = 0;
 }
@@ -215,7 +238,7 @@ void JointTable::drive(core::JointId id, const core::JointDrive& drive) {
 void JointTable::let_go(core::JointId id) {
   Entry& entry = entries_.at(core::value_of(id));
   if (!entry.driven_anew) return;
-  entry.axes.drive = drive_in(scene_->joints[core::value_of(id)]);
+  entry.axes.drive = core::drive_of(scene_->joints[core::value_of(id)].kind);
   entry.driven_anew = false;
   wake_both(entry.constraint.get());
 }

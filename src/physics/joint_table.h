@@ -33,7 +33,9 @@ class JointTable {
   void connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world);
   /// Takes the joints of bodies out that are about to leave.
   void disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world);
-  /// After each look: joints that broke in it are gone for good, and hinges are seen to turn.
+  /// Before each look: joints that follow others learn where those are.
+  void follow();
+  /// After it: joints that broke in it are gone for good, and hinges are seen to turn.
   void finish_look(DynamicsWorld& world);
   /// While there are no bodies: those that come say what is known of their joints.
   void forget();
@@ -64,6 +66,12 @@ class JointTable {
     double speed = 0;          ///< of a hinge or slider, as the bodies are
   };
 
+  struct Follower {
+    core::JointId joint{};
+    core::JointCoupling coupling;
+    std::vector<core::JointId> way;  ///< to its leader, which is the last
+  };
+
   const std::vector<core::JointId>& joints_of(core::BodyId body) const;
   void disconnect(Entry& entry, DynamicsWorld& world);
   void read_values(std::span<const double> values, Entry& entry) const;
@@ -79,6 +87,7 @@ class JointTable {
   std::vector<Entry> entries_;                                              ///< as Scene::joints
   std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< asked by id only
   std::vector<core::JointId> connected_;                                    ///< ascending
+  std::vector<Follower> followers_;                                         ///< ascending
   std::unique_ptr<btRigidBody> ground_;  ///< what joints to the world hold on to; in no world
 };
 

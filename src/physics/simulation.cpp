@@ -205,6 +205,7 @@ void Simulation::step() {
   start_moving_statics();
   for (int i = 0; i < settings_.looks(); ++i) {
     push();
+    joints_.follow();
     world_.step(settings_.step_s / settings_.looks());
     joints_.finish_look(world_);
   }

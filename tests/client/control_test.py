@@ -78,7 +78,7 @@ class LockStep(WorldTest):
         ball = world.spawn(aurasim.Shape.sphere(0.5), position=(15, -15, 20), mass=4)
         world.step(ball.step - world.bodies().step)
         body = np.array([ball.body], np.uint64)
-        world.control(velocities=(body, [(0, 0, 0)]), spins=(body, [(0, 0, 0)]))
+        world.control(velocities=(body, (0, 0, 0)), spins=(body, [(0, 0, 0)]))
         bodies = world.step(300)
         height = bodies.positions[bodies.ids == ball.body][0][2]
         self.assertGreater(height, 15, "it fell while nobody had let go of it")

@@ -123,6 +123,8 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
       "scene.joints.2.slider.drive.damping=1",
       "scene.joints.2.slider.drive.effort=1",
       "scene.joints.2.slider.drive.max_effort=1",
+      "scene.joints.2.slider.follows={joint: joint 0}",
+      "scene.joints.2.slider.follows={joint: joint 0, ratio: 2}",
       "scene.joints.3.ball.damping=1",
       "scene.joints.1.spring.x.rest=1",
       "scene.joints.1.spring.x.stiffness=2",

@@ -81,6 +81,22 @@ TEST(JointsInAScene, SlidersAreDrivenAndResist) {
   EXPECT_EQ(slider.drive, core::JointDrive{.position = 4});
 }
 
+TEST(JointsInAScene, FollowOthersOfTheirMechanismAlsoBeforeThoseAreRead) {
+  const Workspace workspace;
+  const std::string drive = "drive: {stiffness: 1}";
+  const auto joints = workspace
+                          .scene(with_bodies("joints:\n  - {slider: {" + drive +
+                                             ", follows: {joint: wheel, ratio: -0.5}}, bodies: [left, rods.1]}\n"
+                                             "  - {ball: {}, bodies: [rods.1, right]}\n"
+                                             "  - {hinge: {" +
+                                             drive + ", follows: {joint: joint 0}}, bodies: [right], name: wheel}\n"))
+                          .joints;
+  EXPECT_EQ(core::coupling_of(joints[0].kind)->leader, core::JointId{2});
+  EXPECT_EQ(core::coupling_of(joints[0].kind)->ratio, -0.5);
+  EXPECT_EQ(core::coupling_of(joints[2].kind)->leader, core::JointId{0});
+  EXPECT_EQ(core::coupling_of(joints[2].kind)->ratio, 1);
+}
+
 TEST(JointsInAScene, BallsAreDamped) {
   EXPECT_EQ(std::get<core::BallJoint>(joint("{ball: {damping: 2}, bodies: [left]}").kind).damping, 2);
 }
@@ -173,6 +189,26 @@ const std::vector<BadCase> kBadJoints = {
     {"SliderWithADriveInDegrees",
      with_bodies("joints:\n  - {slider: {drive: {position_deg: 1}}, bodies: [left]}\n"),
      {"scene.yaml:10:23: joints[0].slider.drive.position_deg: unknown key"}},
+    {"FollowerWithoutADrive",
+     with_bodies("joints:\n  - {hinge: {follows: {joint: b}}, bodies: [left, right]}\n"
+                 "  - {slider: {}, bodies: [left], name: b}\n"),
+     {"scene.yaml:10:23: joints[0].hinge.follows: found no drive beside it, allowed: `follows` of a joint with a "
+      "drive"}},
+    {"FollowerOfNobody",
+     with_bodies("joints:\n  - {hinge: {drive: {}, follows: {joint: b}}, bodies: [left, right], name: a}\n"),
+     {"scene.yaml:10:42: joints[0].hinge.follows.joint: found \"b\", allowed: a joint of this scene: a"}},
+    {"FollowerOfItself",
+     with_bodies("joints:\n  - {hinge: {drive: {}, follows: {joint: a}}, bodies: [left, right], name: a}\n"),
+     {"scene.yaml:10:42: joints[0].hinge.follows.joint: found the joint itself, allowed: another one"}},
+    {"FollowerOfABall",
+     with_bodies("joints:\n  - {hinge: {drive: {}, follows: {joint: b}}, bodies: [left, right]}\n"
+                 "  - {ball: {}, bodies: [left], name: b}\n"),
+     {"scene.yaml:10:42: joints[0].hinge.follows.joint: found a joint of another kind, allowed: a hinge or slider"}},
+    {"FollowerOfWhatHangsFromTheWorldToo",
+     with_bodies("joints:\n  - {hinge: {drive: {}, follows: {joint: b}}, bodies: [left]}\n"
+                 "  - {hinge: {}, bodies: [right], name: b}\n"),
+     {"scene.yaml:10:42: joints[0].hinge.follows.joint: found a joint of something else, allowed: one that a chain of "
+      "joints binds to this one"}},
     {"MotorWithoutStrength",
      with_bodies("joints:\n  - {hinge: {motor: {speed: 1}}, bodies: [left]}\n"),
      {"scene.yaml:10:21: joints[0].hinge.motor.max_impulse: missing, allowed: a number from 0"}},

@@ -57,7 +57,7 @@ TEST_F(ImportCommand, EachAsHasItsAt) {
 }
 
 TEST_F(ImportCommand, StrictWritesNothingIfSomethingIsLost) {
-  EXPECT_EQ(run(model("gripper.urdf") + " --strict --out " + out().string()), 2);
+  EXPECT_EQ(run(model("screw.sdf") + " --strict --out " + out().string()), 2);
   EXPECT_FALSE(std::filesystem::exists(out()));
   EXPECT_EQ(run(model("arm.urdf") + " --strict --out " + out().string()), 0);
 }

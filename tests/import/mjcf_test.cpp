@@ -103,6 +103,14 @@ TEST(Mjcf, ConnectAndWeldAreBallAndFixedJointsThatCollide) {
   EXPECT_TRUE(std::holds_alternative<core::FixedJoint>(joint_named(model, "glue").kind));
 }
 
+TEST(Mjcf, OneJointFollowsAnotherAsItsLineSays) {
+  const Model model = model_of("defaults.xml");
+  const auto coupling = core::coupling_of(joint_named(model, "bend").kind);
+  ASSERT_TRUE(coupling);
+  EXPECT_EQ(model.joints.at(core::value_of(coupling->leader)).name, "lift");
+  EXPECT_EQ(coupling->ratio, 0.5);
+}
+
 TEST(Mjcf, LimitsAreThoseFromTheReference) {
   const auto knee = std::get<core::HingeJoint>(joint_named(model_of("joints.xml"), "knee").kind);
   EXPECT_NEAR(knee.limits->low, -0.7, 1e-12);

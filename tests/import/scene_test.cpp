@@ -147,9 +147,21 @@ TEST(Scene, WhatIsKeptApartIsJoinedByWhatHoldsNothing) {
   EXPECT_FALSE(scene.joints.back().collide);
 }
 
+TEST(Scene, EachInstanceOfAGripperFollowsItsOwnFinger) {
+  const core::Scene scene = scene_of(model_of("gripper.urdf"), {{"a", {}}, {"b", {}}});
+  for (const core::JointSpec& joint : scene.joints) {
+    const auto coupling = core::coupling_of(joint.kind);
+    EXPECT_EQ(coupling.has_value(), joint.name.ends_with("right_slide"));
+    if (coupling) {
+      EXPECT_EQ(scene.joints.at(core::value_of(coupling->leader)).name, joint.name.substr(0, 1) + "/left_slide");
+    }
+  }
+}
+
 TEST(Scene, TheFileSaysWhatIsLost) {
-  const SceneText text = scene_text(model_of("gripper.urdf"), {{}}, "x.yaml");
-  EXPECT_THAT(text.yaml, ::testing::StartsWith("# not as in the file: joint 'right_slide'/mimic: "));
+  const SceneText text = scene_text(model_of("screw.sdf"), {{}}, "x.yaml");
+  EXPECT_THAT(text.yaml, ::testing::StartsWith("# not as in the file: "));
+  EXPECT_THAT(text.yaml, ::testing::HasSubstr("\n# not as in the file: joint 'thread': "));
 }
 
 }  // namespace

@@ -236,6 +236,74 @@ TEST_P(Drives, ASlidersLimitsMayLieOnOneSideOnly) {
   EXPECT_NEAR(box().p_WB.x(), -0.5, 0.02);
 }
 
+/// A palm that hangs still, a finger that its drive opens, and another one that follows it.
+class Gripper : public Drives {
+ protected:
+  static constexpr double kRatio = -0.5;
+
+  Gripper() {
+    scene.gravity = Vec3::Zero();
+    place_body(scene, kBox, {0, 0, 5});
+    place_body(scene, kBox, {0, 2, 5});
+    place_body(scene, kBox, {0, -2, 5});
+    add_joint(scene, core::FixedJoint{}, 0, {}, {0, 0, 5});
+    core::SliderJoint first;
+    first.drive = JointDrive{.position = 1, .stiffness = 40, .damping = 4};
+    add_joint(scene, first, 1, 0, {0, 2, 5}, Vec3::UnitY());
+    core::SliderJoint second;
+    second.drive = JointDrive{.position = 0.25, .stiffness = 4e4, .damping = 400};
+    second.follows = core::JointCoupling{core::JointId{1}, kRatio};
+    add_joint(scene, second, 2, 0, {0, -2, 5}, Vec3::UnitY());
+  }
+
+  double first() { return world->records()[1].p_WB.y() - 2; }
+  double second() { return world->records()[2].p_WB.y() + 2; }
+};
+
+TEST_P(Gripper, AFollowerIsWhereItsLeaderSaysAllTheWay) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
+  double fastest = 0;
+  for (int i = 0; i < 120; ++i) {
+    run_seconds(1.0 / 60);
+    fastest = std::max(fastest, world->records()[1].v_WB.norm());
+    if (i > 10) {
+      EXPECT_NEAR(second(), 0.25 + kRatio * first(), 0.01) << "state " << i;
+    }
+  }
+  EXPECT_GT(fastest, 1) << "or nothing moves";
+  EXPECT_GT(std::abs(first()), 0.8);
+}
+
+TEST_P(Gripper, WhoeverDrivesAFollowerLetsItGoItsOwnWayUntilHeLetsGo) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
+  run_seconds(0.5);
+  const JointDrive own{.position = -0.3, .stiffness = 4e4, .damping = 400};
+  world->controls().recall({1, 1, 0, 31, {}, {{core::JointId{2}, own}}});
+  run_seconds(1.5);
+  EXPECT_NEAR(second(), -0.3, 0.01);
+  world->controls().recall({1, 2, 0, 121, {}, {{core::JointId{2}, {}}}});
+  run_seconds(1.5);
+  EXPECT_NEAR(second(), 0.25 + kRatio * first(), 0.01);
+}
+
+TEST_P(Gripper, AFollowerRestsOnceItsLeaderHasBrokenOff) {
+  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
+  scene.joints[1].break_impulse = 1;
+  run_seconds(0.5);
+  EXPECT_NEAR(second(), 0.25 + kRatio * first(), 0.01);
+  world->controls().recall({1, 1, 0, 31, {}, {{core::JointId{1}, JointDrive{.position = 9, .stiffness = 400}}}});
+  run_seconds(0.1);
+  const double speed = world->records()[2].v_WB.y(), before = second();
+  run_seconds(0.4);
+  EXPECT_GT(std::abs(second() - 0.25 - kRatio * first()), 0.1);
+  EXPECT_NEAR(world->records()[2].v_WB.y(), speed, 1e-4) << "nothing pulls";
+  EXPECT_NEAR(second(), before + 0.4 * speed, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Gripper,
+                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig,
+                                           Solver::kSoftStep));
+
 TEST_P(Drives, ABodyWithMomentsOfItsOwnTurnsByThem) {
   // Euler's equations: I w' = (I w) x w, here about the principal axes, by small steps.
   const Vec3 inertia(0.2, 0.5, 0.6), start(2, 0.5, 1);

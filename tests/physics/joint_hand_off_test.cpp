@@ -57,7 +57,7 @@ std::vector<BodyId> place_creature(core::Scene& scene, double x, const Vec3& v_W
 }
 
 /// A box that drives: two wheels on hinges, of which one turns without end and one goes to and fro by a stiff drive,
-/// a cart with friction on a slider, and a clapper on a damped ball joint.
+/// a cart with friction on a slider, a clapper on a damped ball joint, and a wheel that follows the cart.
 std::vector<BodyId> place_machine(core::Scene& scene, double x) {
   const std::uint64_t first = scene.bodies.size();
   core::HingeJoint endless{core::JointLimits{-std::numeric_limits<double>::infinity(), 60}, {}};
@@ -66,10 +66,13 @@ std::vector<BodyId> place_machine(core::Scene& scene, double x) {
   stiff.drive = core::JointDrive{.position = 9, .stiffness = 2000, .damping = 20, .max_effort = 5};
   core::SliderJoint cart;
   cart.resistance = {.stiffness = 40, .rest = 0.3, .damping = 0.2, .friction = 1};
-  const core::JointKind kinds[] = {endless, stiff, cart, core::BallJoint{0.05}};
+  core::HingeJoint follower;
+  follower.drive = core::JointDrive{.stiffness = 5000, .damping = 50, .max_effort = 20};
+  follower.follows = core::JointCoupling{core::JointId{static_cast<std::uint32_t>(scene.joints.size()) + 2}, 3};
+  const core::JointKind kinds[] = {endless, stiff, cart, core::BallJoint{0.05}, follower};
   place_body(scene, kBox, {x, 0, 3});
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double angle = 1.5 * static_cast<double>(i);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double angle = 1.25 * static_cast<double>(i);
     const Vec3 outward(std::cos(angle), std::sin(angle), 0.2);
     place_body(scene, static_cast<int>(i) % 3, Vec3(x, 0, 3) + outward);
     add_joint(scene, kinds[i], scene.bodies.size() - 1, first, Vec3(x, 0, 3) + 0.5 * outward, outward.normalized());
@@ -197,7 +200,7 @@ TEST_P(JointHandOff, DrivesThatWereSetOnTheWayGoWithTheirBodies) {
   EXPECT_EQ(run_random(400), 0) << "after " << hand_offs << " hand-offs";
   EXPECT_GT(hand_offs, 50);
   const ClusterState state = central.peek(creatures.back());
-  EXPECT_EQ(std::ranges::count(state.joints, 10u, &core::JointRecord::value_count), 3);
+  EXPECT_EQ(std::ranges::count(state.joints, 10u, &core::JointRecord::value_count), 4);
 }
 
 TEST_P(JointHandOff, WithoutTheirValuesBrokenJointsWouldMend) {

@@ -1,6 +1,7 @@
 // Bodies that belong together, around a place of their own: stacks, rows, thrown bodies, and what joints hold together.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Link {
   Json joint;
   std::vector<std::size_t> pieces;  ///< one (to the world) or two
   core::Vec3 p = core::Vec3::Zero();
+  std::optional<std::size_t> leader = {};  ///< the link that a hinge or slider follows
 };
 
 /// Around the origin, standing on z = 0.

@@ -164,6 +164,50 @@ Formation cart(const Makings& makings, Chance& chance) {
   return formation;
 }
 
+/// A palm with two fingers: the second goes where the first does, and at times a wheel turns with them as on a rack. At
+/// times the first has a stiff drive of its own, at times it swings on a spring and breaks off.
+Formation gripper(const Makings& makings, Chance& chance) {
+  Formation formation;
+  const std::size_t kind = makings.any_kind(chance);
+  const double apart = 2.1 * makings.radius_m(kind), mass = makings.kinds.all[kind].mass_kg;
+  const Vec3 velocity = {either_way(0, 0.5 * makings.speed_m_s, chance), 0, 0};
+  for (const double y : {0.0, apart, -apart}) {
+    Piece& piece = formation.pieces.emplace_back();
+    piece.kind = kind;
+    piece.p = {0, y, makings.radius_m(kind) + 0.3};
+    piece.v = velocity;
+  }
+  Json first = with_axis("slider", Vec3::UnitY()), second = with_axis("slider", -Vec3::UnitY());
+  first["slider"]["limits"] = {-rounded(0.02 * apart), rounded(apart)};
+  if (chance.below(2) == 0) {
+    first["slider"]["drive"] = {{"position", rounded(chance.between(0, apart))},
+                                {"stiffness", rounded(mass * chance.between(20, 2000))},
+                                {"damping", rounded(mass * chance.between(1, 40))}};
+  } else {
+    first["slider"]["stiffness"] = rounded(mass * chance.between(5, 100));
+    first["slider"]["rest"] = rounded(chance.between(0, apart));
+    if (chance.below(2) == 0) first["break_impulse"] = rounded(mass * chance.between(0.1, 3));
+  }
+  const auto gear = [&](const char* of, double inertia, Json& joint) {
+    joint[of]["drive"] = {{"stiffness", rounded(inertia * 3e4)},
+                          {"damping", rounded(inertia * 300)},
+                          {"max_effort", rounded(mass * chance.between(10, 1000))}};
+    joint[of]["follows"] = {{"ratio", rounded(either_way(0.3, 2, chance))}};
+  };
+  gear("slider", mass, second);
+  formation.links.push_back({first, {1, 0}, formation.pieces[1].p});
+  formation.links.push_back({second, {2, 0}, formation.pieces[2].p, 0});
+  if (chance.below(2) == 0) {
+    Piece wheel = formation.pieces[0];
+    wheel.p.z() += apart;
+    formation.pieces.push_back(wheel);
+    Json turning = with_axis("hinge", Vec3::UnitX());
+    gear("hinge", mass * makings.radius_m(kind) * makings.radius_m(kind), turning);
+    formation.links.push_back({turning, {3, 0}, wheel.p, chance.below(2)});
+  }
+  return formation;
+}
+
 /// As a quarter turn about z does it.
 Vec3 quarter_turn(const Vec3& v) { return {-v.y(), v.x(), v.z()}; }
 
@@ -178,7 +222,7 @@ void turn_axis(Json& joint) {
 
 Formation random_mechanism(const Makings& makings, Chance& chance) {
   using Make = Formation (*)(const Makings&, Chance&);
-  constexpr std::array<Make, 8> kMakers = {chain, chain, mill, orbit, pendulum, slide, sprung, cart};
+  constexpr std::array<Make, 9> kMakers = {chain, chain, mill, orbit, pendulum, slide, sprung, cart, gripper};
   return kMakers[chance.below(kMakers.size())](makings, chance);
 }
 

@@ -131,9 +131,14 @@ class Builder {
       scene_["bodies"].push_back(std::move(body));
       taken_.push_back({piece.p + place, makings_.kind(piece).radius_m});
     }
+    const std::size_t first_joint = scene_["joints"].size();
     for (const Link& link : formation.links) {
       Json joint = link.joint;
-      joint["name"] = fmt::format("j{}", scene_["joints"].size());
+      if (link.leader) {
+        Json& kind = joint[joint.contains("hinge") ? "hinge" : "slider"];
+        kind["follows"]["joint"] = name_of_joint(first_joint + *link.leader);
+      }
+      joint["name"] = name_of_joint(scene_["joints"].size());
       joint["bodies"] = Json::array();
       for (const std::size_t piece : link.pieces) joint["bodies"].push_back(name_of_body(first + piece));
       joint["position"] = json_vec3(link.p + place);
@@ -141,6 +146,7 @@ class Builder {
     }
   }
 
+  static std::string name_of_joint(std::size_t id) { return fmt::format("j{}", id); }
   static std::string name_of_body(std::size_t id) { return fmt::format("b{}", id); }
 
   const Makings& makings_;

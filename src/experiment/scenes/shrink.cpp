@@ -52,6 +52,18 @@ Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
   return rest;
 }
 
+/// Of joints that are not there any more.
+void let_followers_go(Json& joints) {
+  std::set<std::string> names;
+  for (const Json& joint : joints) names.insert(joint["name"].get<std::string>());
+  for (Json& joint : joints) {
+    for (const char* kind : {"hinge", "slider"}) {
+      if (!joint.contains(kind) || !joint[kind].contains("follows")) continue;
+      if (!names.contains(joint[kind]["follows"]["joint"].get<std::string>())) joint[kind].erase("follows");
+    }
+  }
+}
+
 void drop_joints_without_bodies(World& world) {
   std::set<std::string> names;
   for (const Json& body : world.scene["bodies"]) names.insert(body["name"].get<std::string>());
@@ -63,6 +75,7 @@ void drop_joints_without_bodies(World& world) {
     }
   }
   joints = std::move(rest);
+  let_followers_go(joints);
 }
 
 /// What programs say of joints that are not there any more.

@@ -41,6 +41,7 @@ void set(Lanes (&to)[3], int lane, const btVector3& v) {
 /// Angles in a block are those without the whole turns that a joint has made by the start of the step.
 void set(soft::JointBlock::Pull& to, int lane, const ImplicitPull& from, double turns_rad) {
   to.position[lane] = static_cast<Real>(from.position - turns_rad);
+  to.drift[lane] = static_cast<Real>(from.drift);
   to.stiffness[lane] = static_cast<Real>(from.stiffness);
   to.steady[lane] = static_cast<Real>(from.steady);
   to.give[lane] = static_cast<Real>(from.give);
@@ -48,7 +49,7 @@ void set(soft::JointBlock::Pull& to, int lane, const ImplicitPull& from, double 
 }
 
 void set_own(soft::JointBlock& block, int lane, const JointAxes& axes, double substep_s) {
-  if (axes.drive) set(block.drive, lane, pull_of(*axes.drive, substep_s), axes.turns_rad);
+  if (axes.drive) set(block.drive, lane, drive_pull_of(axes, substep_s), axes.turns_rad);
   set(block.spring, lane, pull_of(axes.resistance, substep_s), axes.turns_rad);
   block.friction[lane] = static_cast<Real>(substep_s * axes.resistance.friction);
   if (!axes.counts_turns()) return;

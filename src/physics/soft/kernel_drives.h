@@ -90,6 +90,7 @@ AURASIM_INLINE Lanes own_took_most(const JointBlock& block, unsigned what) {
 /// Where the joint stands as the substep begins decides about all of it.
 AURASIM_INLINE void begin_pull(JointBlock::Pull& pull, const Lanes& x) {
   pull.pull = pull.stiffness * (pull.position - x) + pull.steady;
+  pull.position = pull.position + pull.drift;
   pull.impulse = Lanes{};
 }
 

@@ -96,7 +96,7 @@ struct alignas(64) JointBlock {
 
   /// As physics/joint_axes.h has it: impulse = pull - give * speed.
   struct Pull {
-    Lanes position, stiffness, steady, give, most;
+    Lanes position, drift, stiffness, steady, give, most;
     Lanes pull;     ///< N s or N m s
     Lanes impulse;  ///< in this substep so far
   };

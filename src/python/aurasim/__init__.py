@@ -71,7 +71,16 @@ def _override_texts(overrides: Overrides) -> list[str]:
     """As --set takes them; JSON is YAML."""
     if not isinstance(overrides, Mapping):
         return [str(text) for text in overrides]
-    return [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overrides.items()]
+    return [f"{key}={value if isinstance(value, str) else json.dumps(value, default=os.fspath)}"
+            for key, value in overrides.items()]
+
+
+def _for_each(quantity: Vectors | None) -> Vectors | None:
+    """One vector for all becomes one for each."""
+    if quantity is None or quantity[1] is None or np.ndim(quantity[1]) != 1:
+        return quantity
+    ids, vector = quantity
+    return ids, np.broadcast_to(np.asarray(vector, float), (len(ids), 3))
 
 
 def _path(path: str | os.PathLike[str] | None) -> str:
@@ -264,11 +273,12 @@ class World:
     def control(self, *, forces: Vectors | None = None, torques: Vectors | None = None,
                 velocities: Vectors | None = None, spins: Vectors | None = None, at: int = 0,
                 timeout: float = 60.0) -> int:
-        """Steers bodies: for each quantity (n ids, n x 3 array) in N, N m, m/s, rad/s, world frame; (ids, None) lets go
-        of them. What is said holds until something else is said, wherever the bodies are hosted. Returns at once, with
+        """Steers bodies: for each quantity (n ids, n x 3 array) in N, N m, m/s, rad/s, world frame; (ids, one vector)
+        is for all of them, (ids, None) lets go of them. What is said holds until something else is said, wherever the bodies are hosted. Returns at once, with
         the first state that shows it: in a paused run by itself the next one; else 0, which is lookahead + 1 states
         after each node has heard of it."""
-        return self._world.control(forces, torques, velocities, spins, None, at, timeout)
+        of_bodies = (_for_each(of) for of in (forces, torques, velocities, spins))
+        return self._world.control(*of_bodies, None, at, timeout)
 
     def drive(self, joints: Sequence[str | int], *, position: Numbers = 0.0, speed: Numbers = 0.0,
               stiffness: Numbers = 0.0, damping: Numbers = 0.0, effort: Numbers = 0.0, max_effort: Numbers = np.inf,
