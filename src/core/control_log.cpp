@@ -1,5 +1,6 @@
 #include "core/control_log.h"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -133,8 +134,8 @@ std::vector<Setpoints> ControlLog::since(Step step) const {
 }
 
 template <class Key, class Value>
-void ControlLog::forget_before(std::vector<Track<Key, Value>>& tracks, Step step) {
-  std::erase_if(tracks, [&](Track<Key, Value>& track) {
+void ControlLog::forget_before(std::vector<Track<Key, Value>>& tracks, Step step, std::size_t& next) {
+  const auto forget = [&](Track<Key, Value>& track) {
     const auto later = std::ranges::upper_bound(track.entries, step, {}, &Entry<Value>::from);
     if (later == track.entries.begin()) return false;
     entries_ -= static_cast<std::size_t>(later - 1 - track.entries.begin());
@@ -144,12 +145,19 @@ void ControlLog::forget_before(std::vector<Track<Key, Value>>& tracks, Step step
                          (!first.value || (rules_.on_silence == OnSilence::kZero && is_silenced(first, step - 1)));
     entries_ -= is_over ? 1 : 0;
     return is_over;
-  });
+  };
+  if (next >= tracks.size()) next = 0;
+  const auto first = tracks.begin() + static_cast<std::ptrdiff_t>(next);
+  const auto last =
+      first + static_cast<std::ptrdiff_t>(std::min(tracks.size() - next, tracks.size() / kForgetCalls + 1));
+  const auto rest = std::remove_if(first, last, forget);
+  next = static_cast<std::size_t>(rest - tracks.begin());
+  tracks.erase(rest, last);
 }
 
 void ControlLog::forget_before(Step step) {
-  forget_before(bodies_, step);
-  forget_before(joints_, step);
+  forget_before(bodies_, step, next_body_);
+  forget_before(joints_, step, next_joint_);
   for (auto& [client, words] : words_) {
     const auto later = std::ranges::upper_bound(words, step);
     if (later - words.begin() > 1) words.erase(words.begin(), later - 1);

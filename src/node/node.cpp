@@ -178,7 +178,7 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
 const StepReport& Node::settle() {
   clear_report();
   apply(protocol_->receive(current_step() + setup_.protocol.aura.lookahead));
-  note_effects();
+  note_effects_anew();
   return report_;
 }
 

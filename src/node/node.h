@@ -228,7 +228,10 @@ class Node {
  private:
   void take_mail();
   void note_removals();
+  bool stays(core::BodyId id) const;
   void note_effects();
+  void note_effects_anew();
+  void note_effects_on_arrivals();
   void note_left_behind(const core::ClusterState& cluster);
   void forget_setpoints();
   void clear_report();

@@ -10,7 +10,6 @@ namespace {
 /// States for which they are remembered: a run goes back no farther when a node has died, but for checkpoints that are
 /// farther apart.
 constexpr core::Step kRemembered = 600;
-constexpr core::Step kForgetEvery = 30;
 
 }  // namespace
 
@@ -19,17 +18,38 @@ core::Heard Node::hear(const core::Setpoints& setpoints) {
   return world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
 }
 
-/// What is new. Whoever has come was told of in other states by others: all that has been in effect on it since then.
+/// It is here, and was in the state before.
+bool Node::stays(core::BodyId id) const {
+  return world_.contains(id) && std::ranges::find(report_.arrivals, id, &HandOffRow::body) == report_.arrivals.end();
+}
+
+/// What is new in the state that has been computed.
 void Node::note_effects() {
+  if (world_.controls().empty()) return;
+  for (const core::BodySetpoint& setpoint : world_.new_setpoints()) {
+    if (stays(setpoint.id)) report_.effects.bodies.push_back({current_step(), setpoint});
+  }
+  note_effects_on_arrivals();
+}
+
+/// What is new in the present state, which was computed before.
+void Node::note_effects_anew() {
   const core::ControlLog& controls = world_.controls();
   if (controls.empty()) return;
   const core::Step n = current_step();
+  const auto is_wanted = [this](core::BodyId id) { return stays(id); };
+  controls.for_each_body(n, is_wanted, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
+    if (is_new) report_.effects.bodies.push_back({n, {id, quantity, value}});
+  });
+  note_effects_on_arrivals();
+}
+
+/// Whoever has come was told of in other states by others: all that has been in effect on it since then. And joints.
+void Node::note_effects_on_arrivals() {
+  const core::ControlLog& controls = world_.controls();
+  const core::Step n = current_step();
   const auto arrival = [&](core::BodyId id) { return std::ranges::find(report_.arrivals, id, &HandOffRow::body); };
   const auto is_here = [this](core::BodyId id) { return world_.contains(id); };
-  controls.for_each_body(n, is_here, [&](core::BodyId id, core::Quantity quantity, const auto& value, bool is_new) {
-    const bool is_told = is_new && arrival(id) == report_.arrivals.end();
-    if (is_told) report_.effects.bodies.push_back({n, {id, quantity, value}});
-  });
   core::Step oldest = n;
   for (const HandOffRow& row : report_.arrivals) {
     const core::Step first = row.stamp + 1;
@@ -64,7 +84,6 @@ void Node::note_left_behind(const core::ClusterState& cluster) {
 
 void Node::forget_setpoints() {
   const core::Step n = current_step();
-  if (n % kForgetEvery != 0) return;
   const core::Step oldest_cut = cuts_.empty() ? n : cuts_.front().step;
   world_.controls().forget_before(std::min(oldest_cut, n - kRemembered));
 }

@@ -148,7 +148,7 @@ void Node::go_back_to(const Cut& cut) {
   next_injection_ = cut.next_injection;
   std::uint32_t nth = 0;
   for (const core::Adoption& adoption : cut.joining) adopt(adoption, nth++);
-  note_effects();
+  note_effects_anew();
 }
 
 /// Keeps a report until its state is confirmed. A redo may go back farther than to what has been confirmed: the same

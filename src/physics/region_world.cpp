@@ -107,6 +107,8 @@ std::uint64_t RegionWorld::take_unbearable() {
   return impl_->simulation.take_unbearable() + impl_->scratch.take_unbearable();
 }
 
+const std::vector<core::BodySetpoint>& RegionWorld::new_setpoints() const { return impl_->simulation.new_setpoints(); }
+
 core::ControlLog& RegionWorld::controls() { return impl_->timeline.controls(); }
 const core::ControlLog& RegionWorld::controls() const { return impl_->timeline.controls(); }
 

@@ -74,6 +74,9 @@ class RegionWorld {
   std::vector<Declined> take_declined();
   /// Since the last call: setpoints that would have made a body here faster than may be, and were not obeyed.
   std::uint64_t take_unbearable();
+  /// Those that began to be in effect in the last step on bodies that were here, or were let go of in it. Ascending
+  /// (id, quantity).
+  const std::vector<core::BodySetpoint>& new_setpoints() const;
 
   /// What programs want of bodies, here or elsewhere.
   core::ControlLog& controls();

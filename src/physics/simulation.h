@@ -61,6 +61,8 @@ class Simulation {
   std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
   std::vector<Declined> take_declined() { return std::exchange(declined_, {}); }
   std::uint64_t take_unbearable() { return std::exchange(unbearable_, 0); }
+  /// As RegionWorld's.
+  const std::vector<core::BodySetpoint>& new_setpoints() const { return new_setpoints_; }
 
   /// The nearest body or static on the way from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
@@ -92,7 +94,7 @@ class Simulation {
   bool heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value);
   void push();
   void stop_pushing();
-  double coming_push(const HostedBody& body) const;
+  double coming_push(const HostedBody& body, std::size_t& hint) const;
   /// States for which others go by what they are told now.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
@@ -141,6 +143,7 @@ class Simulation {
   };
   std::vector<Push> pushed_;      ///< in the state that is computed
   std::uint64_t unbearable_ = 0;  ///< setpoints that were not obeyed
+  std::vector<core::BodySetpoint> new_setpoints_;
 
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

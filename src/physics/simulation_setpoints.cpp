@@ -54,13 +54,15 @@ double coming_turn(const btRigidBody& body, const core::Vec3& value, double radi
 /// Before state `n` is computed. Forces are noted; what would make a body too fast is not obeyed.
 void Simulation::heed_setpoints(core::Step n) {
   pushed_.clear();
+  new_setpoints_.clear();
   const core::ControlLog& controls = timeline_.controls();
   if (controls.empty()) return;
   HostedBody* body = nullptr;
-  const auto is_here = [&](core::BodyId id) { return (body = table_.find(id)) != nullptr && body->born; };
+  const auto is_here = [&](core::BodyId id) { return (body = table_.find(id)) != nullptr; };
   controls.for_each_body(
-      n, is_here, [&](core::BodyId, core::Quantity quantity, const std::optional<core::Vec3>& value, bool is_new) {
-        if (is_nothing(quantity, value) && !is_new) return;
+      n, is_here, [&](core::BodyId id, core::Quantity quantity, const std::optional<core::Vec3>& value, bool is_new) {
+        if (is_new) new_setpoints_.push_back({id, quantity, value});
+        if (!body->born || (is_nothing(quantity, value) && !is_new)) return;
         awaken(*body->rigid);
         snapshot_is_fresh_ = records_are_fresh_ = false;
         if (value && !heed(*body->rigid, quantity, *value)) ++unbearable_;
@@ -130,8 +132,9 @@ void Simulation::stop_pushing() {
   pushed_.clear();
 }
 
-/// How much setpoints will change the velocity of the body's surface, m/s, as far as its path does not tell.
-double Simulation::coming_push(const HostedBody& body) const {
+/// `hint`: as of ControlLog::for_each_ahead(). How much setpoints will change the velocity of the body's surface, m/s,
+/// as far as its path does not tell.
+double Simulation::coming_push(const HostedBody& body, std::size_t& hint) const {
   const core::ControlLog& controls = timeline_.controls();
   if (!body.born || controls.empty()) return 0;
   const btRigidBody& rigid = *body.rigid;
@@ -140,7 +143,7 @@ double Simulation::coming_push(const HostedBody& body) const {
   };
   double most[core::kQuantities] = {};
   const core::Step last = step_ + foreseen();
-  controls.for_each_ahead(body.id, step_ + 1, last, [&](core::Quantity quantity, const core::Vec3& value) {
+  controls.for_each_ahead(body.id, step_ + 1, last, hint, [&](core::Quantity quantity, const core::Vec3& value) {
     double kick = 0;
     switch (quantity) {
       case core::Quantity::kForce:  // in the time t it comes t^2 / 2 off its path

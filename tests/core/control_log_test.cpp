@@ -127,9 +127,44 @@ TEST(ControlLog, WhatIsKnownToComeIsToldOfUpToAState) {
   ControlLog log;
   for (Step step = 10; step <= 1000; step += 10) log.recall(force(1, static_cast<std::uint64_t>(step), step, step));
   std::vector<double> told;
-  log.for_each_ahead(kBody, 25, 50, [&](Quantity, const Vec3& value) { told.push_back(value.x()); });
+  std::size_t hint = 0;
+  log.for_each_ahead(kBody, 25, 50, hint, [&](Quantity, const Vec3& value) { told.push_back(value.x()); });
   std::ranges::sort(told);
   EXPECT_EQ(told, (std::vector<double>{20, 30, 40, 50}));
+}
+
+TEST(ControlLog, WhatIsToComeIsTheSameWhereverOneHasLookedBefore) {
+  ControlLog log;
+  for (std::uint64_t id = 2; id < 40; id += 3) {
+    log.recall({1, id, 0, 10, {{BodyId{id}, Quantity::kForce, Vec3(double(id), 0, 0)}}, {}});
+    log.recall({1, 100 + id, 0, 10, {{BodyId{id}, Quantity::kSpin, Vec3(double(id), 0, 0)}}, {}});
+  }
+  for (std::size_t before = 0; before < 40; ++before) {
+    for (std::uint64_t id = 0; id < 42; ++id) {
+      std::size_t hint = before, told = 0;
+      log.for_each_ahead(BodyId{id}, 10, 20, hint, [&](Quantity, const Vec3& value) {
+        EXPECT_EQ(value.x(), double(id));
+        ++told;
+      });
+      EXPECT_EQ(told, id < 40 && id % 3 == 2 ? 2u : 0u) << id << " after " << before;
+    }
+  }
+}
+
+TEST(ControlLog, ForgetsManyBitByBit) {
+  ControlLog log;
+  for (Step step = 1; step <= 20; ++step) {
+    Setpoints all{1, static_cast<std::uint64_t>(step), 0, step, {}, {}};
+    for (std::uint64_t id = 0; id < 100; ++id) {
+      const bool is_last = step == 20 && id % 2 == 0;
+      all.bodies.push_back({BodyId{id}, Quantity::kForce, is_last ? std::nullopt : std::optional(Vec3(1, 0, 0))});
+    }
+    log.recall(all);
+  }
+  for (std::size_t i = 0; i < 2 * ControlLog::kForgetCalls; ++i) log.forget_before(30);
+  std::size_t left = 0;
+  for (const Setpoints& message : log.since(0)) left += message.bodies.size();
+  EXPECT_EQ(left, 50u) << "one of each that is not let go of";
 }
 
 /// Also long after the newest one, and between old ones.
