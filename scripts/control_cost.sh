@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What it costs to steer 1,000 bodies, 60 times a second, by one client, and how soon control acts. Writes
-# docs/control_cost.md. About 12 minutes on 2 cores, where nothing else runs.
+# docs/control_cost.md. About 15 minutes on 2 cores, where nothing else runs.
 #   scripts/control_cost.sh [--repeats N=5] [--domain N=75] [--out DIR=build/control_cost]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
