@@ -75,6 +75,8 @@ class RunLink {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kRound{2};
+  static constexpr std::chrono::seconds kPatienceWithAReader{1};  ///< that some node has not found
   struct Standing {
     core::Generation generation = 0;
     core::Step step = 0;

@@ -1,0 +1,156 @@
+// Where the run stands, and the bodies of a state, from what its nodes tell.
+#include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "cli/agent/run_link.h"
+
+namespace aurasim::cli::agent {
+
+using namespace std::chrono_literals;
+
+/// After a step earlier than the statuses say.
+bool RunLink::is_known_to_stand() { return stands() || stands_in_ == farthest(); }
+
+bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
+
+/// As far as live nodes have said, whichever way. A status may be older than what is published.
+RunLink::Standing RunLink::farthest() {
+  Standing farthest;
+  for (const core::RegionId region : live_regions()) {
+    farthest.generation = std::max(farthest.generation, watch_.nodes().at(region).status.generation);
+  }
+  for (const core::RegionId region : live_regions()) {
+    const dds::Status& status = watch_.nodes().at(region).status;
+    if (status.generation == farthest.generation) farthest.step = std::max(farthest.step, status.step);
+    farthest.step = std::max(farthest.step, watch_.published(region, farthest.generation));
+  }
+  return farthest;
+}
+
+/// What nodes say of themselves comes after the states that they tell.
+bool RunLink::all_say_that_they_stand() {
+  return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
+    const dds::Status& status = watch_.nodes().at(region).status;
+    return status.state == dds::NodeState::kPaused && Standing{status.generation, status.step} >= *stands_in_;
+  });
+}
+
+bool RunLink::all_have_published(const Standing& wanted) {
+  const std::set<core::RegionId> live = live_regions();
+  return !live.empty() && std::ranges::all_of(live, [&](core::RegionId region) {
+    return watch_.published(region, wanted.generation) >= wanted.step;
+  });
+}
+
+/// Once told, nodes say without being asked again what they have of each state in which they stand.
+void RunLink::watch_standing_states() {
+  if (!standing_) {
+    standing_.emplace(participant_, watch_.observer_settings());
+    core::Interest all;
+    all.every = 0;
+    all.all = true;
+    standing_->want(all);
+  }
+  standing_->use(watch_.observer_settings());
+}
+
+/// True once it is complete: all regions have told one state. What was told before a redo does not count any more.
+bool RunLink::take_standing(StandingState& state) {
+  for (core::Observation& observation : standing_->take()) {
+    const core::RegionId source = observation.source;
+    told_.insert_or_assign(source, std::move(observation));
+  }
+  const auto when = [](const core::Observation& told) { return std::tuple(told.generation, told.redo, told.stamp); };
+  std::tuple<core::Generation, std::uint32_t, core::Step> newest{};
+  for (const auto& [region, told] : told_) newest = std::max(newest, when(told));
+  const bool all_have_told = std::ranges::all_of(live_regions(), [&](core::RegionId region) {
+    const auto told = told_.find(region);
+    return told != told_.end() && when(told->second) == newest;
+  });
+  if (!all_have_told) return false;
+  for (const auto& [region, told] : told_) {
+    if (when(told) == newest) state.accept(told);
+  }
+  return state.is_complete(live_regions());
+}
+
+bool RunLink::collect(StandingState& state, const Patience& patience) {
+  watch_standing_states();
+  const auto end = Clock::now() + kPatienceWithAReader;
+  while (!take_standing(state)) {
+    patience.check("not all regions have told the state in which they stand");
+    if (Clock::now() > end) return collect_key_frames(state, patience);
+    standing_->wait(kRound);
+    turn(0ms);
+  }
+  return true;
+}
+
+/// Nodes publish all that they have for a reader that has just come. False: some have not found this one.
+bool RunLink::collect_key_frames(StandingState& state, const Patience& patience) {
+  dds::ReplicaReader reader(participant_, watch_.observer_settings());
+  const auto end = Clock::now() + kPatienceWithAReader;
+  while (!state.is_complete(live_regions())) {
+    patience.check("not all regions have published the state in which they stand");
+    if (Clock::now() > end) return false;
+    reader.wait(kRound);
+    for (core::Replica& replica : reader.take()) state.accept(std::move(replica));
+    turn(0ms);
+  }
+  return true;
+}
+
+WorldState RunLink::standing_state(const Patience& patience) {
+  for (;;) {
+    const Standing least = farthest();
+    StandingState state(least.generation, least.step);
+    if (!collect(state, patience)) continue;
+    stands_in_ = Standing{state.generation(), state.step()};
+    return {state.generation(), state.step(), true, state.bodies()};
+  }
+}
+
+/// Of a run that goes on.
+WorldState RunLink::seen_state(const Patience& patience) {
+  const auto all_are_seen = [this] {
+    const overseer::WorldView& view = watch_.view();
+    return view.stamp() >= 0 &&
+           std::ranges::all_of(live_regions(), [&](core::RegionId region) { return view.is_whole(region); });
+  };
+  wait_until(all_are_seen, patience, "no state of all regions has been published");
+  const overseer::WorldView& view = watch_.view();
+  WorldState state{view.generation(), view.stamp(), false, {}};
+  view.for_each([&state](const overseer::ViewBody& body) {
+    core::ReplicaBody row{body.id,   body.epoch, body.host, body.prototype, body.asleep,
+                          body.p_WB, body.q_WB,  body.v_WB, body.w_WB};
+    state.bodies.push_back({row, body.under_way});
+  });
+  std::ranges::sort(state.bodies, {}, [](const WorldBody& body) { return body.row.id; });
+  return state;
+}
+
+WorldState RunLink::state(const Patience& patience) {
+  turn(0ms);
+  return is_known_to_stand() ? standing_state(patience) : seen_state(patience);
+}
+
+WorldState RunLink::pause(const Patience& patience) {
+  if (!stands()) {
+    const dds::RunCommand command = steering_.send(dds::RunCommandKind::kPause);
+    wait_until([&] { return steering_.has_taken_effect(command); }, patience, "not every node shows the pause");
+  }
+  return standing_state(patience);
+}
+
+/// Of a run that stands.
+const RunLink::Standing& RunLink::known_standing(const Patience& patience) {
+  const Standing said = farthest();  // somebody else may have moved it
+  if (!stands_in_ || stands_in_->generation != said.generation || stands_in_->step < said.step) {
+    standing_state(patience);
+  }
+  return *stands_in_;
+}
+
+}  // namespace aurasim::cli::agent
