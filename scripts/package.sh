@@ -28,7 +28,7 @@ install_packages() {
   # What setup.sh installs for `aurasim import` and Python, and what finds the libraries that programs are linked with.
   local packages_of_import packages_of_python more as_root=()
   eval "$(sed -nE '/^packages_of_(import|python)=\(/,/^\)/p' scripts/setup.sh)"
-  more=("${packages_of_import[@]}" "${packages_of_python[@]}" dpkg-dev ccache)
+  more=("${packages_of_import[@]}" "${packages_of_python[@]}" dpkg-dev file ccache)
   ! dpkg-query --show "${more[@]}" >/dev/null 2>&1 || return 0
   [[ $EUID -eq 0 ]] || as_root=(sudo)
   "${as_root[@]}" apt-get -q update

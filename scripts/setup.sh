@@ -31,7 +31,7 @@ packages_of_python=(
 )
 packages_of_tests=(
   # second builds in seconds, the format check, the Debian package
-  ccache clang-format dpkg-dev
+  ccache clang-format dpkg-dev file
   # tests and benchmarks, and the tools that tests of real processes use
   libgtest-dev libgmock-dev libbenchmark-dev iproute2 procps tcpdump libfaketime
   # separate hosts on one machine; other people's DDS and a dissector, as witnesses
