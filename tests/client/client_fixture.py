@@ -111,9 +111,12 @@ class WorldTest(unittest.TestCase):
         return world
 
     def launch(self, name="demo", paused=True, load=None, report=None, **overrides):
-        return self.keep(aurasim.World.launch(launch_file(name), set=self.overrides(**overrides), paused=paused,
-                                              load=load, report=report, saves=self.folder / "saves",
-                                              timeout=GENEROUS_S))
+        world = self.keep(aurasim.World.launch(launch_file(name), set=self.overrides(**overrides), paused=paused,
+                                               load=load, report=report, saves=self.folder / "saves",
+                                               timeout=GENEROUS_S))
+        if paused and load is None:
+            self.assertEqual(world.bodies().step, 0)
+        return world
 
     def connect(self, name="demo", timeout=GENEROUS_S, **overrides):
         return self.keep(aurasim.World.connect(launch_file(name), set=self.overrides(**overrides), timeout=timeout))

@@ -188,10 +188,11 @@ json Agent::open(const json& asked, const Patience& patience) {
 
 /// No node can be told to wait before it has begun. In a pause the same scene begins anew, and stands.
 void Agent::begin_paused(const json& asked, const Patience& patience) {
-  run_->pause(patience);
+  const core::Generation before = run_->pause(patience).generation;
   if (!asked.value("load", "").empty()) return;
   const Delivery anew = act_alone(core::ChangeScene{run_->launch().scene_file.stem().string()}, patience);
   if (!anew.done) throw Problem(anew.timed_out ? Kind::kTimedOut : Kind::kRefused, anew.text);
+  run_->wait_for_generation_after(before, patience);
 }
 
 json Agent::act(const json& asked, const Patience& patience) {

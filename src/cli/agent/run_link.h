@@ -56,6 +56,8 @@ class RunLink {
   WorldState state(const Patience& patience);
   WorldState pause(const Patience& patience);
   WorldState step(std::int64_t count, const Patience& patience);
+  /// Until some node says that it is in a later one: what is asked for from then on is of that.
+  void wait_for_generation_after(core::Generation before, const Patience& patience);
   /// resume, reset, stop.
   void steer(dds::RunCommandKind kind, const Patience& patience);
   /// Tells all nodes. Returns the state from which on it has effect; 0: as soon as all can know of it. In a run that

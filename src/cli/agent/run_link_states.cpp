@@ -29,6 +29,10 @@ RunLink::Standing RunLink::farthest() {
   return farthest;
 }
 
+void RunLink::wait_for_generation_after(core::Generation before, const Patience& patience) {
+  wait_until([&] { return farthest().generation > before; }, patience, "no node begins anew");
+}
+
 /// What nodes say of themselves comes after the states that they tell.
 bool RunLink::all_say_that_they_stand() {
   return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
