@@ -1,6 +1,7 @@
 #include "cli/command_server.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -19,6 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
 constexpr auto kLongestUntold = 2s;
+constexpr double kLongestShown_s = 0.5;  ///< older states nobody shows who looks on
 constexpr auto kStatusAge = 300ms;          ///< by then every node has said which meshes it has, since the command came
 constexpr std::size_t kMostInAState = 300;  ///< commands that become orders
 constexpr std::size_t kTextWeighs = 20;
@@ -300,7 +302,8 @@ void CommandServer::publish_additions(const node::StepReport& report) {
     issuer_.note(order);
   }
   if (additions_.orders.size() == before) return;
-  core::forget_moves_before(report.step - physics::kOrderMemory, additions_.orders);
+  const auto shown_later = static_cast<core::Step>(std::ceil(kLongestShown_s / launch_.step_s()));
+  core::forget_moves_before(report.step - shown_later, additions_.orders);
   if (leads_) send_additions();
 }
 

@@ -281,6 +281,11 @@ std::int64_t World::control(const Control& control, std::int64_t at_step, Second
   add(drives.joints);
   static_assert(sizeof(JointDrive) == 6 * sizeof(double));
   add(drives.drives);
+  for (const StaticGoal& goal : control.statics) {
+    json& of = message.head["statics"].emplace_back();
+    of = {{"p", goal.position}, {"q", goal.rotation}, {"states", goal.states}};
+    std::visit([&of](const auto& named) { of["static"] = named; }, goal.fixed);
+  }
   return impl_->connection.ask(std::move(message), time_out).head.value("step", std::int64_t{0});
 }
 

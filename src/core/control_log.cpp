@@ -35,7 +35,7 @@ Heard ControlLog::hear(const Setpoints& setpoints, Step computed, Step notice, s
 }
 
 void ControlLog::recall(const Setpoints& setpoints) {
-  const auto& [client, sequence, generation, from, bodies, joints] = setpoints;
+  const auto& [client, sequence, generation, from, bodies, joints, statics] = setpoints;
   std::size_t of_body = 0, of_joint = 0;
   for (const BodySetpoint& body : bodies) {
     add(bodies_, std::pair(body.id, body.quantity), Entry<Vec3>{from, client, sequence, body.value}, of_body);

@@ -23,6 +23,7 @@ inline constexpr double kFarthestPlace_m = 1e6;
 inline constexpr double kHardestImpulse_Ns = 1e7;
 inline constexpr double kHardestPush = 1e9;             ///< N or N m, of setpoints; also rad, m and their gains
 inline constexpr std::size_t kMostSetpoints = 100'000;  ///< in one message
+inline constexpr std::size_t kMostStaticSetpoints = 64;
 inline constexpr double kLightest_kg = 1e-3;
 inline constexpr double kHeaviest_kg = 1e6;
 inline constexpr double kSmallestRadius_m = 0.01;  ///< of the sphere around a shape

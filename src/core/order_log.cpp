@@ -20,8 +20,8 @@ void OrderLog::add(const Order& order) {
   if (recent_.size() > kMostRecent) recent_.erase(recent_.begin());
 }
 
-void OrderLog::put_back(Step after) {
-  std::erase_if(recent_, [after](const Order& order) { return order.at_step <= after; });
+void OrderLog::put_back(std::uint64_t redo_sequence) {
+  std::erase_if(recent_, [=](const Order& order) { return order.sequence <= redo_sequence; });
   to_publish_ = recent_;
 }
 

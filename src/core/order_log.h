@@ -18,9 +18,9 @@ class OrderLog {
 
   /// Our own: gives it the next number.
   const Order& announce(Order order);
-  /// The run has been put back after state `after`: orders for later states go round once more, for whoever has not
-  /// received them before.
-  void put_back(Step after);
+  /// The run has been put back by an order, which all have received, and with it those before it: what was ordered
+  /// later goes round once more, since what was under way is not taken any more.
+  void put_back(std::uint64_t redo_sequence);
   /// From a neighbour's batch. Copies and anything out of sequence are left out.
   void receive(std::span<const Order> orders);
 

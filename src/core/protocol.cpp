@@ -50,11 +50,11 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
   intake_.accept(news);
 }
 
-Continuation Protocol::continuation(Step put_back_to, const RankClaimer& claimer) const {
+Continuation Protocol::continuation(const Order& redo, const RankClaimer& claimer) const {
   const Step now = outbox_.aura.stamp;
   Continuation next{orders_, alarms_, claimer, violations_, counters_, intake_.dead_regions(), listening_.agreed(now)};
-  next.orders.put_back(now);
-  next.alarms.put_back(put_back_to);
+  next.orders.put_back(redo.sequence);
+  next.alarms.put_back(std::get<Redo>(redo.action).cut);
   return next;
 }
 
@@ -348,9 +348,9 @@ Step Protocol::confirmed() const {
 
 Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + hops_across_ * aura_->rules().lookahead; }
 
-/// Only where nodes do not wait for each other can an order come after its time.
+/// Where nodes wait for each other only what is computed again if need be can come after its time.
 void Protocol::apply_late(Order& order, Step n) {
-  if (order.at_step >= n) return;
+  if (order.at_step >= n || (computes_again() && std::holds_alternative<MoveStatic>(order.action))) return;
   violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});
   order.at_step = n;
 }

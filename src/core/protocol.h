@@ -130,8 +130,15 @@ class Protocol {
   /// been ordered is executed by all.
   void give_up_alarms() { alarms_given_up_ = true; }
   bool alarms_given_up() const { return alarms_given_up_; }
+  /// What is found to be wrong is computed again.
+  bool computes_again() const { return aura_->rules().redo && !alarms_given_up_; }
+  /// State `step` was computed with a static that was elsewhere than it was to be.
+  void doubt(Step step) { alarms_.raise(step, kNobody, kNobodyElse); }
+  /// States that a message needs at most to reach every node.
+  Step round() const { return hops_across_ * aura_->rules().lookahead; }
   const RankClaimer& claimer() const { return claimer_; }
-  Continuation continuation(Step put_back_to, const RankClaimer& claimer) const;
+  /// After a redo, by this order.
+  Continuation continuation(const Order& redo, const RankClaimer& claimer) const;
 
   /// The physics of a departure; once for each, in order.
   void hand_over(const Departure& departure, ClusterState cluster);

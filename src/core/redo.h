@@ -1,5 +1,5 @@
 // What leads to a redo (docs/design.md, "Checked, and computed again"): two bodies of two hosts were found to have
-// touched, so what has been computed since may be wrong. All nodes go back to a cut from before, bring the two to one
+// touched, or a static to have been elsewhere than it was to be, so what has been computed since may be wrong. All nodes go back to a cut from before, bring the two to one
 // host in time, and go on from there.
 #pragma once
 
@@ -18,6 +18,11 @@ struct Alarm {
   BodyId a{};
   BodyId b{};
 };
+
+/// In an alarm that is about no pair: a static was elsewhere than it was ordered to be. Ids that no body has.
+inline constexpr BodyId kNobody{(std::uint64_t{1} << 63) - 2}, kNobodyElse{(std::uint64_t{1} << 63) - 1};
+
+inline bool is_about_a_pair(const Alarm& alarm) { return alarm.a != kNobody; }
 
 /// Two bodies, a < b, that share a host from as soon as possible until `until`, whatever their auras say.
 struct TogetherPair {

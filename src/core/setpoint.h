@@ -35,6 +35,13 @@ struct JointSetpoint {
   std::optional<JointDrive> drive;  ///< nothing: the joint has the scene's own again
 };
 
+/// Where a static goes: evenly, from where it is in the state before, and then it stays there.
+struct StaticSetpoint {
+  StaticId id{};
+  Pose to;
+  Step states = 1;  ///< until it is there: 1: in the first state that shows the effect
+};
+
 /// All that one program says for one state. Without entries: it is still there, and what it has said goes on.
 struct Setpoints {
   std::uint64_t client = 0;    ///< random number of the program; kRecordedClient: it is read from a record
@@ -43,6 +50,7 @@ struct Setpoints {
   Step at_step = 0;  ///< the first state that shows the effect; 0: as soon as all can know of it in time
   std::vector<BodySetpoint> bodies;
   std::vector<JointSetpoint> joints;
+  std::vector<StaticSetpoint> statics = {};
 };
 
 /// Never falls silent.
@@ -56,6 +64,11 @@ struct BodyEffect {
 struct JointEffect {
   Step step = 0;
   JointSetpoint setpoint;
+};
+
+struct StaticEffect {
+  Step step = 0;
+  StaticSetpoint setpoint;
 };
 
 /// For a state that has been computed already.

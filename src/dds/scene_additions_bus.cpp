@@ -46,9 +46,12 @@ SceneAdditionsReader::~SceneAdditionsReader() = default;
 
 std::optional<SceneAdditions> SceneAdditionsReader::take() {
   std::optional<SceneAdditions> newest;
-  const auto is_newer = [&newest](const core::AuraBatch& batch) {
-    return !newest ||
-           std::pair(batch.generation, batch.orders.size()) >= std::pair(newest->generation, newest->orders.size());
+  const auto last_of = [](const std::vector<core::Order>& orders) {
+    return orders.empty() ? 0 : orders.back().sequence;
+  };
+  const auto is_newer = [&](const core::AuraBatch& batch) {
+    return !newest || std::pair(batch.generation, last_of(batch.orders)) >=
+                          std::pair(newest->generation, last_of(newest->orders));
   };
   impl_->reader.take_each({}, [&](core::AuraBatch&& batch, const Origin& origin) {
     if (!impl_->participant.domain().speakers().may_speak(origin.writer, batch.source)) {

@@ -14,6 +14,8 @@ namespace {
 constexpr std::uint8_t kLetsGo = 16;
 constexpr std::size_t kDriveNumbers = 6;
 constexpr std::size_t kMaxEffort = 5;
+constexpr std::size_t kPlaceNumbers = 7;
+constexpr double kMostOff = 1e-6;  ///< of the length of a quaternion: what an order bears
 
 void put_drive(const core::JointDrive& drive, double* out) {
   const double numbers[kDriveNumbers] = {drive.position, drive.speed,  drive.stiffness,
@@ -21,11 +23,39 @@ void put_drive(const core::JointDrive& drive, double* out) {
   std::ranges::copy(numbers, out);
 }
 
+void put_place(const core::Pose& pose, double* out) {
+  put_vector(pose.p_WB, out);
+  const core::Quat& q = pose.q_WB;
+  out[3] = q.w(), out[4] = q.x(), out[5] = q.y(), out[6] = q.z();
+}
+
+core::Pose place_at(const double* in) {
+  return {core::Vec3(in[0], in[1], in[2]), core::Quat(in[3], in[4], in[5], in[6])};
+}
+
+bool is_place(const double* in) {
+  const core::Pose pose = place_at(in);
+  return pose.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m &&
+         std::abs(pose.q_WB.norm() - 1) <= kMostOff;
+}
+
 bool is_drive(const double* drive) {
   for (std::size_t i = 0; i < kMaxEffort; ++i) {
     if (!(std::abs(drive[i]) <= core::limits::kHardestPush)) return false;
   }
   return drive[2] >= 0 && drive[3] >= 0 && drive[kMaxEffort] >= 0;  // stiffness, damping; false for NaN
+}
+
+std::optional<WireError> check_statics(const wire::Setpoints& in) {
+  const std::size_t statics = in.fixed().size();
+  if (statics > core::limits::kMostStaticSetpoints) return WireError::kTooLarge;
+  if (!same_rows(statics, {{in.states().size()}, {in.place().size(), kPlaceNumbers}})) return WireError::kLength;
+  if (!all_finite(in.place())) return WireError::kNotFinite;
+  for (std::size_t i = 0; i < statics; ++i) {
+    const bool is_span = in.states()[i] >= 1 && in.states()[i] <= core::limits::kMostStepsAhead;
+    if (!is_span || !is_place(&in.place()[i * kPlaceNumbers])) return WireError::kRange;
+  }
+  return std::nullopt;
 }
 
 std::optional<WireError> check_rows(const wire::Setpoints& in, const Expected& expected) {
@@ -50,7 +80,7 @@ std::optional<WireError> check_rows(const wire::Setpoints& in, const Expected& e
     if (std::any_of(drive, drive + kDriveNumbers, [](double x) { return std::isnan(x); })) return WireError::kNotFinite;
     if (!is_drive(drive)) return WireError::kRange;
   }
-  return std::nullopt;
+  return check_statics(in);
 }
 
 }  // namespace
@@ -73,6 +103,10 @@ void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::S
   fill_wide<kDriveNumbers>(out.drive(), setpoints.joints, [](const auto& joint, double* to) {
     put_drive(joint.drive.value_or(core::JointDrive{}), to);
   });
+  fill(out.fixed(), setpoints.statics, [](const auto& fixed) { return core::value_of(fixed.id); });
+  fill(out.states(), setpoints.statics, [](const auto& fixed) { return fixed.states; });
+  fill_wide<kPlaceNumbers>(out.place(), setpoints.statics,
+                           [](const auto& fixed, double* to) { put_place(fixed.to, to); });
 }
 
 Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expected) {
@@ -97,6 +131,10 @@ Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expec
     joint.id = core::JointId{in.joint()[i]};
     const double* const d = &in.drive()[i * kDriveNumbers];
     if (in.let_go()[i] == 0) joint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
+  }
+  for (std::size_t i = 0; i < in.fixed().size(); ++i) {
+    setpoints.statics.push_back(
+        {core::StaticId{in.fixed()[i]}, place_at(&in.place()[i * kPlaceNumbers]), in.states()[i]});
   }
   return setpoints;
 }

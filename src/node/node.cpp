@@ -1,11 +1,9 @@
 #include "node/node.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/horizon.h"
-#include "core/limits.h"
 #include "node/scene_additions.h"
 #include "node/timed.h"
 #include "physics/clearance.h"
@@ -48,7 +46,11 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
       watch_(setup.physics.step_s, scene.gravity.norm(), setup.protocol.aura.lookahead, *clearance_),
       first_own_shape_(scene.shapes.size()) {
   world_.controls().use(setup.control);
-  for (const core::Setpoints& recorded : setup_.recorded) world_.controls().recall(recorded);
+  for (const core::Setpoints& recorded : setup_.recorded) {
+    world_.controls().recall(recorded);
+    for (const core::StaticSetpoint& goal : recorded.statics) recorded_moves_.push_back({recorded.at_step, goal});
+  }
+  expect_recorded_moves();
   protocol_.emplace(setup.protocol, map, *clearance_);
 }
 
@@ -75,23 +77,27 @@ const core::Order& Node::order(const core::Action& action, std::uint64_t request
   order.request = request;
   order.at_step = std::max(at_step, protocol_->earliest_effect());
   order.action = action;
-  if (auto* const move = std::get_if<core::MoveStatic>(&order.action)) complete(*move, order);
+  is_changing_ = is_changing_ || core::changes_the_run(action);
+  return give(std::move(order));
+}
+
+const core::Order& Node::give(core::Order order) {
+  if (std::holds_alternative<core::MoveStatic>(order.action)) complete(order);
   return protocol_->announce(std::move(order));
 }
 
-/// From where it is by then, and no faster than may be; of several moves of a static the one that is ordered later
-/// begins no earlier.
-void Node::complete(core::MoveStatic& move, core::Order& order) const {
-  core::StaticMoves moves = world_.moves();
+/// From where it is by then, after all that has been ordered.
+void Node::complete(core::Order& order) const {
+  core::StaticMoves moves = world_.moves().ordered();
   for (const core::Order& other : protocol_->orders_to_come()) {
-    if (const auto* known = std::get_if<core::MoveStatic>(&other.action)) moves.add(*known, other.at_step);
+    if (const auto* known = std::get_if<core::MoveStatic>(&other.action)) moves.add(*known, other.at_step, other.request);
   }
-  order.at_step = std::max(order.at_step, moves.newest(move.id));
-  move.from = moves.pose(scene_.statics.at(core::value_of(move.id)), move.id, order.at_step - 1, setup_.physics.step_s);
-  const core::Twist at_once = core::twist_between(move.from, move.to, setup_.physics.step_s);
-  const double states = std::max(at_once.v_W.norm() / core::limits::kFastestStatic_m_s,
-                                 at_once.w_W.norm() / core::limits::kFastestStatic_rad_s);
-  move.states = std::max(move.states, static_cast<core::Step>(std::ceil(states)));
+  auto& move = std::get<core::MoveStatic>(order.action);
+  const core::PlannedMove plan =
+      core::planned({move.id, move.to, move.states}, order.at_step, moves,
+                    scene_.statics.at(core::value_of(move.id)), setup_.physics.step_s);
+  order.at_step = plan.at_step;
+  move = plan.move;
 }
 
 /// What an order changes at once; the rest waits for its state.
@@ -110,7 +116,8 @@ void Node::heed(const core::Order& order) {
       if (saving.cut) saving.cut->to_spawn.push_back(order);
     }
   } else {
-    world_.schedule(order);
+    const std::optional<core::Step> changed = world_.schedule(order);
+    if (changed && *changed <= current_step()) doubt(*changed);
   }
 }
 
@@ -162,6 +169,7 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   settled_ = false;
   setup_.protocol.start = current_step();
   setup_.protocol.last_order = protocol_->last_order();
+  is_changing_ = false;
   confirm_all();
   map_ = &map;
   transport_ = &transport;
@@ -216,6 +224,7 @@ const StepReport& Node::step() {
   forget_cuts();
   forget_setpoints();
   if (setup_.protocol.aura.redo) order_redo();
+  order_recorded_moves();
   hold(report_);
   return report_;
 }
@@ -232,11 +241,13 @@ void Node::compute_step() {
   {
     const Timed timed(report_.durations.physics_s, setup_.clock);
     for (const core::Order& order : changes->orders) heed(order);
+    give_up_expected();
     apply(*changes);
     announce_births(n);
     world_.step();
     note_removals();
     note_effects();
+    note_moves();
   }
   finish_state();
 }

@@ -86,6 +86,7 @@ struct Applied {
 struct Effects {
   std::vector<core::BodyEffect> bodies;
   std::vector<core::JointEffect> joints;
+  std::vector<core::StaticEffect> statics;  ///< told by the node that takes orders
 };
 
 /// Seconds spent in the phases of one step, by NodeSetup::clock.
@@ -193,7 +194,8 @@ class Node {
   /// What has become of a client's request, if it has been ordered, here or elsewhere: as far as is known here, and not
   /// longer than orders are kept. Null: nothing is known. Not of orders about the run as a whole.
   const core::Order* ordered(std::uint64_t request) const;
-  /// A program's word. Takes effect wherever the bodies are by then.
+  /// A program's word. Takes effect wherever the bodies are by then. What it says of statics the node that takes orders
+  /// orders for all; where states are computed again if need be, the others expect it (core/static_moves.h).
   core::Heard hear(const core::Setpoints& setpoints);
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }
   /// Whether somebody wants to know what late bodies have done before they came, and what presses on what. In the steps
@@ -234,12 +236,24 @@ class Node {
   void note_effects_on_arrivals();
   void note_left_behind(const core::ClusterState& cluster);
   void forget_setpoints();
+  bool can_go(std::span<const core::StaticSetpoint> statics) const;
+  bool leads() const;
+  bool believes_programs() const;
+  core::Heard hear_of_statics(const core::Setpoints& setpoints, core::Heard heard);
+  void expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
+  core::Heard order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
+  void expect_recorded_moves();
+  void order_recorded_moves();
+  void doubt(core::Step step);
+  void give_up_expected();
+  void note_moves();
+  const core::Order& give(core::Order order);
   void clear_report();
   void host_initial_bodies();
   std::vector<core::BodyRecord> initial_bodies();
   std::vector<core::RegionId> hosts_at_start(core::Snapshot all);
   void announce_births(core::Step state);
-  void complete(core::MoveStatic& move, core::Order& order) const;
+  void complete(core::Order& order) const;
   void heed(const core::Order& order);
   void heed_saved();
   void remember(const core::Order& order);
@@ -311,6 +325,12 @@ class Node {
   bool is_observed_ = false;
   std::optional<core::Order> redo_;  ///< not yet due
   bool redo_is_ordered_ = false;     ///< by us
+  bool is_changing_ = false;         ///< we have ordered what changes the run: what is ordered now would be lost
+  std::vector<core::StaticEffect> recorded_moves_;  ///< of setup_.recorded, ascending step
+  std::size_t next_recorded_move_ = 0;
+  core::Step moves_ordered_for_ = -1;  ///< the state in which we have ordered moves_ordered_
+  std::size_t moves_ordered_ = 0;
+  std::vector<core::Step> doubted_;  ///< states in which the run was put back since a static was elsewhere
   core::Epoch first_epoch_ = 0;      ///< of bodies that are new
   std::size_t stubborn_ = 0;         ///< redos in a row that have not brought a pair together
   std::deque<StepReport> held_;      ///< not confirmed yet

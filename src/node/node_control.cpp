@@ -14,8 +14,10 @@ constexpr core::Step kRemembered = 600;
 }  // namespace
 
 core::Heard Node::hear(const core::Setpoints& setpoints) {
+  if (!can_go(setpoints.statics)) return core::Heard::kRefused;
   const core::Step notice = setup_.protocol.aura.lookahead + 1;
-  return world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
+  const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
+  return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard);
 }
 
 /// It is here, and was in the state before.

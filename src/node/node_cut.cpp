@@ -80,6 +80,7 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
   for (const core::Order& order : protocol_->orders_to_come()) {
     if (is_kept(order.action)) part.orders.push_back(order);
   }
+  core::forget_moves_before(after + 1, part.orders);
 }
 
 bool Node::is_certain(const Cut& cut) const { return cut.is_whole && cut.step <= confirmed_step(); }

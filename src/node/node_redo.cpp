@@ -75,6 +75,7 @@ void Node::order_redo() {
   std::size_t farther = 0;
   std::vector<core::TogetherPair> pairs = setup_.protocol.together;
   for (const core::Alarm& alarm : alarms) {
+    if (!core::is_about_a_pair(alarm)) continue;
     const core::Step until = alarm.step + core::horizon::together_after_touch(setup_.protocol.aura.lookahead);
     const auto known = std::ranges::find_if(pairs, [&](const auto& pair) { return same_pair(pair, alarm); });
     if (known == pairs.end()) {
@@ -98,9 +99,11 @@ void Node::order_redo() {
 /// All nodes do so after the same state. What is under way is of the old redo, and dropped by whoever receives it.
 void Node::put_back() {
   const core::Step from = current_step();
-  const auto redo = std::get<core::Redo>(redo_->action);
+  const core::Order order = *redo_;
+  const auto redo = std::get<core::Redo>(order.action);
   redo_.reset();
   redo_is_ordered_ = false;
+  if (!std::ranges::all_of(protocol_->alarms().standing(), core::is_about_a_pair)) doubted_.push_back(from);
   clear_report();
   while (!cuts_.empty() && cuts_.back().step > redo.cut) cuts_.pop_back();
   if (cuts_.empty() || cuts_.back().step != redo.cut) {
@@ -123,7 +126,7 @@ void Node::put_back() {
   if (!is_the_beginning) raise(cut.bodies);
   for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
 
-  core::Continuation next = protocol_->continuation(cut.step, cut.claimer);
+  core::Continuation next = protocol_->continuation(order, cut.claimer);
   setup_.protocol.redo = next.alarms.redo();
   setup_.protocol.start = cut.step;
   std::vector<core::Listened> related = next.related;

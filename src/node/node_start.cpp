@@ -68,6 +68,7 @@ const StepReport& Node::start() {
   host_initial_bodies();
   finish_state();
   take_cut();
+  order_recorded_moves();
   hold(report_);
   return report_;
 }
@@ -143,6 +144,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   confirmed_.clear();
   begun_with_ = std::move(world);
   heed_saved();
+  world_.moves().give_up_expected(begun_with_->step + 1);
   setup_.protocol.start = begun_with_->step;
   setup_.protocol.last_order = begun_with_->last_order;
   protocol_.emplace(setup_.protocol, *map_, *clearance_);
@@ -158,6 +160,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   setup_.hash_states = hashes;
   take_cut();
   if (!setup_.protocol.aura.redo) begun_with_.reset();
+  order_recorded_moves();
   hold(report_);
   return report_;
 }

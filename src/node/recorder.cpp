@@ -103,6 +103,7 @@ void Recorder::write_settling(const StepReport& report) {
   write_hand_offs(report);
   for (const core::BodyEffect& effect : report.effects.bodies) setpoints_.add("{}", setpoint_row(region_, effect));
   for (const core::JointEffect& effect : report.effects.joints) setpoints_.add("{}", setpoint_row(region_, effect));
+  for (const core::StaticEffect& effect : report.effects.statics) setpoints_.add("{}", setpoint_row(region_, effect));
   for (const HashPart& part : report.hash) hashes_.add("{},{:016x}\n", part.step, part.sum);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "core/limits.h"
 #include "node/csv.h"
 
 namespace aurasim::node {
@@ -19,7 +21,9 @@ namespace {
 constexpr std::array<std::string_view, core::kQuantities> kQuantityNames = {"force", "torque", "velocity", "spin",
                                                                             "driving"};
 constexpr std::string_view kDrive = "drive";
-constexpr std::size_t kColumns = 10, kFirstNumber = 4;
+constexpr std::string_view kMove = "move";
+constexpr double kMostOff = 1e-6;  ///< of the length of a quaternion: what an order bears
+constexpr std::size_t kColumns = 12, kFirstNumber = 4, kMoveNumbers = 8;
 
 std::string row(core::RegionId region, core::Step step, std::string_view what, std::uint64_t id,
                 std::span<const double> numbers) {
@@ -61,6 +65,16 @@ std::optional<core::JointEffect> joint_effect(core::Step step, std::uint64_t id,
   return effect;
 }
 
+std::optional<core::StaticEffect> static_effect(core::Step step, std::uint64_t id, const std::vector<double>& n) {
+  if (n.size() != kMoveNumbers) return {};
+  const core::Pose to{core::Vec3(n[0], n[1], n[2]), core::Quat(n[3], n[4], n[5], n[6])};
+  const bool is_place = to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m &&
+                        std::abs(to.q_WB.norm() - 1) <= kMostOff && n[7] >= 1 && n[7] <= core::limits::kMostStepsAhead;
+  if (!is_place) return {};
+  return core::StaticEffect{
+      step, {core::StaticId{static_cast<std::uint32_t>(id)}, to, static_cast<core::Step>(n[7])}};
+}
+
 /// Nothing: no row of setpoints.
 std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells) {
   if (cells.size() != kColumns) return {};
@@ -75,6 +89,10 @@ std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells)
   const auto at = static_cast<core::Step>(*step);
   if (cells[2] == kDrive) {
     const auto effect = joint_effect(at, static_cast<std::uint64_t>(*id), numbers);
+    return effect ? std::optional(as_heard_again(*effect)) : std::nullopt;
+  }
+  if (cells[2] == kMove) {
+    const auto effect = static_effect(at, static_cast<std::uint64_t>(*id), numbers);
     return effect ? std::optional(as_heard_again(*effect)) : std::nullopt;
   }
   const auto effect = body_effect(cells[2], at, static_cast<std::uint64_t>(*id), numbers);
@@ -105,12 +123,23 @@ std::string setpoint_row(core::RegionId region, const core::JointEffect& effect)
              d ? std::span<const double>(numbers) : std::span<const double>());
 }
 
+std::string setpoint_row(core::RegionId region, const core::StaticEffect& effect) {
+  const auto& [id, to, states] = effect.setpoint;
+  const std::array<double, kMoveNumbers> numbers = {to.p_WB.x(), to.p_WB.y(), to.p_WB.z(), to.q_WB.w(),
+                                                    to.q_WB.x(), to.q_WB.y(), to.q_WB.z(), static_cast<double>(states)};
+  return row(region, effect.step, kMove, core::value_of(id), numbers);
+}
+
 core::Setpoints as_heard_again(const core::BodyEffect& effect) {
   return {core::kRecordedClient, sequence_of(effect.setpoint.value.has_value()), 0, effect.step, {effect.setpoint}, {}};
 }
 
 core::Setpoints as_heard_again(const core::JointEffect& effect) {
   return {core::kRecordedClient, sequence_of(effect.setpoint.drive.has_value()), 0, effect.step, {}, {effect.setpoint}};
+}
+
+core::Setpoints as_heard_again(const core::StaticEffect& effect) {
+  return {core::kRecordedClient, 1, 0, effect.step, {}, {}, {effect.setpoint}};
 }
 
 std::vector<core::Setpoints> read_setpoints(const std::filesystem::path& file) {

@@ -14,8 +14,8 @@
 namespace aurasim::overseer {
 
 /// JSON of which only the latest counts, in the order in which they are sent.
-enum class Notice : std::uint8_t { kHello, kScene, kMap, kStatus, kReplay, kBody };
-inline constexpr std::size_t kNotices = 6;
+enum class Notice : std::uint8_t { kHello, kScene, kMoves, kMap, kStatus, kReplay, kBody };
+inline constexpr std::size_t kNotices = 7;
 
 using SharedText = std::shared_ptr<const std::string>;
 using SharedBytes = std::shared_ptr<const Bytes>;

@@ -23,6 +23,7 @@ namespace {
 constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kOverlayPeriod = 200ms;
+constexpr auto kMovesPeriod = 50ms;
 constexpr auto kGrowPeriod = 2s;        // while a mesh is missing
 constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
 
@@ -78,11 +79,22 @@ void Overseer::write_down(const WorldFrame& frame) {
 void Overseer::publish_scene() {
   const std::string text = scene_text();
   web_.publish(Notice::kScene, text);
+  moves_have_changed_ = !static_moves_.empty();
   write_down(ChunkKind::kScene, text);
 }
 
 std::string Overseer::scene_text() const {
-  return scene_message(scene_, published_generation_, removed_statics_, static_moves_);
+  return scene_message(scene_, published_generation_, removed_statics_);
+}
+
+/// Now and then: programs may send a static on in every state. Frames are shown later than this.
+void Overseer::publish_moves() {
+  if (!moves_have_changed_ || Clock::now() < next_moves_) return;
+  next_moves_ = Clock::now() + kMovesPeriod;
+  moves_have_changed_ = false;
+  const std::string text = moves_message(published_generation_, static_moves_);
+  web_.publish(Notice::kMoves, text);
+  write_down(ChunkKind::kMoves, text);
 }
 
 /// What clients have added to the scene, once the run shows that generation; again when a mesh has come later.
@@ -91,23 +103,44 @@ void Overseer::grow() {
     additions_ = std::move(newest);
     additions_are_shown_ = false;
   }
+  publish_moves();
   if (!additions_ || additions_->generation != published_generation_) return;
   const bool has_all = has_all_meshes();
   if (additions_are_shown_ && !has_all) return;
+  const auto lasting = take_moves();
+  additions_are_shown_ = true;
+  const bool is_known = has_all && grown_by_ == lasting;
+  if (!is_known) grow_by(additions_->orders);
+  if (has_all) grown_by_ = lasting;
+  if (has_all) additions_.reset();
+}
+
+/// Returns the numbers of all other orders.
+std::vector<std::uint64_t> Overseer::take_moves() {
+  std::vector<std::uint64_t> others;
+  static_moves_.clear();
+  for (const core::Order& order : additions_->orders) {
+    if (std::holds_alternative<core::MoveStatic>(order.action)) {
+      static_moves_.push_back(order);
+    } else {
+      others.push_back(order.sequence);
+    }
+  }
+  moves_have_changed_ = true;
+  return others;
+}
+
+void Overseer::grow_by(std::span<const core::Order> orders) {
   const auto mesh = [this](const core::MeshRef& ref) -> std::optional<core::Shape> {
     const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
     return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
   };
   scene_ = watch_.launch().scene;
   removed_statics_.clear();
-  static_moves_.clear();
-  for (const core::Order& order : additions_->orders) {
+  for (const core::Order& order : orders) {
     node::extend(scene_, order.action, mesh);
     if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) removed_statics_.insert(removed->id);
-    if (std::holds_alternative<core::MoveStatic>(order.action)) static_moves_.push_back(order);
   }
-  additions_are_shown_ = true;
-  if (has_all) additions_.reset();
   publish_scene();
 }
 
@@ -147,6 +180,8 @@ void Overseer::compose_frames() {
       scene_ = watch_.launch().scene;
       removed_statics_.clear();
       static_moves_.clear();
+      grown_by_.clear();
+      moves_have_changed_ = true;
       publish_scene();
       grow();
     }

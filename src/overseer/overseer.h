@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ class Overseer {
   void publish_scene();
   std::string scene_text() const;
   void grow();
+  std::vector<std::uint64_t> take_moves();
+  void grow_by(std::span<const core::Order> orders);
+  void publish_moves();
   bool has_all_meshes();
   void write_down(ChunkKind kind, const std::string& text);
   void write_down(const WorldFrame& frame);
@@ -65,6 +69,9 @@ class Overseer {
   core::Scene scene_;  ///< as it has grown
   std::set<core::StaticId> removed_statics_;
   std::vector<core::Order> static_moves_;
+  bool moves_have_changed_ = false;  ///< since they were published
+  Clock::time_point next_moves_;
+  std::vector<std::uint64_t> grown_by_;  ///< orders that scene_ has taken in
   std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
   bool additions_are_shown_ = false;              ///< with balls where meshes are missing
   OverlayView overlays_;

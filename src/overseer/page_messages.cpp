@@ -33,20 +33,6 @@ Json path_json(const core::StaticPath& path) {
 
 Json place_json(const core::Pose& pose) { return {{"p", vector_json(pose.p_WB)}, {"q", rotation_json(pose.q_WB)}}; }
 
-/// Of one static, in the order of time.
-Json moves_json(core::StaticId id, std::span<const core::Order> orders) {
-  Json moves = Json::array();
-  for (const core::Order& order : orders) {
-    const auto& move = std::get<core::MoveStatic>(order.action);
-    if (move.id != id) continue;
-    moves.push_back({{"step", order.at_step},
-                     {"states", move.states},
-                     {"from", place_json(move.from)},
-                     {"to", place_json(move.to)}});
-  }
-  return moves;
-}
-
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// JSON has no infinity.
@@ -109,7 +95,7 @@ std::string hello_message(const Hello& hello) {
 }
 
 std::string scene_message(const core::Scene& scene, core::Generation generation,
-                          const std::set<core::StaticId>& removed, std::span<const core::Order> moves) {
+                          const std::set<core::StaticId>& removed) {
   Json shapes = Json::array(), prototypes = Json::array(), statics = Json::array();
   for (const core::NamedShape& shape : scene.shapes) {
     shapes.push_back(shape_to_json(shape.shape));
@@ -126,9 +112,6 @@ std::string scene_message(const core::Scene& scene, core::Generation generation,
                        {"p", vector_json(body.pose.p_WB)},
                        {"q", rotation_json(body.pose.q_WB)}});
     if (body.path) statics.back()["path"] = path_json(*body.path);
-    if (Json of_body = moves_json(core::StaticId{static_cast<std::uint32_t>(i)}, moves); !of_body.empty()) {
-      statics.back()["moves"] = std::move(of_body);
-    }
   }
   return text_of({{"type", "scene"},
                   {"generation", generation},
@@ -137,6 +120,20 @@ std::string scene_message(const core::Scene& scene, core::Generation generation,
                   {"shapes", std::move(shapes)},
                   {"prototypes", std::move(prototypes)},
                   {"statics", std::move(statics)}});
+}
+
+std::string moves_message(core::Generation generation, std::span<const core::Order> moves) {
+  std::map<core::StaticId, Json> by_static;  // each in the order of time
+  for (const core::Order& order : moves) {
+    const auto& move = std::get<core::MoveStatic>(order.action);
+    by_static[move.id].push_back({{"step", order.at_step},
+                                  {"states", move.states},
+                                  {"from", place_json(move.from)},
+                                  {"to", place_json(move.to)}});
+  }
+  Json statics = Json::array();
+  for (auto& [id, list] : by_static) statics.push_back({{"id", core::value_of(id)}, {"moves", std::move(list)}});
+  return text_of({{"type", "moves"}, {"generation", generation}, {"statics", std::move(statics)}});
 }
 
 std::string map_message(const core::RegionMap& map) {

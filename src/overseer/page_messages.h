@@ -30,7 +30,9 @@ std::string hello_message(const Hello& hello);
 
 /// `removed`: statics that are there no longer; the others keep their ids.
 std::string scene_message(const core::Scene& scene, core::Generation generation,
-                          const std::set<core::StaticId>& removed, std::span<const core::Order> moves = {});
+                          const std::set<core::StaticId>& removed);
+/// Where statics go that have been told to (MoveStatic orders, ascending): all that the page has to know now.
+std::string moves_message(core::Generation generation, std::span<const core::Order> moves);
 std::string map_message(const core::RegionMap& map);
 
 struct RunStatus {

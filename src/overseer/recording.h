@@ -16,7 +16,15 @@
 
 namespace aurasim::overseer {
 
-enum class ChunkKind : std::uint8_t { kAbout = 1, kScene = 2, kMap = 3, kStatus = 4, kFrame = 5, kKeyFrame = 6 };
+enum class ChunkKind : std::uint8_t {
+  kAbout = 1,
+  kScene = 2,
+  kMap = 3,
+  kStatus = 4,
+  kFrame = 5,
+  kKeyFrame = 6,
+  kMoves = 7
+};
 
 struct Chunk {
   ChunkKind kind = ChunkKind::kFrame;

@@ -14,6 +14,8 @@ std::optional<Notice> notice_of(ChunkKind kind) {
   switch (kind) {
     case ChunkKind::kScene:
       return Notice::kScene;
+    case ChunkKind::kMoves:
+      return Notice::kMoves;
     case ChunkKind::kMap:
       return Notice::kMap;
     case ChunkKind::kStatus:

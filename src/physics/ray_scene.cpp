@@ -17,6 +17,9 @@ namespace {
 /// What a ray cannot meet is told by spheres, which are wider than they need be by this.
 constexpr double kSlack_m = 0.01;
 
+/// States for which it is remembered where statics were that orders have moved since.
+constexpr core::Step kRemembered = 600;
+
 /// Something on the way, with the sensor's origin as Bullet's.
 struct Target {
   core::ObjectRef ref = 0;
@@ -91,7 +94,9 @@ RayScene::~RayScene() = default;
 void RayScene::add(const core::Order& order) {
   impl_->shapes.extend(impl_->scene);
   impl_->measure();
-  if (!core::body_of(order.action)) impl_->timeline.add(order);
+  if (core::body_of(order.action)) return;
+  impl_->timeline.add(order);
+  impl_->timeline.forget_before(order.at_step - kRemembered);
 }
 
 double RayScene::largest_radius_m() const { return impl_->largest; }

@@ -74,13 +74,15 @@ void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
   take_unbearable();
 }
 
-void RegionWorld::schedule(const core::Order& order) {
+std::optional<core::Step> RegionWorld::schedule(const core::Order& order) {
   impl_->shapes->extend(impl_->scene);
-  impl_->timeline.add(order);
+  const std::optional<core::Step> changed = impl_->timeline.add(order);
   impl_->timeline.forget_before(step_number() - kOrderMemory);
+  return changed;
 }
 
 const core::StaticMoves& RegionWorld::moves() const { return impl_->timeline.moves(); }
+core::StaticMoves& RegionWorld::moves() { return impl_->timeline.moves(); }
 
 std::vector<Removal> RegionWorld::take_removed() {
   std::vector<Removal> removed = impl_->simulation.take_removed();

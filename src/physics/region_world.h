@@ -63,10 +63,12 @@ class RegionWorld {
   void put_back(core::Step step, const core::ClusterState& bodies);
 
   /// An order to apply in time, also by bodies that arrive late. Orders that define shapes, prototypes or statics have
-  /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use.
-  void schedule(const core::Order& order);
-  /// Of statics that orders have told to move.
+  /// changed the scene before. Throws std::invalid_argument for shapes that Bullet cannot use. Of a static that is to
+  /// move: returns the first state that is another one by it (core::StaticMoves::add).
+  std::optional<core::Step> schedule(const core::Order& order);
+  /// Of statics that orders and programs have told to move.
   const core::StaticMoves& moves() const;
+  core::StaticMoves& moves();
   /// Since the last call: bodies taken out, by orders or because no world can bear them; requests that were
   /// applied to bodies here, and those that were not.
   std::vector<Removal> take_removed();

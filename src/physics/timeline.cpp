@@ -21,17 +21,18 @@ Timeline::Life& Timeline::life_of(std::uint32_t index) {
   return *lives_.insert(place, life);
 }
 
-void Timeline::add(const core::Order& order) {
+std::optional<core::Step> Timeline::add(const core::Order& order) {
   if (const auto* added = std::get_if<core::AddStatic>(&order.action)) {
     life_of(core::value_of(added->id)).from = order.at_step;
   } else if (const auto* removed = std::get_if<core::RemoveStatic>(&order.action)) {
     Life& life = life_of(core::value_of(removed->id));
     life.until = std::min(life.until, order.at_step);
   } else if (const auto* moved = std::get_if<core::MoveStatic>(&order.action)) {
-    moves_.add(*moved, order.at_step);
+    return moves_.add(*moved, order.at_step, order.request);
   } else if (core::body_of(order.action)) {
     orders_.insert(std::upper_bound(orders_.begin(), orders_.end(), order, earlier), order);
   }
+  return std::nullopt;
 }
 
 bool Timeline::stands(std::uint32_t static_index, core::Step step) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace aurasim::physics {
 
 class Timeline {
  public:
-  /// Statics and orders about bodies; others are nothing to physics.
-  void add(const core::Order& order);
+  /// Statics and orders about bodies; others are nothing to physics. Of a static that is to move: the first state that
+  /// is another one by it (StaticMoves::add).
+  std::optional<core::Step> add(const core::Order& order);
 
   /// Is a static in the world while state `step` is computed, and in it?
   bool stands(std::uint32_t static_index, core::Step step) const;
@@ -29,6 +31,7 @@ class Timeline {
   std::span<const core::Order> coming(core::Step step) const;
 
   const core::StaticMoves& moves() const { return moves_; }
+  core::StaticMoves& moves() { return moves_; }
 
   /// Statics that come or go later than `step`.
   std::vector<std::uint32_t> statics_coming(core::Step step) const;

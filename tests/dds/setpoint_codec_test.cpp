@@ -28,6 +28,7 @@ Setpoints of_all_kinds() {
   setpoints.bodies.push_back({BodyId{6}, Quantity::kSpin, {}});
   setpoints.joints.push_back({core::JointId{1}, core::JointDrive{0.1, -2, 30, 4, 5, kInfinite}});
   setpoints.joints.push_back({core::JointId{0}, {}});
+  setpoints.statics.push_back({core::StaticId{3}, {Vec3(1, -2.5, 0.1), core::Quat(0.6, 0, 0.8, 0)}, 12});
   return setpoints;
 }
 
@@ -57,6 +58,11 @@ TEST(SetpointCodec, ComesBackAsItWas) {
   EXPECT_EQ(std::tuple(drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, drive.max_effort),
             std::tuple(0.1, -2.0, 30.0, 4.0, 5.0, kInfinite));
   EXPECT_FALSE(back.joints[1].drive);
+  ASSERT_EQ(back.statics.size(), 1u);
+  EXPECT_EQ(back.statics[0].id, core::StaticId{3});
+  EXPECT_EQ(back.statics[0].states, 12);
+  EXPECT_EQ(back.statics[0].to.p_WB, sent.statics[0].to.p_WB);
+  EXPECT_EQ(back.statics[0].to.q_WB.coeffs(), sent.statics[0].to.q_WB.coeffs());
 }
 
 struct Fault {
@@ -95,6 +101,20 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"BodyBeyondAll", [](Wire& w) { w.body()[0] = ~0ULL; }, WireError::kRange},
                     Fault{"NegativeState", [](Wire& w) { w.stamp(-1); }, WireError::kRange},
                     Fault{"AnotherVersion", [](Wire& w) { w.version(3); }, WireError::kVersion},
+                    Fault{"PlaceNan", [](Wire& w) { w.place()[2] = kNan; }, WireError::kNotFinite},
+                    Fault{"PlaceTooFarOut", [](Wire& w) { w.place()[0] = 1e30; }, WireError::kRange},
+                    Fault{"NoRotation", [](Wire& w) { w.place()[3] = 0; }, WireError::kRange},
+                    Fault{"PlacesMissing", [](Wire& w) { w.place().pop_back(); }, WireError::kLength},
+                    Fault{"SpansMissing", [](Wire& w) { w.states().clear(); }, WireError::kLength},
+                    Fault{"NoSpan", [](Wire& w) { w.states()[0] = 0; }, WireError::kRange},
+                    Fault{"SpanForEver", [](Wire& w) { w.states()[0] = 1LL << 62; }, WireError::kRange},
+                    Fault{"TooManyStatics",
+                          [](Wire& w) {
+                            w.fixed().assign(65, 1);
+                            w.states().assign(65, 1);
+                            w.place().resize(65 * 7);
+                          },
+                          WireError::kTooLarge},
                     Fault{"TooMany",
                           [](Wire& w) {
                             w.body().assign(200'000, 1);

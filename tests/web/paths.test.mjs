@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { placeOfStatic, placeOnPath } from "../../src/overseer/web/src/paths.js";
+import { placeOfStatic, placeOnPath, takeMoves } from "../../src/overseer/web/src/paths.js";
 
 const positionOf = (path, t_s) => placeOnPath(path, t_s).elements.slice(12, 15);
 const up = (at, z) => ({ at, p: [0, 0, z], q: [1, 0, 0, 0] });
@@ -40,4 +40,11 @@ test("one that is told to move leaves its path, and stays where it was sent", ()
   expect(x(99)).toEqual([5, 0, 2]);
   expect(x(101)).toEqual([0, 0, 2]);
   expect(x(30)[2]).toBeCloseTo(1.5, 12);
+});
+
+test("moves go to their statics, in the world that they are of", () => {
+  const scene = { generation: 2, statics: [{ id: 0 }, { id: 3 }, { id: 4, moves: ["old"] }] };
+  expect(takeMoves(scene, { generation: 1, statics: [{ id: 3, moves: ["of another world"] }] })).toBe(false);
+  expect(takeMoves(scene, { generation: 2, statics: [{ id: 3, moves: ["away"] }, { id: 9, moves: [] }] })).toBe(true);
+  expect(scene.statics).toEqual([{ id: 0 }, { id: 3, moves: ["away"] }, { id: 4, moves: ["old"] }]);
 });

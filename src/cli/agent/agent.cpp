@@ -97,7 +97,7 @@ Message Agent::answer(const Message& question, const Patience& patience) {
     if (what == "connect" || what == "launch") return {open(asked, patience), {}};
     if (what == "close") return {close(patience), {}};
     if (what == "control") {
-      return {{{"step", run().control(setpoints_of(question, run().launch().scene), patience)}}, {}};
+      return {{{"step", run().control(setpoints_of(question, run().launch()), patience)}}, {}};
     }
     return answer_of_run(what, asked, patience);
   } catch (const Problem& problem) {

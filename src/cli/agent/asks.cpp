@@ -47,14 +47,6 @@ std::optional<core::Vec3> optional_vector(const json& of, const char* key) {
   return member(of, key).is_null() ? std::nullopt : std::optional(vector_of(of, key));
 }
 
-core::Pose pose_of(const json& of) {
-  const json& q = member(of, "q");
-  if (!is_list(q, 4)) refuse("rotation", q, "a quaternion w x y z of finite numbers");
-  const core::Quat rotation(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>());
-  if (!(rotation.norm() > 1e-6 && rotation.norm() < 1e6)) refuse("rotation", q, "a quaternion w x y z, e.g. 1 0 0 0");
-  return {vector_of(of, "p"), rotation.normalized()};
-}
-
 core::ClientShape shape_of(const json& of, bool is_body, CommandClient& client) {
   const json& shape = member(of, "shape");
   if (!shape.is_object()) refuse("shape", shape, "a sphere, a box, a capsule or a mesh");
@@ -84,19 +76,6 @@ core::NewBody body_of(const json& of, CommandClient& client) {
   return body;
 }
 
-/// By its number, or the name that the scene gives it.
-core::StaticId static_of(const json& of, const core::Scene& scene) {
-  const json& found = member(of, "static");
-  if (found.is_string()) {
-    const auto named = core::find_static(scene, found.get<std::string>());
-    if (!named) refuse("static", found, "the name or number of a static");
-    return *named;
-  }
-  const std::uint64_t id = id_of(of, "static");
-  if (id > std::numeric_limits<std::uint32_t>::max()) refuse("static", found, "the name or number of a static");
-  return core::StaticId{static_cast<std::uint32_t>(id)};
-}
-
 core::Repartition regions_of(const json& of) {
   core::Repartition regions;
   const auto side = [](const json& found, double beyond) {
@@ -110,6 +89,26 @@ core::Repartition regions_of(const json& of) {
 }
 
 }  // namespace
+
+core::Pose pose_of(const json& of) {
+  const json& q = member(of, "q");
+  if (!is_list(q, 4)) refuse("rotation", q, "a quaternion w x y z of finite numbers");
+  const core::Quat rotation(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>());
+  if (!(rotation.norm() > 1e-6 && rotation.norm() < 1e6)) refuse("rotation", q, "a quaternion w x y z, e.g. 1 0 0 0");
+  return {vector_of(of, "p"), rotation.normalized()};
+}
+
+core::StaticId static_of(const json& of, const core::Scene& scene) {
+  const json& found = member(of, "static");
+  if (found.is_string()) {
+    const auto named = core::find_static(scene, found.get<std::string>());
+    if (!named) refuse("static", found, "the name or number of a static");
+    return *named;
+  }
+  const std::uint64_t id = id_of(of, "static");
+  if (id > std::numeric_limits<std::uint32_t>::max()) refuse("static", found, "the name or number of a static");
+  return core::StaticId{static_cast<std::uint32_t>(id)};
+}
 
 core::Vec3 vector_of(const json& of, const char* key) {
   const json& v = member(of, key);

@@ -41,9 +41,12 @@ void SeenScene::look() {
     const core::TriangleMesh* const found = meshes_.mesh(ref.hash);
     return found == nullptr ? std::nullopt : std::optional(config::shape_for(*found, ref.use));
   };
-  for (; added_ < additions_->orders.size() && has_meshes_of(additions_->orders[added_]); ++added_) {
-    node::extend(scene_, additions_->orders[added_].action, mesh);
-    rays_->add(additions_->orders[added_]);
+  for (const core::Order& order : additions_->orders) {
+    if (order.sequence <= added_) continue;
+    if (!has_meshes_of(order)) return;
+    node::extend(scene_, order.action, mesh);
+    rays_->add(order);
+    added_ = order.sequence;
   }
 }
 

@@ -31,7 +31,7 @@ class SeenScene {
   dds::SceneAdditionsReader additions_reader_;
   dds::MeshReader meshes_;
   std::optional<dds::SceneAdditions> additions_;
-  std::size_t added_ = 0;  ///< of them
+  std::uint64_t added_ = 0;  ///< sequence of the last one of them
   std::uint64_t map_version_ = 0;
   core::Scene scene_;
   std::optional<physics::RayScene> rays_;

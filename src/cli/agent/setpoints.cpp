@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/agent/asks.h"
 #include "cli/agent/problem.h"
 #include "core/limits.h"
 #include "core/order.h"
@@ -115,15 +116,43 @@ void take_joints(const json& head, const core::Scene& scene, Arrays& arrays, cor
   }
 }
 
+void take_statics(const json& head, const config::Launch& launch, core::Setpoints& to) {
+  const json& list = head.contains("statics") ? head["statics"] : json();
+  if (list.size() > core::limits::kMostStaticSetpoints) {
+    refuse(fmt::format("statics: found {} of them, allowed: {}", list.size(), core::limits::kMostStaticSetpoints));
+  }
+  for (const json& of : list) {
+    if (!launch.physics.looks_once()) {
+      refuse(fmt::format("the solver {} knows no statics that move", launch.physics.solver));
+    }
+    core::StaticSetpoint& wanted = to.statics.emplace_back();
+    wanted.id = static_of(of, launch.scene);
+    wanted.to = pose_of(of);
+    wanted.states = of.value("states", core::Step{1});
+    if (!(wanted.to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m)) {
+      refuse(fmt::format("statics: a place too far out, allowed: {:g} m along each axis", core::limits::kFarthestPlace_m));
+    }
+    if (wanted.states < 1 || wanted.states > core::limits::kMostStepsAhead) {
+      refuse(fmt::format("statics: found {} states, allowed: 1 to {}", wanted.states, core::limits::kMostStepsAhead));
+    }
+    const std::uint32_t index = core::value_of(wanted.id);
+    if (index >= launch.scene.statics.size()) continue;  // a client's: nodes know it
+    const core::StaticBody& fixed = launch.scene.statics[index];
+    if (std::holds_alternative<core::Plane>(launch.scene.shapes[fixed.shape].shape)) refuse("a plane cannot move");
+  }
+}
+
 }  // namespace
 
-core::Setpoints setpoints_of(const client::Message& message, const core::Scene& scene) {
+core::Setpoints setpoints_of(const client::Message& message, const config::Launch& launch) {
+  const core::Scene& scene = launch.scene;
   core::Setpoints setpoints;
   Arrays arrays(message.body);
   for (int i = 0; i < core::kQuantities; ++i) {
     take_bodies(message.head, static_cast<core::Quantity>(i), scene, arrays, setpoints);
   }
   take_joints(message.head, scene, arrays, setpoints);
+  take_statics(message.head, launch, setpoints);
   setpoints.at_step = message.head.value("at", core::Step{0});
   if (setpoints.at_step < 0) refuse(fmt::format("at: found {}, allowed: 0 or more", setpoints.at_step));
   return setpoints;

@@ -124,10 +124,20 @@ core::JointSetpoint joint_setpoint_in(const Json& json, const core::Scene& scene
   return setpoint;
 }
 
+core::StaticSetpoint static_setpoint_in(const Json& json, const core::Scene& scene) {
+  const std::string name = json.at("static");
+  const auto id = core::find_static(scene, name);
+  if (!id) throw std::runtime_error(fmt::format("no static \"{}\"", name));
+  return {*id, pose_in(json), json.at("states")};
+}
+
 Word word_in(const Json& json, const core::Scene& scene, std::uint64_t number) {
   Word word{json.at("said_step"), {json.at("client"), number, 0, json.at("at_step"), {}, {}}};
   for (const Json& body : json.at("bodies")) word.setpoints.bodies.push_back(body_setpoint_in(body));
   for (const Json& joint : json.at("joints")) word.setpoints.joints.push_back(joint_setpoint_in(joint, scene));
+  for (const Json& fixed : json.value("statics", Json::array())) {
+    word.setpoints.statics.push_back(static_setpoint_in(fixed, scene));
+  }
   return word;
 }
 

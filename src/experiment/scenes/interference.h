@@ -10,7 +10,8 @@
 //               {"at_step": 300, "remove_static": "wall_0"}],
 //    "programs": [{"client": 1, "said_step": 80, "at_step": 84,
 //                  "bodies": [{"body": 3, "quantity": "force", "value": [..]}, {"body": 4, "quantity": "spin"}],
-//                  "joints": [{"joint": "j0", "drive": [position, speed, stiffness, damping, effort, max_effort]}]}]}
+//                  "joints": [{"joint": "j0", "drive": [position, speed, stiffness, damping, effort, max_effort]}],
+//                  "statics": [{"static": "lift_0", "position": [..], "states": 2}]}]}
 #pragma once
 
 #include <cstdint>

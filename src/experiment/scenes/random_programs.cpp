@@ -118,6 +118,33 @@ Json random_programs(const Makings& makings, const Json& scene, int lookahead, C
   return said;
 }
 
+Json random_movers(const std::vector<std::string>& statics, const Json& scene, int lookahead, Chance& chance) {
+  constexpr std::uint64_t kClient = 9;
+  constexpr std::array<std::uint32_t, 4> kRhythms = {1, 2, 10, 40};
+  const auto k = static_cast<std::uint32_t>(lookahead);
+  const std::array<std::uint32_t, 5> leads = {1, 2, k + 1, k + 2, 8};
+  Json said = Json::array();
+  for (const std::string& name : statics) {
+    const auto body = std::ranges::find(scene["statics"], name, [](const Json& one) { return one["name"]; });
+    const Json& place = (*body)["position"];
+    Vec3 p(place[0], place[1], place[2]);
+    const std::uint32_t rhythm = kRhythms[chance.below(kRhythms.size())], lead = leads[chance.below(leads.size())];
+    const double speed = chance.between(0.2, 3) * rhythm / 60;
+    Vec3 way = {chance.between(-1, 1), chance.between(-1, 1), chance.between(-0.2, 0.4)};
+    std::uint32_t word = kFirstWord + chance.below(100);
+    const std::uint32_t end = std::min(word + 30 + chance.below(200), kLastWord);
+    for (; word < end; word += rhythm) {
+      if (chance.below(20) == 0) way = -way;
+      p += speed * way;
+      Json one = {{"client", kClient}, {"said_step", word}, {"at_step", word + lead}};
+      one["bodies"] = one["joints"] = Json::array();
+      one["statics"] = {{{"static", name}, {"position", json_vec3(p)}, {"states", chance.below(4) == 0 ? 2 * rhythm : rhythm}}};
+      said.push_back(std::move(one));
+    }
+  }
+  return said;
+}
+
 Json random_control_rules(Chance& chance) {
   constexpr std::array kOnSilence = {"hold", "zero", "last"};
   return {{"on_silence", kOnSilence[chance.below(kOnSilence.size())]}, {"silence", rounded(chance.between(0.1, 1))}};

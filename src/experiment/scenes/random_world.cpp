@@ -207,6 +207,22 @@ void send_statics(World& world, Chance& chance) {
   }
 }
 
+/// Those that move, and that no order sends elsewhere: of two who send one static the later begins no earlier.
+std::vector<std::string> movers_left_alone(const World& world) {
+  const auto is_sent = [&](const Json& name) {
+    return world.interference.contains("orders") &&
+           std::ranges::any_of(world.interference["orders"], [&](const Json& order) {
+             return order.contains("move_static") && order["move_static"]["name"] == name;
+           });
+  };
+  std::vector<std::string> names;
+  for (const Json& fixed : world.scene["statics"]) {
+    const bool moves = fixed.contains("path") || fixed.contains("belt");
+    if (moves && !is_sent(fixed["name"])) names.push_back(fixed["name"]);
+  }
+  return names;
+}
+
 }  // namespace
 
 World random_world(std::uint64_t seed) {
@@ -237,6 +253,13 @@ World random_world(std::uint64_t seed) {
     world.interference["programs"] =
         random_programs({kinds, dials.speed_m_s, region_m}, world.scene, dials.lookahead, of_programs);
     world.launch["control"] = random_control_rules(of_programs);
+  }
+  Chance of_movers(~seed ^ kProgramsOf);
+  const std::vector<std::string> left_alone = movers_left_alone(world);
+  if (!left_alone.empty() && of_movers.below(2) == 0) {
+    for (Json& word : random_movers(left_alone, world.scene, dials.lookahead, of_movers)) {
+      world.interference["programs"].push_back(std::move(word));
+    }
   }
   return world;
 }

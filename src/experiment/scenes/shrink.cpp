@@ -92,6 +92,20 @@ void drop_words_without_joints(World& world) {
   }
 }
 
+/// Likewise of statics.
+void drop_words_without_statics(World& world) {
+  if (!world.interference.contains("programs")) return;
+  std::set<std::string> names;
+  for (const Json& fixed : world.scene["statics"]) names.insert(fixed["name"].get<std::string>());
+  for (Json& word : world.interference["programs"]) {
+    Json rest = Json::array();
+    for (const Json& setpoint : word.value("statics", Json::array())) {
+      if (names.contains(setpoint["static"].get<std::string>())) rest.push_back(setpoint);
+    }
+    word["statics"] = std::move(rest);
+  }
+}
+
 /// Left out bit by bit, and kept out if the world still fails.
 class Shrinker {
  public:
@@ -137,6 +151,7 @@ class Shrinker {
         entries = without_entries(entries, begin, begin + chunk);
         drop_joints_without_bodies(smaller);
         drop_words_without_joints(smaller);
+        drop_words_without_statics(smaller);
         if (accept(std::move(smaller))) {
           any = true;
         } else {

@@ -274,11 +274,11 @@ class World:
                 velocities: Vectors | None = None, spins: Vectors | None = None, at: int = 0,
                 timeout: float = 60.0) -> int:
         """Steers bodies: for each quantity (n ids, n x 3 array) in N, N m, m/s, rad/s, world frame; (ids, one vector)
-        is for all of them, (ids, None) lets go of them. What is said holds until something else is said, wherever the bodies are hosted. Returns at once, with
-        the first state that shows it: in a paused run by itself the next one; else 0, which is lookahead + 1 states
+        is for all of them, (ids, None) lets go of them. What is said holds until something else is said, wherever the
+        bodies are hosted. Returns at once, with the first state that shows it: in a paused run by itself the next one; else 0, which is lookahead + 1 states
         after each node has heard of it."""
         of_bodies = (_for_each(of) for of in (forces, torques, velocities, spins))
-        return self._world.control(*of_bodies, None, at, timeout)
+        return self._world.control(*of_bodies, None, [], at, timeout)
 
     def drive(self, joints: Sequence[str | int], *, position: Numbers = 0.0, speed: Numbers = 0.0,
               stiffness: Numbers = 0.0, damping: Numbers = 0.0, effort: Numbers = 0.0, max_effort: Numbers = np.inf,
@@ -288,11 +288,19 @@ class World:
         or m, N. Like control()."""
         columns = (position, speed, stiffness, damping, effort, max_effort)
         numbers = np.stack([np.broadcast_to(np.asarray(c, float), (len(joints),)) for c in columns], axis=1)
-        return self._world.control(None, None, None, None, (self._joints(joints, timeout), numbers), at, timeout)
+        return self._world.control(None, None, None, None, (self._joints(joints, timeout), numbers), [], at, timeout)
 
     def release_joints(self, joints: Sequence[str | int], *, at: int = 0, timeout: float = 60.0) -> int:
         """They have the drives of the scene again."""
-        return self._world.control(None, None, None, None, (self._joints(joints, timeout), None), at, timeout)
+        return self._world.control(None, None, None, None, (self._joints(joints, timeout), None), [], at, timeout)
+
+    def place(self, fixed: int | str, position: Vector, *, rotation: Vector = _UPRIGHT, states: int = 1, at: int = 0,
+              timeout: float = 60.0) -> int:
+        """Steers a static, by its number or its name in the scene: a lift, a gate, a conveyor. It is there in state
+        `at` + `states` - 1, on the way evenly from where it was, pushes what is in its way, and stays. Like control(),
+        but without `at`, in a world that runs, it takes the time of an order; see move_static() for one that waits
+        until it is seen. Solver soft_step only."""
+        return self._world.control(None, None, None, None, None, [(fixed, position, rotation, states)], at, timeout)
 
     def _joints(self, joints: Sequence[str | int], timeout: float) -> np.ndarray:
         if any(isinstance(joint, str) for joint in joints) and self._numbers is None:

@@ -329,7 +329,8 @@ class World:
         torques: Optional[tuple[ArrayLike, Optional[ArrayLike]]],
         velocities: Optional[tuple[ArrayLike, Optional[ArrayLike]]],
         spins: Optional[tuple[ArrayLike, Optional[ArrayLike]]],
-        drives: Optional[tuple[ArrayLike, Optional[ArrayLike]]], at: int, timeout: float, /
+        drives: Optional[tuple[ArrayLike, Optional[ArrayLike]]],
+        statics: Sequence[tuple[int | str, Vector, Vector, int]], at: int, timeout: float, /
     ) -> int: ...
     def impulses(self, bodies: ArrayLike, impulses: ArrayLike, at: int, timeout: float, /) -> list[Acknowledgement]: ...
     def set_velocities(

@@ -121,7 +121,15 @@ struct JointDrives {
   std::vector<JointDrive> drives;
 };
 
-/// What is wanted of bodies and joints: holds until something else is said, or this World is gone (`control` of the
+/// Where a static goes: evenly from where it is, and then it stays. It pushes what is in its way.
+struct StaticGoal {
+  std::variant<std::uint32_t, std::string> fixed = std::uint32_t{0};  ///< its number, or its name in the scene
+  Vec3 position = {};                                                 ///< m
+  Quaternion rotation = {1, 0, 0, 0};
+  std::int64_t states = 1;  ///< until it is there; 1: in the first state that shows it
+};
+
+/// What is wanted of bodies, joints and statics: holds until something else is said, or this World is gone (`control` of the
 /// launch file).
 struct Control {
   BodyVectors forces = {};      ///< N, at the centre of mass
@@ -129,6 +137,7 @@ struct Control {
   BodyVectors velocities = {};  ///< m/s, held
   BodyVectors spins = {};       ///< rad/s, held
   JointDrives drives = {};
+  std::vector<StaticGoal> statics = {};  ///< at most 64; solver soft_step only
 };
 
 struct RayHit {
@@ -246,8 +255,9 @@ class AURASIM_API World {
                                std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   /// Steers bodies and joints, wherever they are hosted by then. Returns at once, with the first state that shows it.
   /// In a paused run that is by itself the next state, else (0) lookahead + 1 states after each node has heard of it;
-  /// what comes after its state has been computed is late (NodeStatus::setpoints_late). Throws Refused, and nothing
-  /// acts, for an unknown body or joint, or a number that is not finite or beyond 1e9.
+  /// what comes after its state has been computed is late (NodeStatus::setpoints_late). Statics of a running world for
+  /// which no state is named take the time of an order. Throws Refused, and nothing acts, for an unknown body, joint or
+  /// static, or a number that is not finite or beyond 1e9.
   std::int64_t control(const Control& control, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   /// One for each body, asked for together: at most 300 between two states. `impulses`: n x 3. Throws Refused with the
   /// first reason if any is refused; the others act.

@@ -6,6 +6,7 @@ import { askForToken, curtain, hint, toast, toggleHelp } from "./dialogs.js";
 import { h, iconButton } from "./dom.js";
 import { Input, listenToKeys } from "./input.js";
 import { NodesPanel, TopBar } from "./panels.js";
+import { takeMoves } from "./paths.js";
 import { Picture } from "./picture.js";
 import { RegionEditor } from "./region_editor.js";
 import { Selection } from "./selection.js";
@@ -66,7 +67,7 @@ function openPicture() {
 // ---- messages ----
 
 function receive(message) {
-  const handler = { hello: onHello, scene: onScene, map: onMap, status: onStatus, body: (m) => selection.tell(m),
+  const handler = { hello: onHello, scene: onScene, moves: onMoves, map: onMap, status: onStatus, body: (m) => selection.tell(m),
     reply: (m) => commands.reply(m), replay: (m) => hello?.mode === "replay" && transport.showReplay(m) }[message.type];
   try {
     handler?.(message);
@@ -107,6 +108,10 @@ function onScene(message) {
   selection.refresh();
   document.title = `${message.name} · aurasim`;
   chooseScene(message.name);
+}
+
+function onMoves(message) {
+  if (scene && takeMoves(scene, message)) picture?.showMoves();
 }
 
 function onMap(message) {

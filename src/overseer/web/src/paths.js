@@ -19,6 +19,19 @@ export function placeOnPath(path, t_s) {
 }
 
 /**
+ * What statics have been told, put into the scene. Others keep what they know.
+ * @param {{generation: number, statics: {id: number, moves?: any[]}[]}} scene
+ * @param {{generation: number, statics: {id: number, moves: any[]}[]}} message
+ * @returns {boolean} whether it is of that scene
+ */
+export function takeMoves(scene, message) {
+  if (scene.generation !== message.generation) return false;
+  const told = new Map(message.statics.map(({ id, moves }) => [id, moves]));
+  for (const body of scene.statics) if (told.has(body.id)) body.moves = told.get(body.id);
+  return true;
+}
+
+/**
  * A static that has been told to move.
  * @param {{p, q, path?, moves?: {step: number, states: number, from: {p, q}, to: {p, q}}[]}} body  in the world
  * @param {number} stamp  step, may lie between two

@@ -67,6 +67,11 @@ export class Picture {
     this.instances.setScene(scene);
   }
 
+  /** Statics of the scene have been told to move. */
+  showMoves() {
+    this.view.findMoving();
+  }
+
   setMap(map) {
     this.map = map;
     this.#showRegions();

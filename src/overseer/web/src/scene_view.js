@@ -70,8 +70,9 @@ export class SceneView {
     this.sceneMessage = message;
     this.prepare();
     for (const group of [this.statics, this.grounds]) dispose(group);
-    this.moving = [];
+    this.parts = [];
     for (const body of message.statics) this.#addStatic(body, message.shapes[body.shape]);
+    this.findMoving();
     if (this.grounds.children.length === 0) this.grounds.add(groundFor(null, this.origin, this.lit));
     this.#alignGrids();
   }
@@ -85,12 +86,17 @@ export class SceneView {
       const mesh = new THREE.Mesh(part.geometry, this.lit ? this.litStatic : this.plainStatic);
       const inStatic = part.place ?? new THREE.Matrix4();
       mesh.applyMatrix4(place.clone().multiply(inStatic));
-      if (body.path || body.moves) this.moving.push({ mesh, body, inStatic });
+      this.parts.push({ mesh, body, inStatic });
       mesh.castShadow = mesh.receiveShadow = true;
       mesh.userData.staticId = body.id;
       mesh.add(new THREE.LineSegments(new THREE.EdgesGeometry(part.geometry, 25), this.edgeMaterial));
       this.statics.add(mesh);
     }
+  }
+
+  /** Among the statics of the scene. */
+  findMoving() {
+    this.moving = this.parts.filter(({ body }) => body.path || body.moves);
   }
 
   /** Puts the statics that move where they are. */

@@ -1,0 +1,147 @@
+// How statics follow programs (docs/decisions/0030-a-word-before-its-order.md): the node that takes orders makes orders
+// of what it hears; the others go by what they hear themselves until the order is here, and compute again where it says
+// something else.
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "node/node.h"
+
+namespace aurasim::node {
+namespace {
+
+/// Orders of moves that one state brings, at most: every node repeats each of them.
+constexpr std::size_t kMostMovesInAState = 256;
+
+/// A run that had to go back so often within so many states, because nodes had not heard in time what was said of
+/// statics, waits for orders instead.
+constexpr std::size_t kMostDoubts = 3;
+constexpr core::Step kDoubtsWithin = 1800;
+
+/// The same on every node.
+std::uint64_t request_of(const core::Setpoints& said, core::StaticId id) {
+  std::uint64_t hash = 0xCBF29CE484222325;  // FNV-1a
+  for (const std::uint64_t part :
+       {said.client, said.sequence, static_cast<std::uint64_t>(said.at_step), std::uint64_t{core::value_of(id)}}) {
+    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((part >> (8 * byte)) & 0xFF)) * 0x100000001B3;
+  }
+  return std::max<std::uint64_t>(hash, 1);
+}
+
+std::uint64_t request_of(const core::StaticEffect& recorded) {
+  core::Setpoints said;
+  said.client = core::kRecordedClient;
+  said.at_step = recorded.step;
+  return request_of(said, recorded.setpoint.id);
+}
+
+}  // namespace
+
+bool Node::can_go(std::span<const core::StaticSetpoint> statics) const {
+  if (!statics.empty() && !setup_.physics.looks_once()) return false;
+  return std::ranges::all_of(statics, [this](const core::StaticSetpoint& wanted) {
+    const std::uint32_t index = core::value_of(wanted.id);
+    if (index >= scene_.statics.size() || wanted.states < 1) return false;
+    return !std::holds_alternative<core::Plane>(scene_.shapes[scene_.statics[index].shape].shape);
+  });
+}
+
+/// The live node of the lowest region.
+bool Node::leads() const {
+  const auto dead = protocol_->intake().dead_regions();
+  return std::ranges::count_if(dead, [this](core::RegionId other) { return other < region(); }) ==
+         static_cast<std::ptrdiff_t>(core::value_of(region()));
+}
+
+/// Whether all go by what they hear. Alone there is nobody to differ from.
+bool Node::believes_programs() const {
+  if (protocol_->round() == 0) return true;
+  const auto lately = std::ranges::count_if(
+      doubted_, [this](core::Step step) { return step > current_step() - kDoubtsWithin; });
+  return protocol_->computes_again() && static_cast<std::size_t>(lately) < kMostDoubts;
+}
+
+core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard heard) {
+  const bool is_dropped = heard == core::Heard::kLate && setup_.control.late == core::LateSetpoint::kDropped;
+  if (is_dropped) return heard;
+  for (const core::StaticSetpoint& wanted : setpoints.statics) {
+    const std::uint64_t request = request_of(setpoints, wanted.id);
+    if (leads()) {
+      heard = std::max(heard, order_move(wanted, setpoints.at_step, request));
+    } else if (heard == core::Heard::kInTime && setpoints.at_step != 0 && believes_programs()) {
+      expect(wanted, setpoints.at_step, request);
+    }
+  }
+  return heard;
+}
+
+void Node::expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
+  const core::PlannedMove plan = core::planned(
+      wanted, at_step, world_.moves(), scene_.statics[core::value_of(wanted.id)], setup_.physics.step_s);
+  world_.moves().expect(plan.move, plan.at_step, request);
+}
+
+/// Where nobody goes by what was heard, or no state was named, it takes the time of an order.
+core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
+  const auto is_it = [request](const core::Order& order) { return order.request == request; };
+  if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it)) return core::Heard::kInTime;
+  if (std::exchange(moves_ordered_for_, current_step()) != current_step()) moves_ordered_ = 0;
+  if (is_changing_ || ++moves_ordered_ > kMostMovesInAState) return core::Heard::kRefused;
+  const bool at_once = at_step != 0 && believes_programs();
+  const core::Step earliest = at_once ? current_step() + 1 : protocol_->earliest_effect();
+  const bool is_late = at_step != 0 && at_step < earliest;
+  if (is_late && setup_.control.late == core::LateSetpoint::kDropped) return core::Heard::kLate;
+  core::Order order;
+  order.request = request;
+  order.at_step = std::max(at_step, earliest);
+  order.action = core::MoveStatic{wanted.id, {}, wanted.to, wanted.states};
+  give(std::move(order));
+  return is_late ? core::Heard::kLate : core::Heard::kInTime;
+}
+
+/// All nodes know the record from the beginning; its orders tell those who look on.
+void Node::expect_recorded_moves() {
+  std::ranges::stable_sort(recorded_moves_, {}, &core::StaticEffect::step);
+  for (const core::StaticEffect& recorded : recorded_moves_) {
+    if (!can_go({&recorded.setpoint, 1})) throw std::invalid_argument("the record moves a static that cannot move here");
+    expect(recorded.setpoint, recorded.step, request_of(recorded));
+  }
+}
+
+void Node::order_recorded_moves() {
+  const core::Step until = protocol_->earliest_effect() + 1;
+  for (; next_recorded_move_ < recorded_moves_.size(); ++next_recorded_move_) {
+    const core::StaticEffect& recorded = recorded_moves_[next_recorded_move_];
+    if (recorded.step > until || (leads() && is_changing_)) return;
+    if (!leads() || recorded.step <= current_step() || ordered(request_of(recorded)) != nullptr) continue;
+    core::Order order;
+    order.request = request_of(recorded);
+    order.at_step = recorded.step;
+    order.action = core::MoveStatic{recorded.setpoint.id, {}, recorded.setpoint.to, recorded.setpoint.states};
+    give(std::move(order));
+  }
+}
+
+/// By now its order would be here.
+void Node::give_up_expected() {
+  if (!protocol_->computes_again()) return;
+  const core::Step next = current_step() + 1;
+  const auto changed = world_.moves().give_up_expected(next - protocol_->round());
+  if (changed && *changed <= current_step()) doubt(*changed);
+}
+
+/// It has been computed with a static that was elsewhere than all will have it.
+void Node::doubt(core::Step step) {
+  if (protocol_->computes_again()) protocol_->doubt(step);
+}
+
+/// For the record.
+void Node::note_moves() {
+  if (!leads()) return;
+  world_.moves().for_each_from(current_step(), [this](const core::MoveStatic& move) {
+    report_.effects.statics.push_back({current_step(), {move.id, move.to, move.states}});
+  });
+}
+
+}  // namespace aurasim::node
