@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
 constexpr auto kLongestUntold = 2s;
-constexpr double kLongestShown_s = 0.5;  ///< older states nobody shows who looks on
+constexpr double kLongestShown_s = 0.5;     ///< older states nobody shows who looks on
 constexpr auto kStatusAge = 300ms;          ///< by then every node has said which meshes it has, since the command came
 constexpr std::size_t kMostInAState = 300;  ///< commands that become orders
 constexpr std::size_t kTextWeighs = 20;

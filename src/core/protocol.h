@@ -132,6 +132,11 @@ class Protocol {
   bool alarms_given_up() const { return alarms_given_up_; }
   /// What is found to be wrong is computed again.
   bool computes_again() const { return aura_->rules().redo && !alarms_given_up_; }
+  /// A program's word has come so many states after its own, and the run goes back over states that somebody else may
+  /// have computed with it.
+  void report_late_word(Step step, Step late) {
+    violations_.add({ViolationKind::kLatency, step, vicinity_.self, {}, static_cast<double>(late), 0});
+  }
   /// State `step` was computed with a static that was elsewhere than it was to be.
   void doubt(Step step) { alarms_.raise(step, kNobody, kNobodyElse); }
   /// States that a message needs at most to reach every node.

@@ -1,6 +1,6 @@
 // What leads to a redo (docs/design.md, "Checked, and computed again"): two bodies of two hosts were found to have
-// touched, or a static to have been elsewhere than it was to be, so what has been computed since may be wrong. All nodes go back to a cut from before, bring the two to one
-// host in time, and go on from there.
+// touched, or a static to have been elsewhere than it was to be, so what has been computed since may be wrong. All
+// nodes go back to a cut from before, bring the two to one host in time, and go on from there.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,9 @@ bool same_move(const MoveStatic& x, const MoveStatic& y) {
   return x.states == y.states && same_pose(x.from, y.from) && same_pose(x.to, y.to);
 }
 
-std::optional<Step> earlier_of(std::optional<Step> a, std::optional<Step> b) { return a && b ? std::min(a, b) : a ? a : b; }
+std::optional<Step> earlier_of(std::optional<Step> a, std::optional<Step> b) {
+  return a && b ? std::min(a, b) : a ? a : b;
+}
 
 }  // namespace
 
@@ -29,8 +31,8 @@ std::optional<Step> StaticMoves::add(const MoveStatic& move, Step at_step, std::
   std::optional<Step> changed;
   if (expected_ > 0) {
     std::vector<Move>& moves = moves_[move.id];
-    const auto said = std::ranges::find_if(
-        moves, [&](const Move& one) { return !one.is_ordered && one.request == request; });
+    const auto said =
+        std::ranges::find_if(moves, [&](const Move& one) { return !one.is_ordered && one.request == request; });
     if (said != moves.end()) {
       --expected_;
       said->is_ordered = true;
@@ -45,7 +47,8 @@ std::optional<Step> StaticMoves::add(const MoveStatic& move, Step at_step, std::
 
 void StaticMoves::expect(const MoveStatic& move, Step at_step, std::uint64_t request) {
   const auto known = moves_.find(move.id);
-  const bool is_here = known != moves_.end() && std::ranges::find(known->second, request, &Move::request) != known->second.end();
+  const bool is_here =
+      known != moves_.end() && std::ranges::find(known->second, request, &Move::request) != known->second.end();
   if (!is_here) insert({at_step, move, request, false});
 }
 
@@ -96,7 +99,8 @@ void StaticMoves::forget_before(Step step) {
   for (auto& [id, moves] : moves_) {
     const auto later = std::ranges::upper_bound(moves, step, {}, &Move::at_step);
     if (later - moves.begin() <= 1) continue;
-    expected_ -= static_cast<std::size_t>(std::count_if(moves.begin(), later - 1, [](const Move& one) { return !one.is_ordered; }));
+    expected_ -= static_cast<std::size_t>(
+        std::count_if(moves.begin(), later - 1, [](const Move& one) { return !one.is_ordered; }));
     moves.erase(moves.begin(), later - 1);
   }
 }

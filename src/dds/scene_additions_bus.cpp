@@ -50,8 +50,8 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
     return orders.empty() ? 0 : orders.back().sequence;
   };
   const auto is_newer = [&](const core::AuraBatch& batch) {
-    return !newest || std::pair(batch.generation, last_of(batch.orders)) >=
-                          std::pair(newest->generation, last_of(newest->orders));
+    return !newest ||
+           std::pair(batch.generation, last_of(batch.orders)) >= std::pair(newest->generation, last_of(newest->orders));
   };
   impl_->reader.take_each({}, [&](core::AuraBatch&& batch, const Origin& origin) {
     if (!impl_->participant.domain().speakers().may_speak(origin.writer, batch.source)) {

@@ -47,7 +47,7 @@ bool is_drive(const double* drive) {
 }
 
 std::optional<WireError> check_statics(const wire::Setpoints& in) {
-  const std::size_t statics = in.fixed().size();
+  const std::size_t statics = in.static_id().size();
   if (statics > core::limits::kMostStaticSetpoints) return WireError::kTooLarge;
   if (!same_rows(statics, {{in.states().size()}, {in.place().size(), kPlaceNumbers}})) return WireError::kLength;
   if (!all_finite(in.place())) return WireError::kNotFinite;
@@ -103,7 +103,7 @@ void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::S
   fill_wide<kDriveNumbers>(out.drive(), setpoints.joints, [](const auto& joint, double* to) {
     put_drive(joint.drive.value_or(core::JointDrive{}), to);
   });
-  fill(out.fixed(), setpoints.statics, [](const auto& fixed) { return core::value_of(fixed.id); });
+  fill(out.static_id(), setpoints.statics, [](const auto& fixed) { return core::value_of(fixed.id); });
   fill(out.states(), setpoints.statics, [](const auto& fixed) { return fixed.states; });
   fill_wide<kPlaceNumbers>(out.place(), setpoints.statics,
                            [](const auto& fixed, double* to) { put_place(fixed.to, to); });
@@ -132,9 +132,9 @@ Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expec
     const double* const d = &in.drive()[i * kDriveNumbers];
     if (in.let_go()[i] == 0) joint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
   }
-  for (std::size_t i = 0; i < in.fixed().size(); ++i) {
+  for (std::size_t i = 0; i < in.static_id().size(); ++i) {
     setpoints.statics.push_back(
-        {core::StaticId{in.fixed()[i]}, place_at(&in.place()[i * kPlaceNumbers]), in.states()[i]});
+        {core::StaticId{in.static_id()[i]}, place_at(&in.place()[i * kPlaceNumbers]), in.states()[i]});
   }
   return setpoints;
 }

@@ -239,6 +239,7 @@ class Node {
   bool can_go(std::span<const core::StaticSetpoint> statics) const;
   bool leads() const;
   bool believes_programs() const;
+  void note_late_words(core::Step from, core::Step until);
   core::Heard hear_of_statics(const core::Setpoints& setpoints, core::Heard heard);
   void expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
   core::Heard order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
@@ -330,6 +331,11 @@ class Node {
   std::size_t next_recorded_move_ = 0;
   core::Step moves_ordered_for_ = -1;  ///< the state in which we have ordered moves_ordered_
   std::size_t moves_ordered_ = 0;
+  struct LateWord {
+    core::Step at_step = 0;  ///< that it named
+    core::Step heard = 0;    ///< the newest state by then
+  };
+  std::deque<LateWord> late_words_;  ///< the last ones
   std::vector<core::Step> doubted_;  ///< states in which the run was put back since a static was elsewhere
   core::Epoch first_epoch_ = 0;      ///< of bodies that are new
   std::size_t stubborn_ = 0;         ///< redos in a row that have not brought a pair together

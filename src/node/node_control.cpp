@@ -11,13 +11,28 @@ namespace {
 /// farther apart.
 constexpr core::Step kRemembered = 600;
 
+constexpr std::size_t kMostLateWords = 256;
+
 }  // namespace
 
 core::Heard Node::hear(const core::Setpoints& setpoints) {
   if (!can_go(setpoints.statics)) return core::Heard::kRefused;
   const core::Step notice = setup_.protocol.aura.lookahead + 1;
   const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
+  if (heard == core::Heard::kLate) {
+    late_words_.push_back({setpoints.at_step, current_step()});
+    if (late_words_.size() > kMostLateWords) late_words_.pop_front();
+  }
   return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard);
+}
+
+/// States from `from` to `until` have been reported, and are computed again, perhaps on other hosts: who has heard a
+/// word that was for one of them at another time has another world then, and no alarm tells.
+void Node::note_late_words(core::Step from, core::Step until) {
+  for (const LateWord& word : late_words_) {
+    const bool matters = word.heard >= from && word.at_step <= until;
+    if (matters) protocol_->report_late_word(word.at_step, word.heard + 1 - word.at_step);
+  }
 }
 
 /// It is here, and was in the state before.

@@ -126,6 +126,7 @@ void Node::put_back() {
   if (!is_the_beginning) raise(cut.bodies);
   for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
 
+  note_late_words(cut.step + 1, released_);
   core::Continuation next = protocol_->continuation(order, cut.claimer);
   setup_.protocol.redo = next.alarms.redo();
   setup_.protocol.start = cut.step;

@@ -57,8 +57,8 @@ bool Node::leads() const {
 /// Whether all go by what they hear. Alone there is nobody to differ from.
 bool Node::believes_programs() const {
   if (protocol_->round() == 0) return true;
-  const auto lately = std::ranges::count_if(
-      doubted_, [this](core::Step step) { return step > current_step() - kDoubtsWithin; });
+  const auto lately =
+      std::ranges::count_if(doubted_, [this](core::Step step) { return step > current_step() - kDoubtsWithin; });
   return protocol_->computes_again() && static_cast<std::size_t>(lately) < kMostDoubts;
 }
 
@@ -77,15 +77,16 @@ core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard 
 }
 
 void Node::expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
-  const core::PlannedMove plan = core::planned(
-      wanted, at_step, world_.moves(), scene_.statics[core::value_of(wanted.id)], setup_.physics.step_s);
+  const core::PlannedMove plan =
+      core::planned(wanted, at_step, world_.moves(), scene_.statics[core::value_of(wanted.id)], setup_.physics.step_s);
   world_.moves().expect(plan.move, plan.at_step, request);
 }
 
 /// Where nobody goes by what was heard, or no state was named, it takes the time of an order.
 core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
   const auto is_it = [request](const core::Order& order) { return order.request == request; };
-  if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it)) return core::Heard::kInTime;
+  if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it))
+    return core::Heard::kInTime;
   if (std::exchange(moves_ordered_for_, current_step()) != current_step()) moves_ordered_ = 0;
   if (is_changing_ || ++moves_ordered_ > kMostMovesInAState) return core::Heard::kRefused;
   const bool at_once = at_step != 0 && believes_programs();
@@ -96,15 +97,16 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
   order.request = request;
   order.at_step = std::max(at_step, earliest);
   order.action = core::MoveStatic{wanted.id, {}, wanted.to, wanted.states};
-  give(std::move(order));
-  return is_late ? core::Heard::kLate : core::Heard::kInTime;
+  const core::Order& given = give(std::move(order));
+  return at_step != 0 && given.at_step > at_step ? core::Heard::kLate : core::Heard::kInTime;
 }
 
 /// All nodes know the record from the beginning; its orders tell those who look on.
 void Node::expect_recorded_moves() {
   std::ranges::stable_sort(recorded_moves_, {}, &core::StaticEffect::step);
   for (const core::StaticEffect& recorded : recorded_moves_) {
-    if (!can_go({&recorded.setpoint, 1})) throw std::invalid_argument("the record moves a static that cannot move here");
+    if (!can_go({&recorded.setpoint, 1}))
+      throw std::invalid_argument("the record moves a static that cannot move here");
     expect(recorded.setpoint, recorded.step, request_of(recorded));
   }
 }

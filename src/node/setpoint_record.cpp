@@ -71,8 +71,7 @@ std::optional<core::StaticEffect> static_effect(core::Step step, std::uint64_t i
   const bool is_place = to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m &&
                         std::abs(to.q_WB.norm() - 1) <= kMostOff && n[7] >= 1 && n[7] <= core::limits::kMostStepsAhead;
   if (!is_place) return {};
-  return core::StaticEffect{
-      step, {core::StaticId{static_cast<std::uint32_t>(id)}, to, static_cast<core::Step>(n[7])}};
+  return core::StaticEffect{step, {core::StaticId{static_cast<std::uint32_t>(id)}, to, static_cast<core::Step>(n[7])}};
 }
 
 /// Nothing: no row of setpoints.

@@ -1,5 +1,5 @@
-// setpoints.csv: what programs wanted of bodies, joints and statics, in which state it took effect on them; and how a later run
-// hears it again, on any map.
+// setpoints.csv: what programs wanted of bodies, joints and statics, in which state it took effect on them; and how a
+// later run hears it again, on any map.
 #pragma once
 
 #include <filesystem>

@@ -83,9 +83,7 @@ void Overseer::publish_scene() {
   write_down(ChunkKind::kScene, text);
 }
 
-std::string Overseer::scene_text() const {
-  return scene_message(scene_, published_generation_, removed_statics_);
-}
+std::string Overseer::scene_text() const { return scene_message(scene_, published_generation_, removed_statics_); }
 
 /// Now and then: programs may send a static on in every state. Frames are shown later than this.
 void Overseer::publish_moves() {

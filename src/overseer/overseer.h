@@ -71,7 +71,7 @@ class Overseer {
   std::vector<core::Order> static_moves_;
   bool moves_have_changed_ = false;  ///< since they were published
   Clock::time_point next_moves_;
-  std::vector<std::uint64_t> grown_by_;  ///< orders that scene_ has taken in
+  std::vector<std::uint64_t> grown_by_;           ///< orders that scene_ has taken in
   std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
   bool additions_are_shown_ = false;              ///< with balls where meshes are missing
   OverlayView overlays_;

@@ -77,9 +77,8 @@ class Simulation {
   void show_statics(core::Step n);
   void wake_near(std::span<const Bounds> changing);
   core::Pose pose_of_static(std::uint32_t index, core::Step n) const;
-  void make_moving(std::uint32_t index);
+  void make_moving(std::uint32_t index, bool goes);
   void note_moving_statics();
-  bool goes(std::uint32_t index) const;
   void place_moving_statics();
   void start_moving_statics();
   /// By a static that moves.
@@ -123,6 +122,7 @@ class Simulation {
   struct MovingStatic {
     std::uint32_t index;
     std::unique_ptr<Belt> belt;
+    bool goes = false;  ///< or has gone: else it has a belt alone
   };
   std::vector<MovingStatic> moving_statics_;  ///< ascending index
   std::vector<core::Vec3> slid_;              ///< as Scene::statics; not zero for planes far out only

@@ -35,17 +35,20 @@ void Simulation::make_statics() {
     statics_.push_back(std::make_unique<btRigidBody>(info));
     statics_.back()->setUserIndex(-1 - static_cast<int>(i));
     static_is_in_.push_back(false);
-    if (body.moves()) make_moving(static_cast<std::uint32_t>(i));
+    if (body.moves()) make_moving(static_cast<std::uint32_t>(i), body.path.has_value());
   }
 }
 
-void Simulation::make_moving(std::uint32_t index) {
+void Simulation::make_moving(std::uint32_t index, bool goes) {
   const auto place = std::ranges::lower_bound(moving_statics_, index, {}, &MovingStatic::index);
-  if (place != moving_statics_.end() && place->index == index) return;
+  if (place != moving_statics_.end() && place->index == index) {
+    place->goes = place->goes || goes;
+    return;
+  }
   if (!settings_.looks_once()) {
     throw std::invalid_argument(scene_->statics[index].name + " moves, which this solver does not know");
   }
-  const MovingStatic& made = *moving_statics_.insert(place, {index, std::make_unique<Belt>()});
+  const MovingStatic& made = *moving_statics_.insert(place, {index, std::make_unique<Belt>(), goes});
   physics::make_moving(*statics_[index], *made.belt);
   if (static_is_in_[index]) world_.begin_moving(*statics_[index]);
 }
@@ -54,7 +57,7 @@ void Simulation::make_moving(std::uint32_t index) {
 void Simulation::note_moving_statics() {
   if (!settings_.looks_once()) return;  // nobody sends them there: command_limits.cpp
   timeline_.moves().for_each([this](core::StaticId id) {
-    if (core::value_of(id) < statics_.size()) make_moving(core::value_of(id));
+    if (core::value_of(id) < statics_.size()) make_moving(core::value_of(id), true);
   });
 }
 
@@ -91,16 +94,11 @@ core::Pose Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
   return timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s);
 }
 
-/// Else it has a belt alone.
-bool Simulation::goes(std::uint32_t index) const {
-  return scene_->statics[index].path || timeline_.moves().newest(core::StaticId{index}) > 0;
-}
-
 /// In the present state.
 void Simulation::place_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
-    if (!goes(moving.index)) continue;
+    if (!moving.goes) continue;
     const btTransform pose = frame_.to_local(pose_of_static(moving.index, step_));
     statics_[moving.index]->setWorldTransform(pose);
     if (static_is_in_[moving.index]) world_.bound(*statics_[moving.index], pose);
@@ -121,7 +119,7 @@ void Simulation::start_moving_statics() {
     rigid.setLinearVelocity(to_bullet(twist.v_W));
     rigid.setAngularVelocity(to_bullet(twist.w_W));
     moving.belt->v_W = rigid.getWorldTransform().getBasis() * to_bullet(body.belt_S);
-    if (goes(moving.index)) world_.bound(rigid, after);
+    if (moving.goes) world_.bound(rigid, after);
     if (twist.v_W.isZero() && twist.w_W.isZero() && body.belt_S.isZero()) continue;
     ways.push_back(bounds_of(rigid));
     ways.back().add(bounds_of(*rigid.getCollisionShape(), after));
@@ -137,7 +135,7 @@ std::vector<Simulation::Shove> Simulation::coming_shoves() const {
     const core::StaticBody& body = scene_->statics[moving.index];
     const btCollisionShape& shape = *statics_[moving.index]->getCollisionShape();
     Shove shove{bounds_of(*statics_[moving.index]), 0};
-    const core::Step last = goes(moving.index) ? step_ + foreseen() : step_;
+    const core::Step last = moving.goes ? step_ + foreseen() : step_;
     core::Pose before = pose_of_static(moving.index, step_);
     for (core::Step n = step_ + 1; n <= last; ++n) {
       const core::Pose after = pose_of_static(moving.index, n);

@@ -444,27 +444,26 @@ void add_acting(PyWorld& world) {
   using Joints = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
   using MaybeDrives = std::optional<std::pair<Joints, std::optional<Rows>>>;
   using Goal = std::tuple<std::variant<std::uint32_t, std::string>, Vec3, Quaternion, Step>;
-  world.def("control",
-            [](SharedWorld& w, const MaybeVectors& forces, const MaybeVectors& torques, const MaybeVectors& velocities,
-               const MaybeVectors& spins, const MaybeDrives& drives, const std::vector<Goal>& goals, Step at,
-               double t) {
-              const auto vectors = [](const MaybeVectors& given) {
-                if (!given) return BodyVectors{};
-                return BodyVectors{ids_of(given->first),
-                                   given->second ? rows_of(given->first, *given->second) : std::vector<double>{}};
-              };
-              Control control{vectors(forces), vectors(torques), vectors(velocities), vectors(spins), {}, {}};
-              if (drives) {
-                const auto& [joints, rows] = *drives;
-                control.drives.joints.assign(joints.data(), joints.data() + joints.size());
-                for (py::ssize_t i = 0; rows && i < rows->shape(0); ++i) {
-                  const double* const d = rows->data(i, 0);
-                  control.drives.drives.push_back({d[0], d[1], d[2], d[3], d[4], d[5]});
-                }
-              }
-              for (const auto& [fixed, p, q, states] : goals) control.statics.push_back({fixed, p, q, states});
-              return w.with([&](World& o) { return o.control(control, at, Seconds(t)); });
-            });
+  world.def("control", [](SharedWorld& w, const MaybeVectors& forces, const MaybeVectors& torques,
+                          const MaybeVectors& velocities, const MaybeVectors& spins, const MaybeDrives& drives,
+                          const std::vector<Goal>& goals, Step at, double t) {
+    const auto vectors = [](const MaybeVectors& given) {
+      if (!given) return BodyVectors{};
+      return BodyVectors{ids_of(given->first),
+                         given->second ? rows_of(given->first, *given->second) : std::vector<double>{}};
+    };
+    Control control{vectors(forces), vectors(torques), vectors(velocities), vectors(spins), {}, {}};
+    if (drives) {
+      const auto& [joints, rows] = *drives;
+      control.drives.joints.assign(joints.data(), joints.data() + joints.size());
+      for (py::ssize_t i = 0; rows && i < rows->shape(0); ++i) {
+        const double* const d = rows->data(i, 0);
+        control.drives.drives.push_back({d[0], d[1], d[2], d[3], d[4], d[5]});
+      }
+    }
+    for (const auto& [fixed, p, q, states] : goals) control.statics.push_back({fixed, p, q, states});
+    return w.with([&](World& o) { return o.control(control, at, Seconds(t)); });
+  });
   world.def("impulses", [](SharedWorld& w, const Ids& ids, const Rows& rows, Step at, double t) {
     const std::vector<double> values = rows_of(ids, rows);
     const std::vector<std::uint64_t> bodies = ids_of(ids);

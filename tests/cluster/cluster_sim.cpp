@@ -138,6 +138,9 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
   for (const core::BodyEffect& effect : report.effects.bodies) {
     outcome_.effects.push_back(node::as_heard_again(effect));
   }
+  for (const core::StaticEffect& effect : report.effects.statics) {
+    outcome_.effects.push_back(node::as_heard_again(effect));
+  }
   for (const core::JointEffect& effect : report.effects.joints) {
     outcome_.effects.push_back(node::as_heard_again(effect));
   }
@@ -209,6 +212,7 @@ void ClusterSim::account(Outcome& outcome) {
     outcome.missed += member.node->collision_watch().missed();
     outcome.unflagged += member.node->collision_watch().unflagged();
     outcome.violations += protocol.violations().total();
+    outcome.late_words += protocol.violations().count(core::ViolationKind::kLatency);
     outcome.reclaimed += protocol.intake().counters().reclaimed;
     outcome.severed += member.node->world().severed_contacts();
     outcome.bad_phases += protocol.projection().counters().bad_phase_changes;

@@ -57,6 +57,7 @@ struct Outcome {
   std::uint64_t missed = 0;
   std::uint64_t unflagged = 0;  ///< late or missed, without a violation before
   std::uint64_t violations = 0;
+  std::uint64_t late_words = 0;  ///< of those: heard too late, and computed again over
   std::uint64_t thrashed = 0;
   std::uint64_t doubled = 0;  ///< bodies ever seen on two live nodes at once
   std::uint64_t lost = 0;

@@ -69,7 +69,7 @@ TEST(LaunchFile, SaysWhatBecomesOfPrograms) {
   EXPECT_EQ(usual.late, core::LateSetpoint::kNextState);
   EXPECT_EQ(usual.on_silence, core::OnSilence::kHold);
   EXPECT_EQ(usual.silence, 30);
-  workspace.write("setpoints.csv", "region,step,what,id,x0,x1,x2,x3,x4,x5\n");
+  workspace.write("setpoints.csv", "region,step,what,id,x0,x1,x2,x3,x4,x5,x6,x7\n");
   const Launch launch = workspace.launch(
       std::string(kSmallLaunch) + "control: {late: drop, silence: 2, on_silence: last, replay: setpoints.csv}\n");
   EXPECT_EQ(launch.control_rules().late, core::LateSetpoint::kDropped);

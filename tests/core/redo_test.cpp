@@ -57,12 +57,12 @@ TEST(AlarmLog, KeepsWhatIsOlderThanTheCutAndPassesItOnAgain) {
   EXPECT_THAT(log.standing(), IsEmpty());
 }
 
-TEST(OrderLog, AfterARedoPassesOnWhatMayNotHaveGoneRound) {
+TEST(OrderLog, AfterARedoPassesOnWhatWasOrderedAfterIt) {
   OrderLog log;
   log.announce({0, 1, 50, RemoveBody{kA}});
   log.announce({0, 2, 90, RemoveBody{kB}});
   log.take_to_publish();
-  log.put_back(60);
+  log.put_back(1);
   const std::vector<Order> again = log.take_to_publish();
   ASSERT_THAT(again, SizeIs(1));
   EXPECT_EQ(again[0].sequence, 2u);

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"SpanForEver", [](Wire& w) { w.states()[0] = 1LL << 62; }, WireError::kRange},
                     Fault{"TooManyStatics",
                           [](Wire& w) {
-                            w.fixed().assign(65, 1);
+                            w.static_id().assign(65, 1);
                             w.states().assign(65, 1);
                             w.place().resize(65 * 7);
                           },

@@ -130,7 +130,8 @@ void take_statics(const json& head, const config::Launch& launch, core::Setpoint
     wanted.to = pose_of(of);
     wanted.states = of.value("states", core::Step{1});
     if (!(wanted.to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m)) {
-      refuse(fmt::format("statics: a place too far out, allowed: {:g} m along each axis", core::limits::kFarthestPlace_m));
+      refuse(
+          fmt::format("statics: a place too far out, allowed: {:g} m along each axis", core::limits::kFarthestPlace_m));
     }
     if (wanted.states < 1 || wanted.states > core::limits::kMostStepsAhead) {
       refuse(fmt::format("statics: found {} states, allowed: 1 to {}", wanted.states, core::limits::kMostStepsAhead));

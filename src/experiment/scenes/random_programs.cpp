@@ -125,7 +125,7 @@ Json random_movers(const std::vector<std::string>& statics, const Json& scene, i
   const std::array<std::uint32_t, 5> leads = {1, 2, k + 1, k + 2, 8};
   Json said = Json::array();
   for (const std::string& name : statics) {
-    const auto body = std::ranges::find(scene["statics"], name, [](const Json& one) { return one["name"]; });
+    const auto body = std::ranges::find(scene["statics"], name, [](const Json& one) { return one.value("name", ""); });
     const Json& place = (*body)["position"];
     Vec3 p(place[0], place[1], place[2]);
     const std::uint32_t rhythm = kRhythms[chance.below(kRhythms.size())], lead = leads[chance.below(leads.size())];
@@ -137,8 +137,9 @@ Json random_movers(const std::vector<std::string>& statics, const Json& scene, i
       if (chance.below(20) == 0) way = -way;
       p += speed * way;
       Json one = {{"client", kClient}, {"said_step", word}, {"at_step", word + lead}};
-      one["bodies"] = one["joints"] = Json::array();
-      one["statics"] = {{{"static", name}, {"position", json_vec3(p)}, {"states", chance.below(4) == 0 ? 2 * rhythm : rhythm}}};
+      for (const char* list : {"bodies", "joints", "statics"}) one[list] = Json::array();
+      const std::uint32_t states = chance.below(4) == 0 ? 2 * rhythm : rhythm;
+      one["statics"].push_back(Json{{"static", name}, {"position", json_vec3(p)}, {"states", states}});
       said.push_back(std::move(one));
     }
   }

@@ -207,18 +207,20 @@ void send_statics(World& world, Chance& chance) {
   }
 }
 
-/// Those that move, and that no order sends elsewhere: of two who send one static the later begins no earlier.
-std::vector<std::string> movers_left_alone(const World& world) {
-  const auto is_sent = [&](const Json& name) {
-    return world.interference.contains("orders") &&
-           std::ranges::any_of(world.interference["orders"], [&](const Json& order) {
-             return order.contains("move_static") && order["move_static"]["name"] == name;
-           });
-  };
+/// Two of three of those that move, for a program: of two who send one static the later begins no earlier, so clients leave
+/// them alone.
+std::vector<std::string> movers_for_a_program(World& world, Chance& chance) {
   std::vector<std::string> names;
   for (const Json& fixed : world.scene["statics"]) {
     const bool moves = fixed.contains("path") || fixed.contains("belt");
-    if (moves && !is_sent(fixed["name"])) names.push_back(fixed["name"]);
+    if (!moves || chance.below(3) == 0) continue;
+    names.push_back(fixed["name"]);
+    if (!world.interference.contains("orders")) continue;
+    Json rest = Json::array();
+    for (const Json& order : world.interference["orders"]) {
+      if (!order.contains("move_static") || order["move_static"]["name"] != fixed["name"]) rest.push_back(order);
+    }
+    world.interference["orders"] = std::move(rest);
   }
   return names;
 }
@@ -255,11 +257,9 @@ World random_world(std::uint64_t seed) {
     world.launch["control"] = random_control_rules(of_programs);
   }
   Chance of_movers(~seed ^ kProgramsOf);
-  const std::vector<std::string> left_alone = movers_left_alone(world);
-  if (!left_alone.empty() && of_movers.below(2) == 0) {
-    for (Json& word : random_movers(left_alone, world.scene, dials.lookahead, of_movers)) {
-      world.interference["programs"].push_back(std::move(word));
-    }
+  const std::vector<std::string> movers = movers_for_a_program(world, of_movers);
+  for (Json& word : random_movers(movers, world.scene, dials.lookahead, of_movers)) {
+    world.interference["programs"].push_back(std::move(word));
   }
   return world;
 }

@@ -96,7 +96,7 @@ void drop_words_without_joints(World& world) {
 void drop_words_without_statics(World& world) {
   if (!world.interference.contains("programs")) return;
   std::set<std::string> names;
-  for (const Json& fixed : world.scene["statics"]) names.insert(fixed["name"].get<std::string>());
+  for (const Json& fixed : world.scene["statics"]) names.insert(fixed.value("name", ""));
   for (Json& word : world.interference["programs"]) {
     Json rest = Json::array();
     for (const Json& setpoint : word.value("statics", Json::array())) {

@@ -129,8 +129,8 @@ struct StaticGoal {
   std::int64_t states = 1;  ///< until it is there; 1: in the first state that shows it
 };
 
-/// What is wanted of bodies, joints and statics: holds until something else is said, or this World is gone (`control` of the
-/// launch file).
+/// What is wanted of bodies, joints and statics: holds until something else is said, or this World is gone (`control`
+/// of the launch file).
 struct Control {
   BodyVectors forces = {};      ///< N, at the centre of mass
   BodyVectors torques = {};     ///< N m

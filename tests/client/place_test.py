@@ -1,0 +1,116 @@
+"""Steering statics by a program: lifts and gates that are placed in a state, on any number of nodes, live and recorded."""
+
+import csv
+import pathlib
+import subprocess
+import os
+import time
+import unittest
+
+import numpy as np
+
+import aurasim
+from client_fixture import GENEROUS_S, WorldTest, launch_file, wait_until
+from lockstep_test import first_difference
+
+LIFT = "lift"  # of sorting_hall, where two regions meet
+
+
+def height(step):
+    """Of the lift, from state 60 on: up and down, 1 m in about a second."""
+    return 1.35 + 0.5 * np.sin(0.05 * (step - 60))
+
+
+def hashes(report):
+    with open(pathlib.Path(report) / "state_hash.csv") as file:
+        return {int(row["step"]): row["hash"] for row in csv.DictReader(file)}
+
+
+class Placed(WorldTest):
+    def top_of_lift(self, world):
+        """Its height, and in which state."""
+        hit = world.ray((0.12, 0.95, 20), (0.12, 0.95, 0))
+        self.assertTrue(hit.hit)
+        return hit.position[2], hit.step
+
+    def states(self, **overrides):
+        world = self.launch("sorting_hall", time__sync="deterministic", **overrides)
+        states = [world.step(60)]
+        for _ in range(120):
+            step = states[-1].step
+            self.assertEqual(world.place(LIFT, (0.12, 0, height(step + 1))), step + 1)
+            states.append(world.step())
+        top, at = self.top_of_lift(world)
+        self.assertEqual(at, states[-1].step)
+        self.assertAlmostEqual(top, height(at) + 0.15, places=6)
+        nodes = world.nodes()
+        world.close()
+        return states, nodes
+
+    def test_in_lock_step_it_is_there_in_the_next_state_and_on_four_nodes_as_on_one(self):
+        four, nodes = self.states()
+        one, _ = self.states(regions__count=1)
+        self.assertEqual([node.setpoints_late for node in nodes], [0, 0, 0, 0])
+        for a, b in zip(four, one):
+            self.assertIsNone(first_difference(a, b), f"state {a.step}")
+
+    def assert_same_again(self, live, regions):
+        expected = hashes(live)
+        again = self.folder / f"again_{regions}"
+        words = [os.environ["AURASIM_PROGRAM"], "launch", str(launch_file("sorting_hall")), "--headless", "--steps",
+                 str(max(expected)), "--report", str(again)]
+        overrides = self.overrides(time__sync="deterministic", time__pace="none", regions__count=regions)
+        for key, value in {**overrides, "control.replay": str(live / "setpoints.csv")}.items():
+            words += ["--set", f"{key}={value}"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
+        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
+        found = hashes(again)
+        differ = [step for step in expected if found.get(step) != expected[step]]
+        self.assertEqual(differ, [], f"{regions} regions: {len(differ)} of {len(expected)} states")
+
+    def test_live_it_is_where_it_was_to_be_and_a_record_gives_the_same_bits(self):
+        live = self.folder / "live"
+        world = self.launch("sorting_hall", paused=False, report=live, time__sync="deterministic")
+        ahead = world.info().lookahead + 2
+        end = world.bodies().step + 240
+        placed = set()
+        while (step := world.bodies().step) < end:
+            if step + ahead not in placed:
+                world.place(LIFT, (0.12, 0, height(step + ahead)), at=step + ahead)
+                placed.add(step + ahead)
+            time.sleep(1 / 240)
+        self.assertTrue(wait_until(lambda: abs(self.top_of_lift(world)[0] - height(max(placed)) - 0.15) < 1e-6))
+        world.close()
+        with open(live / "setpoints.csv") as file:
+            rows = [row for row in csv.DictReader(file) if row["what"] == "move"]
+        self.assertEqual({row["region"] for row in rows}, {"0"})
+        self.assertEqual(len(rows), len(placed))
+        for regions in (1, 4):
+            self.assert_same_again(live, regions)
+
+    def test_without_a_state_it_goes_as_soon_as_all_can_know(self):
+        world = self.launch("sorting_hall", paused=False)
+        self.assertEqual(world.place(LIFT, (0.12, 0, 4), states=30), 0)
+        self.assertTrue(wait_until(lambda: abs(self.top_of_lift(world)[0] - 4.15) < 1e-6))
+        self.assertEqual({node.setpoints_late for node in world.nodes()}, {0})
+
+    def test_what_is_wrong_is_refused_by_name(self):
+        world = self.launch("sorting_hall", paused=False)
+        for what, fixed, place in (("no such gate", "no such gate", (0, 0, 0)), ("a plane cannot move", "ground", (0, 0, 0)),
+                                   ("three finite numbers", LIFT, (float("nan"), 0, 0)),
+                                   ("too far out", LIFT, (1e30, 0, 0))):
+            with self.assertRaisesRegex(aurasim.Refused, what):
+                world.place(fixed, place)
+        with self.assertRaisesRegex(aurasim.Refused, "found 0 states"):
+            world.place(LIFT, (0, 0, 1), states=0)
+        world.place(9999, (0, 0, 1))  # a client's, for all that the agent knows
+        self.assertTrue(wait_until(lambda: all(node.setpoints_refused == 1 for node in world.nodes())))
+
+    def test_another_solver_says_that_it_cannot(self):
+        world = self.launch("demo", physics__solver="sequential_impulse")
+        with self.assertRaisesRegex(aurasim.Refused, "knows no statics that move"):
+            world.place(1, (0, 0, 1))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
