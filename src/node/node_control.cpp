@@ -19,7 +19,8 @@ core::Heard Node::hear(const core::Setpoints& setpoints) {
   if (!can_go(setpoints.statics)) return core::Heard::kRefused;
   const core::Step notice = setup_.protocol.aura.lookahead + 1;
   const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
-  if (heard == core::Heard::kLate) {
+  const bool is_late = heard == core::Heard::kLate && !(setpoints.bodies.empty() && setpoints.joints.empty());
+  if (is_late) {
     late_words_.push_back({setpoints.at_step, current_step()});
     if (late_words_.size() > kMostLateWords) late_words_.pop_front();
   }
