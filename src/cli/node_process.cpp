@@ -312,8 +312,8 @@ void NodeProcess::compute_step() {
   keep_the_end();
   const node::StepReport& report = node_->step();
   if (report.put_back_from) return note_redo(report);
+  command_server_->after_step(report);  // observers look for what it tells
   observers_->after_step(*node_, report);
-  command_server_->after_step(report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   for (const core::Order& order : report.orders) {
     if (std::holds_alternative<core::Save>(order.action)) saves_.expect(order);

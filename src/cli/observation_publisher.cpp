@@ -55,8 +55,10 @@ void ObservationPublisher::while_paused(node::Node& node) {
 
 /// What cannot be sent is lost: the next state is told as if it had been.
 void ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::Asked& asked) {
-  server_.send(asked.key,
-               feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos()));
+  core::Observation observation =
+      feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
+  observation.scene_order = node.newest_scene_order();
+  server_.send(asked.key, observation);
   told_.insert_or_assign(asked.key, Told{asked.arrivals, settings_.generation, node.redos(), node.current_step()});
 }
 

@@ -47,6 +47,7 @@ struct Observation {
   std::uint64_t map_version = 0;
   std::uint64_t sequence = 1;  ///< of the interest that it answers
   Kind kind = Kind::kHosted;
+  std::uint64_t scene_order = 0;  ///< sequence of the newest order that has changed the scene, as far as source knows
   std::vector<ObservedBody> bodies;  ///< ascending id
   /// Bodies that were on their way lately, are accounted for here, and are not wanted. Ascending.
   std::vector<BodyId> outside;

@@ -105,6 +105,7 @@ void encode(const Observation& observation, wire::Observation& out) {
   out.map_version(observation.map_version);
   out.sequence_number(observation.sequence);
   out.kind(static_cast<std::uint8_t>(observation.kind));
+  out.scene_order(observation.scene_order);
   put_bodies(observation.bodies, out);
   fill(out.outside(), observation.outside, [](BodyId id) { return value_of(id); });
   fill(out.joint(), observation.joints, [](const JointState& j) { return value_of(j.id); });
@@ -123,6 +124,7 @@ Decoded<Observation> decode(const wire::Observation& in, const Expected& expecte
   observation.map_version = in.map_version();
   observation.sequence = in.sequence_number();
   observation.kind = static_cast<Observation::Kind>(in.kind());
+  observation.scene_order = in.scene_order();
   observation.bodies.reserve(in.id().size());
   for (std::size_t i = 0; i < in.id().size(); ++i) {
     observation.bodies.push_back({body_at(in, i), (in.flags()[i] & kStale) != 0});

@@ -194,6 +194,8 @@ class Node {
   /// What has become of a client's request, if it has been ordered, here or elsewhere: as far as is known here, and not
   /// longer than orders are kept. Null: nothing is known. Not of orders about the run as a whole.
   const core::Order* ordered(std::uint64_t request) const;
+  /// Sequence of the newest order that has changed the scene; 0: none.
+  std::uint64_t newest_scene_order() const { return newest_scene_order_; }
   /// A program's word. Takes effect wherever the bodies are by then. What it says of statics the node that takes orders
   /// orders for all; where states are computed again if need be, the others expect it (core/static_moves.h).
   core::Heard hear(const core::Setpoints& setpoints);
@@ -318,6 +320,7 @@ class Node {
   };
   std::vector<Saving> saving_;
   std::vector<core::Order> orders_;           ///< in sequence: for whoever goes on from a saved world
+  std::uint64_t newest_scene_order_ = 0;
   std::size_t orders_kept_ = 1024;            ///< those among them that may not be forgotten, at most
   std::size_t first_own_shape_ = 0;           ///< of the scene, beyond those of its file
   std::optional<core::WorldCut> begun_with_;  ///< as long as a redo may come back to it

@@ -41,6 +41,7 @@ void Node::heed(const core::Order& order) {
   report_.orders.push_back(order);
   remember(order);
   extend(scene_, order.action, meshes_);
+  if (changes_scene(order.action)) newest_scene_order_ = order.sequence;
   if (std::holds_alternative<core::Redo>(order.action)) {
     redo_ = order;
   } else if (std::holds_alternative<core::Save>(order.action)) {

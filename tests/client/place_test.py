@@ -54,6 +54,23 @@ class Placed(WorldTest):
         for a, b in zip(four, one):
             self.assertIsNone(first_difference(a, b), f"state {a.step}")
 
+    def test_rays_of_each_state_see_it_where_it_was_in_that_state(self):
+        world = self.launch("sorting_hall", time__sync="deterministic")
+        down = aurasim.RayFan(np.array([[0.0, 0.0, -1.0]]), range=30, position=(0.12, 0.95, 20))
+        observer = world.observe(fans=[down])
+        world.step(60)
+        seen = {}
+        for _ in range(120):
+            step = world.bodies().step
+            world.place(LIFT, (0.12, 0, height(step + 1)))
+            world.step()
+            while step + 1 not in seen:
+                state = observer.next()
+                seen[state.step] = 20 - state.fans[0].distances[0]
+                self.assertTrue(state.fans[0].complete)
+        wrong = [step for step, top in seen.items() if step > 60 and abs(top - height(step) - 0.15) > 1e-6]
+        self.assertEqual(wrong, [])
+
     def assert_same_again(self, live, regions):
         expected = hashes(live)
         again = self.folder / f"again_{regions}"

@@ -123,6 +123,7 @@ MergedState MergedStates::merge(core::Step step, const Pending& pending,
   const Observations all = all_of(pending.hosted, pending.made_up);
   for (const auto& [source, observation] : pending.hosted) {
     state.sequence = state.sequence == 0 ? observation.sequence : std::min(state.sequence, observation.sequence);
+    state.scene_order = std::max(state.scene_order, observation.scene_order);
   }
   state.bodies = bodies_of(all);
   for (const core::Observation* observation : all) {

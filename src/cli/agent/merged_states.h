@@ -21,6 +21,7 @@ struct MergedState {
   std::uint32_t redo = 0;
   core::Step step = 0;
   std::uint64_t sequence = 0;                  ///< the oldest interest that a region has answered
+  std::uint64_t scene_order = 0;               ///< the newest that has changed the scene
   std::vector<WorldBody> bodies;               ///< ascending id; those in `missing` as they were when they left
   std::vector<core::BodyId> missing;           ///< under way, and nobody has said where; ascending
   std::vector<core::RegionId> silent;          ///< regions that have not said what they have of this state

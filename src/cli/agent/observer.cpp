@@ -9,6 +9,9 @@ namespace {
 /// States that wait for a client: the oldest go.
 constexpr std::size_t kMostReady = 256;
 
+/// Orders that have not come by then may take longer, as those of a mesh that is missing.
+constexpr double kPatienceWithScene_s = 1;
+
 core::WorldBox around(const core::WorldBox& box, double margin_m) {
   const core::Vec3 margin = core::Vec3::Constant(margin_m);
   return {box.low - margin, box.high + margin};
@@ -66,7 +69,19 @@ void Observer::turn(const std::set<core::RegionId>& regions, bool stands) {
   for (core::Observation& observation : endpoint_.take()) states_.accept(std::move(observation), now_s);
   for (MergedState& state : states_.take(regions, stands, now_s)) {
     look_around(state);
-    ready_.push_back(sense(std::move(state)));
+    whole_.push_back({std::move(state), now_s});
+  }
+  sense_what_is_known(now_s);
+}
+
+/// Rays have to know where statics were that orders have moved by then; others tell that than tell of bodies.
+void Observer::sense_what_is_known(double now_s) {
+  while (!whole_.empty()) {
+    Whole& oldest = whole_.front();
+    const bool is_known = !scene_ || scene_->newest_order() >= oldest.state.scene_order;
+    if (!is_known && now_s - oldest.since_s < kPatienceWithScene_s) return;
+    ready_.push_back(sense(std::move(oldest.state)));
+    whole_.pop_front();
     if (ready_.size() <= kMostReady) continue;
     ready_.pop_front();
     ++skipped_;
@@ -112,7 +127,7 @@ FanResult Observer::cast(std::size_t i, const MergedState& state) const {
   const std::optional<core::Pose> X_WS = fan.mount.pose_in(state.bodies);
   if (state.step % fan.every != 0 || !X_WS) return result;
   std::vector<physics::PlacedBody> bodies;
-  bool knows_all = true;
+  bool knows_all = scene_->newest_order() >= state.scene_order;
   for (const WorldBody& body : state.bodies) {
     knows_all = knows_all && core::value_of(body.row.prototype) < scene_->prototypes();
     bodies.push_back({body.row.id, body.row.prototype, {body.row.p_WB, body.row.q_WB.cast<double>()}});

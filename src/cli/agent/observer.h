@@ -40,6 +40,7 @@ class Observer {
 
  private:
   void want();
+  void sense_what_is_known(double now_s);
   void look_around(const MergedState& state);
   Observed sense(MergedState state);
   FanResult cast(std::size_t i, const MergedState& state) const;
@@ -54,6 +55,11 @@ class Observer {
   std::optional<SeenScene> scene_;          ///< for rays
   std::vector<Surroundings> surroundings_;  ///< of fans, then of triggers
   std::vector<Trigger> triggers_;
+  struct Whole {
+    MergedState state;
+    double since_s = 0;
+  };
+  std::deque<Whole> whole_;  ///< perhaps the scene is not yet known as it was in them
   std::deque<Observed> ready_;
   std::uint64_t skipped_ = 0;
 };

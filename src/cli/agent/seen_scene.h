@@ -22,6 +22,8 @@ class SeenScene {
   /// Knows all kinds of bodies with lower ids than this.
   std::size_t prototypes() const { return scene_.prototypes.size(); }
   const physics::RayScene& rays() const { return *rays_; }
+  /// All orders up to this one, of those that change the scene, are in it.
+  std::uint64_t newest_order() const { return added_; }
 
  private:
   void begin();
