@@ -151,7 +151,7 @@ static dds_sequence_double numbers(double* values, uint32_t count) {
 /// Sends a command and waits until it is answered "accepted" and "done"; the object that it makes, -1 if none.
 static int64_t obeyed(dds_entity_t writer, dds_entity_t replies, aurasim_wire_Command* command) {
   command->sender = 1;
-  command->version = 11;
+  command->version = AURASIM_PROTOCOL_VERSION;
   need(dds_write(writer, command), "write a command");
   const dds_time_t deadline = dds_time() + DDS_SECS(10);
   int64_t object = -1;
