@@ -11,7 +11,7 @@ namespace aurasim::core {
 
 enum class ViolationKind : std::uint8_t {
   kSpeed,    ///< a body is faster than the promised V (value and allowed in m/s)
-  kLatency,  ///< a message took effect later than K steps after its stamp (steps)
+  kLatency,  ///< a message took effect later than K steps after its stamp, or a program's word after its own (steps)
   kFrame,    ///< a step took longer than T_F (s)
   kPromise,  ///< a body is not where its last aura promised it would be (m)
   kSpan,     ///< a body is near a region that does not listen to its host (m: distance between the two regions)
