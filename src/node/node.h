@@ -319,7 +319,7 @@ class Node {
     bool is_the_end = false;  ///< named by keep(): not for others
   };
   std::vector<Saving> saving_;
-  std::vector<core::Order> orders_;           ///< in sequence: for whoever goes on from a saved world
+  std::vector<core::Order> orders_;  ///< in sequence: for whoever goes on from a saved world
   std::uint64_t newest_scene_order_ = 0;
   std::size_t orders_kept_ = 1024;            ///< those among them that may not be forgotten, at most
   std::size_t first_own_shape_ = 0;           ///< of the scene, beyond those of its file

@@ -207,8 +207,8 @@ void send_statics(World& world, Chance& chance) {
   }
 }
 
-/// Two of three of those that move, for a program: of two who send one static the later begins no earlier, so clients leave
-/// them alone.
+/// Two of three of those that move, for a program: of two who send one static the later begins no earlier, so clients
+/// leave them alone.
 std::vector<std::string> movers_for_a_program(World& world, Chance& chance) {
   std::vector<std::string> names;
   for (const Json& fixed : world.scene["statics"]) {
