@@ -20,6 +20,18 @@ class WrongClocks : public SystemTest {
     if (faketime_.empty()) GTEST_SKIP() << "no libfaketime";
   }
 
+  /// A node that ends by _exit leaves what libfaketime has made for it.
+  void TearDown() override {
+    SystemTest::TearDown();
+    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+      const std::string name = entry.path().filename();
+      if (name.find("faketime_") == std::string::npos) continue;
+      const std::string pid = name.substr(name.rfind('_') + 1);
+      std::error_code gone;
+      if (!std::filesystem::exists("/proc/" + pid)) std::filesystem::remove(entry.path(), gone);
+    }
+  }
+
   /// Seconds; read by a node with a clock of its own whenever it looks at it.
   void set_clock(int ahead_s) const {
     std::ofstream(folder() / "clock.new") << (ahead_s < 0 ? "" : "+") << ahead_s << '\n';
