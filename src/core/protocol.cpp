@@ -334,10 +334,10 @@ void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRe
 /// After a redo, alarms that still stand go round anew.
 Step Protocol::confirmed_but_for_alarms() const {
   const Step now = outbox_.aura.stamp;
-  const Step round = 2 * hops_across_ * aura_->rules().lookahead + 2;
-  const Step confirmed = now - horizon::check(aura_->rules().lookahead) - round;
-  const bool is_first_round = settings_.redo > 0 && now < settings_.start + round;
-  return is_first_round ? std::min(confirmed, settings_.start - round) : confirmed;
+  const Step there_and_back = 2 * round() + 2;
+  const Step confirmed = now - horizon::check(aura_->rules().lookahead) - there_and_back;
+  const bool is_first_round = settings_.redo > 0 && now < settings_.start + there_and_back;
+  return is_first_round ? std::min(confirmed, settings_.start - there_and_back) : confirmed;
 }
 
 Step Protocol::confirmed() const {
@@ -346,7 +346,7 @@ Step Protocol::confirmed() const {
   return confirmed;
 }
 
-Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + hops_across_ * aura_->rules().lookahead; }
+Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + round(); }
 
 /// Where nodes wait for each other only what is computed again if need be can come after its time.
 void Protocol::apply_late(Order& order, Step n) {
@@ -356,9 +356,7 @@ void Protocol::apply_late(Order& order, Step n) {
 }
 
 Step Protocol::earliest_effect() const {
-  const Step published = outbox_.aura.stamp + 1;
-  const int lookahead = aura_->rules().lookahead;
-  return published + hops_across_ * lookahead + horizon::birth_notice(lookahead) + 1;
+  return earliest_agreement() + horizon::birth_notice(aura_->rules().lookahead) + 1;
 }
 
 void Protocol::report_frame(Step step, double frame_s) {

@@ -67,11 +67,17 @@ std::optional<Step> StaticMoves::give_up_expected(Step before) {
   return first;
 }
 
-StaticMoves StaticMoves::ordered() const {
-  StaticMoves certain = *this;
-  certain.expected_ = 0;
-  for (auto& [id, moves] : certain.moves_) std::erase_if(moves, [](const Move& one) { return !one.is_ordered; });
-  std::erase_if(certain.moves_, [](const auto& of_static) { return of_static.second.empty(); });
+StaticMoves StaticMoves::ordered(StaticId id) const {
+  StaticMoves certain;
+  const auto known = moves_.find(id);
+  if (known == moves_.end()) return certain;
+  std::vector<Move> ends;  // newest first
+  for (auto one = known->second.rbegin(); one != known->second.rend(); ++one) {
+    if (!one->is_ordered) continue;
+    ends.push_back(*one);
+    if (one->at_step < ends.front().at_step) break;
+  }
+  if (!ends.empty()) certain.moves_[id].assign(ends.rbegin(), ends.rend());
   return certain;
 }
 
@@ -103,6 +109,13 @@ void StaticMoves::forget_before(Step step) {
         std::count_if(moves.begin(), later - 1, [](const Move& one) { return !one.is_ordered; }));
     moves.erase(moves.begin(), later - 1);
   }
+}
+
+bool is_sound(const StaticSetpoint& wanted) {
+  constexpr double kMostOff = 1e-6;  // order_columns.cpp
+  return wanted.to.p_WB.cwiseAbs().maxCoeff() <= limits::kFarthestPlace_m &&
+         std::abs(wanted.to.q_WB.norm() - 1) <= kMostOff && wanted.states >= 1 &&
+         wanted.states <= limits::kMostStepsAhead;
 }
 
 PlannedMove planned(const StaticSetpoint& wanted, Step at_step, const StaticMoves& known, const StaticBody& body,

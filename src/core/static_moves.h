@@ -3,6 +3,7 @@
 // (docs/decisions/0030-a-word-before-its-order.md).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -40,13 +41,11 @@ class StaticMoves {
   template <class Visit>
   void for_each_from(Step step, Visit&& visit) const {
     for (const auto& [id, moves] : moves_) {
-      for (const Move& one : moves) {
-        if (one.at_step == step) visit(one.move);
-      }
+      for (const Move& one : std::ranges::equal_range(moves, step, {}, &Move::at_step)) visit(one.move);
     }
   }
-  /// Without what is only expected.
-  StaticMoves ordered() const;
+  /// Of one static, without what is only expected: what says where it is from before its newest order on.
+  StaticMoves ordered(StaticId id) const;
   /// Of states before this one nobody asks.
   void forget_before(Step step);
 
@@ -62,6 +61,9 @@ class StaticMoves {
   std::map<StaticId, std::vector<Move>> moves_;  ///< each ascending at_step
   std::size_t expected_ = 0;
 };
+
+/// Can an order say it? Its place is not too far out, its rotation of length 1, and it is there some time.
+bool is_sound(const StaticSetpoint& wanted);
 
 struct PlannedMove {
   Step at_step = 0;

@@ -5,6 +5,7 @@
 
 #include "aurasim.h"
 #include "core/limits.h"
+#include "core/static_moves.h"
 #include "dds/columns.h"
 #include "dds/header_check.h"
 
@@ -15,7 +16,6 @@ constexpr std::uint8_t kLetsGo = 16;
 constexpr std::size_t kDriveNumbers = 6;
 constexpr std::size_t kMaxEffort = 5;
 constexpr std::size_t kPlaceNumbers = 7;
-constexpr double kMostOff = 1e-6;  ///< of the length of a quaternion: what an order bears
 
 void put_drive(const core::JointDrive& drive, double* out) {
   const double numbers[kDriveNumbers] = {drive.position, drive.speed,  drive.stiffness,
@@ -29,14 +29,10 @@ void put_place(const core::Pose& pose, double* out) {
   out[3] = q.w(), out[4] = q.x(), out[5] = q.y(), out[6] = q.z();
 }
 
-core::Pose place_at(const double* in) {
-  return {core::Vec3(in[0], in[1], in[2]), core::Quat(in[3], in[4], in[5], in[6])};
-}
-
-bool is_place(const double* in) {
-  const core::Pose pose = place_at(in);
-  return pose.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m &&
-         std::abs(pose.q_WB.norm() - 1) <= kMostOff;
+core::StaticSetpoint static_at(const wire::Setpoints& in, std::size_t i) {
+  const double* const place = &in.place()[i * kPlaceNumbers];
+  const core::Quat q(place[3], place[4], place[5], place[6]);
+  return {core::StaticId{in.static_id()[i]}, {core::Vec3(place[0], place[1], place[2]), q}, in.states()[i]};
 }
 
 bool is_drive(const double* drive) {
@@ -52,8 +48,7 @@ std::optional<WireError> check_statics(const wire::Setpoints& in) {
   if (!same_rows(statics, {{in.states().size()}, {in.place().size(), kPlaceNumbers}})) return WireError::kLength;
   if (!all_finite(in.place())) return WireError::kNotFinite;
   for (std::size_t i = 0; i < statics; ++i) {
-    const bool is_span = in.states()[i] >= 1 && in.states()[i] <= core::limits::kMostStepsAhead;
-    if (!is_span || !is_place(&in.place()[i * kPlaceNumbers])) return WireError::kRange;
+    if (!core::is_sound(static_at(in, i))) return WireError::kRange;
   }
   return std::nullopt;
 }
@@ -133,8 +128,7 @@ Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expec
     if (in.let_go()[i] == 0) joint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
   }
   for (std::size_t i = 0; i < in.static_id().size(); ++i) {
-    setpoints.statics.push_back(
-        {core::StaticId{in.static_id()[i]}, place_at(&in.place()[i * kPlaceNumbers]), in.states()[i]});
+    setpoints.statics.push_back(static_at(in, i));
   }
   return setpoints;
 }

@@ -279,7 +279,7 @@ void Node::finish_state() {
 
 /// Where every state is checked, and computed again if need be, nothing is late or missed.
 void Node::watch_collisions(const core::Snapshot& snapshot) {
-  if (setup_.protocol.aura.redo && !protocol_->alarms_given_up()) {
+  if (protocol_->computes_again()) {
     for (const physics::Collision& collision : world_.collisions()) report_.collisions.push_back({collision});
     return;
   }

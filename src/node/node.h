@@ -251,6 +251,7 @@ class Node {
   void give_up_expected();
   void note_moves();
   const core::Order& give(core::Order order);
+  const core::Order& give_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
   void clear_report();
   void host_initial_bodies();
   std::vector<core::BodyRecord> initial_bodies();

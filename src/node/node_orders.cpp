@@ -24,12 +24,12 @@ const core::Order& Node::give(core::Order order) {
 
 /// From where it is by then, after all that has been ordered.
 void Node::complete(core::Order& order) const {
-  core::StaticMoves moves = world_.moves().ordered();
+  auto& move = std::get<core::MoveStatic>(order.action);
+  core::StaticMoves moves = world_.moves().ordered(move.id);
   for (const core::Order& other : protocol_->orders_to_come()) {
     if (const auto* known = std::get_if<core::MoveStatic>(&other.action))
       moves.add(*known, other.at_step, other.request);
   }
-  auto& move = std::get<core::MoveStatic>(order.action);
   const core::PlannedMove plan = core::planned({move.id, move.to, move.states}, order.at_step, moves,
                                                scene_.statics.at(core::value_of(move.id)), setup_.physics.step_s);
   order.at_step = plan.at_step;

@@ -42,7 +42,7 @@ bool Node::can_go(std::span<const core::StaticSetpoint> statics) const {
   if (!statics.empty() && !setup_.physics.looks_once()) return false;
   return std::ranges::all_of(statics, [this](const core::StaticSetpoint& wanted) {
     const std::uint32_t index = core::value_of(wanted.id);
-    if (index >= scene_.statics.size() || wanted.states < 1) return false;
+    if (index >= scene_.statics.size() || !core::is_sound(wanted)) return false;
     return !std::holds_alternative<core::Plane>(scene_.shapes[scene_.statics[index].shape].shape);
   });
 }
@@ -82,6 +82,14 @@ void Node::expect(const core::StaticSetpoint& wanted, core::Step at_step, std::u
   world_.moves().expect(plan.move, plan.at_step, request);
 }
 
+const core::Order& Node::give_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
+  core::Order order;
+  order.request = request;
+  order.at_step = at_step;
+  order.action = core::MoveStatic{wanted.id, {}, wanted.to, wanted.states};
+  return give(std::move(order));
+}
+
 /// Where nobody goes by what was heard, or no state was named, it takes the time of an order.
 core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
   const auto is_it = [request](const core::Order& order) { return order.request == request; };
@@ -93,11 +101,7 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
   const core::Step earliest = at_once ? current_step() + 1 : protocol_->earliest_effect();
   const bool is_late = at_step != 0 && at_step < earliest;
   if (is_late && setup_.control.late == core::LateSetpoint::kDropped) return core::Heard::kLate;
-  core::Order order;
-  order.request = request;
-  order.at_step = std::max(at_step, earliest);
-  order.action = core::MoveStatic{wanted.id, {}, wanted.to, wanted.states};
-  const core::Order& given = give(std::move(order));
+  const core::Order& given = give_move(wanted, std::max(at_step, earliest), request);
   return at_step != 0 && given.at_step > at_step ? core::Heard::kLate : core::Heard::kInTime;
 }
 
@@ -117,11 +121,7 @@ void Node::order_recorded_moves() {
     const core::StaticEffect& recorded = recorded_moves_[next_recorded_move_];
     if (recorded.step > until || (leads() && is_changing_)) return;
     if (!leads() || recorded.step <= current_step() || ordered(request_of(recorded)) != nullptr) continue;
-    core::Order order;
-    order.request = request_of(recorded);
-    order.at_step = recorded.step;
-    order.action = core::MoveStatic{recorded.setpoint.id, {}, recorded.setpoint.to, recorded.setpoint.states};
-    give(std::move(order));
+    give_move(recorded.setpoint, recorded.step, request_of(recorded));
   }
 }
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/limits.h"
+#include "core/static_moves.h"
 #include "node/csv.h"
 
 namespace aurasim::node {
@@ -22,7 +23,6 @@ constexpr std::array<std::string_view, core::kQuantities> kQuantityNames = {"for
                                                                             "driving"};
 constexpr std::string_view kDrive = "drive";
 constexpr std::string_view kMove = "move";
-constexpr double kMostOff = 1e-6;  ///< of the length of a quaternion: what an order bears
 constexpr std::size_t kColumns = 12, kFirstNumber = 4, kMoveNumbers = 8;
 
 std::string row(core::RegionId region, core::Step step, std::string_view what, std::uint64_t id,
@@ -67,11 +67,10 @@ std::optional<core::JointEffect> joint_effect(core::Step step, std::uint64_t id,
 
 std::optional<core::StaticEffect> static_effect(core::Step step, std::uint64_t id, const std::vector<double>& n) {
   if (n.size() != kMoveNumbers) return {};
+  if (!(std::abs(n[7]) <= core::limits::kMostStepsAhead)) return {};
   const core::Pose to{core::Vec3(n[0], n[1], n[2]), core::Quat(n[3], n[4], n[5], n[6])};
-  const bool is_place = to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m &&
-                        std::abs(to.q_WB.norm() - 1) <= kMostOff && n[7] >= 1 && n[7] <= core::limits::kMostStepsAhead;
-  if (!is_place) return {};
-  return core::StaticEffect{step, {core::StaticId{static_cast<std::uint32_t>(id)}, to, static_cast<core::Step>(n[7])}};
+  const core::StaticSetpoint wanted{core::StaticId{static_cast<std::uint32_t>(id)}, to, static_cast<core::Step>(n[7])};
+  return core::is_sound(wanted) ? std::optional(core::StaticEffect{step, wanted}) : std::nullopt;
 }
 
 /// Nothing: no row of setpoints.

@@ -1,9 +1,11 @@
 """What tests of the Python module share: a DDS domain of their own, worlds, and a look at what is left behind."""
 
+import csv
 import fcntl
 import os
 import pathlib
 import shutil
+import subprocess
 import tempfile
 import time
 import unittest
@@ -83,6 +85,16 @@ def is_mapped(name):
     return False
 
 
+def hashes(report):
+    with open(pathlib.Path(report) / "state_hash.csv") as file:
+        return {int(row["step"]): row["hash"] for row in csv.DictReader(file)}
+
+
+def setpoint_rows(report):
+    with open(pathlib.Path(report) / "setpoints.csv") as file:
+        return list(csv.DictReader(file))
+
+
 class WorldTest(unittest.TestCase):
     def setUp(self):
         self.domain = LeasedDomain()
@@ -120,3 +132,18 @@ class WorldTest(unittest.TestCase):
 
     def connect(self, name="demo", timeout=GENEROUS_S, **overrides):
         return self.keep(aurasim.World.connect(launch_file(name), set=self.overrides(**overrides), timeout=timeout))
+
+    def assert_same_from_record(self, name, live, called, **layout):
+        """A run of the same launch file that is given the record of `live` has its bits in every state."""
+        expected = hashes(live)
+        again = self.folder / f"again on {called}"
+        words = [os.environ["AURASIM_PROGRAM"], "launch", str(launch_file(name)), "--headless", "--steps",
+                 str(max(expected)), "--report", str(again)]
+        overrides = self.overrides(time__sync="deterministic", time__pace="none", **layout)
+        for key, value in {**overrides, "control.replay": str(live / "setpoints.csv")}.items():
+            words += ["--set", f"{key}={value}"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
+        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
+        found = hashes(again)
+        differ = [step for step in expected if found.get(step) != expected[step]]
+        self.assertEqual(differ, [], f"{called}: {len(differ)} of {len(expected)} states")

@@ -1,9 +1,7 @@
 """Steering bodies by a program: in which state it acts, on any number of nodes, recorded, late, refused, and when the
 program is gone."""
 
-import csv
 import os
-import pathlib
 import signal
 import subprocess
 import sys
@@ -14,7 +12,7 @@ import unittest
 import numpy as np
 
 import aurasim
-from client_fixture import GENEROUS_S, WorldTest, launch_file, wait_until
+from client_fixture import WorldTest, launch_file, setpoint_rows, wait_until
 from lockstep_test import first_difference
 
 
@@ -22,16 +20,6 @@ def pushes(ids, step):
     """A force on each body, other in each state."""
     phase = ids.astype(float)[:, None] * (1.3, 2.1, 0.7) + 0.11 * step
     return np.sin(phase) * (6, 6, 9)
-
-
-def hashes(report):
-    with open(pathlib.Path(report) / "state_hash.csv") as file:
-        return {int(row["step"]): row["hash"] for row in csv.DictReader(file)}
-
-
-def setpoint_rows(report):
-    with open(pathlib.Path(report) / "setpoints.csv") as file:
-        return list(csv.DictReader(file))
 
 
 class LockStep(WorldTest):
@@ -99,21 +87,9 @@ class Live(WorldTest):
         return named
 
     def assert_same_again(self, live, regions):
-        """From its record, on so many nodes."""
-        expected = hashes(live)
-        again = self.folder / f"again_{regions}"
-        layout = {"regions.count": 1} if regions == 1 else {
+        layout = {"regions__count": 1} if regions == 1 else {
             "regions": "{layout: grid, rows: 3, columns: 3, cell: [14, 14]}"}
-        words = [os.environ["AURASIM_PROGRAM"], "launch", str(launch_file("demo")), "--headless", "--steps",
-                 str(max(expected)), "--report", str(again)]
-        for key, value in {**self.overrides(time__sync="deterministic", time__pace="none"), **layout,
-                           "control.replay": str(live / "setpoints.csv")}.items():
-            words += ["--set", f"{key}={value}"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
-        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
-        found = hashes(again)
-        differ = [step for step in expected if found.get(step) != expected[step]]
-        self.assertEqual(differ, [], f"{regions} regions: {len(differ)} of {len(expected)} states")
+        self.assert_same_from_record("demo", live, f"{regions} regions", **layout)
 
     def test_a_record_gives_the_same_bits_on_any_number_of_nodes(self):
         live = self.folder / "live"

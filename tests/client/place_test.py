@@ -1,16 +1,12 @@
 """Steering statics by a program: lifts and gates that are placed in a state, on any number of nodes, live and recorded."""
 
-import csv
-import pathlib
-import subprocess
-import os
 import time
 import unittest
 
 import numpy as np
 
 import aurasim
-from client_fixture import GENEROUS_S, WorldTest, launch_file, wait_until
+from client_fixture import WorldTest, setpoint_rows, wait_until
 from lockstep_test import first_difference
 
 LIFT = "lift"  # of sorting_hall, where two regions meet
@@ -19,11 +15,6 @@ LIFT = "lift"  # of sorting_hall, where two regions meet
 def height(step):
     """Of the lift, from state 60 on: up and down, 1 m in about a second."""
     return 1.35 + 0.5 * np.sin(0.05 * (step - 60))
-
-
-def hashes(report):
-    with open(pathlib.Path(report) / "state_hash.csv") as file:
-        return {int(row["step"]): row["hash"] for row in csv.DictReader(file)}
 
 
 class Placed(WorldTest):
@@ -71,20 +62,6 @@ class Placed(WorldTest):
         wrong = [step for step, top in seen.items() if step > 60 and abs(top - height(step) - 0.15) > 1e-6]
         self.assertEqual(wrong, [])
 
-    def assert_same_again(self, live, regions):
-        expected = hashes(live)
-        again = self.folder / f"again_{regions}"
-        words = [os.environ["AURASIM_PROGRAM"], "launch", str(launch_file("sorting_hall")), "--headless", "--steps",
-                 str(max(expected)), "--report", str(again)]
-        overrides = self.overrides(time__sync="deterministic", time__pace="none", regions__count=regions)
-        for key, value in {**overrides, "control.replay": str(live / "setpoints.csv")}.items():
-            words += ["--set", f"{key}={value}"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=3 * GENEROUS_S)
-        self.assertEqual(done.returncode, 0, done.stderr[-2000:])
-        found = hashes(again)
-        differ = [step for step in expected if found.get(step) != expected[step]]
-        self.assertEqual(differ, [], f"{regions} regions: {len(differ)} of {len(expected)} states")
-
     def test_live_it_is_where_it_was_to_be_and_a_record_gives_the_same_bits(self):
         live = self.folder / "live"
         world = self.launch("sorting_hall", paused=False, report=live, time__sync="deterministic")
@@ -98,12 +75,11 @@ class Placed(WorldTest):
             time.sleep(1 / 240)
         self.assertTrue(wait_until(lambda: abs(self.top_of_lift(world)[0] - height(max(placed)) - 0.15) < 1e-6))
         world.close()
-        with open(live / "setpoints.csv") as file:
-            rows = [row for row in csv.DictReader(file) if row["what"] == "move"]
+        rows = [row for row in setpoint_rows(live) if row["what"] == "move"]
         self.assertEqual({row["region"] for row in rows}, {"0"})
         self.assertEqual(len(rows), len(placed))
         for regions in (1, 4):
-            self.assert_same_again(live, regions)
+            self.assert_same_from_record("sorting_hall", live, f"{regions} regions", regions__count=regions)
 
     def test_without_a_state_it_goes_as_soon_as_all_can_know(self):
         world = self.launch("sorting_hall", paused=False)

@@ -232,7 +232,6 @@ std::vector<core::Setpoints> ways_for(const core::Scene& scene, int seed) {
   std::mt19937_64 random(static_cast<std::uint64_t>(seed));
   std::uniform_real_distribution<double> any(-1, 1);
   std::vector<core::Setpoints> words;
-  std::vector<Vec3> at;
   for (Step step = kFirst; step < kSteps; step += 1 + seed % 4) {
     core::Setpoints& said = words.emplace_back();
     said.client = 43, said.sequence = words.size(), said.at_step = step;

@@ -22,9 +22,9 @@ TEST(StaticMoves, WhatIsExpectedCountsUntilItsOrderIsHere) {
   moves.expect(move_to(0, 1), 10, 77);
   EXPECT_EQ(height(moves, 9), 0);
   EXPECT_EQ(height(moves, 10), 1);
-  EXPECT_EQ(height(moves.ordered(), 10), 0);
+  EXPECT_EQ(height(moves.ordered(kLift), 10), 0);
   EXPECT_EQ(moves.add(move_to(0, 1), 10, 77), std::nullopt) << "it is as it was expected";
-  EXPECT_EQ(height(moves.ordered(), 10), 1);
+  EXPECT_EQ(height(moves.ordered(kLift), 10), 1);
   EXPECT_EQ(moves.give_up_expected(1000), std::nullopt);
 }
 

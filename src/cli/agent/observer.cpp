@@ -78,7 +78,7 @@ void Observer::turn(const std::set<core::RegionId>& regions, bool stands) {
 void Observer::sense_what_is_known(double now_s) {
   while (!whole_.empty()) {
     Whole& oldest = whole_.front();
-    const bool is_known = !scene_ || scene_->newest_order() >= oldest.state.scene_order;
+    const bool is_known = !scene_ || scene_->has_all_up_to(oldest.state.scene_order);
     if (!is_known && now_s - oldest.since_s < kPatienceWithScene_s) return;
     ready_.push_back(sense(std::move(oldest.state)));
     whole_.pop_front();
@@ -127,7 +127,7 @@ FanResult Observer::cast(std::size_t i, const MergedState& state) const {
   const std::optional<core::Pose> X_WS = fan.mount.pose_in(state.bodies);
   if (state.step % fan.every != 0 || !X_WS) return result;
   std::vector<physics::PlacedBody> bodies;
-  bool knows_all = scene_->newest_order() >= state.scene_order;
+  bool knows_all = scene_->has_all_up_to(state.scene_order);
   for (const WorldBody& body : state.bodies) {
     knows_all = knows_all && core::value_of(body.row.prototype) < scene_->prototypes();
     bodies.push_back({body.row.id, body.row.prototype, {body.row.p_WB, body.row.q_WB.cast<double>()}});

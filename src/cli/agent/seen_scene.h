@@ -22,8 +22,8 @@ class SeenScene {
   /// Knows all kinds of bodies with lower ids than this.
   std::size_t prototypes() const { return scene_.prototypes.size(); }
   const physics::RayScene& rays() const { return *rays_; }
-  /// All orders up to this one, of those that change the scene, are in it.
-  std::uint64_t newest_order() const { return added_; }
+  /// Are all orders up to this one in it, of those that change the scene?
+  bool has_all_up_to(std::uint64_t order) const { return added_ >= order; }
 
  private:
   void begin();

@@ -78,31 +78,17 @@ void drop_joints_without_bodies(World& world) {
   let_followers_go(joints);
 }
 
-/// What programs say of joints that are not there any more.
-void drop_words_without_joints(World& world) {
+/// What programs say of joints or statics (`list`, each setpoint with the name as `key`) that are not there any more.
+void drop_words_without(const char* list, const char* key, World& world) {
   if (!world.interference.contains("programs")) return;
   std::set<std::string> names;
-  for (const Json& joint : world.scene["joints"]) names.insert(joint["name"].get<std::string>());
+  for (const Json& one : world.scene[list]) names.insert(one.value("name", ""));
   for (Json& word : world.interference["programs"]) {
     Json rest = Json::array();
-    for (const Json& setpoint : word["joints"]) {
-      if (names.contains(setpoint["joint"].get<std::string>())) rest.push_back(setpoint);
+    for (const Json& setpoint : word.value(list, Json::array())) {
+      if (names.contains(setpoint[key].get<std::string>())) rest.push_back(setpoint);
     }
-    word["joints"] = std::move(rest);
-  }
-}
-
-/// Likewise of statics.
-void drop_words_without_statics(World& world) {
-  if (!world.interference.contains("programs")) return;
-  std::set<std::string> names;
-  for (const Json& fixed : world.scene["statics"]) names.insert(fixed.value("name", ""));
-  for (Json& word : world.interference["programs"]) {
-    Json rest = Json::array();
-    for (const Json& setpoint : word.value("statics", Json::array())) {
-      if (names.contains(setpoint["static"].get<std::string>())) rest.push_back(setpoint);
-    }
-    word["statics"] = std::move(rest);
+    word[list] = std::move(rest);
   }
 }
 
@@ -150,8 +136,8 @@ class Shrinker {
         Json& entries = *part.in(smaller);
         entries = without_entries(entries, begin, begin + chunk);
         drop_joints_without_bodies(smaller);
-        drop_words_without_joints(smaller);
-        drop_words_without_statics(smaller);
+        drop_words_without("joints", "joint", smaller);
+        drop_words_without("statics", "static", smaller);
         if (accept(std::move(smaller))) {
           any = true;
         } else {
