@@ -3,16 +3,15 @@
 // same.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "core/setpoint.h"
+#include "core/setpoint_history.h"
 
 namespace aurasim::core {
 
@@ -33,6 +32,8 @@ class ControlLog {
   void recall(const Setpoints& setpoints);
 
   bool empty() const { return bodies_.empty() && joints_.empty(); }
+  /// Quantities of bodies that programs have said something about.
+  std::size_t body_quantities() const { return bodies_.keys(); }
 
   /// visit(id, quantity, value, is_new) for what is in effect on bodies in state `step`, ascending (id, quantity).
   /// `is_new`: it was not in the state before. Then also for what is let go of, without value. Only for bodies that
@@ -40,42 +41,44 @@ class ControlLog {
   template <class IsWanted, class Visit>
   void for_each_body(Step step, IsWanted&& is_wanted, Visit&& visit) const {
     Silence silence;
-    for (const BodyTrack& track : bodies_) {
-      if (!is_wanted(track.key.first)) continue;
-      visit_track(track, step, silence,
-                  [&](const auto& value, bool is_new) { visit(track.key.first, track.key.second, value, is_new); });
-    }
+    bodies_.for_each(
+        step, [&](const BodyKey& key) { return is_wanted(key.first); },
+        [&](const HeldOfBody& held) {
+          visit_effect(held, step, silence,
+                       [&](const auto& value, bool is_new) { visit(held.key.first, held.key.second, value, is_new); });
+        });
   }
   /// visit(quantity, value, is_new): likewise for one body.
   template <class Visit>
   void for_each_of(BodyId id, Step step, Visit&& visit) const {
     Silence silence;
-    for (auto track = first_of(id); track != bodies_.end() && track->key.first == id; ++track)
-      visit_track(*track, step, silence,
-                  [&](const auto& value, bool is_new) { visit(track->key.second, value, is_new); });
+    bodies_.for_each_from(
+        BodyKey(id, Quantity{}), step, [id](const BodyKey& key) { return key.first == id; },
+        [&](const HeldOfBody& held) {
+          visit_effect(held, step, silence,
+                       [&](const auto& value, bool is_new) { visit(held.key.second, value, is_new); });
+        });
   }
   /// visit(id, drive, is_new): likewise for joints.
   template <class Visit>
   void for_each_joint(Step step, Visit&& visit) const {
     Silence silence;
-    for (const JointTrack& track : joints_)
-      visit_track(track, step, silence, [&](const auto& value, bool is_new) { visit(track.key, value, is_new); });
+    joints_.for_each(
+        step, [](JointId) { return true; },
+        [&](const HeldOfJoint& held) {
+          visit_effect(held, step, silence, [&](const auto& drive, bool is_new) { visit(held.key, drive, is_new); });
+        });
   }
-  /// What is in effect on one body in state `step`, and what is known to come up to state `last`: visit(quantity,
-  /// value). `hint`: where the body before was, of several in order of their ids; 0 for the first.
-  template <class Visit>
-  void for_each_ahead(BodyId id, Step step, Step last, std::size_t& hint, Visit&& visit) const {
-    const bool is_there =
-        hint < bodies_.size() && bodies_[hint].key.first >= id && (hint == 0 || bodies_[hint - 1].key.first < id);
-    auto track = is_there ? bodies_.begin() + static_cast<std::ptrdiff_t>(hint) : first_of(id);
-    for (; track != bodies_.end() && track->key.first == id; ++track) {
-      if (const auto value = in_effect(*track, step)) visit(track->key.second, *value);
-      auto entry = first_later(track->entries, last, &Entry<Vec3>::from);
-      while (entry != track->entries.begin() && (--entry)->from > step) {
-        if (entry->value) visit(track->key.second, *entry->value);
-      }
-    }
-    hint = static_cast<std::size_t>(track - bodies_.begin());
+  /// What is in effect on bodies in state `step`, and what is known to come up to state `last`: visit(id, quantity,
+  /// value), first the one, ascending (id, quantity), then each message.
+  template <class IsWanted, class Visit>
+  void for_each_ahead(Step step, Step last, IsWanted&& is_wanted, Visit&& visit) const {
+    for_each_body(step, is_wanted, [&](BodyId id, Quantity quantity, const auto& value, bool) {
+      if (value) visit(id, quantity, *value);
+    });
+    bodies_.for_each_later(step, last, [&](const MessageStamp&, const SaidOfBody& said) {
+      if (said.value && is_wanted(said.key.first)) visit(said.key.first, said.key.second, *said.value);
+    });
   }
   std::optional<Vec3> in_effect(BodyId id, Quantity quantity, Step step) const;
   std::optional<JointDrive> in_effect(JointId id, Step step) const;
@@ -83,103 +86,50 @@ class ControlLog {
   /// What is in effect from state `step` on, as messages for a node that knows nothing, in order.
   std::vector<Setpoints> since(Step step) const;
   /// States before this one are never computed again. To be called once a state: what is to be forgotten goes bit by
-  /// bit, all of it in kForgetCalls calls.
+  /// bit.
   void forget_before(Step step);
-  static constexpr std::size_t kForgetCalls = 30;
 
  private:
-  template <class Value>
-  struct Entry {
-    Step from = 0;
-    std::uint64_t client = 0;
-    std::uint64_t sequence = 0;
-    std::optional<Value> value;
-  };
-  template <class Key, class Value>
-  struct Track {
-    Key key;
-    std::deque<Entry<Value>> entries;  ///< ascending (from, client, sequence)
-  };
-  using BodyTrack = Track<std::pair<BodyId, Quantity>, Vec3>;
-  using JointTrack = Track<JointId, JointDrive>;
+  using OfBodies = SetpointHistory<BodyKey, Vec3>;
+  using OfJoints = SetpointHistory<JointId, JointDrive>;
+  using SaidOfBody = OfBodies::Said;
+  using HeldOfBody = OfBodies::Held;
+  using HeldOfJoint = OfJoints::Held;
 
-  /// `place`: of the track to look at first, and afterwards of the one behind: messages mostly go on from key to key.
-  template <class Key, class Value>
-  void add(std::vector<Track<Key, Value>>& tracks, const Key& key, Entry<Value> entry, std::size_t& place);
-  template <class Key, class Value>
-  void forget_before(std::vector<Track<Key, Value>>& tracks, Step step, std::size_t& next);
+  void take_in(const Setpoints& setpoints, Step from);
   void note_word(std::uint64_t client, Step from);
   bool is_silent(std::uint64_t client, Step step) const;
-  std::optional<Vec3> in_silence(const Vec3& value, Quantity quantity) const;
-  std::optional<JointDrive> in_silence(const JointDrive& value) const;
+  std::optional<Vec3> value_in_silence(const HeldOfBody& held) const;
+  std::optional<JointDrive> value_in_silence(const HeldOfJoint& held) const;
 
-  auto first_of(BodyId id) const {
-    return std::ranges::lower_bound(bodies_, std::pair(id, Quantity{}), {}, &BodyTrack::key);
-  }
-  /// The first that is later than state `step`. Mostly it is asked for the newest states, so it is looked for from the
-  /// end: a search through all of them would touch memory that nobody else does.
-  template <class List, class StepOf>
-  static auto first_later(const List& list, Step step, StepOf step_of) {
-    constexpr int kNewest = 8;
-    auto later = list.end();
-    for (int i = 0; i < kNewest; ++i) {
-      if (later == list.begin() || std::invoke(step_of, *(later - 1)) <= step) return later;
-      --later;
-    }
-    return std::ranges::upper_bound(list.begin(), later, step, {}, step_of);
-  }
-  /// The newest of state `step` or before; null: none.
-  template <class Key, class Value>
-  static const Entry<Value>* newest(const Track<Key, Value>& track, Step step) {
-    const auto later = first_later(track.entries, step, &Entry<Value>::from);
-    return later == track.entries.begin() ? nullptr : &*(later - 1);
-  }
   /// Whether the client of the last entry was silent in a state and in the one before: mostly it is that of the next,
   /// too.
   struct Silence {
     std::optional<std::uint64_t> client;
     bool now = false, before = false;
   };
-  template <class Value>
-  void look_at(const Entry<Value>& entry, Step step, Silence& silence) const {
-    if (silence.client == entry.client) return;
-    silence.client = entry.client;
-    silence.now = rules_.on_silence != OnSilence::kLast && is_silent(entry.client, step);
-    silence.before = rules_.on_silence != OnSilence::kLast && is_silent(entry.client, step - 1);
+  void look_at(std::uint64_t client, Step step, Silence& silence) const {
+    if (silence.client == client) return;
+    silence.client = client;
+    silence.now = rules_.on_silence != OnSilence::kLast && is_silent(client, step);
+    silence.before = rules_.on_silence != OnSilence::kLast && is_silent(client, step - 1);
   }
-  template <class Value>
-  bool is_silenced(const Entry<Value>& entry, Step step) const {
-    return entry.value && rules_.on_silence != OnSilence::kLast && is_silent(entry.client, step);
-  }
-  std::optional<Vec3> value_of(const BodyTrack& track, const Entry<Vec3>& entry, bool silenced) const {
-    return silenced ? in_silence(*entry.value, track.key.second) : entry.value;
-  }
-  std::optional<JointDrive> value_of(const JointTrack&, const Entry<JointDrive>& entry, bool silenced) const {
-    return silenced ? in_silence(*entry.value) : entry.value;
-  }
-  template <class AnyTrack>
-  auto in_effect(const AnyTrack& track, Step step) const -> decltype(value_of(track, track.entries.front(), false)) {
-    const auto* const entry = newest(track, step);
-    if (entry == nullptr) return std::nullopt;
-    return value_of(track, *entry, is_silenced(*entry, step));
-  }
-  template <class AnyTrack, class Visit>
-  void visit_track(const AnyTrack& track, Step step, Silence& silence, Visit&& visit) const {
-    const auto* const entry = newest(track, step);
-    if (entry == nullptr) return;
-    look_at(*entry, step, silence);
-    const bool silenced = entry->value && silence.now;
-    const bool is_new = entry->from == step || silenced != (entry->value && silence.before);
-    const auto value = value_of(track, *entry, silenced);
-    if (value || is_new) visit(value, is_new);
+  template <class Held, class Visit>
+  void visit_effect(const Held& held, Step step, Silence& silence, Visit&& visit) const {
+    look_at(held.stamp.client, step, silence);
+    const bool silenced = held.value && silence.now;
+    const bool is_new = held.stamp.from == step || silenced != (held.value && silence.before);
+    if (!silenced) {
+      if (held.value || is_new) visit(held.value, is_new);
+    } else if (const auto value = value_in_silence(held); value || is_new) {
+      visit(value, is_new);
+    }
   }
 
   ControlRules rules_;
-  std::vector<BodyTrack> bodies_;                    ///< ascending key
-  std::vector<JointTrack> joints_;                   ///< ascending key
+  OfBodies bodies_;
+  OfJoints joints_;
   std::map<std::uint64_t, std::deque<Step>> words_;  ///< by client: states that it has said something for, ascending
-  std::size_t entries_ = 0;
-  std::size_t next_body_ = 0, next_joint_ = 0;  ///< tracks that are looked at next for what to forget
 };
 
 }  // namespace aurasim::core

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/body_state.h"
@@ -23,6 +24,9 @@ enum class Quantity : std::uint8_t {
   kDriving,
 };
 inline constexpr int kQuantities = 5;
+
+/// What can be told by itself.
+using BodyKey = std::pair<BodyId, Quantity>;
 
 struct BodySetpoint {
   BodyId id{};

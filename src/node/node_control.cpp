@@ -44,8 +44,10 @@ bool Node::stays(core::BodyId id) const {
 /// What is new in the state that has been computed.
 void Node::note_effects() {
   if (world_.controls().empty()) return;
+  const bool all_stay = report_.removals.empty() && report_.arrivals.empty();
+  report_.effects.bodies.reserve(world_.new_setpoints().size());
   for (const core::BodySetpoint& setpoint : world_.new_setpoints()) {
-    if (stays(setpoint.id)) report_.effects.bodies.push_back({current_step(), setpoint});
+    if (all_stay || stays(setpoint.id)) report_.effects.bodies.push_back({current_step(), setpoint});
   }
   note_effects_on_arrivals();
 }

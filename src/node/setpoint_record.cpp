@@ -6,9 +6,11 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -146,7 +148,7 @@ std::vector<core::Setpoints> read_setpoints(const std::filesystem::path& file) {
   if (!std::getline(in, line) || line + '\n' != kSetpointsHeader) {
     throw std::runtime_error(fmt::format("{}: this is no record of setpoints", file.string()));
   }
-  std::vector<core::Setpoints> all;
+  std::map<std::pair<core::Step, std::uint64_t>, core::Setpoints> of_state;  // what counts for one comes in one message
   std::vector<std::string_view> cells;
   for (std::size_t number_of_line = 2; std::getline(in, line); ++number_of_line) {
     split_cells(line, cells);
@@ -154,9 +156,15 @@ std::vector<core::Setpoints> read_setpoints(const std::filesystem::path& file) {
     if (!read) {
       throw std::runtime_error(fmt::format("{}:{}: no row of setpoints: {}", file.string(), number_of_line, line));
     }
-    all.push_back(*read);
+    core::Setpoints& all = of_state[{read->at_step, read->sequence}];
+    all.client = read->client, all.sequence = read->sequence, all.at_step = read->at_step;
+    std::ranges::copy(read->bodies, std::back_inserter(all.bodies));
+    std::ranges::copy(read->joints, std::back_inserter(all.joints));
+    std::ranges::copy(read->statics, std::back_inserter(all.statics));
   }
-  return all;
+  std::vector<core::Setpoints> messages;
+  for (auto& [place, one] : of_state) messages.push_back(std::move(one));
+  return messages;
 }
 
 }  // namespace aurasim::node

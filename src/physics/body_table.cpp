@@ -51,6 +51,21 @@ HostedBody* BodyTable::find(core::BodyId id) {
   return const_cast<HostedBody*>(static_cast<const BodyTable&>(*this).find(id));
 }
 
+HostedBody* BodyTable::find(core::BodyId id, std::size_t& near) {
+  return const_cast<HostedBody*>(static_cast<const BodyTable&>(*this).find(id, near));
+}
+
+const HostedBody* BodyTable::find(core::BodyId id, std::size_t& near) const {
+  const auto belongs_at = [&](std::size_t place) {
+    return (place == 0 || bodies_[place - 1].id < id) && (place == bodies_.size() || id <= bodies_[place].id);
+  };
+  if (near < bodies_.size() && bodies_[near].id < id) ++near;
+  if (near > bodies_.size() || !belongs_at(near)) {
+    near = static_cast<std::size_t>(std::ranges::lower_bound(bodies_, id, {}, &HostedBody::id) - bodies_.begin());
+  }
+  return near < bodies_.size() && bodies_[near].id == id ? &bodies_[near] : nullptr;
+}
+
 void BodyTable::insert(std::vector<HostedBody> arrivals) {
   if (arrivals.empty()) return;
   std::sort(arrivals.begin(), arrivals.end(), before);

@@ -39,6 +39,10 @@ class BodyTable {
   /// Null if it is not here. Valid until bodies come or go.
   HostedBody* find(core::BodyId id);
   const HostedBody* find(core::BodyId id) const;
+  /// Of several in ascending order: without a search where nobody is in between. `near`: where the one before would be,
+  /// 0 for the first.
+  HostedBody* find(core::BodyId id, std::size_t& near);
+  const HostedBody* find(core::BodyId id, std::size_t& near) const;
 
   /// None of them may be here yet.
   void insert(std::vector<HostedBody> arrivals);

@@ -244,11 +244,12 @@ const core::Snapshot& Simulation::snapshot() {
     note_moving_statics();
     const std::vector<Shove> shoves = coming_shoves();
     const bool something_comes = !coming_statics.empty() || !timeline_.coming(step_).empty();
-    std::size_t hint = 0;
+    const std::vector<double> pushes = coming_pushes();
     for (const HostedBody& body : table_.bodies()) {
       core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
       if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
-      state.coming_kick_m_s += coming_push(body, hint) + coming_shove(body, shoves);
+      if (!pushes.empty()) state.coming_kick_m_s += pushes[snapshot_.bodies.size() - 1];
+      state.coming_kick_m_s += coming_shove(body, shoves);
       state.awake = state.awake || state.coming_kick_m_s > 0;
     }
     list_contacts();

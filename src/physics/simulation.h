@@ -93,7 +93,7 @@ class Simulation {
   bool heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value);
   void push();
   void stop_pushing();
-  double coming_push(const HostedBody& body, std::size_t& hint) const;
+  std::vector<double> coming_pushes() const;
   /// States for which others go by what they are told now.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);

@@ -9,6 +9,9 @@
 namespace aurasim::physics {
 namespace {
 
+/// So many times as many quantities are steered as there are bodies: then it is looked for theirs, one by one.
+constexpr std::size_t kMany = 16;
+
 /// It neither changes the body nor keeps it awake.
 bool is_nothing(core::Quantity quantity, const std::optional<core::Vec3>& value) {
   const bool pushes = quantity == core::Quantity::kForce || quantity == core::Quantity::kTorque;
@@ -39,15 +42,38 @@ std::optional<Driven> driven(const btRigidBody& body, const core::Vec3& value) {
   return after;
 }
 
-/// How much driving will change the velocity of the body's surface, m/s: it goes on in a curve.
-double coming_turn(const btRigidBody& body, const core::Vec3& value, double radius, double foresight_s) {
-  const std::optional<Driven> after = driven(body, value);
-  if (!after) return 0;
-  const core::Vec3 dv = after->v_WB - from_bullet(body.getLinearVelocity());
-  const core::Vec3 dw = after->w_WB - from_bullet(body.getAngularVelocity());
-  const double swing = std::min(2.0, foresight_s / 2 * std::abs(value.z())) * value.head<2>().norm();
-  return dv.norm() + swing + radius * dw.norm();
-}
+/// How much what programs say will change a body's velocities, as far as its path does not tell: the most of all that.
+struct ComingPush {
+  double linear_m_s = 0, turn_rad_s = 0;
+
+  void note(const btRigidBody& body, core::Quantity quantity, const core::Vec3& value, double foresight_s) {
+    switch (quantity) {
+      case core::Quantity::kForce:  // in the time t it comes t^2 / 2 off its path
+        return note_linear(foresight_s / 2 * static_cast<double>(body.getInvMass()) * value.norm());
+      case core::Quantity::kTorque:
+        return note_turn(foresight_s / 2 *
+                         static_cast<double>((body.getInvInertiaTensorWorld() * to_bullet(value)).length()));
+      case core::Quantity::kVelocity:
+        return note_linear((value - from_bullet(body.getLinearVelocity())).norm());
+      case core::Quantity::kSpin:
+        return note_turn((value - from_bullet(body.getAngularVelocity())).norm());
+      case core::Quantity::kDriving:
+        return note_driving(body, value, foresight_s);
+    }
+  }
+
+ private:
+  void note_linear(double change_m_s) { linear_m_s = std::max(linear_m_s, change_m_s); }
+  void note_turn(double change_rad_s) { turn_rad_s = std::max(turn_rad_s, change_rad_s); }
+  /// It goes on in a curve.
+  void note_driving(const btRigidBody& body, const core::Vec3& value, double foresight_s) {
+    const std::optional<Driven> after = driven(body, value);
+    if (!after) return;
+    const double swing = std::min(2.0, foresight_s / 2 * std::abs(value.z())) * value.head<2>().norm();
+    note_linear((after->v_WB - from_bullet(body.getLinearVelocity())).norm() + swing);
+    note_turn((after->w_WB - from_bullet(body.getAngularVelocity())).norm());
+  }
+};
 
 }  // namespace
 
@@ -57,16 +83,27 @@ void Simulation::heed_setpoints(core::Step n) {
   new_setpoints_.clear();
   const core::ControlLog& controls = timeline_.controls();
   if (controls.empty()) return;
-  HostedBody* body = nullptr;
-  const auto is_here = [&](core::BodyId id) { return (body = table_.find(id)) != nullptr; };
-  controls.for_each_body(
-      n, is_here, [&](core::BodyId id, core::Quantity quantity, const std::optional<core::Vec3>& value, bool is_new) {
-        if (is_new) new_setpoints_.push_back({id, quantity, value});
-        if (!body->born || (is_nothing(quantity, value) && !is_new)) return;
-        awaken(*body->rigid);
-        snapshot_is_fresh_ = records_are_fresh_ = false;
-        if (value && !heed(*body->rigid, quantity, *value)) ++unbearable_;
+  const auto take = [&](HostedBody& body, core::Quantity quantity, const auto& value, bool is_new) {
+    if (is_new) new_setpoints_.push_back({body.id, quantity, value});
+    if (!body.born || (is_nothing(quantity, value) && !is_new)) return;
+    awaken(*body.rigid);
+    snapshot_is_fresh_ = records_are_fresh_ = false;
+    if (value && !heed(*body.rigid, quantity, *value)) ++unbearable_;
+  };
+  if (table_.size() < controls.body_quantities() / kMany) {
+    for (HostedBody& body : table_.bodies()) {
+      controls.for_each_of(body.id, n, [&](core::Quantity quantity, const auto& value, bool is_new) {
+        take(body, quantity, value, is_new);
       });
+    }
+  } else {
+    HostedBody* body = nullptr;
+    std::size_t near = 0;
+    const auto is_here = [&](core::BodyId id) { return (body = table_.find(id, near)) != nullptr; };
+    controls.for_each_body(n, is_here, [&](core::BodyId, core::Quantity quantity, const auto& value, bool is_new) {
+      take(*body, quantity, value, is_new);
+    });
+  }
   controls.for_each_joint(n, [&](core::JointId id, const std::optional<core::JointDrive>& drive, bool is_new) {
     if (!contains(scene_->joints[core::value_of(id)].a)) return;
     if (drive) {
@@ -132,42 +169,32 @@ void Simulation::stop_pushing() {
   pushed_.clear();
 }
 
-/// `hint`: as of ControlLog::for_each_ahead(). How much setpoints will change the velocity of the body's surface, m/s,
-/// as far as its path does not tell.
-double Simulation::coming_push(const HostedBody& body, std::size_t& hint) const {
+/// How much what programs say will change the velocity of each body's surface, m/s, as far as its path does not tell,
+/// by its place in the table. Empty: nobody says anything.
+std::vector<double> Simulation::coming_pushes() const {
   const core::ControlLog& controls = timeline_.controls();
-  if (!body.born || controls.empty()) return 0;
-  const btRigidBody& rigid = *body.rigid;
-  const auto radius = [&] {  // of bodies that are turned; of a hull it is looked for
-    return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
-  };
-  double most[core::kQuantities] = {};
+  if (controls.empty()) return {};
   const core::Step last = step_ + foreseen();
-  controls.for_each_ahead(body.id, step_ + 1, last, hint, [&](core::Quantity quantity, const core::Vec3& value) {
-    double kick = 0;
-    switch (quantity) {
-      case core::Quantity::kForce:  // in the time t it comes t^2 / 2 off its path
-        kick = settings_.foresight_s / 2 * static_cast<double>(rigid.getInvMass()) * value.norm();
-        break;
-      case core::Quantity::kTorque:
-        kick = settings_.foresight_s / 2 * radius() *
-               static_cast<double>((rigid.getInvInertiaTensorWorld() * to_bullet(value)).length());
-        break;
-      case core::Quantity::kVelocity:
-        kick = (value - from_bullet(rigid.getLinearVelocity())).norm();
-        break;
-      case core::Quantity::kSpin:
-        kick = radius() * (value - from_bullet(rigid.getAngularVelocity())).norm();
-        break;
-      case core::Quantity::kDriving:
-        kick = coming_turn(rigid, value, radius(), settings_.foresight_s);
-        break;
-    }
-    double& of_quantity = most[static_cast<std::size_t>(quantity)];
-    of_quantity = std::max(of_quantity, kick);
-  });
-  const double linear = std::max({most[0], most[2], most[4]}), turning = std::max(most[1], most[3]);
-  return std::min(linear, 2 * settings_.top_speed_m_s) + std::min(turning, 2 * settings_.top_speed_m_s);
+  std::vector<ComingPush> coming(table_.size());
+  std::size_t near = 0;
+  const auto is_here = [&](core::BodyId id) {
+    const HostedBody* const body = table_.find(id, near);
+    return body != nullptr && body->born;
+  };
+  controls.for_each_ahead(step_ + 1, last, is_here,
+                          [&](core::BodyId, core::Quantity quantity, const core::Vec3& value) {
+                            coming[near].note(*table_[near].rigid, quantity, value, settings_.foresight_s);
+                          });
+  std::vector<double> pushes(table_.size());
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    // Of a hull the radius is looked for.
+    const core::Prototype& prototype = scene_->prototypes.at(core::value_of(table_[i].prototype));
+    const double radius =
+        coming[i].turn_rad_s > 0 ? core::bounding_radius(scene_->shapes.at(prototype.shape).shape) : 0;
+    pushes[i] = std::min(coming[i].linear_m_s, 2 * settings_.top_speed_m_s) +
+                std::min(radius * coming[i].turn_rad_s, 2 * settings_.top_speed_m_s);
+  }
+  return pushes;
 }
 
 }  // namespace aurasim::physics

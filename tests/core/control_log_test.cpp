@@ -1,7 +1,7 @@
 // What is in effect in which state, of all that programs have said.
 #include "core/control_log.h"
 
-#include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -21,6 +21,11 @@ Setpoints force(std::uint64_t client, std::uint64_t sequence, Step at, double x)
 
 double force_in(const ControlLog& log, Step step) {
   return log.in_effect(kBody, Quantity::kForce, step).value_or(Vec3(-1, 0, 0)).x();
+}
+
+/// As often as it takes: it goes bit by bit.
+void forget(ControlLog& log, Step step) {
+  for (int call = 0; call < 100; ++call) log.forget_before(step);
 }
 
 TEST(ControlLog, ASetpointHoldsFromItsStateUntilTheNextOne) {
@@ -127,28 +132,57 @@ TEST(ControlLog, WhatIsKnownToComeIsToldOfUpToAState) {
   ControlLog log;
   for (Step step = 10; step <= 1000; step += 10) log.recall(force(1, static_cast<std::uint64_t>(step), step, step));
   std::vector<double> told;
-  std::size_t hint = 0;
-  log.for_each_ahead(kBody, 25, 50, hint, [&](Quantity, const Vec3& value) { told.push_back(value.x()); });
-  std::ranges::sort(told);
+  log.for_each_ahead(
+      25, 50, [](BodyId id) { return id == kBody; },
+      [&](BodyId, Quantity, const Vec3& value) { told.push_back(value.x()); });
   EXPECT_EQ(told, (std::vector<double>{20, 30, 40, 50}));
 }
 
-TEST(ControlLog, WhatIsToComeIsTheSameWhereverOneHasLookedBefore) {
-  ControlLog log;
-  for (std::uint64_t id = 2; id < 40; id += 3) {
-    log.recall({1, id, 0, 10, {{BodyId{id}, Quantity::kForce, Vec3(double(id), 0, 0)}}, {}});
-    log.recall({1, 100 + id, 0, 10, {{BodyId{id}, Quantity::kSpin, Vec3(double(id), 0, 0)}}, {}});
-  }
-  for (std::size_t before = 0; before < 40; ++before) {
-    for (std::uint64_t id = 0; id < 42; ++id) {
-      std::size_t hint = before, told = 0;
-      log.for_each_ahead(BodyId{id}, 10, 20, hint, [&](Quantity, const Vec3& value) {
-        EXPECT_EQ(value.x(), double(id));
-        ++told;
-      });
-      EXPECT_EQ(told, id < 40 && id % 3 == 2 ? 2u : 0u) << id << " after " << before;
+/// Whatever was asked for before, and in whatever order it was said.
+TEST(ControlLog, TheSameIsInEffectWhateverWasAskedForBefore) {
+  std::mt19937_64 random(5);
+  std::vector<Setpoints> words;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    Setpoints& said = words.emplace_back();
+    said.client = 1 + random() % 3, said.sequence = i, said.at_step = 1 + static_cast<Step>(random() % 60);
+    for (std::uint64_t k = random() % 12; k > 0; --k) {
+      const auto quantity = static_cast<Quantity>(random() % kQuantities);
+      said.bodies.push_back({BodyId{random() % 10}, quantity, {}});
+      if (random() % 4 != 0) said.bodies.back().value = Vec3(static_cast<double>(random() % 1000), 0, 0);
     }
   }
+  const auto in_effect = [](const ControlLog& log, Step step) {
+    std::string text;
+    log.for_each_body(
+        step, [](BodyId) { return true; },
+        [&](BodyId id, Quantity quantity, const auto& value, bool is_new) {
+          text += std::to_string(value_of(id)) + ' ' + std::to_string(static_cast<int>(quantity)) + ' ' +
+                  (value ? std::to_string(value->x()) : "none") + (is_new ? " new; " : "; ");
+        });
+    return text;
+  };
+  ControlLog once;
+  for (const Setpoints& said : words) once.recall(said);
+  std::vector<std::string> expected;
+  for (Step step = 0; step < 70; ++step) {  // what has been said of each, looked for one by one
+    ControlLog fresh;
+    for (const Setpoints& said : words) {
+      if (said.at_step <= step) fresh.recall(said);
+    }
+    expected.push_back(in_effect(fresh, step));
+  }
+  ControlLog other;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    other.recall(words[words.size() - 1 - i]);
+    in_effect(other, static_cast<Step>(random() % 70));
+  }
+  for (int look = 0; look < 300; ++look) {
+    const auto step = static_cast<Step>(random() % 70);
+    EXPECT_EQ(in_effect(once, step), expected[static_cast<std::size_t>(step)]) << step;
+    EXPECT_EQ(in_effect(other, step), expected[static_cast<std::size_t>(step)]) << step;
+  }
+  for (Step oldest = 1; oldest < 40; ++oldest) other.forget_before(oldest);
+  for (Step step = 40; step < 70; ++step) EXPECT_EQ(in_effect(other, step), expected[static_cast<std::size_t>(step)]);
 }
 
 TEST(ControlLog, ForgetsManyBitByBit) {
@@ -161,7 +195,7 @@ TEST(ControlLog, ForgetsManyBitByBit) {
     }
     log.recall(all);
   }
-  for (std::size_t i = 0; i < 2 * ControlLog::kForgetCalls; ++i) log.forget_before(30);
+  forget(log, 30);
   std::size_t left = 0;
   for (const Setpoints& message : log.since(0)) left += message.bodies.size();
   EXPECT_EQ(left, 50u) << "one of each that is not let go of";
@@ -190,15 +224,32 @@ TEST(ControlLog, ARecordNeverFallsSilent) {
   EXPECT_EQ(force_in(log, 100'000), 5);
 }
 
+/// Whatever a node has forgotten meanwhile.
+TEST(ControlLog, WhoSpeaksAgainAfterALongSilenceGoesOn) {
+  for (const OnSilence rule : {OnSilence::kHold, OnSilence::kZero, OnSilence::kLast}) {
+    ControlLog log, forgetful;
+    for (ControlLog* one : {&log, &forgetful}) {
+      one->use({LateSetpoint::kNextState, rule, 30});
+      one->recall(force(1, 1, 10, 5));
+    }
+    for (Step step = 1; step < 1000; ++step) forgetful.forget_before(step);
+    for (ControlLog* one : {&log, &forgetful}) {
+      EXPECT_EQ(force_in(*one, 1000), rule == OnSilence::kLast ? 5 : -1);
+      one->recall({1, 2, 0, 1010, {}, {}});
+      EXPECT_EQ(force_in(*one, 1010), 5);
+    }
+  }
+}
+
 TEST(ControlLog, ForgetsWhatIsOver) {
   ControlLog log;
   for (Step step = 1; step <= 100; ++step) log.recall(force(1, static_cast<std::uint64_t>(step), step, double(step)));
-  log.forget_before(90);
+  forget(log, 90);
   EXPECT_EQ(force_in(log, 90), 90);
   EXPECT_EQ(force_in(log, 100), 100);
   EXPECT_EQ(force_in(log, 89), -1);
   log.recall({1, 101, 0, 101, {{kBody, Quantity::kForce, {}}}, {}});
-  log.forget_before(200);
+  forget(log, 200);
   EXPECT_TRUE(log.empty());
 }
 
