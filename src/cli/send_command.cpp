@@ -49,9 +49,7 @@ struct SendArguments {
   std::string scene;
   std::string save_file;
   std::uint64_t body = 0;
-  std::uint32_t fixed = 0;
   std::uint32_t region = 0;
-  bool is_static = false;
   std::string named;
   double duration_s = 0;
   double radius_m = 0;
@@ -107,7 +105,7 @@ core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClien
     return body;
   }
   if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, client), pose(a)};
-  if (a.what == "remove" && a.is_static) return core::RemoveStatic{core::StaticId{a.fixed}};
+  if (a.what == "remove" && !a.named.empty()) return core::RemoveStatic{static_named(a.named, scene)};
   if (a.what == "move") return core::SendStatic{static_named(a.named, scene), pose(a), a.duration_s};
   if (a.what == "remove") return core::RemoveBody{core::BodyId{a.body}};
   if (a.what == "impulse") {
@@ -256,8 +254,10 @@ void static_options(CLI::App& command, SendArguments& a) {
 }
 
 void remove_options(CLI::App& command, SendArguments& a) {
-  CLI::Option* body = command.add_option("--body", a.body, "id");
-  command.add_option("--static", a.fixed, "id")->excludes(body)->each([&a](const std::string&) { a.is_static = true; });
+  CLI::Option_group& one = *command.add_option_group("one of them");
+  one.add_option("--body", a.body, "id");
+  one.add_option("--static", a.named, "its name in the scene, or its id");
+  one.require_option(1);
 }
 
 void move_options(CLI::App& command, SendArguments& a) {

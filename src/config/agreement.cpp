@@ -4,20 +4,19 @@
 #include <string_view>
 
 #include "config/launch.h"
+#include "core/fnv1a.h"
 
 namespace aurasim::config {
 namespace {
 
-/// FNV-1a over a canonical byte string: every value with its length or kind, so that no two lists run together.
+/// A hash of a canonical byte string: every value with its length or kind, so that no two lists run together.
 class Digest {
  public:
-  void bytes(std::uint64_t value) {
-    for (int i = 0; i < 8; ++i, value >>= 8) hash_ = (hash_ ^ (value & 0xff)) * 1099511628211ull;
-  }
+  void bytes(std::uint64_t value) { hash_.add_word(value); }
   void add(double value) { bytes(std::bit_cast<std::uint64_t>(value + 0.0)); }
   void add(std::string_view text) {
     bytes(text.size());
-    for (const char c : text) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    hash_.add_text(text);
   }
   template <class Derived>
   void add(const Eigen::MatrixBase<Derived>& values) {
@@ -32,10 +31,10 @@ class Digest {
     for (const core::Vec3& p : points) add(p);
   }
 
-  std::uint64_t result() const { return hash_; }
+  std::uint64_t result() const { return hash_.value(); }
 
  private:
-  std::uint64_t hash_ = 1469598103934665603ull;
+  core::Fnv1a hash_;
 };
 
 class ShapeDigest {
@@ -170,11 +169,7 @@ class JointDigest {
     const core::JointResistance& own = joint.resistance;
     for (const double value : {own.stiffness, own.rest, own.damping, own.friction}) d_.add(value);
     d_.bytes(joint.drive.has_value());
-    const core::JointDrive drive = joint.drive.value_or(core::JointDrive{});
-    for (const double value :
-         {drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, drive.max_effort}) {
-      d_.add(value);
-    }
+    for (const double value : joint.drive.value_or(core::JointDrive{}).numbers()) d_.add(value);
     d_.bytes(joint.follows.has_value());
     if (!joint.follows) return;
     d_.bytes(value_of(joint.follows->leader));

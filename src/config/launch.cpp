@@ -16,6 +16,7 @@
 #include "config/region_layout.h"
 #include "config/scene_file.h"
 #include "config/shipped_files.h"
+#include "core/fnv1a.h"
 
 namespace aurasim::config {
 namespace {
@@ -67,13 +68,13 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   fields.close();
 }
 
-/// FNV-1a. Nothing: there is no such file.
+/// Nothing: there is no such file.
 std::optional<std::uint64_t> hash_of_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || !std::filesystem::is_regular_file(file)) return std::nullopt;
-  std::uint64_t hash = 1469598103934665603ull;
-  for (char c = 0; in.get(c);) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return hash;
+  core::Fnv1a hash;
+  for (char c = 0; in.get(c);) hash.add_octet(static_cast<std::uint8_t>(c));
+  return hash.value();
 }
 
 void read_control(const Field& field, const std::filesystem::path& folder, Control& control) {

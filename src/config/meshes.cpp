@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "config/convex_parts.h"
+#include "core/fnv1a.h"
 
 namespace aurasim::config {
 namespace {
@@ -201,11 +202,10 @@ Vec3 centre_of_mass(const TriangleMesh& mesh) {
   return mean + moment / volume;
 }
 
-/// FNV-1a.
 std::uint64_t content_hash(std::string_view bytes) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
+  core::Fnv1a hash;
+  hash.add_text(bytes);
+  return hash.value();
 }
 
 core::Shape shape_for(const core::TriangleMesh& mesh, core::MeshUse use) {

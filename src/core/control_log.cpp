@@ -76,22 +76,6 @@ std::optional<JointDrive> ControlLog::value_in_silence(const HeldOfJoint& held) 
   return stopped;
 }
 
-std::optional<Vec3> ControlLog::in_effect(BodyId id, Quantity quantity, Step step) const {
-  std::optional<Vec3> found;
-  for_each_of(id, step, [&](Quantity one, const auto& value, bool) {
-    if (one == quantity) found = value;
-  });
-  return found;
-}
-
-std::optional<JointDrive> ControlLog::in_effect(JointId id, Step step) const {
-  std::optional<JointDrive> found;
-  for_each_joint(step, [&](JointId one, const auto& drive, bool) {
-    if (one == id) found = drive;
-  });
-  return found;
-}
-
 std::vector<Setpoints> ControlLog::since(Step step) const {
   std::map<MessageStamp, Setpoints> messages;
   const auto message = [&](const MessageStamp& stamp) -> Setpoints& {

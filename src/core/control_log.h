@@ -80,8 +80,6 @@ class ControlLog {
       if (said.value && is_wanted(said.key.first)) visit(said.key.first, said.key.second, *said.value);
     });
   }
-  std::optional<Vec3> in_effect(BodyId id, Quantity quantity, Step step) const;
-  std::optional<JointDrive> in_effect(JointId id, Step step) const;
 
   /// What is in effect from state `step` on, as messages for a node that knows nothing, in order.
   std::vector<Setpoints> since(Step step) const;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -36,6 +38,11 @@ struct JointDrive {
   double max_effort = std::numeric_limits<double>::infinity();
 
   bool operator==(const JointDrive&) const = default;
+
+  static constexpr std::size_t kNumbers = 6;
+  /// As above, in their order: as messages and records have them.
+  std::array<double, kNumbers> numbers() const { return {position, speed, stiffness, damping, effort, max_effort}; }
+  static JointDrive of(std::span<const double, kNumbers> n) { return {n[0], n[1], n[2], n[3], n[4], n[5]}; }
 };
 
 /// What a hinge or slider has of its own, whoever drives it; solved implicitly, too. Units as of a drive.

@@ -2,20 +2,22 @@
 
 #include <bit>
 
+#include "core/fnv1a.h"
+
 namespace aurasim::core {
 namespace {
 
-/// FNV-1a by words of 64 bits instead of octets, as meshes have many; the shift brings high bits down.
+/// As FNV-1a, by words of 64 bits instead of octets, as meshes have many; the shift brings high bits down.
 class WordHash {
  public:
   void add(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 1099511628211ULL;
+    hash_ = (hash_ ^ word) * Fnv1a::kPrime;
     hash_ ^= hash_ >> 29;
   }
   std::uint64_t value() const { return hash_; }
 
  private:
-  std::uint64_t hash_ = 1469598103934665603ULL;
+  std::uint64_t hash_ = Fnv1a::kOffsetBasis;
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/fnv1a.h"
+
 namespace aurasim::core {
 namespace {
 
@@ -154,15 +156,11 @@ std::vector<RegionId> RegionMap::neighbours(RegionId id, double distance_m) cons
 }
 
 std::uint64_t RegionMap::version() const {
-  std::uint64_t hash = 1469598103934665603ull;  // FNV-1a over the bits of the edges
+  Fnv1a hash;
   for (const Rectangle& r : regions_) {
-    for (const double edge : {r.x0, r.y0, r.x1, r.y1}) {
-      for (std::uint64_t bits = std::bit_cast<std::uint64_t>(edge), i = 0; i < 8; ++i, bits >>= 8) {
-        hash = (hash ^ (bits & 0xff)) * 1099511628211ull;
-      }
-    }
+    for (const double edge : {r.x0, r.y0, r.x1, r.y1}) hash.add_word(std::bit_cast<std::uint64_t>(edge));
   }
-  return hash;
+  return hash.value();
 }
 
 }  // namespace aurasim::core

@@ -16,6 +16,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fmt/format.h>
 
+#include "core/fnv1a.h"
 #include "dds/datagram_guard.h"
 #include "dds/participant_qos.h"
 #include "dds/rations.h"
@@ -89,13 +90,12 @@ builtin_interfaces::msg::dds_::Time_ time_of(Ros2Time now) {
 
 core::Vec3 vector_of(const geometry_msgs::msg::dds_::Vector3_& v) { return {v.x_(), v.y_(), v.z_()}; }
 
-/// FNV-1a.
 std::uint64_t number_of(const Guid& writer) {
-  std::uint64_t hash = 1469598103934665603ull;
-  const auto add = [&hash](unsigned char octet) { hash = (hash ^ octet) * 1099511628211ull; };
+  core::Fnv1a hash;
+  const auto add = [&hash](unsigned char octet) { hash.add_octet(octet); };
   std::ranges::for_each(writer.guidPrefix.value, add);
   std::ranges::for_each(writer.entityId.value, add);
-  return std::max<std::uint64_t>(hash, 1);
+  return std::max<std::uint64_t>(hash.value(), 1);
 }
 
 struct Leave {

@@ -13,15 +13,9 @@ namespace aurasim::dds {
 namespace {
 
 constexpr std::uint8_t kLetsGo = 16;
-constexpr std::size_t kDriveNumbers = 6;
+constexpr std::size_t kDriveNumbers = core::JointDrive::kNumbers;
 constexpr std::size_t kMaxEffort = 5;
 constexpr std::size_t kPlaceNumbers = 7;
-
-void put_drive(const core::JointDrive& drive, double* out) {
-  const double numbers[kDriveNumbers] = {drive.position, drive.speed,  drive.stiffness,
-                                         drive.damping,  drive.effort, drive.max_effort};
-  std::ranges::copy(numbers, out);
-}
 
 void put_place(const core::Pose& pose, double* out) {
   put_vector(pose.p_WB, out);
@@ -96,7 +90,7 @@ void encode(const core::Setpoints& setpoints, std::uint64_t map_version, wire::S
   fill(out.joint(), setpoints.joints, [](const auto& joint) { return core::value_of(joint.id); });
   fill(out.let_go(), setpoints.joints, [](const auto& joint) { return std::uint8_t{!joint.drive}; });
   fill_wide<kDriveNumbers>(out.drive(), setpoints.joints, [](const auto& joint, double* to) {
-    put_drive(joint.drive.value_or(core::JointDrive{}), to);
+    std::ranges::copy(joint.drive.value_or(core::JointDrive{}).numbers(), to);
   });
   fill(out.static_id(), setpoints.statics, [](const auto& fixed) { return core::value_of(fixed.id); });
   fill(out.states(), setpoints.statics, [](const auto& fixed) { return fixed.states; });
@@ -124,8 +118,8 @@ Decoded<core::Setpoints> decode(const wire::Setpoints& in, const Expected& expec
   for (std::size_t i = 0; i < setpoints.joints.size(); ++i) {
     core::JointSetpoint& joint = setpoints.joints[i];
     joint.id = core::JointId{in.joint()[i]};
-    const double* const d = &in.drive()[i * kDriveNumbers];
-    if (in.let_go()[i] == 0) joint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
+    const auto numbers = std::span(in.drive()).subspan(i * kDriveNumbers).first<kDriveNumbers>();
+    if (in.let_go()[i] == 0) joint.drive = core::JointDrive::of(numbers);
   }
   for (std::size_t i = 0; i < in.static_id().size(); ++i) {
     setpoints.statics.push_back(static_at(in, i));

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/fnv1a.h"
 #include "experiment/on_threads.h"
 #include "experiment/trial.h"
 #include "experiment/trial_file.h"
@@ -19,13 +20,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// FNV-1a: a job's pairs depend on what it is, not on where it stands in the list.
+/// A job's pairs depend on what it is, not on where it stands in the list.
 std::uint64_t seed_of(const Campaign& campaign, const Job& job, std::uint32_t repeat) {
-  const std::string text = fmt::format("{} {} {} {} {}", campaign.seed, name_of(job.pairs), name_of(job.series),
-                                       shown(job.series.factor, job.value), repeat);
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
+  core::Fnv1a hash;
+  hash.add_text(fmt::format("{} {} {} {} {}", campaign.seed, name_of(job.pairs), name_of(job.series),
+                            shown(job.series.factor, job.value), repeat));
+  return hash.value();
 }
 
 /// Steps until the meeting: slow bodies have a long way.

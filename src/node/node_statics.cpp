@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/fnv1a.h"
 #include "node/node.h"
 
 namespace aurasim::node {
@@ -21,12 +22,12 @@ constexpr core::Step kDoubtsWithin = 1800;
 
 /// The same on every node.
 std::uint64_t request_of(const core::Setpoints& said, core::StaticId id) {
-  std::uint64_t hash = 0xCBF29CE484222325;  // FNV-1a
+  core::Fnv1a hash;
   for (const std::uint64_t part :
        {said.client, said.sequence, static_cast<std::uint64_t>(said.at_step), std::uint64_t{core::value_of(id)}}) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((part >> (8 * byte)) & 0xFF)) * 0x100000001B3;
+    hash.add_word(part);
   }
-  return std::max<std::uint64_t>(hash, 1);
+  return std::max<std::uint64_t>(hash.value(), 1);
 }
 
 std::uint64_t request_of(const core::StaticEffect& recorded) {

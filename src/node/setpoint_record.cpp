@@ -59,11 +59,10 @@ std::optional<core::BodyEffect> body_effect(std::string_view what, core::Step st
 }
 
 std::optional<core::JointEffect> joint_effect(core::Step step, std::uint64_t id, const std::vector<double>& numbers) {
-  if (!numbers.empty() && numbers.size() != 6) return {};
+  constexpr std::size_t kNumbers = core::JointDrive::kNumbers;
+  if (!numbers.empty() && numbers.size() != kNumbers) return {};
   core::JointEffect effect{step, {core::JointId{static_cast<std::uint32_t>(id)}, {}}};
-  if (!numbers.empty()) {
-    effect.setpoint.drive = core::JointDrive{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
-  }
+  if (!numbers.empty()) effect.setpoint.drive = core::JointDrive::of(std::span(numbers).first<kNumbers>());
   return effect;
 }
 
@@ -116,11 +115,10 @@ std::string setpoint_row(core::RegionId region, const core::BodyEffect& effect) 
 }
 
 std::string setpoint_row(core::RegionId region, const core::JointEffect& effect) {
-  std::array<double, 6> numbers{};
-  const auto& d = effect.setpoint.drive;
-  if (d) numbers = {d->position, d->speed, d->stiffness, d->damping, d->effort, d->max_effort};
+  const auto& drive = effect.setpoint.drive;
+  const auto numbers = drive.value_or(core::JointDrive{}).numbers();
   return row(region, effect.step, kDrive, core::value_of(effect.setpoint.id),
-             d ? std::span<const double>(numbers) : std::span<const double>());
+             drive ? std::span<const double>(numbers) : std::span<const double>());
 }
 
 std::string setpoint_row(core::RegionId region, const core::StaticEffect& effect) {

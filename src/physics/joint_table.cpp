@@ -107,8 +107,7 @@ void JointTable::read_values(std::span<const double> values, Entry& entry) const
   entry.axes.turns_rad = kTurn_rad * values[kTurns];
   entry.axes.drive_impulse = values[kDriveImpulse];
   if (values.size() < kAllValues) return;
-  const auto drive = values.subspan(kDrive);
-  entry.axes.drive = bounded(core::JointDrive{drive[0], drive[1], drive[2], drive[3], drive[4], drive[5]});
+  entry.axes.drive = bounded(core::JointDrive::of(values.subspan<kDrive, core::JointDrive::kNumbers>()));
   entry.driven_anew = true;
 }
 
@@ -124,10 +123,9 @@ void JointTable::write_values(const Entry& entry, std::span<double> values) cons
   values[kTurns] = std::round(entry.axes.turns_rad / kTurn_rad);
   values[kDriveImpulse] = entry.axes.drive_impulse;
   if (values.size() < kAllValues) return;
-  const core::JointDrive& drive = *entry.axes.drive;
-  const double most = std::isinf(drive.max_effort) ? -1 : drive.max_effort;
-  const double columns[] = {drive.position, drive.speed, drive.stiffness, drive.damping, drive.effort, most};
-  std::ranges::copy(columns, values.subspan(kDrive).begin());
+  core::JointDrive drive = *entry.axes.drive;
+  if (std::isinf(drive.max_effort)) drive.max_effort = -1;
+  std::ranges::copy(drive.numbers(), values.subspan(kDrive).begin());
 }
 
 void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world) {

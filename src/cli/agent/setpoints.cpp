@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<const char*, core::kQuantities> kLists = {"forces", "torques", "velocities", "spins", "drivings"};
-constexpr std::size_t kDriveNumbers = 6;
+constexpr std::size_t kDriveNumbers = core::JointDrive::kNumbers;
 
 [[noreturn]] void refuse(const std::string& why) { throw Problem(Kind::kRefused, why); }
 
@@ -88,8 +88,7 @@ void take_bodies(const json& head, core::Quantity quantity, const core::Scene& s
   }
 }
 
-core::JointDrive drive_of(const double* numbers, const std::string& joint) {
-  const core::JointDrive drive{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+core::JointDrive checked(const core::JointDrive& drive, const std::string& joint) {
   for (const double number : {drive.position, drive.speed, drive.effort}) check(number, joint.c_str());
   for (const double gain : {drive.stiffness, drive.damping}) {
     check(gain, joint.c_str());
@@ -112,7 +111,9 @@ void take_joints(const json& head, const core::Scene& scene, Arrays& arrays, cor
     }
     core::JointSetpoint& setpoint = to.joints.emplace_back();
     setpoint.id = core::JointId{ids[i]};
-    if (count.has_values) setpoint.drive = drive_of(&numbers[kDriveNumbers * i], "drives of \"" + joint.name + '"');
+    if (!count.has_values) continue;
+    const auto of_joint = std::span(numbers).subspan(kDriveNumbers * i).first<kDriveNumbers>();
+    setpoint.drive = checked(core::JointDrive::of(of_joint), "drives of \"" + joint.name + '"');
   }
 }
 

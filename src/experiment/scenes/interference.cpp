@@ -118,8 +118,8 @@ core::JointSetpoint joint_setpoint_in(const Json& json, const core::Scene& scene
   if (joint == scene.joints.end()) throw std::runtime_error(fmt::format("no joint {}", json.at("joint").dump()));
   core::JointSetpoint setpoint{core::JointId{static_cast<std::uint32_t>(joint - scene.joints.begin())}, {}};
   if (json.contains("drive")) {
-    const auto d = json["drive"].get<std::array<double, 6>>();
-    setpoint.drive = core::JointDrive{d[0], d[1], d[2], d[3], d[4], d[5]};
+    const auto numbers = json["drive"].get<std::array<double, core::JointDrive::kNumbers>>();
+    setpoint.drive = core::JointDrive::of(numbers);
   }
   return setpoint;
 }
