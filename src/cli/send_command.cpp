@@ -254,10 +254,11 @@ void static_options(CLI::App& command, SendArguments& a) {
 }
 
 void remove_options(CLI::App& command, SendArguments& a) {
-  CLI::Option_group& one = *command.add_option_group("one of them");
-  one.add_option("--body", a.body, "id");
-  one.add_option("--static", a.named, "its name in the scene, or its id");
-  one.require_option(1);
+  CLI::Option* body = command.add_option("--body", a.body, "id");
+  command.add_option("--static", a.named, "its name in the scene, or its id")->excludes(body);
+  command.parse_complete_callback([&command] {
+    if (command.count("--body") + command.count("--static") == 0) throw CLI::RequiredError("--body or --static");
+  });
 }
 
 void move_options(CLI::App& command, SendArguments& a) {
