@@ -36,8 +36,15 @@ bool acts(const Status& status) {
          status.state == NodeState::kRecovering;
 }
 
+constexpr int kIsNode = 2;
+
 /// Which of a region's processes is its node: of those that live, one that has not only come to take over from another.
-int rank_of(const SeenStatus& seen) { return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : 2; }
+/// `stands`: it is the node so far. Then it is so at its end, too, until it has left: it still answers those who are on
+/// their way there, and nobody needs to take over.
+int rank_of(const SeenStatus& seen, bool stands) {
+  if (stands && !seen.lost && seen.status.state == NodeState::kFinished) return kIsNode;
+  return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : kIsNode;
+}
 
 /// Where Fast DDS matched a writer anew, the later match counts.
 bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
@@ -58,7 +65,7 @@ std::string NodeRoster::problem_with(const Status& fresh, const Origin& origin) 
   }
   const auto known = statuses_.find(fresh.region);
   const bool has_node =
-      known != statuses_.end() && rank_of(known->second) == 2 && publishers_.at(fresh.region) != origin.writer;
+      known != statuses_.end() && rank_of(known->second, true) == kIsNode && publishers_.at(fresh.region) != origin.writer;
   const bool says_so = has_node && acts(fresh) && is_of_the_run(fresh, origin.writer);
   return says_so ? fmt::format("region {} has another node", number) : std::string();
 }
@@ -102,13 +109,14 @@ void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
 
 void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& of_region) {
   const Received* chosen = nullptr;
+  int highest = 0;
   for (const Received& one : of_region) {
     if (!is_of_the_run(one)) continue;
     const bool stands = publishers_.contains(region) && publishers_[region] == one.writer;
-    const int rank = rank_of(one.seen);
-    const bool is_better =
-        chosen == nullptr || rank > rank_of(chosen->seen) || (stands && rank == rank_of(chosen->seen));
-    if (is_better) chosen = &one;
+    const int rank = rank_of(one.seen, stands);
+    if (chosen != nullptr && rank <= highest && !(stands && rank == highest)) continue;
+    chosen = &one;
+    highest = rank;
   }
   if (chosen == nullptr) return;
   publishers_[region] = chosen->writer;

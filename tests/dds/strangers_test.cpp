@@ -220,6 +220,38 @@ TEST(AProcessThatHasJustBegun, TakesWhoActsForARegionsNodeThoughItsSuccessorIsHe
   EXPECT_THAT(participant.take_said(), IsEmpty());
 }
 
+/// One is at its end some states before another. A process that waits beside it, whoever that is, was taken for its
+/// successor then, and the run went back to where it had begun.
+TEST(ANodeThatHasComeToTheEnd, IsItsRegionsNodeUntilItHasLeft) {
+  auto first = std::make_unique<Participant>(testing::settings_for(own_domain()));
+  Participant second(testing::settings_for(own_domain())), participant(testing::settings_for(own_domain()));
+  auto node = std::make_unique<ControlBus>(*first, node_of(1, 2));
+  ControlBus waiting(second, node_of(1, 2)), other(participant, node_of(0, 2));
+  Status acts = status_of(1);
+  acts.process = 1;
+  node->publish_status(acts);
+  ASSERT_TRUE(holds_in_time([&] { return other.statuses().contains(RegionId{1}); }));
+  Status waits = status_of(1);
+  waits.state = NodeState::kSpare;
+  waits.process = 2;
+  const auto seen = [&] { return other.statuses().at(RegionId{1}).status; };
+  const auto publish_for = [&](std::chrono::milliseconds time) {
+    for (auto waited = 0ms; waited < time; waited += 50ms) {
+      node->publish_status(acts);
+      waiting.publish_status(waits);
+      std::this_thread::sleep_for(50ms);
+      EXPECT_EQ(seen().process, 1U);
+    }
+  };
+  publish_for(500ms);
+  acts.state = NodeState::kFinished;
+  publish_for(500ms);
+  EXPECT_EQ(seen().state, NodeState::kFinished);
+  node.reset();
+  first.reset();
+  EXPECT_TRUE(holds_in_time([&] { return seen().process == 2U; }));
+}
+
 /// It is told where all go back to within a tenth of a second of its beginning.
 TEST(AProcessThatHasJustBegun, TakesTheWordOfANodeThatItDoesNotYetKnow) {
   std::vector<std::unique_ptr<Participant>> participants;
