@@ -64,8 +64,8 @@ std::string NodeRoster::problem_with(const Status& fresh, const Origin& origin) 
     return fmt::format("it speaks of region {} where others do", number);
   }
   const auto known = statuses_.find(fresh.region);
-  const bool has_node =
-      known != statuses_.end() && rank_of(known->second, true) == kIsNode && publishers_.at(fresh.region) != origin.writer;
+  const bool has_node = known != statuses_.end() && rank_of(known->second, true) == kIsNode &&
+                        publishers_.at(fresh.region) != origin.writer;
   const bool says_so = has_node && acts(fresh) && is_of_the_run(fresh, origin.writer);
   return says_so ? fmt::format("region {} has another node", number) : std::string();
 }
