@@ -6,11 +6,10 @@ import subprocess
 import sys
 import unittest
 
-from client_fixture import GENEROUS_S, SOURCES, WorldTest
+from client_fixture import GENEROUS_S, SOURCES, WorldTest, hashes
 
 sys.path.insert(0, str(SOURCES / "src" / "client" / "examples"))
 import robots  # noqa: E402
-from control_test import hashes  # noqa: E402
 
 import aurasim  # noqa: E402
 
