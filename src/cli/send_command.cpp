@@ -48,7 +48,7 @@ struct SendArguments {
   bool in_parts = false;
   std::string scene;
   std::string save_file;
-  std::uint64_t body = 0;
+  std::optional<std::uint64_t> body;
   std::uint32_t region = 0;
   std::string named;
   double duration_s = 0;
@@ -105,14 +105,14 @@ core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClien
     return body;
   }
   if (a.what == "static") return core::NewStatic{shape(a, core::MeshUse::kTriangles, client), pose(a)};
-  if (a.what == "remove" && !a.named.empty()) return core::RemoveStatic{static_named(a.named, scene)};
+  if (a.what == "remove" && !a.body) return core::RemoveStatic{static_named(a.named, scene)};
   if (a.what == "move") return core::SendStatic{static_named(a.named, scene), pose(a), a.duration_s};
-  if (a.what == "remove") return core::RemoveBody{core::BodyId{a.body}};
+  if (a.what == "remove") return core::RemoveBody{core::BodyId{*a.body}};
   if (a.what == "impulse") {
-    return core::Impulse{core::BodyId{a.body}, vector(a.J), a.p.empty() ? std::nullopt : std::optional(vector(a.p))};
+    return core::Impulse{core::BodyId{*a.body}, vector(a.J), a.p.empty() ? std::nullopt : std::optional(vector(a.p))};
   }
   if (a.what == "velocity") {
-    return core::SetVelocity{core::BodyId{a.body}, vector(a.v),
+    return core::SetVelocity{core::BodyId{*a.body}, vector(a.v),
                              a.w.empty() ? std::nullopt : std::optional(vector(a.w))};
   }
   if (a.what == "rate") return core::SetRate{a.rate};

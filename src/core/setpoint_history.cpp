@@ -24,15 +24,13 @@ void put_in_order(List& said) {
 
 /// Of one part of them after the other.
 template <class Rows, class IsOver>
-std::size_t erase_part(Rows& rows, std::size_t& next, const IsOver& is_over) {
+void erase_part(Rows& rows, std::size_t& next, const IsOver& is_over) {
   if (next >= rows.size()) next = 0;
   const auto first = rows.begin() + static_cast<std::ptrdiff_t>(next);
   const auto last = first + static_cast<std::ptrdiff_t>(std::min(rows.size() - next, rows.size() / kParts + 1));
   const auto rest = std::remove_if(first, last, is_over);
-  const auto erased = static_cast<std::size_t>(last - rest);
   next = static_cast<std::size_t>(rest - rows.begin());
   rows.erase(rest, last);
-  return erased;
 }
 
 }  // namespace
@@ -45,14 +43,14 @@ void SetpointHistory<Key, Value>::add(const MessageStamp& stamp, std::vector<Sai
   auto place = messages_.begin() + (later_than(stamp.from) - messages_.cbegin());
   while (place != messages_.begin() && (place - 1)->stamp >= stamp) --place;
   if (place == messages_.end() || place->stamp != stamp) {
-    size_ += said.size();
+    said_ += said.size();
     messages_.insert(place, {stamp, std::move(said)});
     return;
   }
-  size_ -= place->said.size();
+  said_ -= place->said.size();
   std::ranges::move(said, std::back_inserter(place->said));
   put_in_order(place->said);
-  size_ += place->said.size();
+  said_ += place->said.size();
 }
 
 template <class Key, class Value>
@@ -102,17 +100,15 @@ auto SetpointHistory<Key, Value>::before(const Key& key, typename Messages::cons
 template <class Key, class Value>
 void SetpointHistory<Key, Value>::forget_before(Step step) {
   go_to(step);
-  const std::size_t held_before = held_.size();
   if (!messages_.empty()) {
     const Step last = std::min(step, messages_.front().stamp.from + 1);
     for (; !messages_.empty() && messages_.front().stamp.from <= last; messages_.pop_front()) {
       put(held_, messages_.front().stamp, messages_.front().said);
-      size_ -= messages_.front().said.size();
+      said_ -= messages_.front().said.size();
     }
   }
-  size_ += held_.size() - held_before;
   const auto is_over = [step](const Held& row) { return !row.value && row.stamp.from < step - 1; };
-  size_ -= erase_part(held_, next_held_, is_over);
+  erase_part(held_, next_held_, is_over);
   erase_part(newest_, next_row_, is_over);
 }
 

@@ -56,7 +56,7 @@ class SetpointHistory {
 
   bool empty() const { return messages_.empty() && held_.empty(); }
   /// All that is remembered.
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return said_ + held_.size(); }
   /// Of how many something has been said.
   std::size_t keys() const { return newest_.size(); }
 
@@ -123,7 +123,7 @@ class SetpointHistory {
   /// thread at a time.
   mutable Rows newest_;
   mutable Step asked_ = std::numeric_limits<Step>::min();
-  std::size_t size_ = 0;       ///< entries of messages_ and held_
+  std::size_t said_ = 0;       ///< entries of messages_
   std::size_t next_row_ = 0;   ///< of newest_, to be looked at next for what is over
   std::size_t next_held_ = 0;  ///< likewise
 };

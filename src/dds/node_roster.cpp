@@ -109,12 +109,12 @@ void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
 
 void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& of_region) {
   const Received* chosen = nullptr;
-  int highest = 0;
+  std::pair highest(-1, false);
   for (const Received& one : of_region) {
     if (!is_of_the_run(one)) continue;
     const bool stands = publishers_.contains(region) && publishers_[region] == one.writer;
-    const int rank = rank_of(one.seen, stands);
-    if (chosen != nullptr && rank <= highest && !(stands && rank == highest)) continue;
+    const std::pair rank(rank_of(one.seen, stands), stands);
+    if (rank <= highest) continue;
     chosen = &one;
     highest = rank;
   }

@@ -235,6 +235,10 @@ void Simulation::collect_collisions() {
   collisions_.erase(end, collisions_.end());
 }
 
+double Simulation::bounding_radius(const HostedBody& body) const {
+  return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+}
+
 const core::Snapshot& Simulation::snapshot() {
   if (!snapshot_is_fresh_) {
     snapshot_.step = step_;

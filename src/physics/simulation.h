@@ -94,6 +94,8 @@ class Simulation {
   void push();
   void stop_pushing();
   std::vector<double> coming_pushes() const;
+  /// m. Of a hull it is looked for.
+  double bounding_radius(const HostedBody& body) const;
   /// States for which others go by what they are told now.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);

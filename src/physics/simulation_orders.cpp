@@ -140,8 +140,7 @@ double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint
   }
   for (const core::Order& order : timeline_.coming(step_)) {
     if (core::body_of(order.action) != body.id) continue;
-    const double radius =
-        core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+    const double radius = bounding_radius(body);
     const btRigidBody& rigid = *body.rigid;
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);

@@ -187,10 +187,7 @@ std::vector<double> Simulation::coming_pushes() const {
                           });
   std::vector<double> pushes(table_.size());
   for (std::size_t i = 0; i < pushes.size(); ++i) {
-    // Of a hull the radius is looked for.
-    const core::Prototype& prototype = scene_->prototypes.at(core::value_of(table_[i].prototype));
-    const double radius =
-        coming[i].turn_rad_s > 0 ? core::bounding_radius(scene_->shapes.at(prototype.shape).shape) : 0;
+    const double radius = coming[i].turn_rad_s > 0 ? bounding_radius(table_[i]) : 0;
     pushes[i] = std::min(coming[i].linear_m_s, 2 * settings_.top_speed_m_s) +
                 std::min(radius * coming[i].turn_rad_s, 2 * settings_.top_speed_m_s);
   }
