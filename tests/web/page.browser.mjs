@@ -53,6 +53,8 @@ function inTime(took_ms) {
   process.stdout.write(`measured: ${took_ms} ms\n`);
   assert.ok(took_ms < 8000, `${took_ms} ms`);
 }
+/** Begins to wait for words that are shown for seconds only: awaited after what else is looked at. */
+const saidOk = () => page.waitForSelector('.toast[data-kind="ok"]', { state: "attached", timeout: 60000 });
 const noErrors = () => assert.deepEqual(page.errors, []);
 const clickOn = async (id) => {
   const at = await page.evaluate((n) => window.aurasim.pixelOf(n), id);
@@ -149,13 +151,14 @@ test("AMomentIsKeptAndTheWorldGoesBackToItOrToAnEarlierState", mockOnly, async (
 test("AThrownBodyLeavesTheCamera", mockOnly, async () => {
   await open();
   await haveBodies(BODIES);
+  const said = saidOk();
   await page.click("#throw");
   const spawn = await commanded("spawn");
   assert.deepEqual(spawn.shape, { kind: "sphere", radius: 0.3 });
   assert.equal(spawn.mass_kg, 4);
   assert.ok(Math.hypot(...spawn.v) > 15 && spawn.p[2] > 1);
   await haveBodies(BODIES + 1);
-  await page.waitForSelector('.toast[data-kind="ok"]');
+  await said;
   noErrors();
 });
 
