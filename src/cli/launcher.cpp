@@ -13,6 +13,7 @@
 #include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
+#include "cli/saved_world.h"
 #include "cli/spawn.h"
 #include "cli/stop_signal.h"
 #include "node/report.h"
@@ -79,34 +80,6 @@ ExitCode Launcher::run() {
   return conclude();
 }
 
-/// What nodes and spares are told alike.
-std::vector<std::string> Launcher::words_for(const char* command) const {
-  std::vector<std::string> words = {executable_for(launch_.physics.precision).string(),
-                                    command,
-                                    options_.files.file,
-                                    "--run",
-                                    std::to_string(run_),
-                                    "--has-launcher"};
-  for (const std::string& change : options_.files.overrides) words.insert(words.end(), {"--set", change});
-  words.insert(words.end(),
-               {"--set", "physics.threads=" + std::to_string(threads_of(launch_, launch_.regions.size()))});
-  if (!options_.load.file.empty()) words.insert(words.end(), {"--load", options_.load.file});
-  if (options_.load.other_build) words.emplace_back("--other-build");
-  words.insert(words.end(), {"--saves", options_.save.folder, "--save-every", fmt::format("{}", options_.save.every_s),
-                             "--save-keep", std::to_string(options_.save.keep)});
-  if (options_.steps) words.insert(words.end(), {"--steps", std::to_string(*options_.steps)});
-  if (options_.report) words.insert(words.end(), {"--report", options_.report->string()});
-  return words;
-}
-
-std::vector<std::string> Launcher::arguments_of(std::uint32_t region, Start start) const {
-  std::vector<std::string> words = words_for("node");
-  words.insert(words.end(),
-               {"--region", std::to_string(region), "--start-time-out", std::to_string(options_.start_time_out_s)});
-  if (start == Start::kTakeOver) words.emplace_back("--take-over");
-  return words;
-}
-
 /// Throws when another run writes there: what it has would be gone.
 void Launcher::take_report_folder() {
   if (!options_.report) return;
@@ -120,7 +93,7 @@ void Launcher::start_nodes() {
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
     Child child;
     child.region = core::RegionId{r};
-    child.pid = start_node(r, Start::kWithOthers);
+    child.pid = start_node(child.region, Start::kWithOthers);
     children_.push_back(child);
   }
   keep_spares();
@@ -140,7 +113,9 @@ bool Launcher::all_go_on() {
 
 void Launcher::keep_spares() {
   std::erase_if(spares_, [](pid_t spare) { return ::waitpid(spare, nullptr, WNOHANG) == spare; });
-  while (std::cmp_less(spares_.size(), options_.spares)) spares_.push_back(spawn(words_for("spare")));
+  while (std::cmp_less(spares_.size(), options_.spares)) {
+    spares_.push_back(spawn(spare_command_line(launch_, options_, run_)));
+  }
 }
 
 /// A spare becomes the node of its region; or a new process.
@@ -153,10 +128,12 @@ pid_t Launcher::successor_of(const Child& child) {
     spares_.erase(ours);
     return pid;
   }
-  return start_node(core::value_of(child.region), Start::kTakeOver);
+  return start_node(child.region, Start::kTakeOver);
 }
 
-pid_t Launcher::start_node(std::uint32_t region, Start start) const { return spawn(arguments_of(region, start)); }
+pid_t Launcher::start_node(core::RegionId region, Start start) const {
+  return spawn(node_command_line(launch_, options_, run_, region, start));
+}
 
 void Launcher::look_at_nodes() {
   for (const auto& [region, seen] : control_.statuses()) {

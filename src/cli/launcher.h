@@ -2,37 +2,22 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
-#include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/folder_lock.h"
+#include "cli/launch_options.h"
 #include "cli/live_table.h"
 #include "cli/node_ending.h"
 #include "cli/run_steering.h"
-#include "cli/saved_world.h"
 #include "cli/viewer_process.h"
 #include "dds/random_id.h"
 
 namespace aurasim::cli {
-
-struct LaunchOptions {
-  FileArguments files;
-  KeyArguments keys;
-  std::optional<core::Step> steps;
-  std::optional<std::filesystem::path> report;
-  bool headless = false;
-  std::string recording;  ///< file; empty: none
-  LoadArguments load;
-  SaveArguments save;
-  int start_time_out_s = 30;
-  int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
-};
 
 class Launcher {
  public:
@@ -59,9 +44,7 @@ class Launcher {
 
   void take_report_folder();
   void start_nodes();
-  enum class Start : std::uint8_t { kWithOthers, kTakeOver };
-  pid_t start_node(std::uint32_t region, Start start) const;
-  std::vector<std::string> arguments_of(std::uint32_t region, Start start) const;
+  pid_t start_node(core::RegionId region, Start start) const;
   void hear_commands();
   bool begin_drain(const dds::RunCommand& drain);
   void end_silent_nodes();
@@ -75,7 +58,6 @@ class Launcher {
   bool somebody_knows_the_world();
   void replace(Child& child);
   pid_t successor_of(const Child& child);
-  std::vector<std::string> words_for(const char* command) const;
   bool all_go_on();
   void keep_spares();
   core::Step farthest_step();

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "dds/parameter_check.h"
+#include "dds/payload_check.h"
 #include "dds/wire_cursor.h"
 
 namespace aurasim::dds {
@@ -41,46 +42,7 @@ constexpr std::uint32_t kMostBits = 256;
 constexpr std::uint32_t kLargestFragmentNumber = kLargestSample_B / kSmallestFragment_B;
 constexpr std::size_t kMostLocators = 64;
 
-/// What the built-in writers say.
-enum class Payload : std::uint8_t { kUser, kParticipant, kEndpoint, kLiveliness, kHandshake, kUnknown };
-
-Payload payload_of(std::uint32_t writer) {
-  if (!is_built_in(writer)) return Payload::kUser;
-  switch (writer) {
-    case kParticipantWriter:
-    case 0xff0101c2:
-      return Payload::kParticipant;
-    case 0x000002c2:
-    case 0x000003c2:
-    case 0x000004c2:
-    case 0xff0003c2:
-    case 0xff0004c2:
-      return Payload::kEndpoint;
-    case 0x000200c2:
-    case 0xff0200c2:
-      return Payload::kLiveliness;
-    case 0x000201c3:
-    case 0xff0202c3:
-      return Payload::kHandshake;
-    default:
-      return Payload::kUnknown;
-  }
-}
-
-bool introduces(Payload payload) { return payload == Payload::kParticipant || payload == Payload::kHandshake; }
-
 bool is_sequence_number(std::uint64_t number) { return number >= 1 && number <= kLargestSequenceNumber; }
-
-/// What a 16-octet key stands for, in discovery.
-void add_subject(Claim::Kind kind, const ListFindings& list, Findings& findings, const GuidPrefix& destination) {
-  if (!list.subject) return;
-  Claim claim;
-  claim.kind = kind;
-  claim.destination = destination;
-  claim.guid = *list.subject;
-  claim.lease_s = list.lease_s;
-  findings.claims.push_back(claim);
-}
 
 /// One datagram, from the front.
 class Checker {
@@ -347,55 +309,8 @@ class Checker {
       claim.first = claim.last = sequence;
       findings_.claims.push_back(claim);
     }
-    if ((flags_ & kDataFlag) != 0) return check_payload(writer, body);
-    if (list.gone && payload_of(writer) == Payload::kEndpoint) {
-      add_subject(Claim::Kind::kEndpointGone, list, findings_, destination_);
-    }
-    return kFine;
-  }
-
-  Result check_payload(std::uint32_t writer, WireCursor& body) {
-    const Payload payload = payload_of(writer);
-    findings_.introduces = findings_.introduces || introduces(payload);
-    if (payload == Payload::kUnknown) return kFine;  // nobody here listens to it
-    if (body.left() < 4) return Refusal::kPayload;
-    body.skip(1);
-    const std::uint8_t encapsulation = body.u8();
-    body.skip(2);
-    constexpr std::uint8_t kListBig = 2, kListLittle = 3;
-    body.set_little((encapsulation & 1) != 0);
-    if (payload == Payload::kUser) return kFine;
-    if (payload == Payload::kLiveliness) return body.left() >= 20 ? kFine : Refusal::kPayload;
-    if (payload == Payload::kHandshake) return check_handshake(body);
-    if (encapsulation != kListBig && encapsulation != kListLittle) return Refusal::kPayload;
-    return check_discovery(payload, body);
-  }
-
-  Result check_discovery(Payload payload, WireCursor& body) {
-    const bool participant = payload == Payload::kParticipant;
-    ListFindings list;
-    if (Result refused =
-            check_parameters(body, participant ? ListKind::kParticipant : ListKind::kEndpoint, list, findings_)) {
-      return refused;
-    }
-    if (!list.subject || list.subject->prefix == GuidPrefix{} || list.subject->entity == 0) return Refusal::kPayload;
-    constexpr std::uint32_t kParticipantEntity = 0x1c1;
-    if (participant && (list.lease_s == 0 || list.subject->entity != kParticipantEntity)) return Refusal::kPayload;
-    add_subject(participant ? Claim::Kind::kParticipant : Claim::Kind::kEndpoint, list, findings_, destination_);
-    return kFine;
-  }
-
-  /// DDS Security 1.1, section 7.4.3: identities, keys, class and tokens.
-  static Result check_handshake(WireCursor& body) {
-    constexpr std::size_t kIdentities = 2 * 24 + 3 * 16, kMostTokens = 16, kLongestClass = 256;
-    if (body.left() < kIdentities) return Refusal::kPayload;
-    body.skip(kIdentities);
-    if (!is_string(body, kLongestClass)) return Refusal::kPayload;
-    const std::uint32_t tokens = body.u32();
-    if (body.failed() || tokens > kMostTokens) return Refusal::kPayload;
-    for (std::uint32_t i = 0; i < tokens; ++i) {
-      if (!is_data_holder(body)) return Refusal::kPayload;
-    }
+    if ((flags_ & kDataFlag) != 0) return check_payload(writer, body, destination_, findings_);
+    add_gone(writer, list, destination_, findings_);
     return kFine;
   }
 
@@ -406,7 +321,7 @@ class Checker {
     const std::uint32_t reader = body.entity();
     Claim claim = claim_of(Claim::Kind::kFragments, body.entity());
     claim.reader = reader;
-    findings_.introduces = findings_.introduces || introduces(payload_of(claim.guid.entity));
+    findings_.introduces = findings_.introduces || introduces(claim.guid.entity);
     claim.first = claim.last = body.sequence_number();
     claim.first_fragment = body.u32();
     claim.fragments = body.u16();

@@ -1,0 +1,38 @@
+// What a run is launched with, and the command lines of its processes that follow from it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/saved_world.h"
+#include "config/launch.h"
+
+namespace aurasim::cli {
+
+struct LaunchOptions {
+  FileArguments files;
+  KeyArguments keys;
+  std::optional<core::Step> steps;
+  std::optional<std::filesystem::path> report;
+  bool headless = false;
+  std::string recording;  ///< file; empty: none
+  LoadArguments load;
+  SaveArguments save;
+  int start_time_out_s = 30;
+  int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
+};
+
+enum class Start : std::uint8_t { kWithOthers, kTakeOver };
+
+/// Program and arguments of the node of `region` in run `run`.
+std::vector<std::string> node_command_line(const config::Launch& launch, const LaunchOptions& options,
+                                           std::uint64_t run, core::RegionId region, Start start);
+/// Of a process that waits until a region needs it.
+std::vector<std::string> spare_command_line(const config::Launch& launch, const LaunchOptions& options,
+                                            std::uint64_t run);
+
+}  // namespace aurasim::cli
