@@ -215,7 +215,6 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   record(node_->confirmed());
   command_server_->after_step(report);
   plan_checkpoint();
-  for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
 void NodeProcess::record(std::span<const node::StepReport> reports) {
@@ -243,13 +242,13 @@ ExitCode NodeProcess::run_steps() {
 void NodeProcess::run_until_end() {
   while (!finished() && !leaves_now()) {
     leave_if_asked();
+    obey_early_commands();
     execute_commands();
     look_for_deaths();
     obey_late_commands();
     serve_clients();
     save_parts();
-    reset_if_due();
-    change_if_due();
+    if (reset_if_due() || change_if_due()) continue;
     tell_ros2();
     hear_programs();
     if (!wait_until_due()) continue;  // true: it has not waited

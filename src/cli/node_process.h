@@ -22,6 +22,7 @@
 #include "cli/ros2_link.h"
 #include "cli/run_control_limits.h"
 #include "cli/saved_world.h"
+#include "cli/world_meant.h"
 #include "config/launch.h"
 #include "dds/control.h"
 #include "dds/dds_transport.h"
@@ -69,14 +70,6 @@ class NodeProcess {
   struct Window {  ///< of about the last second, milliseconds
     std::vector<double> frame, physics, protocol, transport;
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
-  };
-
-  /// Which of the worlds that a run goes through a command is for.
-  enum class WorldMeant : std::uint8_t {
-    kPresent,
-    kNext,  ///< that of a restore which is known, and has not begun here
-    kPast,  ///< one that all have left for that of the newest restore
-    kOver   ///< any other
   };
 
   FenceSettings fence_settings() const;
@@ -162,12 +155,14 @@ class NodeProcess {
   void change_rate(double rate);
   void apply_orders();
   void execute(const dds::RunCommand& command);
-  WorldMeant world_of(const dds::RunCommand& command) const;
+  Worlds known_worlds() const;
   void obey(const dds::RunCommand& command);
+  void obey_early_commands();
   void obey_late_commands();
   bool can_be_meant(const dds::RunCommand& command);
-  void reset_if_due();
-  void change_if_due();
+  /// True: another world has begun.
+  bool reset_if_due();
+  bool change_if_due();
   void change_scene(const std::string& name);
   void change_world(const std::string& file);
   void begin_anew();
@@ -221,7 +216,8 @@ class NodeProcess {
   bool says_records_end_ = false, says_left_out_ = false;
   std::string notice_;  ///< for people, in the status while the node runs
   core::Generation generation_ = 0;
-  std::optional<core::Step> hold_at_;  ///< paused once this state has been computed
+  std::optional<core::Generation> begun_;  ///< whose states node_ computes, or has computed last
+  std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   RunControlLimits run_control_limits_;

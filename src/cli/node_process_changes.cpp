@@ -67,8 +67,8 @@ void NodeProcess::apply_orders() {
   });
 }
 
-void NodeProcess::change_if_due() {
-  if (!change_) return;
+bool NodeProcess::change_if_due() {
+  if (!change_) return false;
   const core::Order order = *std::exchange(change_, std::nullopt);
   before_change_ = BeforeChange{launch_, options_.world};
   const bool stands = hold_at_.has_value();
@@ -85,6 +85,7 @@ void NodeProcess::change_if_due() {
   life_of_node_ = life_;
   before_change_.reset();
   if (stands) hold_at_ = node_->current_step();
+  return true;
 }
 
 /// Bodies of the old scene are forgotten; the regions stay.

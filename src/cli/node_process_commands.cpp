@@ -29,7 +29,7 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   }
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
   if (command.kind == Kind::kTake) return;  // to spares
-  switch (world_of(command)) {
+  switch (world_meant(command.generation, known_worlds())) {
     case WorldMeant::kPresent:
       if (node_ && can_be_meant(command)) obey(command);
       break;
@@ -44,10 +44,13 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   }
 }
 
-NodeProcess::WorldMeant NodeProcess::world_of(const dds::RunCommand& command) const {
-  if (restore_ && command.generation < restore_->generation) return WorldMeant::kPast;
-  if (command.generation == generation_) return WorldMeant::kPresent;
-  return restore_ && command.generation == restore_->generation ? WorldMeant::kNext : WorldMeant::kOver;
+Worlds NodeProcess::known_worlds() const {
+  Worlds known;
+  known.begun = begun_;
+  if (phase_ == NodePhase::kWaiting) known.waits_for = generation_;
+  if (restore_) known.restored = restore_->generation;
+  if (reset_) known.reset_to = reset_->generation + 1;
+  return known;
 }
 
 void NodeProcess::obey(const dds::RunCommand& command) {
@@ -88,6 +91,12 @@ void NodeProcess::obey(const dds::RunCommand& command) {
   }
 }
 
+/// What was said to this world before it had begun here: its start would have undone it.
+void NodeProcess::obey_early_commands() {
+  begun_ = generation_;
+  for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
+}
+
 /// What was said to the world that all have left, as they did: some might have obeyed and some not. So all do what the
 /// one who says where all go back to says once more.
 void NodeProcess::obey_late_commands() {
@@ -107,12 +116,13 @@ bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
   return why.empty();
 }
 
-void NodeProcess::reset_if_due() {
-  if (!reset_ || node_->current_step() < reset_->at_step) return;
+bool NodeProcess::reset_if_due() {
+  if (!reset_ || node_->current_step() < reset_->at_step) return false;
   const dds::RunCommand reset = *reset_;
   reset_.reset();
   enter(NodeEvent::kReset);
   begin_generation(reset.generation + 1, reset);
+  return true;
 }
 
 /// The state of a change has been computed, and is still to be confirmed: what is ordered now would not reach all
