@@ -65,6 +65,7 @@ void NodeProcess::publish(const std::string& text) {
   last_published_ = now;
   note_strangers();
   status_.state = state;
+  status_.holds_at = hold_at_;
   status_.text = text;
   const bool stands = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
   status_.generation = stands ? stands_in_ : generation_;

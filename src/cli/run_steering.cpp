@@ -64,6 +64,14 @@ bool RunSteering::is_paused() {
   });
 }
 
+bool RunSteering::is_paused_within(core::Step states) {
+  const auto& statuses = control_.statuses();
+  return std::all_of(statuses.begin(), statuses.end(), [&](const auto& s) {
+    const dds::Status& status = s.second.status;
+    return !belongs(s.second) || (status.holds_at && *status.holds_at <= status.step + states);
+  });
+}
+
 bool RunSteering::wait_until_paused(std::chrono::milliseconds time_out) {
   const auto deadline = Clock::now() + time_out;
   while (!is_paused() && Clock::now() < deadline) control_.wait(50ms);

@@ -35,6 +35,8 @@ class RunSteering {
   bool is_complete();
   bool is_there();
   bool is_paused();
+  /// Do they, or will they before they have computed more than so many states?
+  bool is_paused_within(core::Step states);
   /// False if they do not within that time.
   bool wait_until_paused(std::chrono::milliseconds time_out);
 

@@ -19,6 +19,7 @@ using MaybeError = std::optional<WireError>;
 
 /// Regions, parts, meshes: more than any run has.
 constexpr std::size_t kMostOfAll = 4096;
+constexpr core::Step kGoesOn = -1;  ///< no state in which it is to stand
 
 bool finite_and_not_negative(std::initializer_list<double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x) && x >= 0; });
@@ -120,12 +121,12 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   if (in.state() > static_cast<std::uint8_t>(NodeState::kCutOff)) {
     return WireError::kEnum;
   }
-  const bool in_range = is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
-                        in.lookahead() >= 0 && all_below(in.dead(), expected.region_count) &&
-                        all_below(in.refused_source(), expected.region_count) &&
-                        all_below(in.listens_to(), expected.region_count) && none_negative(in.listens_since()) &&
-                        all_below(in.listens_by(), expected.region_count) && none_negative(in.part_step()) &&
-                        all_below(in.part_region(), expected.region_count);
+  const bool in_range =
+      is_rectangle({in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()}) &&
+      in.lookahead() >= 0 && in.holds_at() >= kGoesOn && all_below(in.dead(), expected.region_count) &&
+      all_below(in.refused_source(), expected.region_count) && all_below(in.listens_to(), expected.region_count) &&
+      none_negative(in.listens_since()) && all_below(in.listens_by(), expected.region_count) &&
+      none_negative(in.part_step()) && all_below(in.part_region(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -180,6 +181,7 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.pid(status.pid);
   out.process(status.process);
   out.state(static_cast<std::uint8_t>(status.state));
+  out.holds_at(status.holds_at.value_or(kGoesOn));
   out.era(status.era);
   fill(out.part_region(), status.parts, [](const KeptPart& part) { return value_of(part.region); });
   fill(out.part_step(), status.parts, [](const KeptPart& part) { return part.step; });
@@ -213,6 +215,7 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   status.pid = in.pid();
   status.process = in.process();
   status.state = static_cast<NodeState>(in.state());
+  if (in.holds_at() != kGoesOn) status.holds_at = in.holds_at();
   status.era = in.era();
   for (std::size_t i = 0; i < in.part_region().size(); ++i) {
     status.parts.push_back({RegionId{in.part_region()[i]}, in.part_step()[i]});

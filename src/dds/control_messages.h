@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,8 +64,9 @@ struct Status {
   std::uint64_t map_version = 0;
   std::uint64_t agreement = 0;  ///< equal on all nodes of a run (config::Launch::agreement)
   NodeState state = NodeState::kStarting;
-  core::Generation era = 0;     ///< in which the scene was begun from its first state: others' parts do not fit
-  std::vector<KeptPart> parts;  ///< that it keeps
+  std::optional<core::Step> holds_at;  ///< where it stands, or is to stand; nothing: it goes on
+  core::Generation era = 0;            ///< in which the scene was begun from its first state: others' parts do not fit
+  std::vector<KeptPart> parts;         ///< that it keeps
   std::uint64_t bodies = 0;
   std::uint64_t awake = 0;
   std::uint64_t foreign_auras = 0;

@@ -66,6 +66,41 @@ class Steering(WorldTest):
         self.assertEqual(second.step(2).step, stood.step + 2)
         self.assertEqual(first.step().step, stood.step + 3)
 
+    def test_no_client_sees_the_middle_of_a_short_step(self):
+        first = self.launch()
+        second = self.connect()
+        for _ in range(5):
+            before = second.bodies().step
+            stepping = threading.Thread(target=first.step, args=(40,))
+            stepping.start()
+            seen = []
+            while stepping.is_alive():
+                seen.append(second.bodies())
+            stepping.join()
+            self.assertTrue(all(bodies.exact for bodies in seen))
+            self.assertLessEqual({bodies.step for bodies in seen}, {before, before + 40})
+
+    def test_who_asks_in_a_long_step_is_told_how_far_it_has_come(self):
+        first = self.launch()
+        second = self.connect()
+        first_end = 100_000
+        stepping = threading.Thread(target=self.ignore_the_end, args=(lambda: first.step(first_end),))
+        stepping.start()
+        self.assertTrue(wait_until(lambda: second.bodies().step > 0))
+        seen = second.bodies(timeout=GENEROUS_S)
+        self.assertFalse(seen.exact)
+        self.assertLess(seen.step, first_end)
+        second.stop()
+        stepping.join(GENEROUS_S)
+        self.assertFalse(stepping.is_alive())
+
+    @staticmethod
+    def ignore_the_end(call):
+        try:
+            call()
+        except aurasim.Error:
+            pass
+
     def test_who_comes_later_sees_all_bodies_from_the_first_word_on(self):
         before = set(self.launch(paused=False).bodies().ids.tolist())
         for _ in range(4):

@@ -36,6 +36,7 @@ TEST(StatusCodec, RoundTripKeepsEverything) {
   encode(std::get<Status>(decoded), again);
   EXPECT_EQ(again, sample);
   EXPECT_EQ(std::get<Status>(decoded).text, "all is well");
+  EXPECT_EQ(std::get<Status>(decoded).holds_at, 1240);
   EXPECT_EQ(std::get<Status>(decoded).footprint.x0, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(std::get<Status>(decoded).violations.span, 5U);
   EXPECT_EQ(std::get<Status>(decoded).late_collisions, 6U);
@@ -66,6 +67,8 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.version(kProtocolVersion + 1); }), "version");
   EXPECT_EQ(after([](auto& w) { w.source(4); }), "range");
   EXPECT_EQ(after([](auto& w) { w.state(9); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.holds_at(-1); }), "accepted");
+  EXPECT_EQ(after([](auto& w) { w.holds_at(-2); }), "range");
   EXPECT_EQ(after([](auto& w) { w.frame_max_ms(kNan); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.real_time_factor(-1); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(kNan); }), "range");

@@ -15,6 +15,7 @@ inline Status status_of(std::uint32_t region) {
   status.map_version = 77;
   status.agreement = 88;
   status.state = NodeState::kRunning;
+  status.holds_at = 1240;
   status.bodies = 10;
   status.awake = 9;
   status.foreign_auras = 8;

@@ -39,6 +39,7 @@ void RunLink::turn(std::chrono::milliseconds time_out) {
   watch_.look(time_out);
   while (watch_.view().compose(overseer::view_clock_s()) != nullptr) {
   }
+  hear_of_standing_states();
   if (!observers_.empty()) {
     const std::set<core::RegionId> live = live_regions();
     for (const auto& [number, observer] : observers_) observer->turn(live, stands());

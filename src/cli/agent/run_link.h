@@ -79,6 +79,7 @@ class RunLink {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kRound{2};
   static constexpr std::chrono::seconds kPatienceWithAReader{1};  ///< that some node has not found
+  static constexpr std::chrono::seconds kMoment{1};  ///< of simulated time: a step that takes no longer is waited for
   struct Standing {
     core::Generation generation = 0;
     core::Step step = 0;
@@ -94,10 +95,12 @@ class RunLink {
   bool is_known_to_stand();
   bool all_have_published(const Standing& wanted);
   bool all_say_that_they_stand();
+  std::optional<WorldState> look_at_standing_state(const Patience& patience);
   WorldState standing_state(const Patience& patience);
   bool collect(StandingState& state, const Patience& patience);
   bool collect_key_frames(StandingState& state, const Patience& patience);
   void watch_standing_states();
+  void hear_of_standing_states();
   bool take_standing(StandingState& state);
   WorldState seen_state(const Patience& patience);
   const Standing& known_standing(const Patience& patience);

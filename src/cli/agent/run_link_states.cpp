@@ -10,21 +10,28 @@ namespace aurasim::cli::agent {
 
 using namespace std::chrono_literals;
 
-/// After a step earlier than the statuses say.
-bool RunLink::is_known_to_stand() { return stands() || stands_in_ == farthest(); }
+/// Or it will, in a moment: a step of another client is on its way. After one of our own earlier than the statuses say.
+bool RunLink::is_known_to_stand() {
+  if (!steering_.is_there()) return false;
+  const auto moment = static_cast<core::Step>(launch().time.step_hz * kMoment.count());
+  return steering_.is_paused_within(moment) || stands_in_ == farthest();
+}
 
 bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
 
-/// As far as live nodes have said, whichever way. A status may be older than what is published.
+/// As far as live nodes have said, whichever way. A status may be older than what is published or told.
 RunLink::Standing RunLink::farthest() {
+  const std::set<core::RegionId> live = live_regions();
   Standing farthest;
-  for (const core::RegionId region : live_regions()) {
+  for (const core::RegionId region : live) {
     farthest.generation = std::max(farthest.generation, watch_.nodes().at(region).status.generation);
   }
-  for (const core::RegionId region : live_regions()) {
+  for (const core::RegionId region : live) {
     const dds::Status& status = watch_.nodes().at(region).status;
     if (status.generation == farthest.generation) farthest.step = std::max(farthest.step, status.step);
     farthest.step = std::max(farthest.step, watch_.published(region, farthest.generation));
+    const auto told = told_.find(region);
+    if (told != told_.end()) farthest = std::max(farthest, Standing{told->second.generation, told->second.stamp});
   }
   return farthest;
 }
@@ -60,12 +67,16 @@ void RunLink::watch_standing_states() {
   standing_->use(watch_.observer_settings());
 }
 
-/// True once it is complete: all regions have told one state. What was told before a redo does not count any more.
-bool RunLink::take_standing(StandingState& state) {
+void RunLink::hear_of_standing_states() {
+  if (!standing_) return;
   for (core::Observation& observation : standing_->take()) {
     const core::RegionId source = observation.source;
     told_.insert_or_assign(source, std::move(observation));
   }
+}
+
+/// True once it is complete: all regions have told one state. What was told before a redo does not count any more.
+bool RunLink::take_standing(StandingState& state) {
   const auto when = [](const core::Observation& told) { return std::tuple(told.generation, told.redo, told.stamp); };
   std::tuple<core::Generation, std::uint32_t, core::Step> newest{};
   for (const auto& [region, told] : told_) newest = std::max(newest, when(told));
@@ -80,19 +91,21 @@ bool RunLink::take_standing(StandingState& state) {
   return state.is_complete(live_regions());
 }
 
+/// False: it does not stand, or some node has not found this reader.
 bool RunLink::collect(StandingState& state, const Patience& patience) {
   watch_standing_states();
-  const auto end = Clock::now() + kPatienceWithAReader;
+  const auto end = Clock::now() + kMoment + kPatienceWithAReader;
   while (!take_standing(state)) {
     patience.check("not all regions have told the state in which they stand");
-    if (Clock::now() > end) return collect_key_frames(state, patience);
+    if (Clock::now() > end) return stands() && collect_key_frames(state, patience);
+    if (!is_known_to_stand()) return false;
     standing_->wait(kRound);
     turn(0ms);
   }
   return true;
 }
 
-/// Nodes publish all that they have for a reader that has just come. False: some have not found this one.
+/// Nodes publish all that they have for a reader that has just come.
 bool RunLink::collect_key_frames(StandingState& state, const Patience& patience) {
   dds::ReplicaReader reader(participant_, watch_.observer_settings());
   const auto end = Clock::now() + kPatienceWithAReader;
@@ -106,13 +119,20 @@ bool RunLink::collect_key_frames(StandingState& state, const Patience& patience)
   return true;
 }
 
+/// Nothing: as collect().
+std::optional<WorldState> RunLink::look_at_standing_state(const Patience& patience) {
+  const Standing least = farthest();
+  StandingState state(least.generation, least.step);
+  if (!collect(state, patience)) return std::nullopt;
+  stands_in_ = Standing{state.generation(), state.step()};
+  return WorldState{state.generation(), state.step(), true, state.bodies()};
+}
+
 WorldState RunLink::standing_state(const Patience& patience) {
   for (;;) {
-    const Standing least = farthest();
-    StandingState state(least.generation, least.step);
-    if (!collect(state, patience)) continue;
-    stands_in_ = Standing{state.generation(), state.step()};
-    return {state.generation(), state.step(), true, state.bodies()};
+    if (std::optional<WorldState> state = look_at_standing_state(patience)) return *std::move(state);
+    patience.check("the run does not stand");
+    turn(kRound);
   }
 }
 
@@ -137,7 +157,10 @@ WorldState RunLink::seen_state(const Patience& patience) {
 
 WorldState RunLink::state(const Patience& patience) {
   turn(0ms);
-  return is_known_to_stand() ? standing_state(patience) : seen_state(patience);
+  while (is_known_to_stand()) {
+    if (std::optional<WorldState> state = look_at_standing_state(patience)) return *std::move(state);
+  }
+  return seen_state(patience);
 }
 
 WorldState RunLink::pause(const Patience& patience) {

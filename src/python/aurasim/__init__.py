@@ -163,7 +163,8 @@ class World:
         return self._world.nodes(timeout)
 
     def bodies(self, timeout: float = 60.0) -> Bodies:
-        """In a paused run the state in which it stands; else the newest that all regions have published."""
+        """In a paused run the state in which it stands, or will within a second: a step of another client is waited
+        for. Else the newest that all regions have published."""
         return self._world.bodies(timeout)
 
     def ray(self, start: Vector, end: Vector, timeout: float = 60.0) -> RayHit:

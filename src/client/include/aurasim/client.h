@@ -202,7 +202,8 @@ class AURASIM_API World {
   // Sense.
   RunInfo info(Seconds time_out = kUsualTimeOut);
   std::vector<NodeStatus> nodes(Seconds time_out = kUsualTimeOut);
-  /// In a paused run the state in which it stands; else the newest that all regions have published.
+  /// In a paused run the state in which it stands, or will within a second: a step of another client is waited for.
+  /// Else the newest that all regions have published.
   Bodies bodies(Seconds time_out = kUsualTimeOut);
   /// What is first on the way from a point to another, m? All regions are asked.
   RayHit ray(const Vec3& from, const Vec3& to, Seconds time_out = kUsualTimeOut);
