@@ -69,6 +69,7 @@ class ShapeDigest {
       d_.bytes(part.shape.index());
       std::visit(*this, part.shape);
       d_.add(part.pose);
+      d_.bytes(part.material ? *part.material + std::uint64_t{1} : 0);
     }
   }
 

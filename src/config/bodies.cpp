@@ -187,7 +187,7 @@ void read_shapes(const Field& field, SceneDraft& draft) {
   for (const auto& [name, entry] : field.entries()) {
     refuse_taken(name, draft.shapes, entry);
     // A shape that could not be read has its name all the same, or every use of it would be one more error.
-    draft.scene.shapes.push_back({name, read_shape(entry, draft.folder).value_or(core::Sphere{})});
+    draft.scene.shapes.push_back({name, read_shape(entry, draft).value_or(core::Sphere{})});
     draft.shapes.add(name);
   }
 }

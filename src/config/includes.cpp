@@ -96,6 +96,15 @@ void shift(Thing& thing, const Included& included) {
   thing.material += static_cast<std::uint32_t>(included.first_material);
 }
 
+/// Of its parts.
+void shift_materials(core::Shape& shape, const Included& included) {
+  auto* const compound = std::get_if<core::Compound>(&shape);
+  if (compound == nullptr) return;
+  for (core::CompoundPart& part : compound->parts) {
+    if (part.material) *part.material += static_cast<std::uint32_t>(included.first_material);
+  }
+}
+
 core::PrototypeId shifted(core::PrototypeId prototype, const Included& included) {
   return core::PrototypeId{value_of(prototype) + static_cast<std::uint32_t>(included.first_prototype)};
 }
@@ -154,6 +163,7 @@ void take_over_kinds(std::vector<Included>& includes, SceneDraft& draft) {
   for (Included& included : includes) {
     core::Scene& from = included.draft.scene;
     included.first_material = take_over(from.materials, included, draft.scene.materials, draft.materials);
+    for (core::NamedShape& shape : from.shapes) shift_materials(shape.shape, included);
     included.first_shape = take_over(from.shapes, included, draft.scene.shapes, draft.shapes);
     for (core::Prototype& prototype : from.prototypes) shift(prototype, included);
     included.first_prototype = take_over(from.prototypes, included, draft.scene.prototypes, draft.prototypes);

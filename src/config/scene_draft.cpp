@@ -127,7 +127,7 @@ core::Pose read_pose(const Fields& fields) {
 
 std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft) {
   if (!field.is_map()) return draft.shapes.find(field);
-  const auto shape = read_shape(field, draft.folder);
+  const auto shape = read_shape(field, draft);
   if (!shape) return std::nullopt;
   draft.scene.shapes.push_back({own_name, *shape});
   return draft.shapes.add(own_name);

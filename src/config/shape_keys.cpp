@@ -103,7 +103,11 @@ const KeyTable& part_keys() {
       .keys = {optional("sphere", map(sphere_keys), "a ball"), optional("box", map(box_keys), "a cuboid"),
                optional("capsule", map(capsule_keys), "a cylinder with round caps"),
                optional("cylinder", map(cylinder_keys), "a cylinder"),
-               optional("convex_hull", map_of_one({hull_of_points_keys, hull_of_mesh_keys}), "a convex hull")},
+               optional("convex_hull", map_of_one({hull_of_points_keys, hull_of_mesh_keys}), "a convex hull"),
+               optional("material", name_of("material"),
+                        "what the surface of this part is like; how the body is slowed "
+                        "down is the body's alone")
+                   .otherwise("the body's")},
       .one_of = {"sphere", "box", "capsule", "cylinder", "convex_hull"}};
   return keys;
 }

@@ -154,7 +154,7 @@ std::optional<Shape> read_mesh(const Fields& fields, const std::filesystem::path
   return std::move(*mesh);
 }
 
-std::optional<Shape> read_shape_kind(const Field& field, const std::filesystem::path& folder);
+std::optional<Shape> read_shape_kind(const Field& field, const SceneDraft& draft);
 
 std::optional<ConvexShape> as_convex(Shape&& shape) {
   return std::visit(
@@ -169,32 +169,34 @@ std::optional<ConvexShape> as_convex(Shape&& shape) {
       std::move(shape));
 }
 
-std::optional<core::CompoundPart> read_part(const Field& field, const std::filesystem::path& folder) {
+std::optional<core::CompoundPart> read_part(const Field& field, const SceneDraft& draft) {
   const Fields fields(field);
   const std::vector<Field> kinds = fields.given_of(part_keys());
   std::optional<ConvexShape> shape;
   for (const Field& kind : kinds) {
-    if (auto read = read_shape_kind(kind, folder)) shape = as_convex(std::move(*read));
+    if (auto read = read_shape_kind(kind, draft)) shape = as_convex(std::move(*read));
   }
   const core::Pose pose = read_pose(fields);
+  const Field material = fields["material"];
+  const std::optional<std::uint32_t> own = material.given() ? draft.materials.find(material) : std::nullopt;
   fields.close();
   if (fields.given() && kinds.size() != 1) field.refuse("one of sphere, box, capsule, cylinder, convex_hull");
   if (!shape || kinds.size() != 1) return std::nullopt;
-  return core::CompoundPart{std::move(*shape), pose};
+  return core::CompoundPart{std::move(*shape), pose, own};
 }
 
-std::optional<Shape> read_compound(const Fields& fields, const std::filesystem::path& folder) {
+std::optional<Shape> read_compound(const Fields& fields, const SceneDraft& draft) {
   core::Compound compound;
   const std::vector<Field> items = fields["parts"].items();
   for (const Field& item : items) {
-    if (auto part = read_part(item, folder)) compound.parts.push_back(std::move(*part));
+    if (auto part = read_part(item, draft)) compound.parts.push_back(std::move(*part));
   }
   if (compound.parts.empty() || compound.parts.size() != items.size()) return std::nullopt;
   return compound;
 }
 
 /// `field` is the value of a key of shape_keys.
-std::optional<Shape> read_shape_kind(const Field& field, const std::filesystem::path& folder) {
+std::optional<Shape> read_shape_kind(const Field& field, const SceneDraft& draft) {
   const std::string kind = field.path().substr(field.path().rfind('.') + 1);
   const Fields fields = kind == "convex_hull" ? fields_of_hull(field) : Fields(field);
   std::optional<Shape> shape;
@@ -206,9 +208,9 @@ std::optional<Shape> read_shape_kind(const Field& field, const std::filesystem::
   if (kind == "box") shape = read_box(fields);
   if (kind == "capsule") shape = read_capsule(fields);
   if (kind == "cylinder") shape = read_cylinder(fields);
-  if (kind == "convex_hull") shape = read_convex_hull(fields, folder);
-  if (kind == "compound") shape = read_compound(fields, folder);
-  if (kind == "mesh") shape = read_mesh(fields, folder);
+  if (kind == "convex_hull") shape = read_convex_hull(fields, draft.folder);
+  if (kind == "compound") shape = read_compound(fields, draft);
+  if (kind == "mesh") shape = read_mesh(fields, draft.folder);
   if (kind == "heightfield") shape = read_heightfield(fields);
   if (kind == "plane") shape = read_plane(fields);
   fields.close();
@@ -257,11 +259,11 @@ Bounds bounds_of_part(const core::CompoundPart& part) {
 
 }  // namespace
 
-std::optional<Shape> read_shape(const Field& field, const std::filesystem::path& folder) {
+std::optional<Shape> read_shape(const Field& field, const SceneDraft& draft) {
   const Fields fields(field);
   const std::vector<Field> kinds = fields.given_of(shape_keys());
   std::optional<Shape> shape;
-  for (const Field& kind : kinds) shape = read_shape_kind(kind, folder);
+  for (const Field& kind : kinds) shape = read_shape_kind(kind, draft);
   fields.close();
   if (kinds.size() == 1) return shape;
   if (kinds.size() > 1) field.refuse("a shape of one kind");

@@ -1,7 +1,6 @@
 // Shapes of a scene: how each kind is written is in the tables of shapes.cpp, and on the page of all keys.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "config/fields.h"
@@ -9,11 +8,14 @@
 
 namespace aurasim::config {
 
+struct SceneDraft;
+
 /// Exactly one kind of shape.
 const KeyTable& shape_keys();
 
-/// The shape that `field` (a map of one key) describes; mesh files are relative to `folder`.
-std::optional<core::Shape> read_shape(const Field& field, const std::filesystem::path& folder);
+/// The shape that `field` (a map of one key) describes. Mesh files are relative to the draft's folder; parts have
+/// materials that the draft has by now.
+std::optional<core::Shape> read_shape(const Field& field, const SceneDraft& draft);
 
 /// Whether bodies may have it: not a triangle mesh and not a plane.
 bool can_move(const core::Shape& shape);

@@ -50,7 +50,8 @@ using ConvexShape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull>;
 
 struct CompoundPart {
   ConvexShape shape;
-  Pose pose;  ///< of the part in the compound's frame; the origin is the centre of mass
+  Pose pose;                                ///< of the part in the compound's frame; the origin is the centre of mass
+  std::optional<std::uint32_t> material{};  ///< index into Scene::materials: of its surface; nothing: the body's
 };
 struct Compound {
   std::vector<CompoundPart> parts;

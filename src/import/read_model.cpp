@@ -75,7 +75,6 @@ Model read_model(const std::filesystem::path& file, const ReadSettings& settings
   Model model = is_mesh ? read_mesh_model(file, settings) : read_described(file, settings);
   if (model.links.empty()) refuse_file(file, "it has no links");
   check_names(file, model);
-  give_one_surface(model);
   tidy_apart(model);
   return model;
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -47,6 +49,8 @@ void write_pose(YAML::Emitter& out, const core::Pose& pose) {
 class ShapeWriter {
  public:
   explicit ShapeWriter(YAML::Emitter& out) : out_(out) {}
+  /// `materials`: names, by the indices that parts have.
+  ShapeWriter(YAML::Emitter& out, std::vector<std::string> materials) : out_(out), materials_(std::move(materials)) {}
 
   void operator()(const core::Sphere& s) { begin("sphere").number("radius", s.radius).end(); }
   void operator()(const core::Box& s) {
@@ -79,6 +83,7 @@ class ShapeWriter {
       out_ << YAML::Flow << YAML::BeginMap;
       std::visit(*this, part.shape);
       write_pose(out_, part.pose);
+      if (part.material) out_ << YAML::Key << "material" << YAML::Value << materials_.at(*part.material);
       out_ << YAML::EndMap;
     }
     out_ << YAML::EndSeq << YAML::EndMap;
@@ -103,6 +108,7 @@ class ShapeWriter {
   void end() { out_ << YAML::EndMap; }
 
   YAML::Emitter& out_;
+  std::vector<std::string> materials_;
 };
 
 /// Ways and turns of a joint, within its map.

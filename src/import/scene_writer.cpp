@@ -66,8 +66,30 @@ class SceneWriter {
     }
   }
 
-  std::string material_of(const Collision& collision) const {
-    return fmt::format("surface {}", std::ranges::find(surfaces_, collision.surface) - surfaces_.begin());
+  std::size_t surface_of(const Collision& collision) const {
+    return static_cast<std::size_t>(std::ranges::find(surfaces_, collision.surface) - surfaces_.begin());
+  }
+
+  static std::string name_of(std::size_t surface) { return fmt::format("surface {}", surface); }
+
+  std::string material_of(const Collision& collision) const { return name_of(surface_of(collision)); }
+
+  std::vector<std::string> materials() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) names.push_back(name_of(i));
+    return names;
+  }
+
+  /// Its first part has the body's material.
+  core::Shape shape_with_materials(const Link& link) const {
+    core::Shape shape = body_shape(link);
+    auto* const compound = std::get_if<core::Compound>(&shape);
+    if (compound == nullptr) return shape;
+    for (std::size_t i = 1; i < compound->parts.size(); ++i) {
+      if (link.collisions[i].surface == link.collisions.front().surface) continue;
+      compound->parts[i].material = static_cast<std::uint32_t>(surface_of(link.collisions[i]));
+    }
+    return shape;
   }
 
   /// Friction and restitution of a contact are products, so each body has the root; resistance to rolling and spinning
@@ -78,8 +100,8 @@ class SceneWriter {
       const Surface& s = surfaces_[i];
       const double friction = std::min(std::sqrt(s.friction), kMostFriction);
       const double share = friction > 0 ? 2 * friction : 1;
-      out_ << YAML::Key << fmt::format("surface {}", i) << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
-           << "friction" << YAML::Value << digits(friction);
+      out_ << YAML::Key << name_of(i) << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << "friction"
+           << YAML::Value << digits(friction);
       if (s.rolling_friction_m != 0)
         out_ << YAML::Key << "rolling_friction" << YAML::Value << digits(s.rolling_friction_m / share);
       if (s.spinning_friction_m != 0)
@@ -103,8 +125,8 @@ class SceneWriter {
       if (!link.collisions.empty())
         out_ << YAML::Key << "material" << YAML::Value << material_of(link.collisions.front());
       out_ << YAML::Key << "shape" << YAML::Value << YAML::BeginMap;
-      ShapeWriter writer(out_);
-      std::visit(writer, body_shape(link));
+      ShapeWriter writer(out_, materials());
+      std::visit(writer, shape_with_materials(link));
       out_ << YAML::EndMap << YAML::EndMap;
     }
     out_ << YAML::EndMap;

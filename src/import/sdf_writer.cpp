@@ -211,8 +211,10 @@ class SdfWriter {
   void write_collisions(const core::Shape& shape, const core::Material& material, const std::string& name) {
     if (const auto* compound = std::get_if<core::Compound>(&shape)) {
       for (std::size_t i = 0; i < compound->parts.size(); ++i) {
-        const auto part = std::visit([](const auto& of) { return core::Shape(of); }, compound->parts[i].shape);
-        write_collision(part, compound->parts[i].pose, material, fmt::format("{} {}", name, i));
+        const core::CompoundPart& own = compound->parts[i];
+        const auto part = std::visit([](const auto& of) { return core::Shape(of); }, own.shape);
+        write_collision(part, own.pose, own.material ? scene_.materials[*own.material] : material,
+                        fmt::format("{} {}", name, i));
       }
       return;
     }

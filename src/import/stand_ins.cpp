@@ -1,7 +1,5 @@
 #include "import/stand_ins.h"
 
-#include <fmt/format.h>
-
 #include "import/inertia.h"
 #include "physics/inertia.h"
 
@@ -37,23 +35,6 @@ core::Shape body_shape(const Link& link) {
   }
   if (compound.parts.size() > 1 || !is_identity(compound.parts.front().pose)) return compound;
   return std::visit([](const auto& shape) { return core::Shape(shape); }, compound.parts.front().shape);
-}
-
-void give_one_surface(Model& model) {
-  for (Link& link : model.links) {
-    if (link.is_static || link.collisions.empty()) continue;
-    const Surface first = link.collisions.front().surface;
-    bool same = true;
-    for (Collision& collision : link.collisions) {
-      same = same && collision.surface == first;
-      collision.surface = first;
-    }
-    if (!same) {
-      model.lose(element_name("link", link.name),
-                 fmt::format("its shapes have surfaces of their own: that of '{}' stands for all",
-                             link.collisions.front().name));
-    }
-  }
 }
 
 void spread_mass_evenly(double mass_kg, const Vec3& p_LB, Link& link) {

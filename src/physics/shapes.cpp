@@ -16,6 +16,7 @@
 #include "physics/bullet_convert.h"
 #include "physics/hull_shape.h"
 #include "physics/inertia.h"
+#include "physics/part_surfaces.h"
 
 namespace aurasim::physics {
 namespace {
@@ -96,12 +97,15 @@ std::unique_ptr<btConvexShape> make_convex(const core::ConvexShape& shape, Margi
 struct ShapeSet::Built {
   std::unique_ptr<btStridingMeshInterface> mesh;
   std::vector<std::unique_ptr<btConvexShape>> parts;
+  std::unique_ptr<const PartSurfaces> surfaces;
   std::unique_ptr<btCollisionShape> shape;
 
   struct Make;
 };
 
 struct ShapeSet::Built::Make {
+  const core::Scene& scene;
+
   template <class Convex>
   Built operator()(const Convex& s) const {
     Built built;
@@ -118,6 +122,10 @@ struct ShapeSet::Built::Make {
     for (const core::CompoundPart& part : s.parts) {
       built.parts.push_back(make_convex(part.shape, Margin::kInside));
       compound->addChildShape(to_bullet(part.pose), built.parts.back().get());
+    }
+    if (std::optional<PartSurfaces> own = part_surfaces_of(s, scene)) {
+      built.surfaces = std::make_unique<const PartSurfaces>(*std::move(own));
+      set_part_surfaces(*compound, *built.surfaces);
     }
     built.shape = std::move(compound);
     return built;
@@ -152,7 +160,7 @@ void ShapeSet::extend(const core::Scene& scene) {
     inertias.push_back(inertia_of(scene.prototypes[i], scene));
   }
   for (std::size_t i = shapes_.size(); i < scene.shapes.size(); ++i) {
-    built.push_back(std::visit(Built::Make{}, scene.shapes[i].shape));
+    built.push_back(std::visit(Built::Make{scene}, scene.shapes[i].shape));
   }
   inertias_.insert(inertias_.end(), inertias.begin(), inertias.end());
   std::move(built.begin(), built.end(), std::back_inserter(shapes_));

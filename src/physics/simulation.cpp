@@ -13,6 +13,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/construction.h"
+#include "physics/part_surfaces.h"
 #include "physics/prefetch.h"
 
 namespace aurasim::physics {
@@ -85,6 +86,7 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
 
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
   body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
+  use_part_surfaces(*body.rigid);
   if (settings_.continuous) {
     const btScalar thin = half_thickness(*body.rigid->getCollisionShape());
     body.rigid->setCcdMotionThreshold(thin);

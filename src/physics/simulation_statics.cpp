@@ -6,6 +6,7 @@
 #include "physics/awaken.h"
 #include "physics/bounds.h"
 #include "physics/construction.h"
+#include "physics/part_surfaces.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -34,6 +35,7 @@ void Simulation::make_statics() {
     info.m_startWorldTransform = frame_.to_local(X_WS);
     statics_.push_back(std::make_unique<btRigidBody>(info));
     statics_.back()->setUserIndex(-1 - static_cast<int>(i));
+    use_part_surfaces(*statics_.back());
     static_is_in_.push_back(false);
     if (body.moves()) make_moving(static_cast<std::uint32_t>(i), body.path.has_value());
   }

@@ -8,8 +8,9 @@ namespace {
 
 const char* kArm = R"(name: arm
 gravity: [0, 0, 0]
-materials: {rubber: {friction: 0.9}}
-shapes: {rod: {box: {size: [1, 0.1, 0.1]}}}
+materials: {rubber: {friction: 0.9}, grip: {friction: 1.5}}
+shapes:
+  rod: {compound: {parts: [{box: {size: [1, 0.1, 0.1]}}, {sphere: {radius: 0.1}, material: grip}]}}
 prototypes: {link: {shape: rod, mass: 2, material: rubber}}
 statics: [{name: base, shape: rod, position: [0, 0, 1]}]
 bodies:
@@ -59,6 +60,8 @@ TEST_F(Includes, EveryCopyHasNamesAndAPlaceOfItsOwn) {
   EXPECT_EQ(link.name, "right/link");
   EXPECT_EQ(link.shape, shape_named(scene, "right/rod"));
   EXPECT_EQ(scene.materials[link.material].name, "right/rubber");
+  const auto& parts = std::get<core::Compound>(scene.shapes[link.shape].shape).parts;
+  EXPECT_EQ(scene.materials[parts[1].material.value()].name, "right/grip");
 }
 
 TEST_F(Includes, IdsFollowThoseOfTheFileItself) {

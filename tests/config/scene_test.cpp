@@ -141,6 +141,21 @@ statics: [{shape: {plane: {}}}]
   EXPECT_EQ(scene.statics[0].name, "static 0");
 }
 
+TEST(SceneFile, PartsHaveMaterialsOfTheirOwn) {
+  const Workspace workspace;
+  const core::Scene scene = workspace.scene(R"(materials: {steel: {}, rubber: {friction: 1.1}}
+prototypes:
+  leg:
+    material: steel
+    mass: 1
+    shape: {compound: {parts: [{sphere: {radius: 0.1}, material: rubber}, {box: {size: [1, 1, 1]}}]}}
+)");
+  const auto& parts = std::get<core::Compound>(scene.shapes[scene.prototypes[0].shape].shape).parts;
+  ASSERT_TRUE(parts[0].material.has_value());
+  EXPECT_EQ(scene.materials[*parts[0].material].name, "rubber");
+  EXPECT_FALSE(parts[1].material.has_value()) << "the body's";
+}
+
 TEST(SceneFile, TheDefaultMaterialCanBeDefined) {
   const Workspace workspace;
   const core::Scene scene = workspace.scene(

@@ -3,7 +3,9 @@
 #include <numbers>
 
 #include "import/imported.h"
+#include "import/sdf_writer.h"
 #include "import/stand_ins.h"
+#include "overseer/convex_hull.h"
 
 namespace aurasim::importing {
 namespace {
@@ -130,6 +132,38 @@ TEST(Scene, InstancesStandWhereTheyAreToldUnderNamesOfTheirOwn) {
   EXPECT_EQ(scene.joints.front().name, "left/foot");
   const core::Vec3 p = scene.bodies[3].pose.p_WB;
   EXPECT_LT(distance(scene.bodies[10].pose.p_WB, core::Vec3(-p.y(), p.x() + 5, p.z())), kAsTheLibrary);
+}
+
+/// A shank that slides, and a foot that grips.
+TEST(Scene, EachShapeOfABodyHasItsOwnSurface) {
+  const config::Workspace workspace;
+  const Model model = read_model(workspace.write("leg.xml", R"(<mujoco>
+  <worldbody>
+    <body name="leg" pos="0 0 1">
+      <freejoint/>
+      <geom name="shank" type="capsule" size="0.05 0.2" friction="0.04 0 0" mass="1"/>
+      <geom name="foot" type="sphere" size="0.06" pos="0 0 -0.25" friction="1.44 0 0" mass="0.2"/>
+      <geom name="knee" type="sphere" size="0.06" pos="0 0 0.25" friction="0.04 0 0" mass="0.2"/>
+    </body>
+  </worldbody>
+</mujoco>)"),
+                                 {});
+  EXPECT_TRUE(model.lost.empty());
+  const core::Scene scene = scene_of(model);
+  const core::Prototype& leg = scene.prototypes.at(0);
+  EXPECT_NEAR(scene.materials[leg.material].friction, 0.2, 1e-12) << "the root: of a pair it is the product";
+  const auto& parts = std::get<core::Compound>(scene.shapes[leg.shape].shape).parts;
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_FALSE(parts[0].material.has_value());
+  EXPECT_NEAR(scene.materials[parts[1].material.value()].friction, 1.2, 1e-12);
+  EXPECT_FALSE(parts[2].material.has_value()) << "as the body's";
+
+  const SdfText written = sdf_text(scene, {"leg"}, "leg.sdf", overseer::hull_triangles);
+  const Model back = read_model(workspace.write("leg.sdf", written.xml), {});
+  std::vector<double> frictions;
+  for (const Collision& collision : back.links.at(0).collisions) frictions.push_back(collision.surface.friction);
+  EXPECT_THAT(frictions, ::testing::ElementsAre(::testing::DoubleNear(0.04, 1e-12), ::testing::DoubleNear(1.44, 1e-12),
+                                                ::testing::DoubleNear(0.04, 1e-12)));
 }
 
 TEST(Scene, FrictionAndRestitutionOfTwoEqualSurfacesAreThoseOfTheFile) {

@@ -64,6 +64,10 @@ Kind hull_kind(double half_m, Chance& chance) {
   return {"hull", {{"convex_hull", {{"points", points}}}}, radius, -lowest};
 }
 
+constexpr std::uint32_t kMaterialCount = 4;
+
+std::string name_of_material(std::uint32_t i) { return fmt::format("m{}", i); }
+
 /// A part is small and stands off the origin.
 Json compound_part(double half_m, const Vec3& p, double& radius_m, Chance& chance) {
   using MakePart = Kind (*)(double, Chance&);
@@ -72,6 +76,7 @@ Json compound_part(double half_m, const Vec3& p, double& radius_m, Chance& chanc
   radius_m = std::max(radius_m, p.norm() + part.radius_m + 1e-4);
   Json json = part.shape;
   json["position"] = json_vec3(p);
+  if (chance.below(3) == 0) json["material"] = name_of_material(chance.below(kMaterialCount));
   if (chance.below(2) == 0) json["orientation"] = {{"rpy_deg", {rounded(chance.between(-180, 180)), 0, 90}}};
   return json;
 }
@@ -142,13 +147,12 @@ Kinds random_kinds(double half_m, double largest_m, Chance& chance) {
 }
 
 void add_kinds(const Kinds& kinds, Json& scene, Chance& chance) {
-  constexpr std::uint32_t kMaterials = 4;
-  for (std::uint32_t i = 0; i < kMaterials; ++i) scene["materials"][fmt::format("m{}", i)] = random_material(chance);
+  for (std::uint32_t i = 0; i < kMaterialCount; ++i) scene["materials"][name_of_material(i)] = random_material(chance);
   scene["materials"]["ground"] = random_material(chance);
   for (const Kind& kind : kinds.all) {
     scene["shapes"][kind.name] = kind.shape;
     Json prototype = {{"shape", kind.name}, {"mass", kind.mass_kg}};
-    prototype["material"] = fmt::format("m{}", chance.below(kMaterials));
+    prototype["material"] = name_of_material(chance.below(kMaterialCount));
     if (chance.below(5) == 0) prototype["can_sleep"] = false;
     scene["prototypes"][kind.name] = prototype;
   }

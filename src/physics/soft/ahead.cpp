@@ -8,13 +8,25 @@
 namespace aurasim::physics {
 namespace {
 
-using Hit = btCollisionWorld::ClosestConvexResultCallback;
+struct Hit : btCollisionWorld::ClosestConvexResultCallback {
+  using ClosestConvexResultCallback::ClosestConvexResultCallback;
+
+  btScalar addSingleResult(btCollisionWorld::LocalConvexResult& found, bool in_world) override {
+    part_of_cast = casts;
+    part_of_target = found.m_localShapeInfo != nullptr ? found.m_localShapeInfo->m_triangleIndex : -1;
+    return ClosestConvexResultCallback::addSingleResult(found, in_world);
+  }
+
+  int casts = -1;  ///< the part of a compound that is cast now
+  int part_of_cast = -1, part_of_target = -1;
+};
 
 void cast(const btCollisionShape& shape, const btTransform& from, const btVector3& way, const btCollisionObject& at,
           Hit& hit) {
   if (shape.isCompound()) {
     const auto& compound = static_cast<const btCompoundShape&>(shape);
     for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+      hit.casts = i;
       cast(*compound.getChildShape(i), from * compound.getChildTransform(i), way, at, hit);
     }
   } else if (shape.isConvex()) {
@@ -38,6 +50,7 @@ std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCol
     std::optional<SoftMeeting> turned_round = meeting_ahead(b, a, -way);
     if (turned_round) {
       std::swap(turned_round->r_a, turned_round->r_b);
+      std::swap(turned_round->part_a, turned_round->part_b);
       turned_round->normal = -turned_round->normal;
       turned_round->until = -turned_round->until;
     }
@@ -50,8 +63,12 @@ std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCol
   const btVector3 normal = -hit.m_hitNormalWorld.normalized();
   const btVector3 until = way * hit.m_closestHitFraction;
   if (!(until.dot(normal) > 0)) return std::nullopt;
-  return SoftMeeting{until, normal, hit.m_hitPointWorld - from.getOrigin() - until,
-                     hit.m_hitPointWorld - b.getWorldTransform().getOrigin()};
+  return SoftMeeting{until,
+                     normal,
+                     hit.m_hitPointWorld - from.getOrigin() - until,
+                     hit.m_hitPointWorld - b.getWorldTransform().getOrigin(),
+                     hit.part_of_cast,
+                     hit.part_of_target};
 }
 
 }  // namespace aurasim::physics

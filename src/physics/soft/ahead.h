@@ -10,9 +10,10 @@ class btCollisionObject;
 namespace aurasim::physics {
 
 struct SoftMeeting {
-  btVector3 until;     ///< of a as seen from b until they touch, m
-  btVector3 normal;    ///< there, from a to b
-  btVector3 r_a, r_b;  ///< of a point at which they touch, from the centres of mass, m
+  btVector3 until;               ///< of a as seen from b until they touch, m
+  btVector3 normal;              ///< there, from a to b
+  btVector3 r_a, r_b;            ///< of a point at which they touch, from the centres of mass, m
+  int part_a = -1, part_b = -1;  ///< of compounds: those that touch there
 };
 
 /// `way` of a as seen from b in the step, m. None if they pass each other, or touch now. Turns are not looked at.

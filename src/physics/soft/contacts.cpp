@@ -6,7 +6,6 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -14,6 +13,7 @@
 
 #include "physics/first_contacts.h"
 #include "physics/moving_static.h"
+#include "physics/part_surfaces.h"
 #include "physics/prefetch.h"
 #include "physics/soft/ahead.h"
 #include "physics/soft/convert.h"
@@ -236,8 +236,9 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     patch.a = a.getUserIndex(), patch.b = b.getUserIndex();
     soft::from_bullet(meeting.normal, patch.normal);
     set_belt(patch, a, b);
-    patch.friction = static_cast<Real>(btManifoldResult::calculateCombinedFriction(&a, &b));
-    patch.restitution = static_cast<Real>(btManifoldResult::calculateCombinedRestitution(&a, &b));
+    const Surface both = combined(surface_at(a, meeting.part_a), surface_at(b, meeting.part_b));
+    patch.friction = static_cast<Real>(both.friction);
+    patch.restitution = static_cast<Real>(both.restitution);
     patch.count = 1;
     soft::from_bullet(meeting.r_a, patch.points[0].r_a);
     soft::from_bullet(meeting.r_b, patch.points[0].r_b);
