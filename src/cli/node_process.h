@@ -179,6 +179,7 @@ class NodeProcess {
   void note_redo(const node::StepReport& report);
   void linger();
   bool all_have_left();
+  bool has_all_of_the_last_states();
   dds::RunCommand with_clock_of(core::RegionId region, dds::RunCommand command);
   void compare_clocks();
   void watch_the_clock();

@@ -77,7 +77,8 @@ void NodeProcess::linger() {
     }
     return running && !stop_requested() && Clock::now() < moved + kPatienceWithRunners;
   };
-  while (!(node_->ready_to_settle() && all_have_left()) && (Clock::now() < begin + kLinger || others_run())) {
+  while (!(node_->ready_to_settle() && all_have_left() && has_all_of_the_last_states()) &&
+         (Clock::now() < begin + kLinger || others_run())) {
     execute_commands();
     if (!all_have_left()) look_for_deaths();
     publish();
@@ -85,6 +86,14 @@ void NodeProcess::linger() {
   }
   const auto last_word = Clock::now();
   while (!control_.status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control_.wait(10ms);
+}
+
+/// Of those who have ended in a later state than this node, too: bodies may be on their way from there.
+bool NodeProcess::has_all_of_the_last_states() {
+  return std::ranges::all_of(control_.statuses(), [this](const auto& entry) {
+    const auto& [region, seen] = entry;
+    return !seen.has_ended() || node_->protocol().intake().has_all(region, seen.status.step);
+  });
 }
 
 /// Or have died, as far as anybody can tell: of whoever has come to the end the last word may be lost.

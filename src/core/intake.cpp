@@ -1,6 +1,7 @@
 #include "core/intake.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -182,8 +183,17 @@ Step Intake::needed_for(Step n) const {
 
 bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
   const Step needed = needed_for(n);
-  if (!neighbour.alive() || needed < settings_.start) return false;
-  return neighbour.received() < needed || !arrivals_.has_all_up_to(neighbour.id(), neighbour.hand_offs_until(needed));
+  return needed >= settings_.start && !has_all(neighbour, needed);
+}
+
+bool Intake::has_all(const Neighbour& neighbour, Step until) const {
+  return !neighbour.alive() ||
+         (neighbour.received() >= until && arrivals_.has_all_up_to(neighbour.id(), neighbour.hand_offs_until(until)));
+}
+
+bool Intake::has_all(RegionId region, Step until) const {
+  const Neighbour* const neighbour = find(region);
+  return neighbour == nullptr || has_all(*neighbour, until);
 }
 
 bool Intake::ready(Step n) const {
@@ -203,7 +213,7 @@ std::vector<RegionId> Intake::missing(Step n) const {
 /// are here, but never before the state that they describe.
 Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
-std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen) {
+std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen, Joining joining) {
   const Step limit = effect_limit(n);
   for (Neighbour& neighbour : neighbours_) {
     if (!neighbour.alive()) continue;
@@ -215,7 +225,7 @@ std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Se
       violations.add({ViolationKind::kLatency, n, neighbour.id(), {}, double(age), double(settings_.lookahead)});
     }
   }
-  adopt_due(limit, n, violations);
+  adopt_due(joining == Joining::kAll ? std::numeric_limits<Step>::max() : limit, n, violations);
   reclaim(n, violations);
   constexpr Step kEarlyMemory = 256;
   forget_early(n - kEarlyMemory);

@@ -44,6 +44,12 @@ struct IntakeCounters {
   std::uint64_t strangers = 0;  ///< messages of unknown, dead or differently configured senders
 };
 
+/// Who joins of those that have arrived.
+enum class Joining {
+  kInTime,  ///< who was handed over in a state that may take effect by now
+  kAll      ///< after the last state: where nodes do not wait for each other, a neighbour may have ended in a later one
+};
+
 class Intake {
  public:
   Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures);
@@ -57,7 +63,10 @@ class Intake {
   /// Lets messages take effect before state `n` is computed; who joins, in the order in which they join.
   /// `seen` is told of each batch that takes effect.
   using Seen = std::function<void(const Neighbour&)>;
-  std::vector<Adoption> receive(Step n, ViolationLog& violations, const Seen& seen = {});
+  std::vector<Adoption> receive(Step n, ViolationLog& violations, const Seen& seen = {},
+                                Joining joining = Joining::kInTime);
+  /// Is everything here that the neighbour has sent up to this state? True of a region that is no live neighbour.
+  bool has_all(RegionId region, Step until) const;
 
   std::span<const Neighbour> neighbours() const { return neighbours_; }
   std::vector<RegionId> dead_regions() const;
@@ -83,6 +92,7 @@ class Intake {
   Neighbour* find(RegionId id);
   const Neighbour* find(RegionId id) const;
   bool keeps_waiting(const Neighbour& neighbour, Step n) const;
+  bool has_all(const Neighbour& neighbour, Step until) const;
   template <class Message>
   bool belongs(const Message& message, std::uint64_t map_version);
   template <class Message>

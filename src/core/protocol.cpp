@@ -58,14 +58,15 @@ Continuation Protocol::continuation(const Order& redo, const RankClaimer& claime
   return next;
 }
 
-const Changes& Protocol::receive(Step n) {
+const Changes& Protocol::receive(Step n, Joining joining) {
   violations_.start_step();
   changes_.adoptions.clear();
   changes_.let_go.clear();
   const bool checks = aura_->rules().redo;
-  std::vector<Adoption> arrived = intake_.receive(n, violations_, [&](const Neighbour& neighbour) {
+  const auto seen = [&](const Neighbour& neighbour) {
     if (checks) check_.take(neighbour);
-  });
+  };
+  std::vector<Adoption> arrived = intake_.receive(n, violations_, seen, joining);
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   receive_violations();

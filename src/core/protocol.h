@@ -102,7 +102,7 @@ class Protocol {
   std::vector<RegionId> missing(Step n) const { return intake_.missing(n); }
 
   /// What changes before state `n` is computed. Valid until the next call.
-  const Changes& receive(Step n);
+  const Changes& receive(Step n, Joining joining = Joining::kInTime);
 
   /// Looks at a state and says who has to leave. Valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);

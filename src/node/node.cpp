@@ -119,7 +119,7 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
 
 const StepReport& Node::settle() {
   clear_report();
-  apply(protocol_->receive(current_step() + setup_.protocol.aura.lookahead));
+  apply(protocol_->receive(current_step() + setup_.protocol.aura.lookahead, core::Joining::kAll));
   note_effects_anew();
   return report_;
 }
@@ -208,13 +208,14 @@ void Node::apply(const core::Changes& changes) {
   }
 }
 
-/// `nth` of those that join for the next state.
+/// `nth` of those that join for the next state. After the last state they may be of a later one: they come as they are.
 void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
-  world_.adopt(adoption.cluster, adoption.stamp, [&](core::Step step, std::span<const core::BodyRecord> bodies) {
-    if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
-    if (is_observed_) report_.made_up.push_back({step, {bodies.begin(), bodies.end()}, {}});
-    protocol_->note_made_up(step, nth, bodies);
-  });
+  world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
+               [&](core::Step step, std::span<const core::BodyRecord> bodies) {
+                 if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
+                 if (is_observed_) report_.made_up.push_back({step, {bodies.begin(), bodies.end()}, {}});
+                 protocol_->note_made_up(step, nth, bodies);
+               });
   note_made_up_contacts();
   note_arrivals(adoption);
 }

@@ -78,11 +78,18 @@ Outcome ClusterSim::run(Step steps) {
     return std::any_of(members_.begin(), members_.end(),
                        [&](const Member& m) { return m.alive && !has_done(*m.node, steps); });
   };
-  for (double t = 0; behind(); t += slice) {
+  double t = 0;
+  for (; behind(); t += slice) {
     if (t > 60 * static_cast<double>(steps) * options_.aura.step_s + 60)
       throw std::runtime_error("the cluster stands still");
     network_->advance_to(t);
     for (Member& member : members_) step_if_due(member, steps);
+  }
+  for (const double end = t + static_cast<double>(options_.overrun + 1) * options_.aura.step_s; t < end; t += slice) {
+    network_->advance_to(t);
+    for (Member& member : members_) {
+      if (member.node->region() != RegionId{0}) step_if_due(member, steps + options_.overrun);
+    }
   }
   settle();
   for (Member& member : members_) {

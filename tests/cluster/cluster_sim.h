@@ -45,6 +45,7 @@ struct ClusterOptions {
   core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often
   std::optional<Crash> crash;
   std::optional<LinkCut> cut;
+  core::Step overrun = 0;  ///< region 0 ends in the last state; the others go so many on, if they need not wait for it
   std::vector<core::Setpoints> recorded;  ///< of an earlier run
   std::vector<std::pair<core::Step, core::Action>>
       orders;                  ///< given to region 0 before state 0, by the state they name

@@ -1,5 +1,6 @@
 // The promises of docs/design.md ("Who leaves", "Exactly once", "The same bits"), on whole simulated clusters.
 #include <iostream>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,31 @@ TEST_P(ClusterTest, InBoundedModeNothingIsLostDoubledOrLate) {
   }
   EXPECT_GT(hand_offs, static_cast<std::uint64_t>(seeds()));
   std::cout << seeds() << " seeds, " << hand_offs << " hand-offs\n";
+}
+
+/// As when a run is stopped and some nodes hear of it when they are past its last state.
+TEST_P(ClusterTest, WhoEndsFirstTakesInWhatComesFromLaterStates) {
+  std::size_t from_later_states = 0;
+  for (int seed = 1; seed <= 4 * seeds(); ++seed) {
+    const core::Scene scene = scene_for(layout_, seed);
+    const core::Step last = 20 + seed;  // while they fly
+    ClusterOptions options = options_for(layout_, seed);
+    options.sync = seed % 2 == 0 ? SyncMode::kBounded : SyncMode::kFreeRunning;
+    options.overrun = 5;
+    ClusterSim sim(scene, options);
+    const Outcome o = sim.run(last);
+    EXPECT_EQ(o.lost + o.doubled, 0u) << describe(seed, o);
+    std::set<core::BodyId> hosted;
+    for (std::uint32_t region = 0; region < layout_.map.size(); ++region) {
+      for (const core::BodyState& body : sim.node(region).world().snapshot().bodies) hosted.insert(body.id);
+    }
+    for (const node::HandOffRow& row : sim.moves) {
+      EXPECT_TRUE(hosted.contains(row.body)) << "seed " << seed << " body " << core::value_of(row.body);
+      from_later_states += row.stamp > last && row.destination == RegionId{0};
+    }
+  }
+  EXPECT_GT(from_later_states, 0u) << "or this test proves nothing";
+  std::cout << from_later_states << " bodies handed over in later states than the last one\n";
 }
 
 TEST_P(ClusterTest, WhenANodeDiesOnlyItsOwnBodiesAreGone) {

@@ -112,14 +112,14 @@ void SystemTest::expect_exit(Process& process, int code, Clock::duration time_ou
   EXPECT_EQ(*found, code) << process.said();
 }
 
-void SystemTest::expect_reaches(const Report& report, int regions, std::int64_t step) const {
+void SystemTest::expect_reaches(const Report& report, int regions, std::int64_t step, Clock::duration time_out) const {
   const auto all_there = [&] {
     for (int region = 0; region < regions; ++region) {
       if (report.recorded_step(region) < step) return false;
     }
     return true;
   };
-  ASSERT_TRUE(wait_until(all_there, kGenerous)) << "step " << step << " of " << report.folder();
+  ASSERT_TRUE(wait_until(all_there, time_out)) << "step " << step << " of " << report.folder();
 }
 
 void SystemTest::expect_all_bodies_accounted_for(const Report& report) const {

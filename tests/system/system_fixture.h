@@ -56,7 +56,7 @@ class SystemTest : public ::testing::Test {
 
   void expect_exit(Process& process, int code, Clock::duration time_out = kGenerous) const;
   /// Waits until every node of a run has written down this step.
-  void expect_reaches(const Report& report, int regions, std::int64_t step) const;
+  void expect_reaches(const Report& report, int regions, std::int64_t step, Clock::duration time_out = kGenerous) const;
   /// No body is lost, and none is there twice.
   void expect_all_bodies_accounted_for(const Report& report) const;
   void expect_nobody_left(Clock::duration time_out) const;
