@@ -64,13 +64,15 @@ class Steering(WorldTest):
         stood = first.step(3)
         self.assertEqual(second.bodies().step, stood.step)
         self.assertEqual(second.step(2).step, stood.step + 2)
+        self.assertTrue(wait_until(lambda: first.bodies().step == stood.step + 2))  # it hears of it, too
         self.assertEqual(first.step().step, stood.step + 3)
 
     def test_no_client_sees_the_middle_of_a_short_step(self):
         first = self.launch()
         second = self.connect()
         for _ in range(5):
-            before = second.bodies().step
+            before = first.bodies().step
+            self.assertTrue(wait_until(lambda: second.bodies().step == before))
             stepping = threading.Thread(target=first.step, args=(40,))
             stepping.start()
             seen = []
