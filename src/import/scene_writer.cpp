@@ -115,6 +115,7 @@ class SceneWriter {
 
   void write_prototypes() {
     if (!has(false)) return;
+    ShapeWriter writer(out_, materials());
     out_ << YAML::Key << "prototypes" << YAML::Value << YAML::BeginMap;
     for (const Link& link : model_.links) {
       if (link.is_static) continue;
@@ -125,7 +126,6 @@ class SceneWriter {
       if (!link.collisions.empty())
         out_ << YAML::Key << "material" << YAML::Value << material_of(link.collisions.front());
       out_ << YAML::Key << "shape" << YAML::Value << YAML::BeginMap;
-      ShapeWriter writer(out_, materials());
       std::visit(writer, shape_with_materials(link));
       out_ << YAML::EndMap << YAML::EndMap;
     }

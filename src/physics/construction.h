@@ -5,6 +5,7 @@
 
 #include "core/scene.h"
 #include "physics/bullet_convert.h"
+#include "physics/part_surfaces.h"
 
 namespace aurasim::physics {
 
@@ -13,10 +14,11 @@ inline btRigidBody::btRigidBodyConstructionInfo construction_of(double mass, btC
                                                                 const core::Material& material) {
   const auto scalar = [](double x) { return static_cast<btScalar>(x); };
   btRigidBody::btRigidBodyConstructionInfo info(scalar(mass), nullptr, shape, to_bullet(inertia));
-  info.m_friction = scalar(material.friction);
-  info.m_rollingFriction = scalar(material.rolling_friction);
-  info.m_spinningFriction = scalar(material.spinning_friction);
-  info.m_restitution = scalar(material.restitution);
+  const Surface surface = surface_of(material);
+  info.m_friction = surface.friction;
+  info.m_rollingFriction = surface.rolling_friction;
+  info.m_spinningFriction = surface.spinning_friction;
+  info.m_restitution = surface.restitution;
   info.m_linearDamping = scalar(material.linear_damping);
   info.m_angularDamping = scalar(material.angular_damping);
   return info;

@@ -1,6 +1,7 @@
 #include "physics/part_surfaces.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -45,19 +46,19 @@ Surface combined(const Surface& a, const Surface& b) {
           a.restitution * b.restitution};
 }
 
-std::optional<PartSurfaces> part_surfaces_of(const core::Compound& compound, const core::Scene& scene) {
+std::unique_ptr<const PartSurfaces> part_surfaces_of(const core::Compound& compound, const core::Scene& scene) {
   const auto has_own = [](const core::CompoundPart& part) { return part.material.has_value(); };
-  if (std::ranges::none_of(compound.parts, has_own)) return std::nullopt;
+  if (std::ranges::none_of(compound.parts, has_own)) return nullptr;
   PartSurfaces surfaces;
   for (const core::CompoundPart& part : compound.parts) {
     std::optional<Surface>& surface = surfaces.emplace_back();
     if (part.material) surface = surface_of(scene.materials.at(*part.material));
   }
-  return surfaces;
+  return std::make_unique<const PartSurfaces>(std::move(surfaces));
 }
 
-void set_part_surfaces(btCompoundShape& shape, const PartSurfaces& surfaces) {
-  shape.setUserPointer(const_cast<PartSurfaces*>(&surfaces));  // read only: surfaces_of()
+void set_part_surfaces(btCompoundShape& shape, const PartSurfaces* surfaces) {
+  shape.setUserPointer(const_cast<PartSurfaces*>(surfaces));  // read only: surfaces_of()
 }
 
 void use_part_surfaces(btCollisionObject& object) {

@@ -2,6 +2,7 @@
 // two whole bodies; where a new point touches such a body, it is told what the two parts have.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,11 +31,11 @@ Surface combined(const Surface& a, const Surface& b);
 /// By part of a compound; nothing: the body's.
 using PartSurfaces = std::vector<std::optional<Surface>>;
 
-/// Nothing: no part has a material of its own.
-std::optional<PartSurfaces> part_surfaces_of(const core::Compound& compound, const core::Scene& scene);
+/// Null: no part has a material of its own.
+std::unique_ptr<const PartSurfaces> part_surfaces_of(const core::Compound& compound, const core::Scene& scene);
 
-/// `surfaces` outlives the shape.
-void set_part_surfaces(btCompoundShape& shape, const PartSurfaces& surfaces);
+/// `surfaces` outlive the shape. Null: it has none.
+void set_part_surfaces(btCompoundShape& shape, const PartSurfaces* surfaces);
 
 /// For objects of which parts have surfaces of their own: its new points of contact have them from now on.
 void use_part_surfaces(btCollisionObject& object);

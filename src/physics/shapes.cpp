@@ -123,10 +123,8 @@ struct ShapeSet::Built::Make {
       built.parts.push_back(make_convex(part.shape, Margin::kInside));
       compound->addChildShape(to_bullet(part.pose), built.parts.back().get());
     }
-    if (std::optional<PartSurfaces> own = part_surfaces_of(s, scene)) {
-      built.surfaces = std::make_unique<const PartSurfaces>(*std::move(own));
-      set_part_surfaces(*compound, *built.surfaces);
-    }
+    built.surfaces = part_surfaces_of(s, scene);
+    set_part_surfaces(*compound, built.surfaces.get());
     built.shape = std::move(compound);
     return built;
   }

@@ -85,7 +85,7 @@ Outcome ClusterSim::run(Step steps) {
     network_->advance_to(t);
     for (Member& member : members_) step_if_due(member, steps);
   }
-  for (const double end = t + static_cast<double>(options_.overrun + 1) * options_.aura.step_s; t < end; t += slice) {
+  for (const double end = t + static_cast<double>(2 * options_.overrun) * options_.aura.step_s; t < end; t += slice) {
     network_->advance_to(t);
     for (Member& member : members_) {
       if (member.node->region() != RegionId{0}) step_if_due(member, steps + options_.overrun);

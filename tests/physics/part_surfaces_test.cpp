@@ -113,7 +113,7 @@ TEST_P(PartSurfaces, RollingIsSlowedByThePartThatRolls) {
   EXPECT_NEAR(rolls(), 2 - 9.81 * lever / 0.5 / inertia, 0.05);
 }
 
-/// In another order, and each for itself: what touches is a matter of the two parts alone.
+/// What touches is a matter of the two parts alone.
 TEST_P(PartSurfaces, ManyBodiesAreAsEachAlone) {
   const core::Scene scene = scene_of_parts(two_slabs(kIce, kRubber));
   const auto records_of = [&scene](const std::vector<core::BodyRecord>& bodies) {
