@@ -261,32 +261,7 @@ class Checker {
     }
     claim.last = base - 1;
     findings_.claims.push_back(claim);
-    WireCursor bits = body;
-    if (Result refused = check_bits(body)) return refused;
-    split_bits(bits, claim, base);
-    return kFine;
-  }
-
-  /// Fast DDS forgets an unfinished sample that a gap's range names, but not one that its bits name: when it comes to
-  /// it, it takes it for whole and ends itself (StatefulReader.cpp, processGapMsg). So all bits are said as ranges.
-  void split_bits(WireCursor bits, Claim claim, std::uint64_t base) {
-    claim.from_bits = true;
-    const std::size_t at = bits.at();
-    const std::uint32_t count = bits.u32();
-    std::uint32_t word = 0;
-    std::optional<std::uint64_t> begin;
-    for (std::uint32_t i = 0; i <= count; ++i) {
-      if (i < count && i % 32 == 0) word = bits.u32();
-      const bool set = i < count && (word >> (31 - i % 32) & 1) != 0;
-      if (set && !begin) begin = base + i;
-      if (!set && begin) {
-        claim.first = *begin;
-        claim.last = base + i - 1;
-        findings_.claims.push_back(claim);
-        begin.reset();
-        if (findings_.hidden_bits.empty() || findings_.hidden_bits.back() != at) findings_.hidden_bits.push_back(at);
-      }
-    }
+    return check_bits(body);
   }
 
   Result check_data(WireCursor& body) {
@@ -294,22 +269,29 @@ class Checker {
     if ((flags_ & kDataFlag) != 0 && (flags_ & kKeyFlag) != 0) return Refusal::kPayload;
     body.skip(2);
     const std::uint16_t to_inline_qos = body.u16();
-    body.skip(4);
+    const std::uint32_t reader = body.entity();
     const std::uint32_t writer = body.entity();
     const std::uint64_t sequence = body.sequence_number();
     if (body.failed() || to_inline_qos != 16) return Refusal::kLength;
     if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
+    const bool has_payload = (flags_ & kDataFlag) != 0;
+    const bool is_of_run = !is_built_in(writer);
     ListFindings list;
     if ((flags_ & kInlineQosFlag) != 0) {
-      if (Result refused = check_parameters(body, ListKind::kInlineQos, list, findings_)) return refused;
+      const ListKind kind = is_of_run && has_payload ? ListKind::kInlineQosOfSamples : ListKind::kInlineQos;
+      if (Result refused = check_parameters(body, kind, list, findings_)) return refused;
     }
-    if ((flags_ & (kDataFlag | kKeyFlag)) != 0 && body.left() == 0) return Refusal::kPayload;
-    if (!is_built_in(writer)) {
+    if ((has_payload || (flags_ & kKeyFlag) != 0) && body.left() == 0) return Refusal::kPayload;
+    if (is_of_run) {
       Claim claim = claim_of(Claim::Kind::kData, writer);
+      claim.reader = reader;
       claim.first = claim.last = sequence;
+      claim.has_payload = has_payload;
       findings_.claims.push_back(claim);
+      // The guard says it as a gap.
+      if (!has_payload) findings_.hide_submessage(begin_, last_);
     }
-    if ((flags_ & kDataFlag) != 0) return check_payload(writer, body, destination_, findings_);
+    if (has_payload) return check_payload(writer, body, destination_, findings_);
     add_gone(writer, list, destination_, findings_);
     return kFine;
   }
@@ -332,23 +314,21 @@ class Checker {
     if ((flags_ & kKeyFlag) != 0) return Refusal::kPayload;
     if ((flags_ & kInlineQosFlag) != 0) {
       ListFindings list;
-      if (Result refused = check_parameters(body, ListKind::kInlineQosOfFragments, list, findings_)) return refused;
+      if (Result refused = check_parameters(body, ListKind::kInlineQosOfSamples, list, findings_)) return refused;
     }
     claim.payload = body.at();
     claim.payload_B = body.left();
     claim.timestamp = timestamp_;
     if (!fragments_fit(claim)) return Refusal::kFragment;
-    // Fast DDS sees it in one piece (datagram_guard.h), once that has been looked at.
-    if (is_built_in(claim.guid.entity)) findings_.hide_submessage(begin_, last_);
+    // Fast DDS sees the sample in one piece (datagram_guard.h).
+    findings_.hide_submessage(begin_, last_);
     findings_.claims.push_back(claim);
     return kFine;
   }
 
-  /// Fast DDS keeps its list of missing fragments in the sample, one number at each one's begin: they must be larger
-  /// than that, and begin at multiples of it.
   static bool fragments_fit(const Claim& claim) {
     if (claim.sample_B < 1 || claim.sample_B > kLargestSample_B) return false;
-    if (claim.fragment_B < kSmallestFragment_B || claim.fragment_B % 4 != 0) return false;
+    if (claim.fragment_B < kSmallestFragment_B) return false;
     const std::uint32_t all = (claim.sample_B + claim.fragment_B - 1) / claim.fragment_B;
     if (claim.first_fragment < 1 || claim.first_fragment > all || claim.fragments < 1) return false;
     if (claim.fragments > all - (claim.first_fragment - 1)) return false;

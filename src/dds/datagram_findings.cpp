@@ -29,7 +29,6 @@ void Findings::clear() {
   requests.clear();
   hidden_parameters.clear();
   hidden_submessages.clear();
-  hidden_bits.clear();
   acknowledgements.clear();
 }
 
@@ -64,7 +63,6 @@ void Findings::hide(std::span<std::uint8_t> bytes) const {
   for (const std::size_t at : hidden_parameters) bytes[at] = bytes[at + 1] = 0;
   for (const std::size_t at : hidden_submessages) bytes[at] = 0x01;
   for (const Acknowledgement& one : acknowledgements) one.write_over(bytes.subspan(one.at));
-  for (const std::size_t at : hidden_bits) std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), 4, 0);
 }
 
 }  // namespace aurasim::dds

@@ -52,11 +52,11 @@ struct Claim {
   std::uint64_t first = 0;   ///< sequence number: of a sample, of a heartbeat's range, of a gap
   std::uint64_t last = 0;    ///< sequence number: of a heartbeat's range, of a gap; first - 1: it has none
   std::uint32_t reader = 0;  ///< whom it is for; 0: all
-  bool from_bits = false;    ///< a gap that must be said in a submessage of its own
+  bool has_payload = true;   ///< of a sample; one without says that its instance has ended
   std::uint32_t sample_B = 0, fragment_B = 0;
   std::uint32_t first_fragment = 0, fragments = 0;  ///< from 1
   double lease_s = 0;                               ///< of a participant
-  std::size_t payload = 0, payload_B = 0;           ///< where in the datagram fragments of discovery are
+  std::size_t payload = 0, payload_B = 0;           ///< where in the datagram fragments are
   std::optional<std::uint64_t> timestamp;           ///< of fragments: seconds, and in 32 bits their fraction
 };
 
@@ -80,7 +80,6 @@ struct Findings {
   std::vector<Request> requests;
   std::vector<std::size_t> hidden_parameters;   ///< offsets of parameter ids that Fast DDS must not act on
   std::vector<std::size_t> hidden_submessages;  ///< offsets of submessage ids, likewise
-  std::vector<std::size_t> hidden_bits;         ///< offsets of the numbers of a gap's bits
   struct Acknowledgement {
     std::size_t at = 0;  ///< where an acknowledgement's submessage begins
     std::uint64_t base = 0;
@@ -90,8 +89,7 @@ struct Findings {
   void clear();
   /// That begins at `at`.
   void hide_submessage(std::size_t at, bool goes_to_end);
-  /// Makes the first two padding, and the bits none; acknowledgements want nothing. `bytes` is the datagram that was
-  /// checked.
+  /// Makes the first two padding; acknowledgements want nothing. `bytes` is the datagram that was checked.
   void hide(std::span<std::uint8_t> bytes) const;
 };
 

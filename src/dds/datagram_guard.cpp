@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "dds/datagram_check.h"
-#include "dds/made_datagrams.h"
 
 namespace aurasim::dds {
 
@@ -50,23 +49,22 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
     if (claim.kind == Claim::Kind::kFragments) {
       if (const auto refused = judge_whole(claim, bytes, source, now, admitted)) return refused;
     }
-    if (claim.from_bits) admitted.before.push_back(datagram_of_gap(claim, bytes));
+    if (!claim.has_payload) admitted.before.push_back(datagram_of_gap(claim, bytes));
   }
   return std::nullopt;
 }
 
-/// Discovery in fragments: Fast DDS sees none of them, but what they are together. So nothing of it is there that
-/// nobody could look at, and what has to be hidden can be.
+/// Fast DDS sees no fragments, but what they are together. So of discovery nothing is there that nobody could look at,
+/// and what has to be hidden can be.
 std::optional<Refusal> DatagramGuard::judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes,
                                                   Source source, Time now, Admitted& admitted) {
-  const auto payload = peers_.take_whole(claim);
-  if (!payload) return std::nullopt;
-  auto whole = datagram_of_data(claim, bytes, *payload);
+  auto whole = peers_.take_whole(claim, bytes);
+  if (!whole) return std::nullopt;
   Findings findings;
-  if (const auto malformed = check_datagram(whole, findings)) return malformed;
-  if (const auto refused = judge(findings, whole, source, now, admitted)) return refused;
-  findings.hide(whole);
-  admitted.before.push_back(std::move(whole));
+  if (const auto malformed = check_datagram(whole->bytes(), findings)) return malformed;
+  if (const auto refused = judge(findings, whole->bytes(), source, now, admitted)) return refused;
+  findings.hide(whole->bytes());
+  admitted.before.push_back(std::move(*whole));
   return std::nullopt;
 }
 
@@ -114,9 +112,10 @@ void DatagramGuard::remove_writer_of_nodes(std::uint32_t writer) {
   repeats_.remove_writer_of_nodes(writer);
 }
 
-void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
+std::optional<std::vector<std::uint8_t>> DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
   const std::lock_guard lock(mutex_);
   repeats_.note_sent(bytes);
+  return fragment_requests_.put_into(bytes, peers_);
 }
 
 std::vector<std::pair<GuidPrefix, Repeats::Answer>> DatagramGuard::take_new_askers() {

@@ -1,5 +1,6 @@
 // Stands between the sockets and Fast DDS: lets through what datagram_check.h and peer_book.h allow, and counts the
-// rest. Knows nothing of Fast DDS; wire_transport.h puts it to work.
+// rest. Knows nothing of Fast DDS; wire_transport.h puts it to work. Fast DDS never sees a part of a sample, nor that
+// an instance has ended: of both it forgets too late or too early, and ends the process (DataReaderHistory.cpp:822).
 #pragma once
 
 #include <array>
@@ -14,7 +15,9 @@
 
 #include "dds/datagram_findings.h"
 #include "dds/delivery.h"
+#include "dds/fragment_requests.h"
 #include "dds/guard_report.h"
+#include "dds/made_datagrams.h"
 #include "dds/peer_book.h"
 #include "dds/repeats.h"
 #include "dds/source_limits.h"
@@ -48,7 +51,7 @@ class DatagramGuard {
 
   struct Admitted {
     /// Datagrams that Fast DDS is to see first: what is better said otherwise.
-    std::vector<std::vector<std::uint8_t>> before;
+    std::vector<MadeDatagram> before;
     std::size_t size = 0;  ///< of the datagram's begin, that Fast DDS may see; 0: nothing
     /// Fast DDS 2.9.1 must not see another one like it meanwhile, on another socket: what it keeps of whom it meets
     /// passes through variables that all threads share (SecurityManager's temporaries; mended in 2.9.2, #3373). Of two
@@ -58,8 +61,8 @@ class DatagramGuard {
   /// Changes `bytes`: what Fast DDS must not act on becomes padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
   Delivery& delivery() { return delivery_; }
-  /// What this process sends.
-  void note_sent(std::span<const std::uint8_t> bytes);
+  /// What this process is about to send, as it is to be sent; nothing: as it is.
+  std::optional<std::vector<std::uint8_t>> note_sent(std::span<const std::uint8_t> bytes);
 
   GuardReport report() const;
   /// Sources of which something was refused for the first time since the last call.
@@ -80,6 +83,7 @@ class DatagramGuard {
   std::optional<GuidPrefix> own_;
   SourceLimits rates_;
   PeerBook peers_;
+  FragmentRequests fragment_requests_;
   Repeats repeats_;
   Repeats::Prefixes shunned_;
   GuardReport::Counts refused_{};

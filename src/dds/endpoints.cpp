@@ -148,6 +148,8 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
+  // Whatever a profile says, none: guarded_type.h. Of one the other must be none, too.
+  qos.resource_limits().max_instances = qos.resource_limits().max_samples = 0;
   if (spec.best_effort_if_volatile && qos.durability().kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS) {
     qos.reliability().kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
   }

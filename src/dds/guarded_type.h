@@ -2,9 +2,13 @@
 // and ends the process, and getKey() writes one buffer from several threads.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <set>
+#include <utility>
 
 #include <fastdds/rtps/common/InstanceHandle.h>
 #include <fastdds/rtps/common/SerializedPayload.h>
@@ -13,6 +17,11 @@ namespace aurasim::dds {
 
 /// Larger samples are refused. Far above the hand-off of a whole scene (10,000 bodies with contacts: some 20 MB).
 inline constexpr std::uint32_t kMaxPayloadBytes = 256U << 20;
+
+/// Readers keep something of every key that they have met, and may forget none of which samples are still to come: a
+/// limit of theirs would end the process (DataReaderHistory.cpp, find_key). What comes with more keys than these shares
+/// one.
+inline constexpr std::size_t kMostKeys = 4096;
 
 /// A sample whose bytes are not the type reads as version 0 (the codec calls it malformed). It cannot just be refused
 /// here: the reader would ask its writer for it again for ever.
@@ -35,7 +44,14 @@ class GuardedType final : public Generated {
 
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override {
     const std::lock_guard lock(key_mutex_);
-    return Generated::getKey(data, handle, force_md5);
+    if (!Generated::getKey(data, handle, force_md5)) return false;
+    Key key;
+    std::copy_n(static_cast<const eprosima::fastrtps::rtps::octet*>(std::as_const(handle->value)), key.size(),
+                key.begin());
+    if (keys_.size() < kMostKeys) keys_.insert(key);
+    if (!keys_.contains(key))
+      std::fill_n(static_cast<eprosima::fastrtps::rtps::octet*>(handle->value), key.size(), 0xff);
+    return true;
   }
 
  private:
@@ -50,7 +66,10 @@ class GuardedType final : public Generated {
     }
   }
 
+  using Key = std::array<std::uint8_t, 16>;
+
   std::mutex key_mutex_;
+  std::set<Key> keys_;
 };
 
 }  // namespace aurasim::dds

@@ -1,6 +1,7 @@
 #include "dds/made_datagrams.h"
 
 #include <array>
+#include <vector>
 
 namespace aurasim::dds {
 namespace {
@@ -42,8 +43,7 @@ Bytes begin_of(const Claim& claim, std::span<const std::uint8_t> header) {
 
 }  // namespace
 
-std::vector<std::uint8_t> datagram_of_data(const Claim& claim, std::span<const std::uint8_t> header,
-                                           std::span<const std::uint8_t> payload) {
+void make_data(MadeDatagram& sample, const Claim& claim, std::span<const std::uint8_t> header) {
   Bytes bytes = begin_of(claim, header);
   if (claim.timestamp) {  // Fast DDS puts samples in order by it
     append(bytes, std::array<std::uint8_t, 4>{0x09, 1, 8, 0});
@@ -53,11 +53,10 @@ std::vector<std::uint8_t> datagram_of_data(const Claim& claim, std::span<const s
   append_entity(bytes, claim.reader);
   append_entity(bytes, claim.guid.entity);
   append_number_pair(bytes, claim.first);
-  append(bytes, payload);
-  return bytes;
+  sample.put_in_front(bytes);
 }
 
-std::vector<std::uint8_t> datagram_of_gap(const Claim& claim, std::span<const std::uint8_t> header) {
+MadeDatagram datagram_of_gap(const Claim& claim, std::span<const std::uint8_t> header) {
   Bytes bytes = begin_of(claim, header);
   append(bytes, std::array<std::uint8_t, 4>{0x08, 1, 28, 0});
   append_entity(bytes, claim.reader);
@@ -65,7 +64,9 @@ std::vector<std::uint8_t> datagram_of_gap(const Claim& claim, std::span<const st
   append_number_pair(bytes, claim.first);
   append_number_pair(bytes, claim.last + 1);
   append_number(bytes, 0);
-  return bytes;
+  MadeDatagram gap(0);
+  gap.put_in_front(bytes);
+  return gap;
 }
 
 }  // namespace aurasim::dds

@@ -158,10 +158,9 @@ bool is_hidden(std::uint16_t pid, ListKind kind) {
     case kContentFilter:
     case kDataSharing:
       return kind == ListKind::kEndpoint;
-    // With its key known a sample enters the reader's history at its first fragment, and what then ends it early (a
-    // gap, a newer one) leaves a pointer there (DataReaderHistory.cpp:822). Without, it is taken in when it is whole.
+    // The key is computed from the sample: guarded_type.h bounds how many there are.
     case kKeyHash:
-      return kind == ListKind::kInlineQosOfFragments;
+      return kind == ListKind::kInlineQosOfSamples;
     default:
       return false;
   }
@@ -284,7 +283,7 @@ bool is_data_holder(WireCursor& cursor) {
 }
 
 std::optional<Refusal> check_parameters(WireCursor& cursor, ListKind kind, ListFindings& list, Findings& findings) {
-  const bool inline_qos = kind == ListKind::kInlineQos || kind == ListKind::kInlineQosOfFragments;
+  const bool inline_qos = kind == ListKind::kInlineQos || kind == ListKind::kInlineQosOfSamples;
   std::size_t locators = 0;
   for (;;) {
     const std::size_t at = cursor.at();

@@ -9,7 +9,7 @@
 
 namespace aurasim::dds {
 
-enum class ListKind : std::uint8_t { kInlineQos, kInlineQosOfFragments, kParticipant, kEndpoint };
+enum class ListKind : std::uint8_t { kInlineQos, kInlineQosOfSamples, kParticipant, kEndpoint };
 
 /// What a list says of its subject.
 struct ListFindings {

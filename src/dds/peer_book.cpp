@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 /// Fast DDS forgets a silent participant after its lease; this book never before it.
 constexpr TokenBucket::Time kLonger = 10s;
-/// Samples of one writer that are told apart; an older one counts as new when more of it comes.
+/// Unfinished ones of one writer.
 constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;
 constexpr std::size_t kMostStrangers = 64;
@@ -29,24 +29,26 @@ std::optional<Refusal> PeerBook::judge(const Claim& claim, std::span<const std::
   const auto it = peers_.find(claim.guid.prefix);
   if (it == peers_.end()) {  // Fast DDS does not know it either
     const bool announces = claim.kind == Claim::Kind::kFragments && claim.guid.entity == kParticipantWriter;
-    return announces ? take_stranger(claim, datagram) : std::nullopt;
+    return announces ? take_stranger(claim, datagram, now) : std::nullopt;
   }
   Peer& peer = it->second;
   if (claim.kind == Claim::Kind::kEndpoint) return take_endpoint(peer, claim);
   if (claim.kind == Claim::Kind::kEndpointGone) {
     const auto gone = peer.endpoints.find(claim.guid.entity);
     if (gone != peer.endpoints.end() && !is_built_in(claim.guid.entity)) {
-      for (const auto& [sequence, sample] : gone->second.samples) forget(peer, sample);
+      forget_samples(peer, gone->second, 0, 0, kLargestSequenceNumber + 1);
       peer.endpoints.erase(gone);
     }
     return std::nullopt;
   }
   Endpoint* writer = endpoint_of(peer, claim.guid.entity);
   if (writer == nullptr) return Refusal::kTooMany;
-  if (claim.kind == Claim::Kind::kData) return take_data(*writer, claim);
+  if (claim.kind == Claim::Kind::kData) {
+    return is_far_ahead(*writer, claim) ? std::optional(Refusal::kJump) : std::nullopt;
+  }
   if (claim.kind == Claim::Kind::kHeartbeat) return take_heartbeat(peer, *writer, claim, source, rates, now);
   if (claim.kind == Claim::Kind::kGap) return take_gap(peer, *writer, claim, source, rates, now);
-  return take_fragments(peer, *writer, claim, datagram);
+  return take_fragments(peer, *writer, claim, datagram, now);
 }
 
 std::optional<Refusal> PeerBook::take_participant(const Claim& claim, Source source, Time now) {
@@ -82,11 +84,10 @@ std::optional<Refusal> PeerBook::take_endpoint(Peer& peer, const Claim& claim) {
 PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   if (const auto it = peer.endpoints.find(entity); it != peer.endpoints.end()) return &it->second;
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) {
-    std::erase_if(peer.endpoints, [&](const auto& entry) {
-      if (entry.second.announced) return false;
-      for (const auto& [sequence, sample] : entry.second.samples) forget(peer, sample);
-      return true;
-    });
+    for (auto it = peer.endpoints.begin(); it != peer.endpoints.end();) {
+      if (!it->second.announced) forget_samples(peer, it->second, 0, 0, kLargestSequenceNumber + 1);
+      it = it->second.announced ? std::next(it) : peer.endpoints.erase(it);
+    }
   }
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) return nullptr;
   return &peer.endpoints[entity];
@@ -99,13 +100,6 @@ bool PeerBook::is_far_ahead(Endpoint& writer, const Claim& claim) const {
   if (claim.first > reached + limits_.farthest_ahead) return true;
   writer.highest = std::max(writer.highest, claim.first);
   return false;
-}
-
-/// Two of one number, one of them unfinished: Fast DDS takes either for whole, and may end itself.
-std::optional<Refusal> PeerBook::take_data(Endpoint& writer, const Claim& claim) const {
-  const auto unfinished = writer.samples.find(claim.first);
-  if (unfinished != writer.samples.end() && unfinished->second.missing > 0) return Refusal::kFragment;
-  return is_far_ahead(writer, claim) ? std::optional(Refusal::kJump) : std::nullopt;
 }
 
 /// Fast DDS counts from the number that it has last told of to the heartbeat's first, with its reader locked; if there
@@ -137,102 +131,123 @@ std::optional<Refusal> PeerBook::take_gap(Peer& peer, Endpoint& writer, const Cl
   return std::nullopt;
 }
 
-PeerBook::Sample::Sample(const Claim& first)
-    : sample_B(first.sample_B),
-      fragment_B(first.fragment_B),
-      missing((first.sample_B + first.fragment_B - 1) / first.fragment_B),
+PeerBook::Sample::Sample(const Claim& claim)
+    : first(claim),
+      missing((claim.sample_B + claim.fragment_B - 1) / claim.fragment_B),
       here(missing),
-      reader(first.reader),
-      bytes(is_built_in(first.guid.entity) ? first.sample_B : 0) {}
+      datagram(claim.sample_B) {}
 
 bool PeerBook::Sample::is_like(const Claim& claim) const {
-  return sample_B == claim.sample_B && fragment_B == claim.fragment_B;
+  return first.sample_B == claim.sample_B && first.fragment_B == claim.fragment_B;
 }
 
-void PeerBook::Sample::take(const Claim& claim, std::span<const std::uint8_t> datagram) {
+void PeerBook::Sample::take(const Claim& claim, std::span<const std::uint8_t> from, Time now) {
+  touched = now;
+  if (claim.reader != first.reader) first.reader = 0;
+  const auto payload = datagram.payload();
   for (std::uint32_t i = 0; i < claim.fragments; ++i) {
     const std::size_t index = claim.first_fragment - 1 + i;
-    if (here[index]) continue;  // Fast DDS keeps the first, too
+    if (here[index]) continue;
     here[index] = true;
     --missing;
-    if (bytes.empty()) continue;
-    const std::size_t offset = index * fragment_B;
-    const std::size_t size = std::min<std::size_t>(fragment_B, bytes.size() - offset);
-    std::ranges::copy(datagram.subspan(claim.payload + std::size_t{i} * fragment_B, size),
-                      bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+    const std::size_t offset = index * claim.fragment_B;
+    const std::size_t size = std::min<std::size_t>(claim.fragment_B, payload.size() - offset);
+    std::ranges::copy(from.subspan(claim.payload + std::size_t{i} * claim.fragment_B, size),
+                      payload.begin() + static_cast<std::ptrdiff_t>(offset));
   }
-  if (missing == 0) here = {};
 }
 
-/// Fast DDS takes memory for the whole sample at its first fragment, and sizes from the first one that comes.
+bool PeerBook::has_room_for(const Peer& peer, const Claim& claim) const {
+  return unfinished_B_ + claim.sample_B <= limits_.unfinished_B &&
+         peer.unfinished_B + claim.sample_B <= limits_.unfinished_of_a_participant_B;
+}
+
+/// Memory is taken for the whole sample at its first fragment, and sizes from the first one that comes.
 std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
-                                                std::span<const std::uint8_t> datagram) {
+                                                std::span<const std::uint8_t> datagram, Time now) {
   if (is_built_in(claim.guid.entity) && claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
   if (is_far_ahead(writer, claim)) return Refusal::kJump;
   auto it = writer.samples.find(claim.first);
   if (it == writer.samples.end()) {
-    if (unfinished_B_ + claim.sample_B > limits_.unfinished_B ||
-        peer.unfinished_B + claim.sample_B > limits_.unfinished_of_a_participant_B) {
-      return Refusal::kUnfinished;
+    for (auto old = writer.samples.begin(); old != writer.samples.end() && !has_room_for(peer, claim);) {
+      old = now - old->second.touched > limits_.until_given_up ? forget(peer, writer, old) : std::next(old);
     }
-    if (writer.samples.size() >= kMostSamples) {
-      forget(peer, writer.samples.begin()->second);
-      writer.samples.erase(writer.samples.begin());
-    }
+    if (!has_room_for(peer, claim)) return Refusal::kUnfinished;
+    if (writer.samples.size() >= kMostSamples) forget(peer, writer, writer.samples.begin());
     it = writer.samples.emplace(claim.first, Sample(claim)).first;
     unfinished_B_ += claim.sample_B;
     peer.unfinished_B += claim.sample_B;
   }
-  Sample& sample = it->second;
-  if (!sample.is_like(claim)) return Refusal::kFragment;
-  if (sample.missing == 0) return std::nullopt;
-  sample.take(claim, datagram);
-  if (sample.missing == 0) {
-    unfinished_B_ -= sample.sample_B;
-    peer.unfinished_B -= sample.sample_B;
-  }
+  if (!it->second.is_like(claim)) return Refusal::kFragment;
+  it->second.take(claim, datagram, now);
   return std::nullopt;
 }
 
 /// Its newest announcement: somebody has to be met first.
-std::optional<Refusal> PeerBook::take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram) {
+std::optional<Refusal> PeerBook::take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram, Time now) {
   if (claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
   auto it = strangers_.find(claim.guid.prefix);
   if (it == strangers_.end()) {
     if (strangers_.size() >= kMostStrangers) strangers_.erase(strangers_.begin());
-    it = strangers_.emplace(claim.guid.prefix, Announcement{claim.first, Sample(claim)}).first;
-  } else if (it->second.number != claim.first || !it->second.sample.is_like(claim)) {
-    it->second = {claim.first, Sample(claim)};
+    it = strangers_.emplace(claim.guid.prefix, Sample(claim)).first;
+  } else if (it->second.first.first != claim.first || !it->second.is_like(claim)) {
+    it->second = Sample(claim);
   }
-  it->second.sample.take(claim, datagram);
+  it->second.take(claim, datagram, now);
   return std::nullopt;
 }
 
-std::optional<std::vector<std::uint8_t>> PeerBook::take_whole(const Claim& claim) {
-  if (!is_built_in(claim.guid.entity)) return std::nullopt;
-  const auto take_from = [](auto& samples, auto at, Sample& sample) -> std::optional<std::vector<std::uint8_t>> {
-    if (sample.missing > 0) return std::nullopt;
-    auto bytes = std::move(sample.bytes);
-    samples.erase(at);
-    return bytes;
+std::optional<MadeDatagram> PeerBook::take_whole(const Claim& claim, std::span<const std::uint8_t> header) {
+  const auto made_of = [&](Sample& sample) {
+    make_data(sample.datagram, sample.first, header);
+    return std::move(sample.datagram);
   };
   const auto peer = peers_.find(claim.guid.prefix);
   if (peer == peers_.end()) {
     const auto stranger = strangers_.find(claim.guid.prefix);
-    return stranger == strangers_.end() ? std::nullopt : take_from(strangers_, stranger, stranger->second.sample);
+    if (stranger == strangers_.end() || stranger->second.missing > 0) return std::nullopt;
+    std::optional<MadeDatagram> made = made_of(stranger->second);
+    strangers_.erase(stranger);
+    return made;
   }
   const auto writer = peer->second.endpoints.find(claim.guid.entity);
   if (writer == peer->second.endpoints.end()) return std::nullopt;
-  auto& samples = writer->second.samples;
-  const auto sample = samples.find(claim.first);
-  if (sample == samples.end()) return std::nullopt;
-  return take_from(samples, sample, sample->second);
+  const auto sample = writer->second.samples.find(claim.first);
+  if (sample == writer->second.samples.end() || sample->second.missing > 0) return std::nullopt;
+  std::optional<MadeDatagram> made = made_of(sample->second);
+  forget(peer->second, writer->second, sample);
+  return made;
 }
 
-void PeerBook::forget(Peer& peer, const Sample& sample) {
-  if (sample.missing == 0) return;
-  unfinished_B_ -= sample.sample_B;
-  peer.unfinished_B -= sample.sample_B;
+std::optional<MissingFragments> PeerBook::missing_of(const WireGuid& writer, std::uint64_t number) const {
+  constexpr std::uint32_t kMostBits = 256;
+  const auto peer = peers_.find(writer.prefix);
+  if (peer == peers_.end()) return std::nullopt;
+  const auto endpoint = peer->second.endpoints.find(writer.entity);
+  if (endpoint == peer->second.endpoints.end()) return std::nullopt;
+  const auto it = endpoint->second.samples.find(number);
+  if (it == endpoint->second.samples.end()) return std::nullopt;
+  const std::vector<bool>& here = it->second.here;
+  const auto begin = static_cast<std::uint32_t>(std::ranges::find(here, false) - here.begin());
+  MissingFragments missing;
+  missing.base = begin + 1;
+  const auto end = std::min(static_cast<std::uint32_t>(here.size()), begin + kMostBits);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (here[i]) continue;
+    const std::uint32_t bit = i - begin;
+    missing.count = bit + 1;
+    missing.words.resize(bit / 32 + 1);
+    missing.words.back() |= 1U << (31 - bit % 32);
+  }
+  return missing;
+}
+
+std::map<std::uint64_t, PeerBook::Sample>::iterator PeerBook::forget(Peer& peer, Endpoint& writer,
+                                                                     std::map<std::uint64_t, Sample>::iterator sample) {
+  const std::uint32_t sample_B = sample->second.first.sample_B;
+  unfinished_B_ -= sample_B;
+  peer.unfinished_B -= sample_B;
+  return writer.samples.erase(sample);
 }
 
 /// Numbers in [from, to), as far as they are for this reader alone or this is for all: what one reader is told does not
@@ -240,9 +255,8 @@ void PeerBook::forget(Peer& peer, const Sample& sample) {
 void PeerBook::forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from,
                               std::uint64_t to) {
   for (auto it = writer.samples.lower_bound(from); it != writer.samples.end() && it->first < to;) {
-    const bool is_told = reader == 0 || it->second.reader == reader;
-    if (is_told) forget(peer, it->second);
-    it = is_told ? writer.samples.erase(it) : std::next(it);
+    const bool is_told = reader == 0 || it->second.first.reader == reader;
+    it = is_told ? forget(peer, writer, it) : std::next(it);
   }
 }
 

@@ -11,9 +11,17 @@
 #include <vector>
 
 #include "dds/datagram_findings.h"
+#include "dds/made_datagrams.h"
 #include "dds/source_limits.h"
 
 namespace aurasim::dds {
+
+/// Of a sample, counted from 1.
+struct MissingFragments {
+  std::uint32_t base = 0;            ///< the first one
+  std::uint32_t count = 0;           ///< of bits, the first of which stands for `base`; at most 256
+  std::vector<std::uint32_t> words;  ///< the bits, the first one highest
+};
 
 struct PeerLimits {
   std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
@@ -24,6 +32,8 @@ struct PeerLimits {
   std::uint64_t longest_gap = std::uint64_t{1} << 18;
   std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
   std::size_t unfinished_B = std::size_t{192} << 20, unfinished_of_a_participant_B = std::size_t{96} << 20;
+  /// A sample to which nothing is added for so long makes room: what is lost of it is not sent again.
+  TokenBucket::Time until_given_up = std::chrono::seconds(2);
 };
 
 class PeerBook {
@@ -37,30 +47,33 @@ class PeerBook {
   /// `datagram` is what the claim was found in.
   std::optional<Refusal> judge(const Claim& claim, std::span<const std::uint8_t> datagram, Source source,
                                SourceLimits& rates, Time now);
-  /// Discovery of which `claim` was the last fragment that was missing; nothing: of no other claim. What comes of it
-  /// from now on begins anew.
-  std::optional<std::vector<std::uint8_t>> take_whole(const Claim& claim);
+  /// The sample of which `claim` was the last fragment that was missing, as one datagram; nothing: of no other claim.
+  /// What comes of it from now on begins anew. `header` is of the datagram that the claim was found in.
+  std::optional<MadeDatagram> take_whole(const Claim& claim, std::span<const std::uint8_t> header);
+  /// What is missing of a sample; nothing: none of it is here.
+  std::optional<MissingFragments> missing_of(const WireGuid& writer, std::uint64_t number) const;
 
   std::size_t participants() const { return peers_.size(); }
   std::size_t unfinished_B() const { return unfinished_B_; }
 
  private:
+  /// One that comes in fragments.
   struct Sample {
-    std::uint32_t sample_B = 0, fragment_B = 0;
-    std::uint32_t missing = 0;        ///< fragments; 0: whole
-    std::vector<bool> here;           ///< by fragment; none once it is whole
-    std::uint32_t reader = 0;         ///< that it is for; 0: all
-    std::vector<std::uint8_t> bytes;  ///< of discovery
+    Claim first;             ///< that came; its reader is that of all, or 0
+    std::uint32_t missing;   ///< fragments
+    std::vector<bool> here;  ///< by fragment
+    MadeDatagram datagram;
+    Time touched{0};  ///< when something was added to it
 
-    explicit Sample(const Claim& first);
+    explicit Sample(const Claim& claim);
     bool is_like(const Claim& claim) const;
-    void take(const Claim& claim, std::span<const std::uint8_t> datagram);
+    void take(const Claim& claim, std::span<const std::uint8_t> datagram, Time now);
   };
   struct Endpoint {
     bool announced = false;
     std::map<std::uint32_t, std::uint64_t> first;  ///< by reader (0: all): the highest that a heartbeat has begun with
     std::uint64_t highest = 0;                     ///< of its samples
-    std::map<std::uint64_t, Sample> samples;
+    std::map<std::uint64_t, Sample> samples;       ///< that are unfinished
   };
   struct Peer {
     std::uint32_t address = 0;
@@ -69,31 +82,28 @@ class PeerBook {
     std::unordered_map<std::uint32_t, Endpoint> endpoints;
   };
   using Peers = std::unordered_map<GuidPrefix, Peer, PrefixHash>;
-  struct Announcement {
-    std::uint64_t number = 0;
-    Sample sample;
-  };
 
   std::optional<Refusal> take_participant(const Claim& claim, Source source, Time now);
   std::optional<Refusal> take_endpoint(Peer& peer, const Claim& claim);
   bool is_far_ahead(Endpoint& writer, const Claim& claim) const;
-  std::optional<Refusal> take_data(Endpoint& writer, const Claim& claim) const;
   std::optional<Refusal> take_heartbeat(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
                                         SourceLimits& rates, Time now);
   std::optional<Refusal> take_gap(Peer& peer, Endpoint& writer, const Claim& claim, Source source, SourceLimits& rates,
                                   Time now);
   std::optional<Refusal> take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
-                                        std::span<const std::uint8_t> datagram);
-  std::optional<Refusal> take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram);
+                                        std::span<const std::uint8_t> datagram, Time now);
+  std::optional<Refusal> take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram, Time now);
+  bool has_room_for(const Peer& peer, const Claim& claim) const;
   Endpoint* endpoint_of(Peer& peer, std::uint32_t entity);
   void forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from, std::uint64_t to);
-  void forget(Peer& peer, const Sample& sample);
+  std::map<std::uint64_t, Sample>::iterator forget(Peer& peer, Endpoint& writer,
+                                                   std::map<std::uint64_t, Sample>::iterator sample);
   void forget_the_silent(Time now);
   void erase(Peers::iterator peer);
 
   PeerLimits limits_;
   Peers peers_;
-  std::unordered_map<GuidPrefix, Announcement, PrefixHash> strangers_;  ///< who announce themselves in fragments
+  std::unordered_map<GuidPrefix, Sample, PrefixHash> strangers_;  ///< who announce themselves in fragments
   std::unordered_map<std::uint32_t, std::size_t> peers_of_address_;
   std::size_t unfinished_B_ = 0;
 };

@@ -63,7 +63,11 @@ WireTransport::~WireTransport() = default;
 
 bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
                          LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
-  descriptor_.guard->note_sent({bytes, size});
+  const auto changed = descriptor_.guard->note_sent({bytes, size});
+  if (changed) {
+    bytes = changed->data();
+    size = static_cast<std::uint32_t>(changed->size());
+  }
   if (descriptor_.line == nullptr) return socket->send(bytes, size, begin, end, time_out);
   SenderResource* none = nullptr;
   const bool first = first_socket_.compare_exchange_strong(none, socket) || none == socket;
@@ -86,7 +90,8 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
       descriptor_.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
   const auto delivery = descriptor_.guard->delivery().begin(admitted.is_alone);
   for (const auto& made : admitted.before) {
-    receiver->OnDataReceived(made.data(), static_cast<std::uint32_t>(made.size()), local, remote);
+    const auto whole = made.bytes();
+    receiver->OnDataReceived(whole.data(), static_cast<std::uint32_t>(whole.size()), local, remote);
   }
   if (admitted.size > 0) {
     receiver->OnDataReceived(bytes, static_cast<std::uint32_t>(admitted.size), local, remote);

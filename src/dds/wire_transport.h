@@ -36,7 +36,7 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& time_out) override;
-  /// Only what is received is guarded; of what is sent the guard takes note.
+  /// Only what is received is guarded; of what is sent the guard takes note, and asks for fragments.
   void receive(eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,

@@ -1,41 +1,16 @@
 // What takes a memory to refuse. Time is passed in.
-#include "dds/datagram_guard.h"
-
 #include <optional>
 
 #include <gtest/gtest.h>
 
-#include "datagram_samples.h"
 #include "dds/datagram_check.h"
+#include "guard_fixture.h"
 
 namespace aurasim::dds {
 namespace {
 
 using namespace std::chrono_literals;
 using namespace testing;  // NOLINT: samples
-using testing::datagram;
-
-constexpr Source kSource{0x7f000001, 40'000};
-
-GuidPrefix prefix_of(std::uint32_t number) {
-  GuidPrefix prefix = kPrefix;
-  for (int i = 0; i < 4; ++i) prefix[i] = static_cast<std::uint8_t>(number >> 8 * i);
-  return prefix;
-}
-
-class Guard : public ::testing::Test {
- protected:
-  bool passes(Bytes bytes, Source source = kSource) { return guard_.admit(bytes, source, now_).size > 0; }
-  bool passes(const Octets& submessage) { return passes(datagram({submessage})); }
-  void meet() {
-    ASSERT_TRUE(passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
-    ASSERT_TRUE(passes(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())));
-  }
-  std::uint64_t refused(Refusal why) const { return guard_.report().refused[static_cast<std::size_t>(why)]; }
-
-  DatagramGuard guard_;
-  DatagramGuard::Time now_ = 1h;
-};
 
 TEST_F(Guard, CountsByReasonAndAddress) {
   EXPECT_TRUE(passes(heartbeat(1, 1)));
@@ -131,7 +106,10 @@ TEST_F(Guard, BoundsWhatIsUnfinished) {
   int passed = 0;
   for (std::uint64_t i = 1; i <= 100; ++i) passed += passes(begin_of(i)) ? 1 : 0;
   EXPECT_EQ(passed, 1);  // 96 MB of one participant
-  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(5).sequence(200).u32(1);
+  now_ += 3s;            // what is not sent again is lost
+  EXPECT_TRUE(passes(begin_of(101)));
+  EXPECT_FALSE(passes(begin_of(102)));
+  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(150).sequence(200).u32(1);
   EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));  // that they have been given up makes room
   EXPECT_TRUE(passes(begin_of(201)));
 }
@@ -205,37 +183,24 @@ TEST_F(Guard, TakesNothingFromWhatIsForOthers) {
   EXPECT_TRUE(passes(heartbeat(120'000'000, 120'000'000)));  // from where it was, not from 0
 }
 
-/// Fast DDS 2.9.1 takes an unfinished sample that is given up by a bit for a whole one, and ends itself.
-TEST_F(Guard, SaysAsRangesWhatAGapSaysByBits) {
+/// The end of an instance, which nobody in a run says.
+TEST_F(Guard, SaysAsAGapWhatHasNoPayload) {
   meet();
-  Bytes bytes = datagram({submessage(
-      0x08, 0,
-      Octets().entity(kReader).entity(kWriter).sequence(10).sequence(12).u32(40).u32(0x4000'0003).u32(0x8100'0000))});
+  Bytes bytes = datagram({submessage(0x15, 2,
+                                     Octets()
+                                         .u16(0)
+                                         .u16(16)
+                                         .entity(kReader)
+                                         .entity(kWriter)
+                                         .sequence(7)
+                                         .parameter(0x70, Octets().zeros(16))
+                                         .parameter(0x71, Octets().raw({0, 0, 0, 1}))
+                                         .sentinel()),
+                          heartbeat(1, 7)});
   const auto admitted = guard_.admit(bytes, kSource, now_);
-  Findings findings;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
-  for (const Bytes& made : admitted.before) {
-    EXPECT_EQ(check_datagram(made, findings), std::nullopt);
-    ASSERT_EQ(findings.claims.size(), 1U);
-    EXPECT_EQ(findings.claims[0].guid, (WireGuid{kPrefix, kWriter}));
-    ranges.emplace_back(findings.claims[0].first, findings.claims[0].last);
-  }
-  using Range = std::pair<std::uint64_t, std::uint64_t>;
-  EXPECT_EQ(ranges, (std::vector<Range>{{13, 13}, {42, 44}, {51, 51}}));
-  EXPECT_EQ(check_datagram(bytes, findings), std::nullopt);
-  ASSERT_EQ(findings.claims.size(), 1U);  // the range is left
-  EXPECT_EQ(findings.claims[0].first, 10U);
-  EXPECT_EQ(findings.claims[0].last, 11U);
-}
-
-TEST_F(Guard, RefusesASampleOfWhichPartsAreHere) {
-  meet();
-  const Octets whole = data(kWriter, 1, {0, 1, 0, 0, 1, 2, 3, 4});
-  EXPECT_TRUE(passes(fragment({})));
-  EXPECT_FALSE(passes(whole));
-  EXPECT_TRUE(passes(fragment({.first = 2})));
-  EXPECT_TRUE(passes(fragment({.first = 3, .payload_B = 952})));
-  EXPECT_TRUE(passes(whole));  // Fast DDS knows that it has it
+  ASSERT_EQ(admitted.before.size(), 1U);
+  EXPECT_EQ(octets_of(admitted.before[0]), datagram({gap(7, 8)}));
+  EXPECT_EQ(bytes[kHeaderBytes], 0x01) << "it is seen";
 }
 
 /// A guard of a node that has sent samples 1 to kLast by kWriter, of kSample_B each.
@@ -359,109 +324,6 @@ TEST_F(Guard, PassesNothingOfWhomNobodyListensTo) {
   EXPECT_EQ(refused(Refusal::kShunned), 2U);
   guard_.forgive(kPrefix);
   EXPECT_TRUE(passes(from_it));
-}
-
-class DiscoveryInPieces : public Guard {
- protected:
-  DiscoveryInPieces() { passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())); }
-
-  static Octets timestamp() { return submessage(0x09, 0, Octets().u32(1'700'000'000).u32(0x8000'0000)); }
-  static std::vector<Bytes> in_pieces(std::uint32_t writer, const Bytes& payload, std::uint64_t number) {
-    std::vector<Bytes> pieces;
-    for (std::size_t at = 0; at < payload.size(); at += 1024) {
-      const std::size_t size = std::min<std::size_t>(1024, payload.size() - at);
-      const Bytes part(payload.begin() + static_cast<std::ptrdiff_t>(at),
-                       payload.begin() + static_cast<std::ptrdiff_t>(at + size));
-      pieces.push_back(datagram({timestamp(),
-                                 fragment({writer, number, static_cast<std::uint32_t>(at / 1024 + 1), 1, 1024,
-                                           static_cast<std::uint32_t>(payload.size()), size},
-                                          part),
-                                 heartbeat(1, 2, writer)}));
-    }
-    return pieces;
-  }
-  /// One parameter of 2.8 kB, all of `octet`.
-  [[gnu::noinline]] static Bytes description(std::uint16_t pid, std::uint8_t octet) {  // GCC 12 warns of it otherwise
-    Octets value;
-    value.raw(Bytes(2804, octet));
-    return endpoint(kPrefix, kWriter, Octets().parameter(pid, value)).bytes();
-  }
-  static std::vector<Bytes> sound(std::uint64_t number) {
-    return in_pieces(kEndpointWriter, description(0x8000, 0), number);
-  }
-  /// So many partitions there are not.
-  static std::vector<Bytes> unsound(std::uint64_t number) {
-    return in_pieces(kEndpointWriter, description(0x29, 0xff), number);
-  }
-  /// What Fast DDS sees of fragments, one after the other.
-  std::vector<Bytes> seen_of(std::vector<Bytes> pieces) {
-    std::vector<Bytes> seen;
-    for (Bytes& piece : pieces) {
-      const auto admitted = guard_.admit(piece, kSource, now_);
-      for (const Bytes& made : admitted.before) seen.push_back(made);
-      Findings findings;
-      EXPECT_FALSE(admitted.size > 0 && check_datagram(std::span(piece).first(admitted.size), findings));
-      for (const Claim& claim : findings.claims) EXPECT_NE(claim.kind, Claim::Kind::kFragments);
-    }
-    return seen;
-  }
-};
-
-TEST_F(DiscoveryInPieces, IsSeenWhole) {
-  ASSERT_EQ(sound(1).size(), 3U);
-  const auto seen = seen_of(sound(1));
-  ASSERT_EQ(seen.size(), 1U);
-  EXPECT_EQ(seen[0], datagram({timestamp(), [] {
-                                 Octets whole = data(kEndpointWriter, 1, description(0x8000, 0));
-                                 Bytes to_the_end = whole.bytes();
-                                 to_the_end[2] = to_the_end[3] = 0;
-                                 return Octets().raw(to_the_end);
-                               }()}));
-}
-
-TEST_F(DiscoveryInPieces, MayComeInAnyOrderAndTwice) {
-  const auto pieces = sound(1);
-  EXPECT_EQ(seen_of({pieces[2], pieces[0], pieces[2], pieces[1]}).size(), 1U);
-  EXPECT_EQ(seen_of(sound(1)).size(), 1U) << "it has been asked for again";
-}
-
-TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNeverSeen) {
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(seen_of(unsound(2)).empty());
-  EXPECT_EQ(refused(Refusal::kParameter), 3U);
-  EXPECT_EQ(seen_of(sound(3)).size(), 1U);
-}
-
-/// What a type object says, Fast DDS 2.9.1 ends itself for (issue 3296).
-TEST_F(DiscoveryInPieces, IsSeenWithoutTypeObjects) {
-  const auto seen = seen_of(in_pieces(kEndpointWriter, description(0x72, 0xee), 1));
-  ASSERT_EQ(seen.size(), 1U);
-  Findings findings;
-  EXPECT_FALSE(check_datagram(seen[0], findings));
-  EXPECT_TRUE(findings.hidden_parameters.empty()) << "it is hidden";
-}
-
-TEST_F(DiscoveryInPieces, OfSomebodyWhoIsNotKnownYetIsSeen) {
-  DatagramGuard guard;
-  std::size_t seen = 0;
-  Octets name;
-  name.text(std::string(2000, 'a'));
-  const Bytes announcement = participant(kPrefix, Octets().parameter(0x8001, name)).bytes();
-  for (Bytes& piece : in_pieces(kParticipantWriter, announcement, 1))
-    seen += guard.admit(piece, kSource, now_).before.size();
-  EXPECT_EQ(seen, 1U);
-  for (Bytes& piece : sound(1)) seen += guard.admit(piece, kSource, now_).before.size();
-  EXPECT_EQ(seen, 2U);
-}
-
-/// Others that begin, and never end.
-TEST_F(DiscoveryInPieces, IsNotKeptOutByMore) {
-  for (std::uint64_t number = 10; number < 5'000; ++number) passes(unsound(number)[0]);
-  EXPECT_EQ(seen_of(sound(5'000)).size(), 1U);
-}
-
-TEST_F(DiscoveryInPieces, HasSomeKilobytes) {
-  EXPECT_FALSE(passes(fragment({.writer = kEndpointWriter, .sample_B = 100'000})));
-  EXPECT_EQ(refused(Refusal::kFragment), 1U);
 }
 
 }  // namespace

@@ -94,21 +94,61 @@ TEST_F(GuardedRegions, OutliveTheDatagramOf92Bytes) {
   EXPECT_GT(guarded(a_.peer.participant).refused[static_cast<std::size_t>(Refusal::kStatistics)], 0U);
 }
 
-/// StatefulReader.cpp, processGapMsg: what bits name stays unfinished, and is then told of as if it were whole.
-TEST_F(GuardedRegions, OutliveAGapWithBitsForSamplesOfWhichPartsAreHere) {
-  ASSERT_TRUE(a_hears_b());
-  ASSERT_TRUE(talk_until([&] { return writers_of_b().size() >= 4; }));
-  const std::uint64_t next = 20'000;
-  for (const std::uint32_t writer : writers_of_b()) {
-    const auto part = fragment({.writer = writer, .sequence = next + 5, .sample_B = 3700});
-    const auto bits = Octets().u32(32).u32(0xffff'ffff);
-    const Octets all_of_them =
-        submessage(0x08, 0, Octets().entity(0).entity(writer).sequence(1).sequence(next).raw(bits.bytes()));
-    send_as_b({part});
-    send_as_b({all_of_them});
+/// Its key is all that can be read of it.
+Octets data_of(std::uint32_t writer, std::uint64_t sequence, std::uint32_t source) {
+  return data(writer, sequence, Octets().raw({0, 1, 0, 0}).u32(source).zeros(8).bytes());
+}
+
+Octets heartbeat_to_all(std::uint32_t writer, std::uint64_t first, std::uint64_t last, std::uint32_t count) {
+  return submessage(0x07, 0, Octets().entity(0).entity(writer).sequence(first).sequence(last).u32(count));
+}
+
+/// Somebody goes on in the name of a region that has fallen silent.
+class UsurpedRegion : public GuardedRegions {
+ protected:
+  static constexpr std::uint64_t kNext = 10'000;
+  static constexpr std::uint32_t kCount = 1'000'000;
+
+  void SetUp() override {
+    ASSERT_TRUE(a_hears_b());
+    ASSERT_TRUE(talk_until([&] { return writers_of_b().size() >= 4; }));
+    for (const std::uint32_t writer : writers_of_b()) send_as_b({heartbeat_to_all(writer, kNext, kNext - 1, kCount)});
   }
-  std::this_thread::sleep_for(200ms);
-  EXPECT_TRUE(talk_until([&] { return step_ > 50; }));
+  void TearDown() override {
+    std::this_thread::sleep_for(200ms);
+    EXPECT_TRUE(talk_until([&] { return step_ > 50; }));
+  }
+  static void wait_until_b_is_taken_for_gone() { std::this_thread::sleep_for(3s); }
+};
+
+/// Fast DDS passes over a heartbeat that is not newer than the last; two of one number, one of them unfinished, end it.
+TEST_F(UsurpedRegion, IsOutlivedWhenASampleComesInPartsAndWhole) {
+  for (const std::uint32_t writer : writers_of_b()) {
+    send_as_b({fragment({.writer = writer, .sequence = kNext, .sample_B = 3700})});
+    send_as_b({heartbeat_to_all(writer, kNext + 1, kNext + 1, 1)});
+    send_as_b({data_of(writer, kNext, 1)});
+  }
+}
+
+/// StatefulReader.cpp, processGapMsg: what bits name stays unfinished, and is then told of as if it were whole.
+TEST_F(UsurpedRegion, IsOutlivedWhenAGapHasBitsForSamplesOfWhichPartsAreHere) {
+  for (const std::uint32_t writer : writers_of_b()) {
+    send_as_b({fragment({.writer = writer, .sequence = kNext + 5, .sample_B = 3700})});
+    const auto bits = Octets().u32(32).u32(0xffff'ffff);
+    send_as_b({submessage(0x08, 0, Octets().entity(0).entity(writer).sequence(1).sequence(kNext).raw(bits.bytes()))});
+  }
+}
+
+/// DataReaderHistory.cpp, find_key: beyond the limit an instance whose writers are gone makes room, with its samples.
+TEST_F(UsurpedRegion, IsOutlivedWhenItSpeaksOfMoreInstancesThanThereAreNodes) {
+  for (const std::uint32_t writer : writers_of_b()) send_as_b({data_of(writer, kNext, 77)});
+  wait_until_b_is_taken_for_gone();
+  for (const std::uint32_t writer : writers_of_b()) {
+    send_as_b({data_of(writer, kNext + 2, 77)});
+    for (std::uint32_t i = 0; i < 5000; ++i) send_as_b({data_of(writer, kNext + 3 + i, 100 + i)});
+    std::this_thread::sleep_for(100ms);
+    send_as_b({data_of(writer, kNext + 1, 78)});
+  }
 }
 
 TEST_F(GuardedRegions, AreNotHeldUpByAHeartbeatFromFarAhead) {

@@ -1,0 +1,205 @@
+// Samples that come in fragments: Fast DDS sees them whole, and what is missing is asked for.
+#include <algorithm>
+#include <string>
+
+#include "dds/datagram_check.h"
+#include "guard_fixture.h"
+
+namespace aurasim::dds {
+namespace {
+
+using namespace testing;  // NOLINT: samples
+using testing::datagram;
+
+class InPieces : public Guard {
+ protected:
+  InPieces() { passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())); }
+
+  static Octets timestamp() { return submessage(0x09, 0, Octets().u32(1'700'000'000).u32(0x8000'0000)); }
+  static std::vector<Bytes> in_pieces(std::uint32_t writer, const Bytes& payload, std::uint64_t number) {
+    std::vector<Bytes> pieces;
+    for (std::size_t at = 0; at < payload.size(); at += 1024) {
+      const std::size_t size = std::min<std::size_t>(1024, payload.size() - at);
+      const Bytes part(payload.begin() + static_cast<std::ptrdiff_t>(at),
+                       payload.begin() + static_cast<std::ptrdiff_t>(at + size));
+      pieces.push_back(datagram({timestamp(),
+                                 fragment({writer, number, static_cast<std::uint32_t>(at / 1024 + 1), 1, 1024,
+                                           static_cast<std::uint32_t>(payload.size()), size},
+                                          part),
+                                 heartbeat(1, 2, writer)}));
+    }
+    return pieces;
+  }
+  /// What Fast DDS sees of fragments, one after the other.
+  std::vector<Bytes> seen_of(std::vector<Bytes> pieces) {
+    std::vector<Bytes> seen;
+    for (Bytes& piece : pieces) {
+      const auto admitted = guard_.admit(piece, kSource, now_);
+      for (const MadeDatagram& made : admitted.before) seen.push_back(octets_of(made));
+      Findings findings;
+      EXPECT_FALSE(admitted.size > 0 && check_datagram(std::span(piece).first(admitted.size), findings));
+      for (const Claim& claim : findings.claims) EXPECT_NE(claim.kind, Claim::Kind::kFragments);
+    }
+    return seen;
+  }
+  static Bytes whole(std::uint32_t writer, const Bytes& payload, std::uint64_t number) {
+    const Octets sample = data(writer, number, payload);
+    Bytes to_the_end = sample.bytes();
+    to_the_end[2] = to_the_end[3] = 0;
+    return datagram({timestamp(), Octets().raw(to_the_end)});
+  }
+};
+
+class DiscoveryInPieces : public InPieces {
+ protected:
+  /// One parameter of 2.8 kB, all of `octet`.
+  [[gnu::noinline]] static Bytes description(std::uint16_t pid, std::uint8_t octet) {  // GCC 12 warns of it otherwise
+    Octets value;
+    value.raw(Bytes(2804, octet));
+    return endpoint(kPrefix, kWriter, Octets().parameter(pid, value)).bytes();
+  }
+  static std::vector<Bytes> sound(std::uint64_t number) {
+    return in_pieces(kEndpointWriter, description(0x8000, 0), number);
+  }
+  /// So many partitions there are not.
+  static std::vector<Bytes> unsound(std::uint64_t number) {
+    return in_pieces(kEndpointWriter, description(0x29, 0xff), number);
+  }
+};
+
+TEST_F(DiscoveryInPieces, IsSeenWhole) {
+  ASSERT_EQ(sound(1).size(), 3U);
+  const auto seen = seen_of(sound(1));
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0], whole(kEndpointWriter, description(0x8000, 0), 1));
+}
+
+TEST_F(DiscoveryInPieces, MayComeInAnyOrderAndTwice) {
+  const auto pieces = sound(1);
+  EXPECT_EQ(seen_of({pieces[2], pieces[0], pieces[2], pieces[1]}).size(), 1U);
+  EXPECT_EQ(seen_of(sound(1)).size(), 1U) << "it has been asked for again";
+}
+
+TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNeverSeen) {
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(seen_of(unsound(2)).empty());
+  EXPECT_EQ(refused(Refusal::kParameter), 3U);
+  EXPECT_EQ(seen_of(sound(3)).size(), 1U);
+}
+
+/// What a type object says, Fast DDS 2.9.1 ends itself for (issue 3296).
+TEST_F(DiscoveryInPieces, IsSeenWithoutTypeObjects) {
+  const auto seen = seen_of(in_pieces(kEndpointWriter, description(0x72, 0xee), 1));
+  ASSERT_EQ(seen.size(), 1U);
+  Findings findings;
+  EXPECT_FALSE(check_datagram(seen[0], findings));
+  EXPECT_TRUE(findings.hidden_parameters.empty()) << "it is hidden";
+}
+
+TEST_F(DiscoveryInPieces, OfSomebodyWhoIsNotKnownYetIsSeen) {
+  DatagramGuard guard;
+  std::size_t seen = 0;
+  Octets name;
+  name.text(std::string(2000, 'a'));
+  const Bytes announcement = participant(kPrefix, Octets().parameter(0x8001, name)).bytes();
+  for (Bytes& piece : in_pieces(kParticipantWriter, announcement, 1))
+    seen += guard.admit(piece, kSource, now_).before.size();
+  EXPECT_EQ(seen, 1U);
+  for (Bytes& piece : sound(1)) seen += guard.admit(piece, kSource, now_).before.size();
+  EXPECT_EQ(seen, 2U);
+}
+
+/// Others that begin, and never end.
+TEST_F(DiscoveryInPieces, IsNotKeptOutByMore) {
+  for (std::uint64_t number = 10; number < 5'000; ++number) passes(unsound(number)[0]);
+  EXPECT_EQ(seen_of(sound(5'000)).size(), 1U);
+}
+
+TEST_F(DiscoveryInPieces, HasSomeKilobytes) {
+  EXPECT_FALSE(passes(fragment({.writer = kEndpointWriter, .sample_B = 100'000})));
+  EXPECT_EQ(refused(Refusal::kFragment), 1U);
+}
+
+class SampleInPieces : public InPieces {
+ protected:
+  SampleInPieces() { passes(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())); }
+
+  static Bytes payload() {
+    Bytes payload(20'000);
+    for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::uint8_t>(i * 7);
+    return payload;
+  }
+  static std::vector<Bytes> pieces(std::uint64_t number) { return in_pieces(kWriter, payload(), number); }
+  static Bytes from(const Octets& submessage, const GuidPrefix& to = kPrefix) {
+    Octets destination;
+    for (const std::uint8_t octet : to) destination.raw({octet});
+    return header(prefix_of(7)).raw(testing::submessage(0x0e, 0, destination).bytes()).raw(submessage.bytes()).bytes();
+  }
+};
+
+TEST_F(SampleInPieces, IsSeenWholeInWhateverOrderItComes) {
+  auto shuffled = pieces(5);
+  std::ranges::reverse(shuffled);
+  std::swap(shuffled[2], shuffled[9]);
+  const auto seen = seen_of(shuffled);
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0], whole(kWriter, payload(), 5));
+}
+
+TEST_F(SampleInPieces, IsForWhomAllItsPiecesAreFor) {
+  const auto seen_by = [&](std::uint32_t first, std::uint32_t second) {
+    Bytes one = datagram({fragment({.count = 1, .sample_B = 2000})});
+    Bytes other = datagram({fragment({.first = 2, .sample_B = 2000, .payload_B = 976})});
+    constexpr std::size_t kReaderAt = kHeaderBytes + 4 + 4;
+    for (int i = 0; i < 4; ++i) {
+      one[kReaderAt + i] = static_cast<std::uint8_t>(first >> 8 * (3 - i));
+      other[kReaderAt + i] = static_cast<std::uint8_t>(second >> 8 * (3 - i));
+    }
+    Findings findings;
+    const auto seen = seen_of({one, other});
+    return seen.size() == 1 && !check_datagram(seen[0], findings) ? findings.claims.at(0).reader : ~0U;
+  };
+  EXPECT_EQ(seen_by(kReader, kReader), kReader);
+  EXPECT_EQ(seen_by(kReader, kReader + 0x100), 0U);
+  EXPECT_EQ(seen_by(0, 0), 0U);
+  EXPECT_EQ(seen_by(0, kReader), 0U);
+}
+
+TEST_F(SampleInPieces, IsAskedForByThePiecesThatAreMissing) {
+  auto some = pieces(5);
+  some.erase(some.begin() + 11, some.begin() + 13);  // of 20
+  some.erase(some.begin() + 3);
+  EXPECT_TRUE(seen_of(some).empty());
+  const auto sent = guard_.note_sent(from(ack_nack(5, 3)));  // 5 to 7
+  ASSERT_TRUE(sent);
+  Octets request;
+  request.entity(kReader).entity(kWriter).sequence(5).u32(4).u32(10).u32(0x80c0'0000).u32(1);
+  Octets rest;
+  rest.entity(kReader).entity(kWriter).sequence(5).u32(3).u32(0x6000'0000).u32(1);
+  EXPECT_EQ(*sent, from(Octets().raw(submessage(0x06, 0, rest).bytes()).raw(submessage(0x12, 0, request).bytes())));
+  EXPECT_EQ(seen_of({pieces(5)[3], pieces(5)[11], pieces(5)[12]}).size(), 1U);
+  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 3)))) << "nothing of them is here";
+}
+
+TEST_F(SampleInPieces, IsAskedForOfItsOwnWriterAlone) {
+  EXPECT_TRUE(seen_of({pieces(5)[0]}).empty());
+  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 1), prefix_of(8))));
+  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 1, kWriter + 0x100))));
+  EXPECT_FALSE(guard_.note_sent(from(ack_nack(6, 40))));
+  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 0))));
+  const auto sent = guard_.note_sent(from(ack_nack(5, 1)));
+  ASSERT_TRUE(sent);
+  EXPECT_EQ((*sent)[kHeaderBytes + 16 + 1], 3) << "it wants an answer though it asks for nothing";
+}
+
+/// Whatever a datagram looks like, this process goes on.
+TEST_F(SampleInPieces, IsAskedForInSoundDatagramsOnly) {
+  EXPECT_TRUE(seen_of({pieces(5)[0]}).empty());
+  const Bytes sound = from(ack_nack(1, 200));
+  for (std::size_t size = 0; size < sound.size(); ++size) guard_.note_sent(std::span(sound).first(size));
+  Bytes more_bits_than_there_are = from(ack_nack(5, 1));
+  more_bits_than_there_are[kHeaderBytes + 16 + 4 + 16] = 255;
+  EXPECT_FALSE(guard_.note_sent(more_bits_than_there_are));
+}
+
+}  // namespace
+}  // namespace aurasim::dds
