@@ -38,7 +38,6 @@ enum SubmessageId : std::uint8_t {
 
 constexpr std::size_t kStatisticsBytes = 56;
 constexpr std::size_t kCryptoHeaderBytes = 20, kMacBytes = 16, kReceiverMacBytes = 20;
-constexpr std::uint32_t kMostBits = 256;
 constexpr std::uint32_t kLargestFragmentNumber = kLargestSample_B / kSmallestFragment_B;
 constexpr std::size_t kMostLocators = 64;
 

@@ -99,6 +99,8 @@ inline constexpr std::uint64_t kLargestSequenceNumber = std::uint64_t{1} << 40;
 inline constexpr std::uint32_t kLargestSample_B = 64U << 20;
 /// The smallest that Fast DDS and CycloneDDS make on any link are larger than 1 kB.
 inline constexpr std::uint32_t kSmallestFragment_B = 256;
+/// Of a set of sequence or fragment numbers.
+inline constexpr std::uint32_t kMostBits = 256;
 inline constexpr std::size_t kMostSubmessages = 512;
 /// Participants that stay remembered for longer than this after their last word are not taken in, s.
 inline constexpr double kLongestLease_s = 3600;

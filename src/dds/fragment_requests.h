@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "dds/peer_book.h"
-#include "dds/wire_cursor.h"
 
 namespace aurasim::dds {
 
@@ -18,8 +17,8 @@ class FragmentRequests {
   std::optional<std::vector<std::uint8_t>> put_into(std::span<const std::uint8_t> datagram, const PeerBook& peers);
 
  private:
-  struct Submessage;
-  std::vector<std::uint8_t> take_from(std::span<std::uint8_t> ack_nack, const Submessage& which, const PeerBook& peers);
+  std::vector<std::uint8_t> instead_of(std::span<const std::uint8_t> ack_nack, const GuidPrefix& destination,
+                                       const PeerBook& peers);
 
   std::uint32_t count_ = 0;  ///< of requests; writers pass over those that are not newer
 };

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <mutex>
 #include <set>
-#include <utility>
 
 #include <fastdds/rtps/common/InstanceHandle.h>
 #include <fastdds/rtps/common/SerializedPayload.h>
@@ -45,12 +44,8 @@ class GuardedType final : public Generated {
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override {
     const std::lock_guard lock(key_mutex_);
     if (!Generated::getKey(data, handle, force_md5)) return false;
-    Key key;
-    std::copy_n(static_cast<const eprosima::fastrtps::rtps::octet*>(std::as_const(handle->value)), key.size(),
-                key.begin());
-    if (keys_.size() < kMostKeys) keys_.insert(key);
-    if (!keys_.contains(key))
-      std::fill_n(static_cast<eprosima::fastrtps::rtps::octet*>(handle->value), key.size(), 0xff);
+    if (keys_.size() < kMostKeys) keys_.insert(handle->value);
+    if (!keys_.contains(handle->value)) std::fill_n(&handle->value[0], kKeyBytes, 0xff);
     return true;
   }
 
@@ -66,10 +61,10 @@ class GuardedType final : public Generated {
     }
   }
 
-  using Key = std::array<std::uint8_t, 16>;
+  static constexpr std::size_t kKeyBytes = sizeof(eprosima::fastrtps::rtps::KeyHash_t);
 
   std::mutex key_mutex_;
-  std::set<Key> keys_;
+  std::set<eprosima::fastrtps::rtps::InstanceHandleValue_t> keys_;
 };
 
 }  // namespace aurasim::dds

@@ -3,26 +3,12 @@
 #include <array>
 #include <vector>
 
+#include "dds/wire_octets.h"
+
 namespace aurasim::dds {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-/// One by one: GCC 12 warns of what insert() does.
-template <class Octets>
-void append(Bytes& to, const Octets& octets) {
-  for (const std::uint8_t octet : octets) to.push_back(octet);
-}
-
-/// Little-endian.
-void append_number(Bytes& to, std::uint32_t number) {
-  for (int i = 0; i < 4; ++i) to.push_back(static_cast<std::uint8_t>(number >> 8 * i));
-}
-
-void append_number_pair(Bytes& to, std::uint64_t number) {
-  append_number(to, static_cast<std::uint32_t>(number >> 32));
-  append_number(to, static_cast<std::uint32_t>(number));
-}
 
 void append_entity(Bytes& to, std::uint32_t entity) {
   for (int i = 3; i >= 0; --i) to.push_back(static_cast<std::uint8_t>(entity >> 8 * i));

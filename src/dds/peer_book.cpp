@@ -35,10 +35,7 @@ std::optional<Refusal> PeerBook::judge(const Claim& claim, std::span<const std::
   if (claim.kind == Claim::Kind::kEndpoint) return take_endpoint(peer, claim);
   if (claim.kind == Claim::Kind::kEndpointGone) {
     const auto gone = peer.endpoints.find(claim.guid.entity);
-    if (gone != peer.endpoints.end() && !is_built_in(claim.guid.entity)) {
-      forget_samples(peer, gone->second, 0, 0, kLargestSequenceNumber + 1);
-      peer.endpoints.erase(gone);
-    }
+    if (gone != peer.endpoints.end() && !is_built_in(claim.guid.entity)) erase(peer, gone);
     return std::nullopt;
   }
   Endpoint* writer = endpoint_of(peer, claim.guid.entity);
@@ -85,8 +82,7 @@ PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   if (const auto it = peer.endpoints.find(entity); it != peer.endpoints.end()) return &it->second;
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) {
     for (auto it = peer.endpoints.begin(); it != peer.endpoints.end();) {
-      if (!it->second.announced) forget_samples(peer, it->second, 0, 0, kLargestSequenceNumber + 1);
-      it = it->second.announced ? std::next(it) : peer.endpoints.erase(it);
+      it = it->second.announced ? std::next(it) : erase(peer, it);
     }
   }
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) return nullptr;
@@ -220,7 +216,6 @@ std::optional<MadeDatagram> PeerBook::take_whole(const Claim& claim, std::span<c
 }
 
 std::optional<MissingFragments> PeerBook::missing_of(const WireGuid& writer, std::uint64_t number) const {
-  constexpr std::uint32_t kMostBits = 256;
   const auto peer = peers_.find(writer.prefix);
   if (peer == peers_.end()) return std::nullopt;
   const auto endpoint = peer->second.endpoints.find(writer.entity);
@@ -242,8 +237,7 @@ std::optional<MissingFragments> PeerBook::missing_of(const WireGuid& writer, std
   return missing;
 }
 
-std::map<std::uint64_t, PeerBook::Sample>::iterator PeerBook::forget(Peer& peer, Endpoint& writer,
-                                                                     std::map<std::uint64_t, Sample>::iterator sample) {
+PeerBook::Samples::iterator PeerBook::forget(Peer& peer, Endpoint& writer, Samples::iterator sample) {
   const std::uint32_t sample_B = sample->second.first.sample_B;
   unfinished_B_ -= sample_B;
   peer.unfinished_B -= sample_B;
@@ -266,6 +260,11 @@ void PeerBook::forget_the_silent(Time now) {
     if (now - it->second.heard > 2 * it->second.lease + kLonger) erase(it);
     it = next;
   }
+}
+
+PeerBook::Endpoints::iterator PeerBook::erase(Peer& peer, Endpoints::iterator endpoint) {
+  forget_samples(peer, endpoint->second, 0, 0, kLargestSequenceNumber + 1);
+  return peer.endpoints.erase(endpoint);
 }
 
 void PeerBook::erase(Peers::iterator peer) {

@@ -69,17 +69,19 @@ class PeerBook {
     bool is_like(const Claim& claim) const;
     void take(const Claim& claim, std::span<const std::uint8_t> datagram, Time now);
   };
+  using Samples = std::map<std::uint64_t, Sample>;
   struct Endpoint {
     bool announced = false;
     std::map<std::uint32_t, std::uint64_t> first;  ///< by reader (0: all): the highest that a heartbeat has begun with
     std::uint64_t highest = 0;                     ///< of its samples
-    std::map<std::uint64_t, Sample> samples;       ///< that are unfinished
+    Samples samples;                               ///< that are unfinished
   };
+  using Endpoints = std::unordered_map<std::uint32_t, Endpoint>;
   struct Peer {
     std::uint32_t address = 0;
     Time heard{0}, lease{0};
     std::size_t unfinished_B = 0;
-    std::unordered_map<std::uint32_t, Endpoint> endpoints;
+    Endpoints endpoints;
   };
   using Peers = std::unordered_map<GuidPrefix, Peer, PrefixHash>;
 
@@ -96,9 +98,9 @@ class PeerBook {
   bool has_room_for(const Peer& peer, const Claim& claim) const;
   Endpoint* endpoint_of(Peer& peer, std::uint32_t entity);
   void forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from, std::uint64_t to);
-  std::map<std::uint64_t, Sample>::iterator forget(Peer& peer, Endpoint& writer,
-                                                   std::map<std::uint64_t, Sample>::iterator sample);
+  Samples::iterator forget(Peer& peer, Endpoint& writer, Samples::iterator sample);
   void forget_the_silent(Time now);
+  Endpoints::iterator erase(Peer& peer, Endpoints::iterator endpoint);
   void erase(Peers::iterator peer);
 
   PeerLimits limits_;

@@ -112,7 +112,7 @@ TEST(Datagram, HasFragmentsThatFitTheirSample) {
   EXPECT_EQ(check(fragment({.count = 0})), Refusal::kFragment);
   EXPECT_EQ(check(fragment({.first = 3, .count = 2})), Refusal::kFragment);
   EXPECT_EQ(check(fragment({.first = 2, .count = 65'535})), Refusal::kFragment);
-  EXPECT_EQ(check(fragment({.fragment_B = 1})), Refusal::kFragment);    // their list would lie on itself
+  EXPECT_EQ(check(fragment({.fragment_B = 1})), Refusal::kFragment);    // a note of each would be kept
   EXPECT_EQ(check(fragment({.sample_B = ~0U})), Refusal::kFragment);    // 4 GB, taken at once
   EXPECT_EQ(check(fragment({.payload_B = 1020})), Refusal::kFragment);  // the rest would be read from elsewhere
   EXPECT_EQ(check(fragment({.first = 3, .payload_B = 512})), Refusal::kFragment);

@@ -40,6 +40,11 @@ class Overseers : public SystemTest {
     for (const Json& node : status.at("nodes")) sum += node.at(key).get<std::uint64_t>();
     return sum;
   }
+  /// All nodes, in one state.
+  static bool all_stand(const Json& status) {
+    const auto is_there = [&](const Json& node) { return node.at("step") == status.at("step"); };
+    return status.value("state", "") == "paused" && std::ranges::all_of(status.at("nodes"), is_there);
+  }
   /// Where nodes do not wait for each other, bodies that were handed over before the last state may belong to nobody
   /// yet; those that are handed over in it still count.
   static bool shows_all_bodies(const Page& page) {
@@ -65,14 +70,8 @@ class Overseers : public SystemTest {
     ASSERT_TRUE(sees_the_run(page));
     const Json reply = page.ask({{"kind", "pause"}});
     ASSERT_EQ(reply.value("ok", false), true) << reply;
-    ASSERT_TRUE(page.wait_until([&] {
-      return page.latest["status"].value("state", "") == "paused" &&
-             std::ranges::all_of(
-                 page.latest["status"].at("nodes"),
-                 [&](const Json& node) { return node.at("step") == page.latest["status"].at("step"); }) &&
-             shows_all_bodies(page);
-    })) << page.latest["status"]
-        << page.world.bodies.size() << " bodies, stamp " << page.world.stamp;
+    ASSERT_TRUE(page.wait_until([&] { return all_stand(page.latest["status"]) && shows_all_bodies(page); }))
+        << page.latest["status"] << page.world.bodies.size() << " bodies, stamp " << page.world.stamp;
   }
 
   const std::string file_ = launch_file("corner_stacks");
@@ -230,9 +229,8 @@ TEST_F(Overseers, APageLivesThroughADeathAndItsWordStillCounts) {
   EXPECT_EQ(page.ask({{"kind", "pause"}}).at("ok"), true);
   const auto stands = [&] {
     const Json& status = page.latest["status"];
-    const auto is_there = [&](const Json& node) { return node.at("step") == status.at("step"); };
-    return status.at("state") == "paused" && std::ranges::all_of(status.at("nodes"), is_there) &&
-           page.world.stamp == status.at("step").get<double>() && page.world.by_id().size() >= sum_of(status, "bodies");
+    return all_stand(status) && page.world.stamp == status.at("step").get<double>() &&
+           page.world.by_id().size() >= sum_of(status, "bodies");
   };
   EXPECT_TRUE(page.wait_until(stands, kGenerous)) << page.latest["status"];
   EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
