@@ -17,12 +17,22 @@ constexpr std::ptrdiff_t kOwnAfterwards = 3;
 
 }  // namespace
 
+void Checkpoints::move_to(dds::Participant& participant) {
+  bus_.emplace(participant, region_);
+  keepers_.clear();
+}
+
 void Checkpoints::begin_era(core::Generation era) {
   era_ = era;
   coming_.clear();
   kept_.clear();
   wards_.clear();
   all_had_.reset();
+}
+
+void Checkpoints::use_keepers(std::vector<core::RegionId> keepers, core::Generation life) {
+  bus_->use_keepers(keepers, life);
+  keepers_ = std::move(keepers);
 }
 
 void Checkpoints::add(cut::SavedWorld part, core::Step recorded) {
@@ -42,13 +52,13 @@ void Checkpoints::progress(core::Step recorded) {
     Coming part = std::move(coming_.front());
     coming_.pop_front();
     keep(region_, part.step, part.octets.get());
-    send_to_keeper(part.step);
+    send_to_keepers(part.step);
     forget_what_all_had();
   }
 }
 
 void Checkpoints::take() {
-  for (dds::Checkpoint& one : bus_.take()) {
+  for (dds::Checkpoint& one : bus_->take()) {
     if (one.kind == Kind::kToKeep) {
       if (one.generation != era_) continue;
       wards_.insert(one.source);
@@ -67,15 +77,12 @@ void Checkpoints::keep(core::RegionId region, core::Step step, std::string octet
   if (states.size() > kStates) states.erase(states.begin());
 }
 
-/// Where a link is too slow for all of them, some are left out.
-void Checkpoints::send_to_keeper(core::Step step) {
-  if (!bus_.is_kept()) {
-    ++left_out_;
-    return;
-  }
+/// Where a link is too slow for all parts, some are left out.
+void Checkpoints::send_to_keepers(core::Step step) {
   const std::string& octets = kept_[region_][step];
-  bus_.send({region_, Kind::kToKeep, era_, step, octets});
-  sent_bytes_ += octets.size();
+  const std::size_t sent = bus_->send_to_keepers({region_, Kind::kToKeep, era_, step, octets});
+  left_out_ += keepers_.size() - sent;
+  sent_bytes_ += sent * octets.size();
 }
 
 void Checkpoints::forget_what_all_had() {

@@ -1,5 +1,5 @@
 // What a node keeps of the world, to go back to when a node has died: its own parts in recent states, those of the
-// region whose keeper it is, and after a recovery everybody's in the state that all went back to.
+// regions whose keeper it is, and after a recovery everybody's in the state that all went back to.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +21,23 @@ namespace aurasim::cli {
 class Checkpoints {
  public:
   /// The participant outlives it.
-  Checkpoints(dds::Participant& participant, core::RegionId region) : region_(region), bus_(participant, region) {}
+  Checkpoints(dds::Participant& participant, core::RegionId region) : region_(region) { move_to(participant); }
+
+  /// From now on by this participant. What is kept stays; keepers are to be named anew.
+  void move_to(dds::Participant& participant);
 
   /// The scene is begun from its first state: what was kept before does not fit.
   void begin_era(core::Generation era);
-  /// Who keeps ours from now on (dds::CheckpointBus).
-  void use_keeper(core::RegionId keeper, core::Generation life) { bus_.use_keeper(keeper, life); }
+  /// These regions keep our parts from now on (dds::CheckpointBus).
+  void use_keepers(std::vector<core::RegionId> keepers, core::Generation life);
+  const std::vector<core::RegionId>& keepers() const { return keepers_; }
 
   /// Our part in a state. It counts once all states up to `recorded` are on disk: what is recorded of it, too, is gone
   /// with the node otherwise.
   void add(cut::SavedWorld part, core::Step recorded);
   /// Up to which state must be on disk for the oldest part that waits for that; nothing: none does.
   std::optional<core::Step> waits_for() const;
-  /// Takes in what others send; gives our newest part to the keeper. `recorded`: states up to it are on disk.
+  /// Takes in what others send; gives our newest part to the keepers. `recorded`: states up to it are on disk.
   void progress(core::Step recorded);
   /// For the status.
   std::vector<dds::KeptPart> parts() const;
@@ -43,10 +47,10 @@ class Checkpoints {
   /// All go back to state `step` of this era, of which these are the parts. Of its first state there need not be any.
   void go_back(core::Generation era, core::Step step, const std::map<core::RegionId, std::string>& parts);
   /// In a recovery: to all.
-  bool give(const dds::Checkpoint& checkpoint) { return bus_.send(checkpoint); }
+  bool give(const dds::Checkpoint& checkpoint) { return bus_->send_to_all(checkpoint); }
   /// What was given to all for this generation, so far: by region.
   const std::map<core::RegionId, std::string>& given(core::Generation generation, dds::Checkpoint::Kind kind);
-  /// Octets sent to the keeper, and parts that were not since it had not got the one before.
+  /// Octets sent to keepers, and parts that a keeper was not sent since it had not got the one before.
   std::uint64_t sent_bytes() const { return sent_bytes_; }
   std::uint64_t left_out() const { return left_out_; }
 
@@ -58,11 +62,12 @@ class Checkpoints {
   };
   void take();
   void keep(core::RegionId region, core::Step step, std::string octets);
-  void send_to_keeper(core::Step step);
+  void send_to_keepers(core::Step step);
   void forget_what_all_had();
 
   core::RegionId region_;
-  dds::CheckpointBus bus_;
+  std::optional<dds::CheckpointBus> bus_;
+  std::vector<core::RegionId> keepers_;
   core::Generation era_ = 0;
   std::deque<Coming> coming_;
   std::map<core::RegionId, std::map<core::Step, std::string>> kept_;

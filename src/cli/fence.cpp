@@ -11,17 +11,19 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLookEvery = 50ms;
-/// Whoever waits so long for the others to be heard again gives up: Fast DDS may not have matched it anew.
-constexpr auto kLongestCut = 10min;
+
+node::Quorum quorum_of(const FenceSettings& settings) {
+  return {settings.region, settings.regions, settings.recovers ? node::Losses::kComeBack : node::Losses::kForgotten};
+}
 
 }  // namespace
 
 Fence::Fence(const FenceSettings& settings, Senses senses)
-    : settings_(settings), senses_(std::move(senses)), quorum_(settings.region, settings.regions) {}
+    : settings_(settings), senses_(std::move(senses)), quorum_(quorum_of(settings)) {}
 
 void Fence::begin_anew(bool recovers) {
   settings_.recovers = recovers;
-  quorum_ = node::Quorum(settings_.region, settings_.regions);
+  quorum_ = quorum_of(settings_);
   standing_ = node::Standing::kGoOn;
   watches_closely_ = false;
   dead_ = 0;
@@ -47,26 +49,28 @@ std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId
         self);
   }
   if (settings_.can_be_cut) look(dead, now);
-  if (!is_cut_off()) return {};
+  // With `recovers` nobody takes this region over but with the majority, so this node may wait for the others for ever.
+  if (!is_cut_off() || settings_.recovers) return {};
   std::vector<std::uint32_t> silent;
   for (const core::RegionId lost : quorum_.lost()) silent.push_back(core::value_of(lost));
-  if (settings_.recovers && now < cut_off_since_ + kLongestCut) return {};
   return fmt::format(
       "region {} hears nothing from regions [{}], half of the run or more: they may have died, or this host is cut off "
       "and they go on without it",
       self, fmt::join(silent, ", "));
 }
 
-/// A neighbour's death lets the node compute at once: so whoever is newly dead is looked at before that.
+/// A neighbour's death lets the node compute at once, so a new one is looked at before that. While the node stands
+/// nothing is computed: then a neighbour whose stream has ended is lost only as long as its status is not heard, since
+/// its stream begins anew only after the recovery.
 void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now) {
   if (now < next_look_ && dead.size() == dead_ && !watches_closely_) return;
   next_look_ = now + kLookEvery;
   dead_ = dead.size();
   std::map<core::RegionId, node::PeerSign> signs = senses_.peers();
-  for (const core::RegionId region : dead) signs[region].lost = true;
-  const node::Standing standing = quorum_.judge(signs, now);
-  if (standing != standing_) cut_off_since_ = now;
-  standing_ = standing;
+  if (!watches_closely_ || !settings_.recovers) {
+    for (const core::RegionId region : dead) signs[region].lost = true;
+  }
+  standing_ = quorum_.judge(signs, now);
 }
 
 }  // namespace aurasim::cli

@@ -44,7 +44,8 @@ class Fence {
   bool closed() const { return !reason_.empty(); }
   /// `reason`: for people.
   void close(std::string reason) { reason_ = std::move(reason); }
-  /// Somebody has died: what was judged before that does not count any more, and every call judges anew.
+  /// The node stands, because somebody has died: what was judged before that does not count any more, and every call
+  /// judges anew. With `recovers` the statuses alone say from then on who is lost.
   void watch_closely() { watches_closely_ = true; }
   /// All regions have nodes again. With `recovers` or without, from now on.
   void begin_anew(bool recovers);
@@ -59,7 +60,6 @@ class Fence {
   Senses senses_;
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
-  Clock::time_point cut_off_since_;  ///< if it is
   bool watches_closely_ = false;
   std::size_t dead_ = 0;  ///< neighbours when last looked
   Clock::time_point next_look_;

@@ -35,6 +35,18 @@ void log_impairment(const dds::Participant& participant) {
       by.seed, datagrams.passed, datagrams.delayed, datagrams.lost, datagrams.overflowed, datagrams.queued);
 }
 
+RecoverySettings recovery_settings(const config::Launch& launch, const NodeOptions& options, bool can_be_cut) {
+  RecoverySettings settings;
+  settings.region = options.region;
+  settings.regions = static_cast<std::uint32_t>(launch.regions.size());
+  settings.patience =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(launch.survival.patience_s));
+  settings.can_be_cut = can_be_cut;
+  settings.has_launcher = options.has_launcher;
+  settings.checkpoint_steps = launch.checkpoint_steps();
+  return settings;
+}
+
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
@@ -54,13 +66,14 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(
-          with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region))),
-      control_(participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
+      participant_(std::make_unique<dds::Participant>(
+          with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region)))),
+      control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                               static_cast<std::uint32_t>(launch.regions.size())}),
-      fence_(fence_settings(), {[this] { return participant_.outlived_its_lease(); }, [this] { return peer_signs(); }}),
+      fence_(fence_settings(), {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
       saves_(options.saves, options.region, options.save_keep),
-      pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall) {
+      pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
+      recovery_(recovery_settings(launch, options, !participant_->stays_on_this_host())) {
   status_.region = options.region;
   status_.run = options.run;
   status_.pid = static_cast<std::uint32_t>(::getpid());
@@ -76,7 +89,7 @@ FenceSettings NodeProcess::fence_settings() const {
   FenceSettings settings;
   settings.region = options_.region;
   settings.regions = static_cast<std::uint32_t>(launch_.regions.size());
-  settings.can_be_cut = !participant_.stays_on_this_host();
+  settings.can_be_cut = !participant_->stays_on_this_host();
   settings.never_waits = launch_.time.sync == core::SyncMode::kFreeRunning;
   settings.recovers = recovers();
   return settings;
@@ -99,9 +112,9 @@ bool NodeProcess::fence_is_open() {
 ExitCode NodeProcess::run() {
   try {
     const ExitCode code = meet_and_run();
-    participant_.flush_delayed();  // whoever leaves silently destroys nothing, and its last words would wait for ever
-    log_impairment(participant_);
-    log_refusals(participant_);
+    participant_->flush_delayed();  // whoever leaves silently destroys nothing, and its last words would wait for ever
+    log_impairment(*participant_);
+    log_refusals(*participant_);
     return code;
   } catch (const std::exception& error) {
     if (phase_ != NodePhase::kListening) {
@@ -118,13 +131,13 @@ ExitCode NodeProcess::meet_and_run() {
   enter(NodeEvent::kFree);
   publish_map(generation_, first_step());
   publish();
-  transport_.emplace(participant_, transport_settings());
-  observers_.emplace(launch_, participant_, options_.region);
-  command_server_.emplace(launch_, participant_, options_.region, options_.saves);
-  programs_.emplace(participant_);
+  transport_.emplace(*participant_, transport_settings());
+  observers_.emplace(launch_, *participant_, options_.region);
+  command_server_.emplace(launch_, *participant_, options_.region, options_.saves);
+  programs_.emplace(*participant_);
   open_ros2();
   served_map_ = launch_.regions.version();
-  checkpoints_.emplace(participant_, options_.region);
+  checkpoints_.emplace(*participant_, options_.region);
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
   compare_clocks();
   begin_generation(start_->generation, *start_);
@@ -137,7 +150,7 @@ bool NodeProcess::comes_back_as_spare() const {
 
 /// The others stand and wait for somebody.
 ExitCode NodeProcess::take_over() {
-  checkpoints_.emplace(participant_, options_.region);
+  checkpoints_.emplace(*participant_, options_.region);
   recover("takes the region over");
   if (fence_.closed()) return refuse(fence_.reason());
   return node_ ? run_steps() : not_begun();
@@ -202,6 +215,7 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
 /// The first state of a generation is there.
 void NodeProcess::begin_with(const node::StepReport& report) {
   run_orders_.clear();
+  stops_standing_ = false;
   run_control_limits_.begin(node_->current_step(), Clock::now());
   if (recovers()) let_sigterm_ask_to_leave(options_.has_launcher);
   hurry_until_ = 0;
@@ -209,7 +223,7 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   frame_times_.clear();
   checkpoint_ = recorded_ = secured_ = 0;
   saved_last_ = std::min(saved_last_, node_->current_step());
-  if (launch_.regions.size() > 1) checkpoints_->use_keeper(keeper(), life_);
+  if (launch_.regions.size() > 1) checkpoints_->use_keepers(keepers(), life_);
   observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);
   record(node_->confirmed());

@@ -18,6 +18,7 @@
 #include "cli/exit_code.h"
 #include "cli/fence.h"
 #include "cli/node_phase.h"
+#include "cli/recovery.h"
 #include "cli/replica_publisher.h"
 #include "cli/ros2_link.h"
 #include "cli/run_control_limits.h"
@@ -117,7 +118,7 @@ class NodeProcess {
   std::optional<std::string> death();
   void look_for_deaths();
   bool has_successor();
-  core::RegionId keeper();
+  std::vector<core::RegionId> keepers();
   bool leaves_now() { return drains_ && may_leave(); }
   bool may_leave();
   bool can_leave_to_others();
@@ -126,18 +127,20 @@ class NodeProcess {
   void recover(const std::string& why);
   void begin_to_recover();
   bool agree_on_restore();
-  bool is_not_needed();
-  bool nobody_knows_the_world();
-  bool is_meant(core::RegionId region, const dds::Status& status) const;
-  std::vector<std::uint32_t> vacant_regions();
-  void go_on_without();
-  void call_spares(const std::vector<std::uint32_t>& vacant);
+  void meet_anew();
+  void note_unheard(const SeenNodes& nodes);
+  bool has_to_leave_recovery(const SeenNodes& nodes);
+  RecoveryView recovery_view(const SeenNodes& nodes, bool may_go_on) const;
+  SeenNodes nodes_and_self();
+  std::string what_recovery_waits_for(const std::vector<core::RegionId>& vacant);
+  void go_on_without(const std::vector<core::RegionId>& vacant);
   bool call_spare(core::RegionId region);
-  bool is_next_after(core::RegionId region);
-  bool stand_in(const std::vector<std::uint32_t>& vacant);
+  void stand_in(const std::vector<core::RegionId>& regions);
   void hear_of_drain(const dds::RunCommand& drain);
   void lead_recovery();
+  bool may_begin_again(core::Generation era);
   void hear_of_restore(const dds::RunCommand& restore);
+  void give_way(core::Step step);
   void throw_away_after(core::Step step);
   void repeat_commands(const dds::RunCommand& restore);
   void go_back(const dds::RunCommand& restore);
@@ -195,7 +198,7 @@ class NodeProcess {
   NodePhase phase_ = NodePhase::kListening;
   config::Launch launch_;
   NodeOptions options_;
-  dds::Participant participant_;
+  std::unique_ptr<dds::Participant> participant_;
   dds::ControlBus control_;
   Fence fence_;
   std::optional<dds::DdsTransport> transport_;   ///< once the domain is known to be free
@@ -245,14 +248,11 @@ class NodeProcess {
   bool goes_on_ = false;            ///< without those who have died: nobody has taken their regions over
   bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
   core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
-  std::chrono::steady_clock::time_point recovering_since_, idle_since_, alone_since_;
-  std::map<std::uint32_t, std::chrono::steady_clock::time_point> called_;  ///< regions that spares were called for
-  std::set<std::uint64_t> taken_;                                          ///< spares that were called
-  struct StandIn {
-    int times = 0;
-    core::Step at = 0;
-  };
-  std::map<std::uint32_t, StandIn> stood_in_;  ///< processes that one of us was to start for a region, in a row
+  std::chrono::steady_clock::time_point recovering_since_;
+  Recovery recovery_;
+  std::set<std::uint64_t> taken_;  ///< spares that were called
+  std::string asks_for_;           ///< what a person has to decide before all can go on; empty: nothing
+  bool stops_standing_ = false;    ///< told to stop while it stood: it does not wait for the others
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;

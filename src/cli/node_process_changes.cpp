@@ -182,7 +182,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
   observers_->publish_census(*node_, settings.census);
   const std::vector<core::Departure> departures = node::find_new_hosts(
-      settings, take_census(settings, deadline, participant_, *node_, [this] { look_for_deaths(); }), *node_);
+      settings, take_census(settings, deadline, *participant_, *node_, [this] { look_for_deaths(); }), *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
   to_all.neighbours.clear();

@@ -81,6 +81,7 @@ void NodeProcess::obey(const dds::RunCommand& command) {
       hurry_until_ = std::max(hurry_until_, command.at_step);
       break;
     case Kind::kStop:
+      stops_standing_ = phase_ == NodePhase::kRecovering;
       stop_at_ = std::min(stop_at_.value_or(command.at_step), command.at_step);
       hurry_until_ = std::max(hurry_until_, command.at_step);
       break;

@@ -22,7 +22,7 @@ constexpr auto kPatienceWithReaders = 1s;   // some may have left without a word
 
 bool NodeProcess::finished() {
   if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
-  return stop_requested() || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
+  return stop_requested() || stops_standing_ || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
 }
 
 /// The state is there, and nothing can come to question it.
@@ -80,7 +80,7 @@ void NodeProcess::linger() {
   while (!(node_->ready_to_settle() && all_have_left() && has_all_of_the_last_states()) &&
          (Clock::now() < begin + kLinger || others_run())) {
     execute_commands();
-    if (!all_have_left()) look_for_deaths();
+    if (!all_have_left() && !stops_standing_) look_for_deaths();
     publish();
     control_.wait(10ms);
   }

@@ -32,11 +32,11 @@ void NodeProcess::note_refusals() {
 
 /// What is refused of others ends nobody's life: it is said once, and counted.
 void NodeProcess::note_strangers() {
-  for (const std::string& text : participant_.take_said()) {
+  for (const std::string& text : participant_->take_said()) {
     spdlog::warn("region {}: {}", core::value_of(options_.region), text);
   }
   std::erase_if(status_.refused, [](const auto& refused) { return refused.first == dds::kNoRegion; });
-  const std::uint64_t refused = participant_.refused_of_strangers();
+  const std::uint64_t refused = participant_->refused_of_strangers();
   if (refused > 0) status_.refused.emplace_back(dds::kNoRegion, refused);
 }
 

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "cli/keepers.h"
 #include "cli/node_process.h"
 #include "cli/step_back.h"
 
@@ -66,10 +68,12 @@ void NodeProcess::keep_checkpoints() {
   checkpoints_->progress(secured_);
   if (checkpoints_->left_out() == 0 || says_left_out_) return;
   says_left_out_ = true;
+  std::vector<std::uint32_t> keepers;
+  for (const core::RegionId keeper : checkpoints_->keepers()) keepers.push_back(core::value_of(keeper));
   notice_ = fmt::format(
-      "region {} takes longer for a part of the world than from one to the next: after a death all may "
-      "have to go back farther (survival.checkpoint)",
-      core::value_of(keeper()));
+      "one of regions [{}], which keep copies of this region, takes longer to receive a part of the world than from one "
+      "checkpoint to the next: after a death all may have to go back farther (survival.checkpoint)",
+      fmt::join(keepers, ", "));
   spdlog::warn("{}", notice_);
 }
 
@@ -117,18 +121,11 @@ cut::SavedWorld NodeProcess::as_saved(core::WorldCut part) const {
           std::move(part)};
 }
 
-/// Who keeps our parts: the next region's node on another host, or the next one where there is no other host.
-core::RegionId NodeProcess::keeper() {
-  const auto regions = static_cast<std::uint32_t>(launch_.regions.size());
-  const auto behind = [&](std::uint32_t i) { return core::RegionId{(core::value_of(options_.region) + i) % regions}; };
-  const auto& statuses = control_.statuses();
-  const auto self = statuses.find(options_.region);
-  for (std::uint32_t i = 1; i < regions; ++i) {
-    const auto other = statuses.find(behind(i));
-    if (self == statuses.end() || other == statuses.end()) continue;
-    if (other->second.host != self->second.host) return behind(i);
-  }
-  return behind(1);
+/// The regions that keep our parts, by the hosts of the nodes that are there now.
+std::vector<core::RegionId> NodeProcess::keepers() {
+  std::map<core::RegionId, std::uint16_t> hosts;
+  for (const auto& [region, seen] : control_.statuses()) hosts[region] = seen.host;
+  return keepers_of(options_.region, static_cast<std::uint32_t>(launch_.regions.size()), hosts);
 }
 
 }  // namespace aurasim::cli

@@ -139,7 +139,7 @@ bool NodeProcess::wait_for_start() {
 void NodeProcess::connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait) {
   settings.life = life_ = waits_to_start_;
   transport_.reset();
-  transport_.emplace(participant_, settings);
+  transport_.emplace(*participant_, settings);
   while (!transport_->all_matched()) wait("its neighbours");
   generation_ = waits_to_start_;
   start_.reset();

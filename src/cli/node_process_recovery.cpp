@@ -11,6 +11,7 @@
 #include "cli/launch_setup.h"
 #include "cli/node_process.h"
 #include "cli/restore_plan.h"
+#include "cli/saved_world.h"
 #include "cli/stop_signal.h"
 #include "config/launch_variants.h"
 
@@ -23,7 +24,8 @@ using Kind = dds::Checkpoint::Kind;
 
 constexpr auto kInRecovery = 5ms;
 constexpr auto kPatienceWithParts = 10s;
-constexpr auto kPatienceWithStandIn = 20s;
+/// A recovery that is about to succeed is not broken off by a stop: all stop together soon after it.
+constexpr auto kShortStand = 5s;
 
 }  // namespace
 
@@ -47,7 +49,9 @@ void NodeProcess::recover(const std::string& why) {
 
 /// What a change of the run had begun is forgotten: whoever wanted it asks again.
 void NodeProcess::begin_to_recover() {
-  recovering_since_ = idle_since_ = alone_since_ = Clock::now();
+  recovering_since_ = Clock::now();
+  recovery_.begin(recovering_since_);
+  stops_standing_ = false;
   fence_.watch_closely();
   if (before_change_) {
     launch_ = std::move(before_change_->launch);
@@ -61,42 +65,102 @@ void NodeProcess::begin_to_recover() {
 
 /// False when the run ends, or goes on without those who have died.
 bool NodeProcess::agree_on_restore() {
-  const auto patience =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(launch_.survival.patience_s));
-  auto somebody_came = Clock::now();  // or nobody was missing
   while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
-    if (stop_requested()) return false;
+    if (stop_requested() || (stops_standing_ && Clock::now() > recovering_since_ + kShortStand)) return false;
     leave_if_asked();
     if (leaves_by_ && Clock::now() > *leaves_by_) return false;
     if (node_) node_->ready();
     const bool may_go_on = !node_ || fence_is_open();
     if (fence_.closed()) return false;
-    const std::vector<std::uint32_t> vacant = vacant_regions();
-    if (vacant.empty() || !may_go_on) somebody_came = Clock::now();
-    if (node_ && Clock::now() > somebody_came + patience) {
-      if (!stand_in(vacant)) {
-        go_on_without();
-        return false;
-      }
-      somebody_came = Clock::now() + kPatienceWithStandIn - patience;
+    const SeenNodes nodes = nodes_and_self();
+    if (!node_ && has_to_leave_recovery(nodes)) return false;
+    const RecoveryActs acts = recovery_.look(recovery_view(nodes, may_go_on), Clock::now());
+    if (acts.replaced_in && node_) {
+      give_way(*acts.replaced_in);
+      return false;
     }
-    if (!node_ && is_not_needed()) return false;
-    if (!node_ && nobody_knows_the_world()) throw std::runtime_error(world_is_lost(options_.saves));
-    publish(fence_.is_cut_off() ? "hears too few of the others, and waits for them"
-                                : fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
-    if (may_go_on && node_) {
-      call_spares(vacant);
-      lead_recovery();
+    if (acts.gives_up) {
+      go_on_without(acts.vacant);
+      return false;
     }
+    note_unheard(nodes);
+    publish(what_recovery_waits_for(acts.vacant));
+    if (acts.meets_anew) meet_anew();
+    stand_in(acts.stand_ins);
+    for (const core::RegionId region : acts.call_spares) call_spare(region);
+    if (may_go_on && node_) lead_recovery();
     execute_commands();
     control_.wait(kInRecovery);
   }
+  asks_for_.clear();
   return true;
 }
 
-void NodeProcess::go_on_without() {
-  const std::string regions = fmt::format("{}", fmt::join(vacant_regions(), ", "));
-  notice_ = fmt::format("nobody has taken over regions [{}] in {} s", regions, launch_.survival.patience_s);
+/// The others wait for a node that does not hear all: they are told at once when that changes.
+void NodeProcess::note_unheard(const SeenNodes& nodes) {
+  std::vector<core::RegionId> unheard =
+      unheard_regions(nodes, options_.region, static_cast<std::uint32_t>(launch_.regions.size()));
+  if (unheard == status_.dead) return;
+  status_.dead = std::move(unheard);
+  last_published_ = {};
+}
+
+/// Leaves DDS and joins it again as a new participant, with the world that this node has (Recovery::meets_anew).
+void NodeProcess::meet_anew() {
+  spdlog::warn("region {}: some others do not hear this node, or it hears too few of them: it joins DDS anew",
+               core::value_of(options_.region));
+  auto anew = std::make_unique<dds::Participant>(participant_->settings());
+  ros2_.reset();
+  programs_.reset();
+  control_.move_to(*anew);
+  checkpoints_->move_to(*anew);
+  if (observers_) observers_.emplace(launch_, *anew, options_.region);
+  if (command_server_) command_server_.emplace(launch_, *anew, options_.region, options_.saves);
+  if (transport_) transport_.emplace(*anew, transport_settings());
+  participant_ = std::move(anew);
+  programs_.emplace(*participant_);
+  open_ros2();
+  if (node_) publish_map(generation_, first_step());
+  publish();
+}
+
+/// A process that has come to take a region over, and is of no use. Throws when nobody knows the world.
+bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
+  if (recovery_.is_not_needed(nodes, Clock::now())) return true;
+  if (recovery_.nobody_knows_the_world(nodes, Clock::now())) throw std::runtime_error(world_is_lost(options_.saves));
+  return false;
+}
+
+RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) const {
+  return {nodes,     leaving_,
+          status_.process, node_ != nullptr,
+          may_go_on, fence_.is_cut_off(),
+          node_ ? node_->current_step() : first_step()};
+}
+
+/// As the others see this node, too.
+SeenNodes NodeProcess::nodes_and_self() {
+  SeenNodes nodes = control_.statuses();
+  nodes[options_.region].status = status_;
+  return nodes;
+}
+
+std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionId>& vacant) {
+  if (fence_.is_cut_off()) return "hears too few of the others, and waits for them";
+  if (!asks_for_.empty()) return asks_for_;
+  std::vector<std::uint32_t> regions;
+  for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
+  if (!regions.empty()) return fmt::format("waits for whoever takes over regions [{}]", fmt::join(regions, ", "));
+  for (const core::RegionId region : status_.dead) regions.push_back(core::value_of(region));
+  if (!regions.empty()) return fmt::format("does not hear regions [{}], which others hear", fmt::join(regions, ", "));
+  return "waits until all others stand";
+}
+
+void NodeProcess::go_on_without(const std::vector<core::RegionId>& vacant) {
+  std::vector<std::uint32_t> regions;
+  for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
+  notice_ = fmt::format("nobody has taken over regions [{}] in {} s", fmt::join(regions, ", "),
+                        launch_.survival.patience_s);
   if (life_ != life_of_node_) {  // in a recovery that was broken off we have let go of all endpoints
     return fence_.close(notice_ + ": the run cannot go on");
   }
@@ -110,18 +174,14 @@ void NodeProcess::go_on_without() {
 
 /// The lowest region that knows the world says to what state all go back, once somebody is there for each region.
 void NodeProcess::lead_recovery() {
-  std::map<core::RegionId, dds::SeenStatus> nodes = control_.statuses();
-  nodes[options_.region].status = status_;
+  const SeenNodes nodes = nodes_and_self();
+  recovery_.note_kept(nodes, status_.era);
   std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
   if (!plan || plan->lead != options_.region) return;
   dds::RunCommand restore = plan->command;
   restore.generation = std::max(restore.generation, std::max(generation_, restoring_) + 1);
-  if (restore.count == 1) {
-    restore.at_step = first_step();
-    const std::string saved = newest_saved_world(options_.saves);
-    spdlog::warn("no state is kept of every region: all begin again from state {}. The newest saved world here: {}",
-                 restore.at_step, saved.empty() ? "none" : saved);
-  }
+  if (restore.count == 1 && !may_begin_again(restore.era)) return;
+  if (restore.count == 1) restore.at_step = first_step();
   restore.run = options_.run;
   restore.region = options_.region;
   const node::Instant now = node::read_clocks();
@@ -133,17 +193,42 @@ void NodeProcess::lead_recovery() {
   repeat_commands(restore);
 }
 
+/// No state is kept whole. Before a later state than the first one was kept, there is nothing to lose. After that a
+/// person decides: the missing part may be on a host that is down.
+bool NodeProcess::may_begin_again(core::Generation era) {
+  if (recovery_.may_begin_again(era)) return true;
+  if (reset_) {
+    spdlog::warn("region {}: all begin again from state {}, as they were told to", core::value_of(options_.region),
+                 first_step());
+    reset_.reset();
+    return true;
+  }
+  const std::string saved = newest_saved_world(options_.saves);
+  const std::string asks = fmt::format(
+      "nobody keeps all parts of a state, though state {} was kept. Start the processes that had them again, or begin "
+      "again from state {} with `aurasim send reset`{}",
+      *recovery_.kept(), first_step(),
+      saved.empty() ? std::string() : fmt::format(", or stop the run and launch it with `--load {}`", saved));
+  if (asks != asks_for_) spdlog::error("region {} stands: {}", core::value_of(options_.region), asks);
+  asks_for_ = asks;
+  return false;
+}
+
 /// It names the processes that go on: another one with our region is none of ours.
 void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
-  const std::size_t region = core::value_of(options_.region);
-  const bool is_new = restore.generation > std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
-  if (!is_new || restore.members.size() != launch_.regions.size()) return;
-  if (restore.members[region].process == status_.process) {
-    restore_ = with_clock_of(restore.region, restore);
-  } else if (node_) {
-    fence_.close(fmt::format("another process has taken over region {} in state {}", region, restore.at_step));
-    throw_away_after(restore.at_step);
-  }
+  if (restore.members.size() != launch_.regions.size()) return;
+  const core::Generation begun = node_ ? generation_ : 0;
+  const core::Generation known = std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
+  const RestoreMeaning meaning = meaning_of(restore, options_.region, status_.process, begun, known);
+  if (meaning == RestoreMeaning::kGoBack) restore_ = with_clock_of(restore.region, restore);
+  if (meaning == RestoreMeaning::kLeftOut) recovery_.note_left_out(restore);
+  if (meaning == RestoreMeaning::kReplaced && node_) give_way(restore.at_step);
+}
+
+/// Another process has this region since state `step`.
+void NodeProcess::give_way(core::Step step) {
+  fence_.close(fmt::format("another process has taken over region {} in state {}", core::value_of(options_.region), step));
+  throw_away_after(step);
 }
 
 /// What this process has computed and recorded alone is not what has become of the world.
@@ -204,9 +289,9 @@ void NodeProcess::take_map_of(const dds::RunCommand& restore) {
   control_.use_map(launch_.regions.version());
   open_ros2();
   if (observers_ && command_server_ && programs_ && served_map_ == launch_.regions.version()) return;
-  observers_.emplace(launch_, participant_, options_.region);
-  command_server_.emplace(launch_, participant_, options_.region, options_.saves);
-  programs_.emplace(participant_);
+  observers_.emplace(launch_, *participant_, options_.region);
+  command_server_.emplace(launch_, *participant_, options_.region, options_.saves);
+  programs_.emplace(*participant_);
   served_map_ = launch_.regions.version();
 }
 

@@ -71,8 +71,9 @@ void NodeProcess::publish(const std::string& text) {
   status_.generation = stands ? stands_in_ : generation_;
   status_.step = node_ ? node_->current_step() : 0;
   if (checkpoints_) status_.parts = checkpoints_->parts();
+  if (recovers() && node_) recovery_.note_kept(control_.statuses(), status_.era);
   control_.publish_status(status_);
-  log_new_refusals(participant_);
+  log_new_refusals(*participant_);
 }
 
 double NodeProcess::real_time_factor() const {

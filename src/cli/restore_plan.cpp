@@ -10,8 +10,10 @@ namespace {
 using Nodes = std::map<core::RegionId, dds::SeenStatus>;
 using dds::NodeState;
 
-bool stands(const dds::SeenStatus& seen) {
-  return !seen.lost && (seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare);
+/// Stands and hears all others. A node that does not could not take part: all would wait for it in vain.
+bool is_ready(const dds::SeenStatus& seen) {
+  const bool stands = seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare;
+  return !seen.lost && stands && seen.status.dead.empty();
 }
 
 /// Has a world of this era.
@@ -23,14 +25,17 @@ bool keeps(const dds::Status& status, const dds::KeptPart& part) {
   return std::ranges::find(status.parts, part) != status.parts.end();
 }
 
-/// Who gives which region's part of this state to all; nothing: there is one that nobody keeps.
+/// Parts that a process which has come to take a region over has found on its disk count like others.
+bool gives(const dds::Status& status, core::Generation era, const dds::KeptPart& part) {
+  return status.era == era && keeps(status, part);
+}
+
+/// Which node gives which region's part of this state to all. Nothing: nobody keeps one of the parts.
 std::optional<std::vector<core::RegionId>> holders(const Nodes& nodes, core::Generation era, core::Step step) {
   std::vector<core::RegionId> holders;
   for (const auto& [region, seen] : nodes) {
     const dds::KeptPart part{region, step};
-    const auto has_it = [&](const auto& entry) {
-      return survives(entry.second.status, era) && keeps(entry.second.status, part);
-    };
+    const auto has_it = [&](const auto& entry) { return gives(entry.second.status, era, part); };
     const auto other = std::ranges::find_if(nodes, has_it);
     if (other == nodes.end()) return std::nullopt;
     holders.push_back(has_it(*nodes.find(region)) ? region : other->first);
@@ -41,8 +46,8 @@ std::optional<std::vector<core::RegionId>> holders(const Nodes& nodes, core::Gen
 }  // namespace
 
 std::optional<RestorePlan> plan_restore(const Nodes& nodes, std::size_t regions) {
-  const auto all_stand = std::ranges::all_of(nodes, [](const auto& entry) { return stands(entry.second); });
-  if (nodes.size() != regions || !all_stand) return std::nullopt;
+  const bool all_are_ready = std::ranges::all_of(nodes, [](const auto& entry) { return is_ready(entry.second); });
+  if (nodes.size() != regions || !all_are_ready) return std::nullopt;
   RestorePlan plan;
   dds::RunCommand& command = plan.command;
   command.kind = dds::RunCommandKind::kRestore;
@@ -58,7 +63,7 @@ std::optional<RestorePlan> plan_restore(const Nodes& nodes, std::size_t regions)
   for (const auto& [region, seen] : nodes) {
     const dds::Status& status = seen.status;
     command.members.push_back({status.process, region, survives(status, command.era)});
-    if (!survives(status, command.era)) continue;
+    if (status.era != command.era) continue;
     for (const dds::KeptPart& part : status.parts) states.insert(part.step);
   }
   const auto lead =

@@ -34,7 +34,7 @@ dds::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId regio
 }
 
 bool RunSteering::belongs(const dds::SeenStatus& seen) const {
-  return seen.is_live() && seen.status.agreement == agreement_;
+  return !seen.lost && !seen.has_ended() && seen.status.agreement == agreement_;
 }
 
 bool RunSteering::find_run(std::chrono::milliseconds time_out) {

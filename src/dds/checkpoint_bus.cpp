@@ -1,6 +1,7 @@
 #include "dds/checkpoint_bus.h"
 
 #include <deque>
+#include <list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,8 +44,8 @@ struct CheckpointBus::Impl {
   Wakeup wakeup;
   TypedWriter<wire::Checkpoint> to_all;
   core::Generation life = 0;
-  std::optional<core::RegionId> keeper;
-  std::optional<TypedWriter<wire::Checkpoint>> to_keeper;
+  std::vector<core::RegionId> keepers;
+  std::list<TypedWriter<wire::Checkpoint>> to_keepers;  ///< one each, so that a slow one is waited for alone
   std::optional<TypedReader<wire::Checkpoint>> reader;
   std::deque<Given> given;
 };
@@ -54,23 +55,31 @@ CheckpointBus::CheckpointBus(Participant& participant, core::RegionId region)
 
 CheckpointBus::~CheckpointBus() = default;
 
-void CheckpointBus::use_keeper(core::RegionId keeper, core::Generation life) {
-  if (impl_->keeper == keeper && impl_->life == life) return;
-  impl_->keeper = keeper;
+void CheckpointBus::use_keepers(const std::vector<core::RegionId>& keepers, core::Generation life) {
+  if (impl_->keepers == keepers && impl_->life == life) return;
+  impl_->keepers = keepers;
   if (std::exchange(impl_->life, life) != life) impl_->read();
-  const std::string partition = in_life(partition_of(impl_->region, keeper), life);
-  impl_->to_keeper.emplace(impl_->participant.domain(), EndpointSpec{TopicId::kCheckpoint, {partition}, impl_->region},
-                           impl_->wakeup);
+  impl_->to_keepers.clear();
+  for (const core::RegionId keeper : keepers) {
+    const std::string partition = in_life(partition_of(impl_->region, keeper), life);
+    impl_->to_keepers.emplace_back(impl_->participant.domain(),
+                                   EndpointSpec{TopicId::kCheckpoint, {partition}, impl_->region}, impl_->wakeup);
+  }
 }
 
-bool CheckpointBus::send(const Checkpoint& checkpoint) {
+std::size_t CheckpointBus::send_to_keepers(const Checkpoint& checkpoint) {
   impl_->participant.progress();
-  if (checkpoint.kind != Checkpoint::Kind::kToKeep) return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
-  return !impl_->to_keeper || impl_->to_keeper->send(checkpoint) != WriteResult::kFailed;
+  std::size_t sent = 0;
+  for (TypedWriter<wire::Checkpoint>& keeper : impl_->to_keepers) {
+    const bool is_free = keeper.reader_count() > 0 && keeper.all_acknowledged();
+    if (is_free && keeper.send(checkpoint) != WriteResult::kFailed) ++sent;
+  }
+  return sent;
 }
 
-bool CheckpointBus::is_kept() {
-  return impl_->to_keeper && impl_->to_keeper->reader_count() > 0 && impl_->to_keeper->all_acknowledged();
+bool CheckpointBus::send_to_all(const Checkpoint& checkpoint) {
+  impl_->participant.progress();
+  return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
 }
 
 std::vector<Checkpoint> CheckpointBus::take() {

@@ -181,6 +181,13 @@ ControlBus::ControlBus(Participant& participant, const ControlSettings& settings
 
 ControlBus::~ControlBus() = default;
 
+void ControlBus::move_to(Participant& participant) {
+  auto anew = std::make_unique<Impl>(participant, impl_->settings);
+  anew->requests = std::move(impl_->requests);
+  anew->request_sequence = std::move(impl_->request_sequence);
+  impl_ = std::move(anew);
+}
+
 bool ControlBus::publish_status(const Status& status) {
   if (!impl_->status_writer || status.region != impl_->settings.region) {
     throw std::logic_error("publish_status: this process is not the node of that region");

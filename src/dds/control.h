@@ -37,6 +37,10 @@ class ControlBus {
   ControlBus(Participant& participant, const ControlSettings& settings);
   ~ControlBus();
 
+  /// From now on by this participant, which must outlive it; the one before is not used any more. Requests that were
+  /// returned are remembered, nodes and maps are heard anew.
+  void move_to(Participant& participant);
+
   /// Only with a region. False when the write failed twice.
   bool publish_status(const Status& status);
   /// All that listen have the last one.

@@ -1,5 +1,5 @@
 // May a node go on without those that have fallen silent? A host that is cut off sees the same as one whose neighbours
-// have all died; if it went on, there would be two worlds. So whoever has lost others goes on only with the majority
+// have all died; if it went on, there would be two worlds. So a node that has lost others goes on only with the majority
 // (docs/decisions/0012). Time is passed in.
 #pragma once
 
@@ -25,21 +25,28 @@ enum class Standing : std::uint8_t {
   kCutOff,  ///< not the majority: this node has to stop
 };
 
+/// What becomes of members that the majority goes on without.
+enum class Losses : std::uint8_t {
+  kForgotten,   ///< they are members no longer, so nodes may die one after the other
+  kComeBack,    ///< each region gets a node again: until then the majority is one of all regions
+};
+
 class Quorum {
  public:
-  /// Regions 0 to `regions` - 1 are members, until they leave or the rest goes on without them.
-  Quorum(core::RegionId self, std::uint32_t regions);
+  /// Regions 0 to `regions` - 1 are members, until they leave or are forgotten.
+  Quorum(core::RegionId self, std::uint32_t regions, Losses losses = Losses::kForgotten);
 
   /// Half of the members are enough for those among whom is the lowest member. A region without a sign counts as not
   /// heard of. `now` never goes back.
   Standing judge(const std::map<core::RegionId, PeerSign>& signs, std::chrono::steady_clock::time_point now);
 
   const std::set<core::RegionId>& members() const { return members_; }
-  /// Members lost since the rest last agreed to go on; after kCutOff, those that were missed.
+  /// Members that are lost and not forgotten.
   const std::set<core::RegionId>& lost() const { return lost_; }
 
  private:
   core::RegionId self_;
+  Losses losses_;
   std::set<core::RegionId> members_;
   std::set<core::RegionId> lost_;
   std::chrono::steady_clock::time_point lost_since_;  ///< when the latest of them was lost

@@ -24,7 +24,7 @@ struct RunEndpoints {
         additions(peer.participant, peer.region()),
         additions_reader(peer.participant),
         aura_watch(peer.participant, observed()) {
-    checkpoints.use_keeper(regions(neighbours).front(), 0);
+    checkpoints.use_keepers(regions(neighbours), 0);
   }
 
   static ObserverSettings observed() { return {kMapVersion, 16, 100}; }
@@ -38,7 +38,7 @@ struct RunEndpoints {
     replicas.send(replica_of(step % 30 == 0 ? 2000 : 8, peer.region()));
     if (step % 50 == 0) {
       control.publish_map(map_of(kMapVersion));
-      checkpoints.send({peer.region(), Checkpoint::Kind::kToKeep, 1, step, std::string(200'000, 'x')});
+      checkpoints.send_to_keepers({peer.region(), Checkpoint::Kind::kToKeep, 1, step, std::string(200'000, 'x')});
       core::CommandReply reply;
       reply.source = peer.region();
       reply.request = static_cast<std::uint64_t>(step) + 1;
