@@ -81,7 +81,7 @@ bool NodeProcess::agree_on_restore() {
       somebody_came = Clock::now() + kPatienceWithStandIn - patience;
     }
     if (!node_ && is_not_needed()) return false;
-    if (!node_ && nobody_knows_the_world()) throw std::runtime_error(world_is_lost(options_.saves));
+    if (!node_ && nobody_knows_the_world()) throw std::runtime_error(world_is_lost(save_folders(), saved_by()));
     publish(fence_.is_cut_off() ? "hears too few of the others, and waits for them"
                                 : fmt::format("waits for whoever takes over regions [{}]", fmt::join(vacant, ", ")));
     if (may_go_on && node_) {
@@ -118,9 +118,8 @@ void NodeProcess::lead_recovery() {
   restore.generation = std::max(restore.generation, std::max(generation_, restoring_) + 1);
   if (restore.count == 1) {
     restore.at_step = first_step();
-    const std::string saved = newest_saved_world(options_.saves);
-    spdlog::warn("no state is kept of every region: all begin again from state {}. The newest saved world here: {}",
-                 restore.at_step, saved.empty() ? "none" : saved);
+    spdlog::warn("no state is kept of every region: all begin again from state {}. {}", restore.at_step,
+                 say_newest_saved(save_folders(), saved_by()));
   }
   restore.run = options_.run;
   restore.region = options_.region;

@@ -71,6 +71,8 @@ void NodeProcess::publish(const std::string& text) {
   status_.generation = stands ? stands_in_ : generation_;
   status_.step = node_ ? node_->current_step() : 0;
   if (checkpoints_) status_.parts = checkpoints_->parts();
+  status_.saved = saves_.ledger().saved();
+  status_.not_saved = saves_.ledger().not_saved();
   control_.publish_status(status_);
   log_new_refusals(participant_);
 }
