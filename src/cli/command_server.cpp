@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/command_limits.h"
+#include "cli/saved_world.h"
 #include "config/meshes.h"
 #include "core/static_moves.h"
 #include "node/scene_additions.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cli/order_issuer.h"
-#include "cli/saved_world.h"
+#include "cli/part_writer.h"
 #include "config/launch.h"
 #include "core/command.h"
 #include "dds/command_bus.h"

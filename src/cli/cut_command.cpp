@@ -8,7 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
-#include "cut/cut_file.h"
+#include "cut/part_store.h"
 
 namespace aurasim::cli {
 namespace {
@@ -83,7 +83,7 @@ void add_cut(CLI::App& program, Action& action) {
   CLI::App* together = cut_app->add_subcommand("merge", "one file of the parts of all nodes");
   together->add_option("FILE", arguments->file, "to be written")->required();
   together->add_option("PARTS", arguments->parts, "of all nodes")->required()->check(CLI::ExistingFile);
-  together->footer("Example:\n  aurasim cut merge world.cut saves/world.cut.part-0-of-2 saves/world.cut.part-1-of-2");
+  together->footer("Example:\n  aurasim cut merge world.cut saves/world.cut.*");
   together->callback([arguments, &action] { action = [arguments] { return merge(*arguments); }; });
 }
 

@@ -10,6 +10,23 @@ enum class ExitCode : int {
   kRefused = 3,    ///< another run is in the same domain, or a neighbour did not come in time
   kFenced = 4,     ///< the others hold this node for dead, or may (fence.h)
   kBroken = 5,     ///< physics broke down for a body, which was taken out; the rest went on
+  kNotSaved = 6,   ///< the run has come to its end, but none of the worlds that it was to save (--save-every) is whole
 };
+
+/// Of a node's process: neither a run that has come to its end, nor one that was refused before it began.
+inline bool is_death(int code) {
+  switch (static_cast<ExitCode>(code)) {
+    case ExitCode::kOk:
+    case ExitCode::kBadConfig:
+    case ExitCode::kRefused:
+    case ExitCode::kBroken:
+    case ExitCode::kNotSaved:
+      return false;
+    case ExitCode::kFailed:
+    case ExitCode::kFenced:
+      return true;
+  }
+  return true;  // by a signal
+}
 
 }  // namespace aurasim::cli

@@ -7,10 +7,13 @@
 
 #include "cli/commands.h"
 #include "cli/host_room.h"
+#include "cli/kept_on_disk.h"
 #include "cli/key_choice.h"
 #include "cli/launcher.h"
 #include "cli/leave.h"
+#include "cli/part_writer.h"
 #include "cli/run_length.h"
+#include "cli/stop_signal.h"
 #include "cli/throw_away_keys.h"
 #include "cli/web_setup.h"
 
@@ -61,18 +64,37 @@ void look_at_keys(const config::Launch& launch) {
   }
 }
 
+/// Where it saves, and from where it goes on.
+void prepare_saves(const config::Launch& launch, LaunchOptions& options) {
+  if (options.resume) {
+    options.save.folder_is_given = true;
+    options.load.file = world_to_resume(launch, options.save);
+  }
+  check_room_for_saves(launch, options.save);
+}
+
 int run_launch(LaunchArguments arguments) {
   std::unique_ptr<ThrowAwayKeys> throw_away = keys_for(arguments);
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
   look_at_keys(launch);
   look_at_host(launch, arguments.options);
+  prepare_saves(launch, arguments.options);
   const auto world = load_world(arguments.options.load, launch);  // or it is refused before anything is started
   arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
-  leave_after([&launcher, &throw_away] {
+  leave_after([&] {
     const auto until_then = std::move(throw_away);  // nothing outside is destroyed
-    return launcher.run();
+    const LaunchOptions& options = arguments.options;
+    const bool is_kept = kept_folder(launch, options.save).has_value();
+    if (is_kept) {
+      spdlog::info("its newest states are kept on disk: if all its processes end at once, `{}` goes on from there",
+                   resume_command(launch, options.save));
+    }
+    const ExitCode code = launcher.run();
+    if (code == ExitCode::kNotSaved) spdlog::error("{}", kNothingSaved);
+    conclude_kept(launch, options.save, launcher.number(), code != ExitCode::kOk || stop_requested());
+    return code;
   });
 }
 
@@ -95,7 +117,11 @@ void add_launch(CLI::App& program, Action& action) {
       ->add_option("--spares", arguments->options.spares,
                    "processes that wait to take over the region of a node that dies; without, one is started then")
       ->check(CLI::Range(0, 64));
-  arguments->options.load.add_to(*command);
+  CLI::Option* const load = arguments->options.load.add_to(*command);
+  command
+      ->add_flag("--resume", arguments->options.resume,
+                 "go on from the newest state that is in --saves, or that a run has kept on disk (survival.disk)")
+      ->excludes(load);
   arguments->options.save.add_to(*command);
   command->footer("Example:\n  aurasim launch demo --duration 30 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_launch(*arguments); }; });

@@ -20,8 +20,9 @@ std::vector<std::string> command_line(const char* command, const config::Launch&
   words.insert(words.end(), {"--set", "physics.threads=" + std::to_string(threads_of(launch, launch.regions.size()))});
   if (!options.load.file.empty()) words.insert(words.end(), {"--load", options.load.file});
   if (options.load.other_build) words.emplace_back("--other-build");
-  words.insert(words.end(), {"--saves", options.save.folder, "--save-every", fmt::format("{}", options.save.every_s),
-                             "--save-keep", std::to_string(options.save.keep)});
+  if (options.save.folder_is_given) words.insert(words.end(), {"--saves", options.save.folder});
+  words.insert(words.end(), {"--save-every", fmt::format("{}", options.save.every_s), "--save-keep",
+                             std::to_string(options.save.keep)});
   if (options.steps) words.insert(words.end(), {"--steps", std::to_string(*options.steps)});
   if (options.report) words.insert(words.end(), {"--report", options.report->string()});
   return words;

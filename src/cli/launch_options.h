@@ -22,6 +22,7 @@ struct LaunchOptions {
   std::string recording;  ///< file; empty: none
   LoadArguments load;
   SaveArguments save;
+  bool resume = false;  ///< from the newest world that is there
   int start_time_out_s = 30;
   int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
 };

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "cli/guard_log.h"
+#include "cli/kept_on_disk.h"
 #include "cli/key_choice.h"
 #include "cli/launch_setup.h"
 #include "cli/merged_report.h"
@@ -96,6 +97,7 @@ void Launcher::start_nodes() {
     child.pid = start_node(child.region, Start::kWithOthers);
     children_.push_back(child);
   }
+  start_watch_.emplace(children_.size(), std::chrono::seconds(options_.start_time_out_s), Clock::now());
   keep_spares();
 }
 
@@ -141,6 +143,10 @@ void Launcher::look_at_nodes() {
     has_begun_ = has_begun_ || state == dds::NodeState::kRunning || state == dds::NodeState::kPaused ||
                  state == dds::NodeState::kFinished;
   }
+  if (has_begun_ || cannot_begin_) return;
+  const std::optional<std::string> problem = start_watch_->problem(control_.statuses(), Clock::now());
+  cannot_begin_ = problem.has_value();
+  if (problem) spdlog::error("{}", *problem);
 }
 
 /// Whoever asks for a drain may know a process that has just begun before it is known here.
@@ -203,7 +209,8 @@ void Launcher::collect_exits() {
         replace(child);
       } else {
         must_not_go_on_ = true;
-        spdlog::error("{}", world_is_lost(options_.save.folder));
+        spdlog::error("{}", world_is_lost(folders_of_run(launch_, options_.save, run_),
+                                          {launch_.world_identity(), {run_}, launch_command(launch_)}));
       }
     }
   }
@@ -244,8 +251,7 @@ void Launcher::note_exit(Child& child, int status) {
   child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (child.told_to_end && child.exit_code == 128 + SIGINT) child.exit_code = 0;  // told before it could listen
   const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
-  child.died = child.exit_code != 0 && !refused && child.exit_code != static_cast<int>(ExitCode::kBadConfig) &&
-               child.exit_code != static_cast<int>(ExitCode::kBroken);
+  child.died = is_death(child.exit_code);
   if (child.died) {
     spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
                   has_begun_ ? "" : " before the run had begun: the others are ended");

@@ -14,6 +14,7 @@
 #include "cli/live_table.h"
 #include "cli/node_ending.h"
 #include "cli/run_steering.h"
+#include "cli/start_watch.h"
 #include "cli/viewer_process.h"
 #include "dds/random_id.h"
 
@@ -26,6 +27,8 @@ class Launcher {
   ~Launcher();
 
   ExitCode run();
+  /// Its number: all its nodes have it, and no other run.
+  std::uint64_t number() const { return run_; }
 
  private:
   struct Child {
@@ -85,9 +88,10 @@ class Launcher {
     dds::RunCommand command;
     std::chrono::steady_clock::time_point heard;
   };
-  std::vector<Drain> drains_;  ///< of processes that are not yet known here
-  bool has_begun_ = false;     ///< a node has shown that all have met
-  bool cannot_begin_ = false;  ///< a node is missing, and the others would wait for it
+  std::vector<Drain> drains_;              ///< of processes that are not yet known here
+  std::optional<StartWatch> start_watch_;  ///< once the nodes are started
+  bool has_begun_ = false;                 ///< a node has shown that all have met
+  bool cannot_begin_ = false;              ///< a node is missing, and the others would wait for it
   bool stopping_ = false;
   bool must_not_go_on_ = false;  ///< a node has died, and the launch file says stop
   bool is_seen_ = true;          ///< the table has a reader

@@ -1,19 +1,36 @@
 #include "cli/merged_report.h"
 
+#include <vector>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "cli/terminal.h"
 
 namespace aurasim::cli {
 
+std::string closing_line(const node::Accounts& accounts) {
+  if (accounts.incomplete.empty()) {
+    return fmt::format(
+        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+        accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
+        accounts.real_time_factor);
+  }
+  std::vector<std::uint32_t> regions;
+  for (const node::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
+  return fmt::format(
+      "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
+      "[{}] "
+      "end before the run; at least {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+      accounts.bodies, accounts.duplicated, accounts.unaccounted, fmt::join(regions, ", "), accounts.hand_offs,
+      accounts.thrashed, accounts.reclaimed, accounts.real_time_factor);
+}
+
 ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far) {
   const node::Accounts accounts = node::merge_report(folder, facts);
   print(fmt::format("report: {}\n", (folder / "summary.json").string()));
-  print(fmt::format(
-      "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
-      accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
-      accounts.real_time_factor));
+  print(closing_line(accounts));
   for (const node::DeadRegion& dead : accounts.dead) {
     print(fmt::format("region {} died and took {} bodies with it\n", core::value_of(dead.region), dead.bodies));
   }

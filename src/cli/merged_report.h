@@ -2,11 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "cli/exit_code.h"
 #include "node/report.h"
 
 namespace aurasim::cli {
+
+/// The last line of a run, for people. Where records are missing it says what is not known.
+std::string closing_line(const node::Accounts& accounts);
 
 /// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice, or
 /// records are missing.

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/going_run.h"
+#include "cli/kept_on_disk.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
 #include "cli/node_process.h"
@@ -81,6 +82,8 @@ int run_node(const NodeArguments& arguments) {
   options.saves = arguments.save.folder;
   options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
   options.save_keep = arguments.save.keep;
+  options.kept = kept_folder(launch, arguments.save);
+  if (!arguments.has_launcher) check_room_for_saves(launch, arguments.save);
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;

@@ -71,7 +71,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                               static_cast<std::uint32_t>(launch.regions.size())}),
       fence_(fence_settings(), {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
-      saves_(options.saves, options.region, options.save_keep),
+      saves_({options.saves, {}}, options.region, launch.regions.size(), options.save_keep),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
       recovery_(recovery_settings(launch, options, !participant_->stays_on_this_host())) {
   status_.region = options.region;
@@ -223,6 +223,7 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   frame_times_.clear();
   checkpoint_ = recorded_ = secured_ = 0;
   saved_last_ = std::min(saved_last_, node_->current_step());
+  begin_to_save();
   if (launch_.regions.size() > 1) checkpoints_->use_keepers(keepers(), life_);
   observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);

@@ -18,6 +18,7 @@
 #include "cli/exit_code.h"
 #include "cli/fence.h"
 #include "cli/node_phase.h"
+#include "cli/part_writer.h"
 #include "cli/recovery.h"
 #include "cli/replica_publisher.h"
 #include "cli/ros2_link.h"
@@ -45,9 +46,11 @@ struct NodeOptions {
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
   std::size_t save_keep = 3;                    ///< of those that nobody has asked for
-  bool takes_over = false;                      ///< a run that goes on: its node of this region has died
-  bool has_launcher = false;                    ///< who starts another process when a node dies, and ends them all
-  std::string as;                               ///< name of its key, in a run with keys; empty: the region's own
+  /// Where runs keep their newest states on disk (kept_folder); nothing: they do not.
+  std::optional<std::filesystem::path> kept;
+  bool takes_over = false;    ///< a run that goes on: its node of this region has died
+  bool has_launcher = false;  ///< who starts another process when a node dies, and ends them all
+  std::string as;             ///< name of its key, in a run with keys; empty: the region's own
 };
 
 /// Between a region and those that have to hear of it.
@@ -106,6 +109,14 @@ class NodeProcess {
   void execute_commands();
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
   void save_parts();
+  void begin_to_save();
+  void keep_on_disk(const core::WorldCut& part);
+  void note_saves();
+  void conclude_saves();
+  core::Step kept_every() const;
+  SaveOf save_of() const;
+  SavedBy saved_by() const;
+  std::vector<std::filesystem::path> save_folders() const;
   void save_regularly();
   void save_what_is_kept();
   void compute_until_change();
@@ -208,6 +219,7 @@ class NodeProcess {
   std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
+  std::vector<std::uint64_t> saved_runs_;   ///< numbers that this run's saved worlds have had
   core::Step saved_last_ = 0;               ///< state of the last save that nobody has asked for, on the lead
   std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
   core::Step checkpoint_ = 0;               ///< the next state that is kept to be gone back to

@@ -57,9 +57,11 @@ ExitCode NodeProcess::end() {
     recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes(),
                                checkpoints_->left_out()});
   }
-  if (!fenced) enter(NodeEvent::kSettled);
+  conclude_saves();
   if (fenced) return ExitCode::kFenced;
-  return broken_bodies_ > 0 ? ExitCode::kBroken : ExitCode::kOk;
+  enter(NodeEvent::kSettled);
+  if (broken_bodies_ > 0) return ExitCode::kBroken;
+  return saves_.regular_ones_failed() ? ExitCode::kNotSaved : ExitCode::kOk;
 }
 
 /// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each

@@ -24,18 +24,16 @@ constexpr std::chrono::nanoseconds kNoticeOfStepBack{600'000'000};  // that long
 void NodeProcess::save_parts() {
   for (core::WorldCut& part : node_->take_saved()) {
     const core::Step step = part.step;
-    if (recovers() && step % launch_.checkpoint_steps() == 0) {
-      checkpoints_->add(as_saved(part), step + launch_.lookahead());
+    if (const core::Step every = kept_every(); every > 0 && step % every == 0) {
+      if (recovers()) checkpoints_->add(as_saved(part), step + launch_.lookahead());
+      keep_on_disk(part);
     }
     if (!saves_.expects(step)) continue;
     command_server_->add_meshes(part);
-    saves_.write(std::move(part), launch_, start_->request);
+    saves_.write(std::move(part), launch_, save_of());
   }
   keep_checkpoints();
-  for (const PartWriter::Written& written : saves_.take_written()) {
-    if (!written.error.empty()) spdlog::error("state {} was not saved: {}", written.step, written.error);
-    if (written.request != 0) command_server_->reply_saved(written);
-  }
+  note_saves();
 }
 
 /// In a pause.
@@ -44,14 +42,14 @@ void NodeProcess::save_what_is_kept() {
     std::optional<core::WorldCut> part = node_->kept_part(save.step);
     if (!part) continue;
     command_server_->add_meshes(*part);
-    saves_.write(std::move(*part), launch_, start_->request, save.request, save.file);
+    saves_.write(std::move(*part), launch_, save_of(), SaveKind::kAsked, save.request, save.file);
   }
 }
 
 /// Every node does so by itself, in the same states.
 void NodeProcess::plan_checkpoint() {
-  if (!recovers()) return;
-  const core::Step every = launch_.checkpoint_steps();
+  const core::Step every = kept_every();
+  if (every == 0) return;
   const core::Step next = (node_->current_step() / every + 1) * every;
   if (next <= checkpoint_) return;
   checkpoint_ = next;
@@ -96,7 +94,7 @@ void NodeProcess::step_back(const RunView& run) {
   nodes[options_.region].status = status_;
   const std::optional<dds::RunCommand> restore =
       recovers() ? plan_step_back(nodes, launch_.regions.size(), latest) : std::nullopt;
-  const SavedState saved = newest_saved_until(options_.saves, launch_, latest);
+  const SavedState saved = newest_saved_until(options_.saves, saved_by(), latest);
   if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
   if (saved.step >= 0) return command_server_->load_instead(*back, saved.name, *node_, run);
   command_server_->refuse(back->request, fmt::format("no state until {} is kept", latest));

@@ -127,7 +127,7 @@ void NodeProcess::meet_anew() {
 /// A process that has come to take a region over, and is of no use. Throws when nobody knows the world.
 bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
   if (recovery_.is_not_needed(nodes, Clock::now())) return true;
-  if (recovery_.nobody_knows_the_world(nodes, Clock::now())) throw std::runtime_error(world_is_lost(options_.saves));
+  if (recovery_.nobody_knows_the_world(nodes, Clock::now())) throw std::runtime_error(world_is_lost(save_folders(), saved_by()));
   return false;
 }
 
@@ -203,12 +203,10 @@ bool NodeProcess::may_begin_again(core::Generation era) {
     reset_.reset();
     return true;
   }
-  const std::string saved = newest_saved_world(options_.saves);
   const std::string asks = fmt::format(
       "nobody keeps all parts of a state, though state {} was kept. Start the processes that had them again, or begin "
-      "again from state {} with `aurasim send reset`{}",
-      *recovery_.kept(), first_step(),
-      saved.empty() ? std::string() : fmt::format(", or stop the run and launch it with `--load {}`", saved));
+      "again from state {} with `aurasim send reset`. {}",
+      *recovery_.kept(), first_step(), say_newest_saved(save_folders(), saved_by()));
   if (asks != asks_for_) spdlog::error("region {} stands: {}", core::value_of(options_.region), asks);
   asks_for_ = asks;
   return false;

@@ -1,10 +1,7 @@
 #include "cli/saved_world.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cinttypes>
-#include <cstdio>
-#include <system_error>
+#include <functional>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -17,16 +14,22 @@
 namespace aurasim::cli {
 namespace {
 
-/// Its name, of a whole world or of a part of it.
-std::string world_of(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  return name.substr(0, name.find(".part-"));
+/// Whole worlds of this run, newest first.
+std::vector<cut::StoredWorld> worlds_in(const std::filesystem::path& folder, const SavedBy& by) {
+  std::vector<cut::StoredWorld> worlds = cut::PartStore(folder).list().whole;
+  std::erase_if(worlds, [&](const cut::StoredWorld& world) {
+    return world.header.identity.world != by.world || std::ranges::find(by.runs, world.header.run) == by.runs.end();
+  });
+  return worlds;
 }
 
-/// The same on all nodes that save a world together.
-std::uint64_t save_number(std::uint64_t life, std::uint64_t request, core::Step step) {
-  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
-  return ((life * kOdd ^ request) * kOdd ^ static_cast<std::uint64_t>(step)) * kOdd;
+bool can_be_read(const cut::StoredWorld& world) {
+  try {
+    cut::PartStore::read(world);
+    return true;
+  } catch (const cut::BadCut&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -41,13 +44,15 @@ cut::Identity identity_of(const config::Launch& launch) {
           .world = launch.world_identity()};
 }
 
-void LoadArguments::add_to(CLI::App& command) {
+CLI::Option* LoadArguments::add_to(CLI::App& command) {
   CLI::Option* load = command.add_option("--load", file, "a saved world to go on from (aurasim send save)");
-  command.add_flag("--other-build", other_build, "with --load: also one that another build has saved")->needs(load);
+  command.add_flag("--other-build", other_build, "also load a world that another build has saved");
+  return load;
 }
 
 void SaveArguments::add_to(CLI::App& command) {
-  command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds");
+  command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds")
+      ->each([this](const std::string&) { folder_is_given = true; });
   command.add_option("--save-every", every_s, "save the world so often, in simulated seconds. 0: only when asked to")
       ->check(CLI::Range(0.0, 1e9));
   command.add_option("--save-keep", keep, "with --save-every: so many of them stay, the newest")
@@ -79,96 +84,40 @@ const char* problem_with_save_name(const std::string& name) {
   return nullptr;
 }
 
-std::string newest_saved_world(const std::filesystem::path& folder) {
-  std::pair<core::Step, std::string> newest{-1, {}};
-  std::error_code no_folder;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, no_folder)) {
-    const std::string name = entry.path().filename().string();
-    core::Step step = 0;
-    if (std::sscanf(name.c_str(), "state-%" SCNd64 ".cut", &step) != 1) continue;
-    newest = std::max(newest, {step, (folder / fmt::format("state-{}.cut", step)).string()});
+std::optional<cut::StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders,
+                                                   const SavedBy& by) {
+  std::vector<cut::StoredWorld> worlds;
+  for (const std::filesystem::path& folder : folders) {
+    for (cut::StoredWorld& world : worlds_in(folder, by)) worlds.push_back(std::move(world));
   }
-  return newest.second;
+  std::ranges::stable_sort(worlds, cut::is_newer);
+  const auto newest = std::ranges::find_if(worlds, can_be_read);
+  return newest == worlds.end() ? std::nullopt : std::optional(std::move(*newest));
 }
 
-std::string world_is_lost(const std::filesystem::path& saves) {
-  const std::string saved = newest_saved_world(saves);
-  return fmt::format("nobody knows the world any more: all nodes have died. The newest saved world here: {}",
-                     saved.empty() ? "none" : saved);
+std::string say_newest_saved(const std::vector<std::filesystem::path>& folders, const SavedBy& by) {
+  const std::optional<cut::StoredWorld> saved = newest_saved_world(folders, by);
+  if (!saved) return "No whole world of this run is saved on this host.";
+  return fmt::format("The newest saved world of this run is of state {}: `{} --load {}` goes on from it.",
+                     saved->header.cut.step, by.command, saved->file.string());
 }
 
-SavedState newest_saved_until(const std::filesystem::path& folder, const config::Launch& launch, core::Step latest) {
-  SavedState newest;
-  const std::uint64_t wanted = launch.world_identity();
-  std::error_code no_folder;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, no_folder)) {
-    const std::string name = world_of(entry.path());
-    if (problem_with_save_name(name) != nullptr || !entry.is_regular_file() || entry.path().extension() == ".new") {
-      continue;
-    }
-    try {
-      const cut::SavedWorld header = cut::read_header(entry.path());
-      const core::Step step = header.cut.step;
-      if (header.identity.world == wanted && step <= latest && step > newest.step) newest = {step, name};
-    } catch (const cut::BadCut&) {
-      continue;  // whatever else lies there
+std::string world_is_lost(const std::vector<std::filesystem::path>& folders, const SavedBy& by) {
+  return "nobody knows the world any more: all nodes have died. " + say_newest_saved(folders, by);
+}
+
+SavedState newest_saved_until(const std::filesystem::path& folder, const SavedBy& by, core::Step latest) {
+  std::vector<cut::StoredWorld> worlds = worlds_in(folder, by);
+  std::erase_if(worlds, [latest](const cut::StoredWorld& world) { return world.header.cut.step > latest; });
+  std::ranges::stable_sort(worlds, std::ranges::greater(),
+                           [](const cut::StoredWorld& world) { return world.header.cut.step; });
+  for (const cut::StoredWorld& world : worlds) {
+    std::string name = world.file.filename().string();
+    if (problem_with_save_name(name) == nullptr && can_be_read(world)) {
+      return {world.header.cut.step, std::move(name)};
     }
   }
-  return newest;
-}
-
-bool PartWriter::expects(core::Step step) const {
-  return std::ranges::find(expected_, step, &core::Order::at_step) != expected_.end();
-}
-
-void PartWriter::write(core::WorldCut part, const config::Launch& launch, std::uint64_t life) {
-  const auto order = std::ranges::find(expected_, part.step, &core::Order::at_step);
-  if (order == expected_.end()) return;
-  const core::Order wanted = *order;
-  expected_.erase(order);
-  write(std::move(part), launch, life, wanted.request, std::get<core::Save>(wanted.action).file);
-}
-
-void PartWriter::write(core::WorldCut part, const config::Launch& launch, std::uint64_t life, std::uint64_t request,
-                       const std::string& file_name) {
-  const std::filesystem::path name = folder_ / file_name;
-  cut::SavedWorld world{identity_of(launch), core::value_of(region_), static_cast<std::uint32_t>(launch.regions.size()),
-                        save_number(life, request, part.step), std::move(part)};
-  writing_.push_back(std::async(std::launch::async, [folder = folder_, name, request, world = std::move(world)] {
-    Written written{request, world.cut.step, {}, {}};
-    try {
-      std::filesystem::create_directories(folder);
-      const std::filesystem::path file =
-          std::filesystem::absolute(world.parts == 1 ? name : cut::part_file(name, world.part, world.parts));
-      cut::write_cut(file, world);
-      written.file = file.string();
-    } catch (const std::exception& error) {
-      written.error = error.what();
-    }
-    return written;
-  }));
-}
-
-std::vector<PartWriter::Written> PartWriter::take_written() {
-  std::vector<Written> done;
-  std::erase_if(writing_, [&](std::future<Written>& one) {
-    if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    done.push_back(one.get());
-    forget_old_ones(done.back());
-    return true;
-  });
-  return done;
-}
-
-/// Of those that nobody has asked for.
-void PartWriter::forget_old_ones(const Written& written) {
-  if (written.request != 0 || !written.error.empty()) return;
-  std::erase(regular_, written.file);  // the run has gone back, and come there again
-  regular_.push_back(written.file);
-  if (regular_.size() <= keep_) return;
-  std::error_code ignored;
-  std::filesystem::remove(regular_.front(), ignored);
-  regular_.pop_front();
+  return {};
 }
 
 }  // namespace aurasim::cli

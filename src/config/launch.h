@@ -86,6 +86,7 @@ struct Survival {
   OnDeath on_death = OnDeath::kRecover;
   double checkpoint_s = 1;  ///< simulated, from one state that can be gone back to until the next
   double patience_s = 20;   ///< so long the others wait for somebody who takes the region over, before one of them does
+  std::string disk;  ///< folder, relative to the launch file; "off"; empty: where --saves is given, in that folder
 };
 
 /// Of programs that steer bodies and joints.

@@ -241,6 +241,11 @@ const KeysOf<Survival>& survival_keys() {
                    "so long the others wait for a spare, or for the launcher; then the host of the next region starts "
                    "a process "
                    "that takes the region over, and where that does not help either, they go on without its bodies"),
+          optional("disk", &Survival::disk, text("a folder, or off"),
+                   "each node also writes its part of the states that can be gone back to into a folder of its run "
+                   "beneath this one, relative to this file, and keeps the newest: `launch --resume` goes on from "
+                   "them when all processes have ended at once")
+              .otherwise("the folder of --saves, where that is given"),
       });
   return keys;
 }

@@ -25,6 +25,9 @@ constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some
 constexpr std::size_t kMostGrowth = 200;                   // times; equal piles come to 50
 constexpr std::size_t kMostOfHeader = 64 << 10;
 constexpr std::size_t kOrdersAtOnce = 1000;
+/// States for which a cluster may have been under way, or for which births may be known ahead: many times what the
+/// largest lookahead makes of it. A world is computed through the first, state by state, before its run begins.
+constexpr core::Step kMostStatesBetween = 10'000;
 
 /// What follows the header, each with its length.
 enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShape, kMesh, kSetpoints };
@@ -117,6 +120,8 @@ json header_of(const SavedWorld& world) {
           {"part", world.part},
           {"parts", world.parts},
           {"save", world.save},
+          {"run", world.run},
+          {"saved_ms", world.saved_ms},
           {"step", world.cut.step},
           {"births_known", world.cut.births_known},
           {"last_order", world.cut.last_order},
@@ -133,6 +138,7 @@ std::uint64_t whole(const json& header, const char* key,
 
 SavedWorld from_header(std::string_view text) {
   constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 52, kMostRegions = 1 << 20;
+  constexpr std::uint64_t kMostMs = std::uint64_t{1} << 52;
   SavedWorld world;
   try {
     const json header = json::parse(text);
@@ -146,11 +152,17 @@ SavedWorld from_header(std::string_view text) {
     world.parts = static_cast<std::uint32_t>(whole(header, "parts", kMostRegions));
     world.part = static_cast<std::uint32_t>(whole(header, "part", kMostRegions));
     world.save = whole(header, "save");
+    if (header.contains("run")) world.run = whole(header, "run");
+    if (header.contains("saved_ms")) world.saved_ms = static_cast<std::int64_t>(whole(header, "saved_ms", kMostMs));
     world.cut.step = static_cast<core::Step>(whole(header, "step", kMostSteps));
     world.cut.births_known = static_cast<core::Step>(whole(header, "births_known", kMostSteps));
     world.cut.last_order = whole(header, "last_order");
   } catch (const json::exception& error) {
     throw BadCut(fmt::format("damaged: its header: {}", error.what()));
+  }
+  if (world.cut.births_known > world.cut.step + kMostStatesBetween) {
+    throw BadCut(fmt::format("damaged: its header: births are known up to state {}, and it is of state {}",
+                             world.cut.births_known, world.cut.step));
   }
   if (world.part >= world.parts) {
     throw BadCut(fmt::format("damaged: its header: there is no part {} of {}", world.part, world.parts));
@@ -243,6 +255,13 @@ std::string_view after_magic(const std::string& bytes) {
   return std::string_view(bytes).substr(kMagicBytes);
 }
 
+void check_under_way(const core::WorldCut& cut) {
+  for (const core::UnderWay& one : cut.under_way) {
+    if (one.stamp <= cut.step && one.stamp >= cut.step - kMostStatesBetween) continue;
+    throw BadCut(fmt::format("damaged: a cluster that left in state {} is under way in state {}", one.stamp, cut.step));
+  }
+}
+
 }  // namespace
 
 SavedWorld decode_header(const std::string& bytes) {
@@ -260,6 +279,7 @@ SavedWorld decode(const std::string& bytes) {
     take(piece, reader.bytes(), wire, world.cut);
   }
   if (!reader.is_at_end()) throw BadCut("damaged: something follows its end");
+  check_under_way(world.cut);
   return world;
 }
 

@@ -40,6 +40,14 @@ void write_through(const fs::path& file, const std::string& bytes) {
   fail(file, std::strerror(error));
 }
 
+/// The new name of a file is on the disk, too.
+void sync_folder(const fs::path& folder) {
+  const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  ::fsync(fd);  // some file systems cannot
+  ::close(fd);
+}
+
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw BadCut(fmt::format("{}: cannot be read", file.string()));
@@ -58,16 +66,15 @@ std::string words(const Identity& identity) {
 
 }  // namespace
 
-fs::path part_file(const fs::path& file, std::uint32_t part, std::uint32_t parts) {
-  return fs::path(fmt::format("{}.part-{}-of-{}", file.string(), part, parts));
-}
-
 void write_cut(const fs::path& file, const SavedWorld& world) {
   const fs::path beside(file.string() + ".new");
   write_through(beside, encode(world));
   std::error_code error;
   fs::rename(beside, file, error);
-  if (error) fail(file, error.message());
+  if (!error) return sync_folder(file.parent_path());
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  fail(file, error.message());
 }
 
 SavedWorld read_cut(const fs::path& file) {
@@ -105,7 +112,11 @@ SavedWorld merge_cuts(const std::vector<fs::path>& files) {
       throw BadCut(fmt::format("{}: part {} is there twice", file.string(), part.part));
     }
     cuts.push_back(std::move(part.cut));
-    if (is_first) whole = std::move(part);
+    if (is_first) {
+      whole = std::move(part);
+    } else {
+      whole.saved_ms = std::max(whole.saved_ms, part.saved_ms);
+    }
   }
   if (parts.size() != whole.parts) {
     std::uint32_t missing = 0;
@@ -121,31 +132,6 @@ SavedWorld merge_cuts(const std::vector<fs::path>& files) {
   whole.part = 0;
   whole.parts = 1;
   return whole;
-}
-
-std::vector<fs::path> parts_of(const fs::path& file) {
-  std::vector<fs::path> parts;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const std::string begin = file.filename().string() + ".part-";
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(begin) && !name.ends_with(".new")) parts.push_back(entry.path());
-  }
-  std::ranges::sort(parts);
-  return parts;
-}
-
-SavedWorld read_world(const fs::path& file) {
-  if (fs::exists(file)) {
-    SavedWorld world = read_cut(file);
-    if (world.parts == 1) return world;
-    throw BadCut(fmt::format("{}: this is part {} of {}; name the file without .part-...", file.string(), world.part,
-                             world.parts));
-  }
-  const std::vector<fs::path> parts = parts_of(file);
-  if (parts.empty()) throw BadCut(fmt::format("{}: there is no such file, and no parts of it", file.string()));
-  return merge_cuts(parts);
 }
 
 std::string check_identity(const fs::path& file, const Identity& found, const Identity& wanted, bool other_program) {

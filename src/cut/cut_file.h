@@ -28,6 +28,8 @@ struct SavedWorld {
   std::uint32_t part = 0, parts = 1;  ///< 1: the whole
   std::uint64_t save = 0;             ///< the same for all parts that were saved together, and for no others
   core::WorldCut cut;
+  std::uint64_t run = 0;      ///< number of the run that has saved it; 0: not known
+  std::int64_t saved_ms = 0;  ///< wall clock when it was saved, since 1970; 0: not known
 };
 
 /// A file that cannot be used, and why; begins with its name.
@@ -36,10 +38,8 @@ class BadCut : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// "FILE.part-2-of-4".
-std::filesystem::path part_file(const std::filesystem::path& file, std::uint32_t part, std::uint32_t parts);
-
-/// Under another name first: whoever reads finds a whole file or none. Throws std::runtime_error.
+/// Writes the file under another name first: whoever reads finds a whole file or none, also after a loss of power.
+/// Throws std::runtime_error, and leaves nothing then.
 void write_cut(const std::filesystem::path& file, const SavedWorld& world);
 
 /// Throws BadCut.
@@ -50,12 +50,6 @@ SavedWorld read_header(const std::filesystem::path& file);
 
 /// One world of the parts in these files. Throws BadCut if some are missing, or are not of one world.
 SavedWorld merge_cuts(const std::vector<std::filesystem::path>& files);
-
-/// The files of all parts of FILE that lie beside it, if it is not there itself.
-std::vector<std::filesystem::path> parts_of(const std::filesystem::path& file);
-
-/// FILE, or the whole of its parts. Throws BadCut.
-SavedWorld read_world(const std::filesystem::path& file);
 
 /// Throws BadCut if the world was computed with anything else than `wanted`. Another program alone is let pass with
 /// `other_program`: then it is what is returned, and bits may differ.

@@ -138,8 +138,8 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
     return error;
   }
   const std::size_t listens = in.listens_to().size();
-  if (std::max({in.dead().size(), in.refused_source().size(), listens, in.part_region().size(), in.meshes().size()}) >
-      kMostOfAll) {
+  if (std::max({in.dead().size(), in.refused_source().size(), listens, in.part_region().size(), in.meshes().size(),
+                in.saved().size(), in.not_saved().size()}) > kMostOfAll) {
     return WireError::kTooLarge;
   }
   if (in.refused_source().size() != in.refused_count().size() || in.listens_since().size() != listens ||
@@ -190,6 +190,8 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.real_time_factor(status.real_time_factor);
   out.rate(status.rate);
   out.meshes(status.meshes);
+  out.saved(status.saved);
+  out.not_saved(status.not_saved);
   fill(out.refused_source(), status.refused, [](const auto& refused) { return value_of(refused.first); });
   fill(out.refused_count(), status.refused, [](const auto& refused) { return refused.second; });
   out.footprint_x0(status.footprint.x0);
@@ -225,6 +227,8 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   status.real_time_factor = in.real_time_factor();
   status.rate = in.rate();
   status.meshes = in.meshes();
+  status.saved = in.saved();
+  status.not_saved = in.not_saved();
   for (std::size_t i = 0; i < in.refused_source().size(); ++i) {
     status.refused.emplace_back(RegionId{in.refused_source()[i]}, in.refused_count()[i]);
   }

@@ -91,7 +91,9 @@ struct Status {
   std::int32_t lookahead = 0;
   std::string text;  ///< e.g. why it failed; cut at 256 bytes
   std::vector<core::RegionId> dead;
-  std::vector<std::uint64_t> meshes;                              ///< hashes of clients' meshes that it has
+  std::vector<std::uint64_t> meshes;     ///< hashes of clients' meshes that it has
+  std::vector<std::uint64_t> saved;      ///< the newest saves (cut::SavedWorld::save) whose part it has on disk
+  std::vector<std::uint64_t> not_saved;  ///< the newest ones whose part it could not write
   std::vector<std::pair<core::RegionId, std::uint64_t>> refused;  ///< messages that it has refused, by source
 };
 

@@ -84,6 +84,8 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.part_region({3}), w.part_step({-60}); }), "range");
   EXPECT_EQ(after([](auto& w) { w.part_region({3}); }), "length");
   EXPECT_EQ(after([](auto& w) { w.meshes().resize(5000); }), "too_large");
+  EXPECT_EQ(after([](auto& w) { w.saved().resize(5000); }), "too_large");
+  EXPECT_EQ(after([](auto& w) { w.not_saved().resize(5000); }), "too_large");
 }
 
 TEST(MapCodec, RoundTripKeepsEverything) {

@@ -17,6 +17,8 @@ inline Status status_of(std::uint32_t region) {
   status.state = NodeState::kRunning;
   status.holds_at = 1240;
   status.bodies = 10;
+  status.saved = {~std::uint64_t{0}, 12};
+  status.not_saved = {13};
   status.awake = 9;
   status.foreign_auras = 8;
   status.hand_offs_out = 7;

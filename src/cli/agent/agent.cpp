@@ -42,6 +42,8 @@ std::vector<std::string> launch_words(const json& asked, const std::string& file
   for (const std::string& change : asked.value("set", std::vector<std::string>{})) {
     words.insert(words.end(), {"--set", change});
   }
+  // The program that asks for the run ends it, too, and can save it: a site that goes down takes both.
+  words.insert(words.begin() + 2, {"--set", "survival.disk=off"});
   for (const char* option : {"as", "load", "report", "saves"}) {
     if (const std::string value = asked.value(option, ""); !value.empty()) {
       words.insert(words.end(), {std::string("--") + option, value});

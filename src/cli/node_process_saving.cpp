@@ -1,0 +1,76 @@
+// What becomes of the parts of worlds that a node writes: whom it tells, what is kept on disk to go on from, and how
+// the run ends with that.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/kept_on_disk.h"
+#include "cli/node_process.h"
+
+namespace aurasim::cli {
+
+/// A run whose nodes were started by hand has no number of its own: that of its start serves.
+SaveOf NodeProcess::save_of() const {
+  const std::uint64_t start = start_->request;
+  return {options_.run != 0 ? options_.run : start, start + generation_};
+}
+
+SavedBy NodeProcess::saved_by() const { return {launch_.world_identity(), saved_runs_, launch_command(launch_)}; }
+
+std::vector<std::filesystem::path> NodeProcess::save_folders() const {
+  std::vector<std::filesystem::path> folders = {options_.saves};
+  if (!options_.kept) return folders;
+  for (const std::uint64_t run : saved_runs_) folders.push_back(kept_folder_of(*options_.kept, run));
+  return folders;
+}
+
+/// A generation begins.
+void NodeProcess::begin_to_save() {
+  const std::uint64_t run = save_of().run;
+  if (std::ranges::find(saved_runs_, run) == saved_runs_.end()) saved_runs_.push_back(run);
+  if (options_.kept) saves_.use_kept_folder(kept_folder_of(*options_.kept, run));
+}
+
+/// States from one that can be gone back to until the next; 0: none can. A run of one node has nobody who keeps its
+/// world for it, but a disk.
+core::Step NodeProcess::kept_every() const {
+  if (recovers()) return launch_.checkpoint_steps();
+  return options_.kept && launch_.regions.size() == 1 ? kept_steps(launch_) : 0;
+}
+
+/// A disk that is too slow gets some of the states only.
+void NodeProcess::keep_on_disk(const core::WorldCut& part) {
+  if (!options_.kept || saves_.is_writing(SaveKind::kKept)) return;
+  core::WorldCut whole = part;
+  command_server_->add_meshes(whole);
+  saves_.write(std::move(whole), launch_, save_of(), SaveKind::kKept, 0, fmt::format("state-{}.cut", part.step));
+}
+
+void NodeProcess::note_saves() {
+  for (const auto& [region, seen] : control_.statuses()) saves_.hear(region, seen.status.saved, seen.status.not_saved);
+  for (const PartWriter::Written& written : saves_.progress(std::chrono::steady_clock::now())) {
+    if (written.request != 0) command_server_->reply_saved(written);
+  }
+  for (const std::string& words : saves_.take_words()) {
+    notice_ = words;
+    spdlog::warn("{}", words);
+  }
+}
+
+/// The run has come to its end. Where a launcher sees to it, that removes what is kept on disk.
+void NodeProcess::conclude_saves() {
+  saves_.finish();
+  note_saves();
+  const bool is_over = !fence_.closed() && stop_at_ && has_reached(*stop_at_);
+  if (is_over && !options_.has_launcher && options_.kept) {
+    for (const std::uint64_t run : saved_runs_) {
+      cut::PartStore(kept_folder_of(*options_.kept, run)).remove_all_of(core::value_of(options_.region));
+    }
+  }
+  if (saves_.regular_ones_failed() && !options_.has_launcher) spdlog::error("{}", kNothingSaved);
+}
+
+}  // namespace aurasim::cli
