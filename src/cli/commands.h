@@ -47,7 +47,12 @@ void add_speed_errors(CLI::App& experiment, Action& action);
 std::vector<std::string> solver_names();
 
 /// Of a node, and of a spare that becomes one: whoever has started it sees to its region when it dies.
-void add_has_launcher(CLI::App& command, bool& has_launcher);
+struct LauncherArguments {
+  bool is_there = false;
+  int heartbeat = -1;  ///< heartbeat.h
+
+  void add_to(CLI::App& command);
+};
 
 /// The launch file and its overrides, as every command takes them.
 struct FileArguments {

@@ -111,7 +111,9 @@ void add_launch(CLI::App& program, Action& action) {
   command->add_flag("--headless", arguments->options.headless, "no table, no viewer");
   command->add_option("--record", arguments->options.recording, "file for what the viewer sees; starts it in any case");
   command->add_option("--report", arguments->report, "folder for what the nodes record");
-  command->add_option("--start-time-out", arguments->options.start_time_out_s, "seconds to wait for all regions")
+  command
+      ->add_option("--start-time-out", arguments->options.start_time_out_s,
+                   "seconds to wait for all regions after the last news of any")
       ->check(CLI::Range(1, 3600));
   command
       ->add_option("--spares", arguments->options.spares,

@@ -16,6 +16,7 @@ std::vector<std::string> command_line(const char* command, const config::Launch&
                                     "--run",
                                     std::to_string(run),
                                     "--has-launcher"};
+  words.insert(words.end(), options.heartbeat.begin(), options.heartbeat.end());
   for (const std::string& change : options.files.overrides) words.insert(words.end(), {"--set", change});
   words.insert(words.end(), {"--set", "physics.threads=" + std::to_string(threads_of(launch, launch.regions.size()))});
   if (!options.load.file.empty()) words.insert(words.end(), {"--load", options.load.file});

@@ -24,6 +24,7 @@ struct LaunchOptions {
   SaveArguments save;
   bool resume = false;  ///< from the newest world that is there
   int start_time_out_s = 30;
+  std::vector<std::string> heartbeat;  ///< words for processes that a launcher watches (heartbeat.h)
   int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
 };
 

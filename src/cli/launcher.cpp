@@ -27,7 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kShowEvery = 250ms;
 constexpr auto kSayThatWeWait = 2s;
-constexpr auto kSilent = 2s;    // beyond its lease: a busy machine may hold it up
 constexpr int kMostDeaths = 3;  // of one region's nodes in a row, at one place
 constexpr auto kPatienceWithDrained = 5s;
 constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process twice
@@ -42,6 +41,7 @@ Launcher::Launcher(const config::Launch& launch, const LaunchOptions& options)
       control_(
           participant_,
           {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {
+  options_.heartbeat = heartbeats_.words();
 }
 
 Launcher::~Launcher() {
@@ -62,7 +62,8 @@ ExitCode Launcher::run() {
     control_.wait(20ms);
     look_at_nodes();
     hear_commands();
-    end_silent_nodes();
+    end_hung_nodes();
+    tell_long_steps();
     collect_exits();
     if (!stopping_ && all_go_on()) keep_spares();
     if (has_to_stop() && !stopping_) {
@@ -170,26 +171,6 @@ bool Launcher::begin_drain(const dds::RunCommand& drain) {
     return true;
   }
   return false;
-}
-
-/// One that hangs holds all others up; what takes its place must not meet it again.
-void Launcher::end_silent_nodes() {
-  const auto& statuses = control_.statuses();
-  const bool all_stand = std::ranges::any_of(statuses, [](const auto& entry) {
-    return !entry.second.lost && entry.second.status.state == dds::NodeState::kRecovering;
-  });
-  for (Child& child : children_) {
-    const dds::SeenStatus* const seen = said_by(child);
-    const bool is_silent = all_stand && child.running && seen != nullptr && seen->lost;
-    if (!is_silent) {
-      child.lost_since.reset();
-    } else if (!child.lost_since) {
-      child.lost_since = Clock::now();
-    } else if (Clock::now() > *child.lost_since + kSilent) {
-      spdlog::error("the node of region {} shows no life: it is ended", core::value_of(child.region));
-      ::kill(child.pid, SIGKILL);
-    }
-  }
 }
 
 void Launcher::collect_exits() {
@@ -366,7 +347,7 @@ void Launcher::show() {
   viewer_.look();
   log_new_refusals(participant_);
   if (options_.headless) return;
-  is_seen_ = view_.show(live_table(control_.statuses(), view_.size()) + viewer_.said()) && is_seen_;
+  is_seen_ = view_.show(live_table(control_.statuses(), view_.size(), Clock::now()) + viewer_.said()) && is_seen_;
 }
 
 ExitCode Launcher::conclude() {

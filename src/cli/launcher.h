@@ -10,8 +10,10 @@
 
 #include "cli/exit_code.h"
 #include "cli/folder_lock.h"
+#include "cli/heartbeat.h"
 #include "cli/launch_options.h"
 #include "cli/live_table.h"
+#include "cli/long_step.h"
 #include "cli/node_ending.h"
 #include "cli/run_steering.h"
 #include "cli/start_watch.h"
@@ -37,9 +39,9 @@ class Launcher {
     bool running = true;
     int exit_code = 0;  ///< 128 + signal when it was killed
     bool told_to_end = false;
-    bool died = false;                                                ///< ended before the run did
-    std::optional<std::chrono::steady_clock::time_point> lost_since;  ///< while others wait for somebody in its place
+    bool died = false;    ///< ended before the run did
     pid_t successor = 0;  ///< process that takes its region over when it leaves; 0: it does not
+    pid_t hung = 0;       ///< process that was ended because it hung; 0: none
     /// Deaths in a row of its region's nodes near the same state.
     int deaths = 0;
     core::Step died_at = 0;
@@ -50,7 +52,8 @@ class Launcher {
   pid_t start_node(core::RegionId region, Start start) const;
   void hear_commands();
   bool begin_drain(const dds::RunCommand& drain);
-  void end_silent_nodes();
+  void end_hung_nodes();
+  void tell_long_steps();
   void collect_exits();
   void tell_lost(const Child& child);
   bool has_finished(const Child& child);
@@ -82,6 +85,9 @@ class Launcher {
   dds::ControlBus control_;
   TerminalView view_;
   std::optional<FolderLock> report_folder_;
+  HeartbeatPipe heartbeats_;
+  LifeWatch life_;
+  LongSteps long_steps_;
   std::vector<Child> children_;
   std::vector<pid_t> spares_;
   struct Drain {

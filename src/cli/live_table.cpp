@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cli/long_step.h"
 #include "cli/terminal.h"
 
 namespace aurasim::cli {
@@ -79,7 +80,8 @@ std::string folded(const std::string& note, std::size_t terminal) {
 }
 
 /// What is wrong, in the nodes' own words.
-std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal) {
+std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal,
+                  std::chrono::steady_clock::time_point now) {
   std::string lines;
   for (const auto& [region, seen] : statuses) {
     std::string whose;
@@ -90,6 +92,9 @@ std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std
     if (!whose.empty()) {
       lines += folded(fmt::format("region {} has refused messages:{}", core::value_of(region), whose), terminal);
     }
+    if (const auto step = long_step(seen, now)) {
+      lines += folded(fmt::format("region {} {}", core::value_of(region), *step), terminal);
+    }
     if (seen.status.text.empty()) continue;
     lines += folded(fmt::format("region {}: {}", core::value_of(region), seen.status.text), terminal);
   }
@@ -98,7 +103,8 @@ std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std
 
 }  // namespace
 
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {
+std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size,
+                       std::chrono::steady_clock::time_point now) {
   std::vector<Column> columns = empty_columns();
   for (Column& column : columns) column.cells.push_back(column.head);
   const std::size_t room = size.rows > kLinesBesides + 1 ? size.rows - kLinesBesides : 1;
@@ -119,7 +125,7 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
   std::string table;
   for (std::size_t i = 0; i <= shown; ++i) table += line(columns, i);
   if (shown < statuses.size()) table += fmt::format("{:>6} {} more\n", "...", statuses.size() - shown);
-  return table + line(columns, shown + 1) + notes(statuses, size.columns);
+  return table + line(columns, shown + 1) + notes(statuses, size.columns, now);
 }
 
 std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {

@@ -1,6 +1,7 @@
 // What the nodes say of themselves, as a table for a terminal.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -17,7 +18,9 @@ struct TerminalSize {
 
 /// One line per region and a line of sums, each shorter than the terminal is wide: what matters least is left out.
 /// When there are more regions than rows, the last line but one says how many are not shown.
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
+/// `now`: to say who computes one step for long.
+std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {},
+                       std::chrono::steady_clock::time_point now = {});
 
 /// Who listens to whom, a line for each region: since when and by whose introduction, where they are not near each
 /// other.

@@ -34,7 +34,7 @@ struct NodeArguments {
   SaveArguments save;
   int start_time_out_s = 30;
   bool takes_over = false;
-  bool has_launcher = false;
+  LauncherArguments launcher;
   bool or_spare = false;
 };
 
@@ -87,7 +87,8 @@ int run_node(const NodeArguments& arguments) {
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;
-  options.has_launcher = arguments.has_launcher;
+  options.has_launcher = arguments.launcher.is_there;
+  options.heartbeat = arguments.launcher.heartbeat;
   NodeProcess process(launch, options);
   leave_after([&process] {
     const ExitCode code = process.run();
@@ -99,10 +100,10 @@ int run_node(const NodeArguments& arguments) {
 
 }  // namespace
 
-void add_has_launcher(CLI::App& command, bool& has_launcher) {
-  command
-      .add_flag("--has-launcher", has_launcher, "whoever has started this process starts another one when a node dies")
+void LauncherArguments::add_to(CLI::App& command) {
+  command.add_flag("--has-launcher", is_there, "whoever has started this process starts another one when a node dies")
       ->group("");
+  command.add_option("--heartbeat", heartbeat, "number of the pipe that it reads signs of life from")->group("");
 }
 
 void add_node(CLI::App& program, Action& action) {
@@ -115,14 +116,16 @@ void add_node(CLI::App& program, Action& action) {
                       "a number for this run, the same for all its nodes: they ignore every other run's");
   arguments->length.add_to(*command);
   command->add_option("--report", arguments->report, "folder for what the node records");
-  command->add_option("--start-time-out", arguments->start_time_out_s, "seconds to wait for the other regions")
+  command
+      ->add_option("--start-time-out", arguments->start_time_out_s,
+                   "seconds to wait for the other regions after the last news of any")
       ->check(CLI::Range(1, 3600));
   command->add_flag("--take-over", arguments->takes_over,
                     "the run is there, and its node of this region has died: go on with it");
   command->add_flag("--or-spare", arguments->or_spare,
                     "if the run is there and goes on without this node, wait as a spare: for whatever starts a node "
                     "again that has ended");
-  add_has_launcher(*command, arguments->has_launcher);
+  arguments->launcher.add_to(*command);
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);
   command->footer("Example:\n  aurasim node demo --region 0 --report out");

@@ -11,8 +11,10 @@
 #include <unistd.h>
 
 #include "cli/guard_log.h"
+#include "cli/heartbeat.h"
 #include "cli/key_choice.h"
 #include "cli/launch_setup.h"
+#include "cli/long_step.h"
 #include "cli/stop_signal.h"
 #include "core/command.h"
 #include "dds/random_id.h"
@@ -47,6 +49,15 @@ RecoverySettings recovery_settings(const config::Launch& launch, const NodeOptio
   return settings;
 }
 
+/// A launcher on this host knows which of its processes live, and ends those that hang: nobody else judges that.
+dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& options) {
+  dds::Settings settings =
+      with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region));
+  settings.believes_silence = !options.has_launcher || launch.survival.on_death != config::OnDeath::kRecover;
+  settings.show_life = [heartbeat = Heartbeat(options.heartbeat)] { heartbeat.beat(); };
+  return settings;
+}
+
 double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
@@ -66,8 +77,7 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
 NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(std::make_unique<dds::Participant>(
-          with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region)))),
+      participant_(std::make_unique<dds::Participant>(settings_of_node(launch, options))),
       control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                               static_cast<std::uint32_t>(launch.regions.size())}),
       fence_(fence_settings(), {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
@@ -156,9 +166,13 @@ ExitCode NodeProcess::take_over() {
   return node_ ? run_steps() : not_begun();
 }
 
-dds::TransportSettings NodeProcess::transport_settings() const {
+dds::TransportSettings NodeProcess::transport_settings() {
   dds::TransportSettings settings = neighbour_transport(launch_, options_.region);
   settings.life = life_;
+  settings.is_busy = [this](core::RegionId region) {
+    const auto seen = control_.statuses().find(region);
+    return seen != control_.statuses().end() && long_step(seen->second, Clock::now());
+  };
   return settings;
 }
 

@@ -19,6 +19,7 @@
 #include "cli/fence.h"
 #include "cli/node_phase.h"
 #include "cli/part_writer.h"
+#include "cli/patience.h"
 #include "cli/recovery.h"
 #include "cli/replica_publisher.h"
 #include "cli/ros2_link.h"
@@ -41,7 +42,7 @@ struct NodeOptions {
   std::uint64_t run = 0;            ///< the same number for all nodes of a run and no other; 0: nobody has drawn one
   std::optional<core::Step> steps;  ///< stop after this state; nothing: run until told to stop
   std::optional<std::filesystem::path> report;
-  std::chrono::seconds start_time_out{30};
+  std::chrono::seconds start_time_out{30};      ///< without anything new of the others
   std::shared_ptr<const core::WorldCut> world;  ///< saved: the run goes on from it, and comes back to it when reset
   std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
   core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
@@ -50,6 +51,7 @@ struct NodeOptions {
   std::optional<std::filesystem::path> kept;
   bool takes_over = false;    ///< a run that goes on: its node of this region has died
   bool has_launcher = false;  ///< who starts another process when a node dies, and ends them all
+  int heartbeat = -1;         ///< number of the launcher's pipe for signs of life (heartbeat.h)
   std::string as;             ///< name of its key, in a run with keys; empty: the region's own
 };
 
@@ -87,6 +89,8 @@ class NodeProcess {
   bool another_agreement_is_here();
   bool the_same_run_is_here();
   void name_the_dead();
+  std::uint64_t met();
+  std::string who_does_not_wait();
   void start_when_all_wait();
   void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
   bool wait_for_start();
@@ -94,7 +98,7 @@ class NodeProcess {
   void begin_generation(core::Generation generation, const dds::RunCommand& begin);
   std::unique_ptr<node::Node> make_node();
   void begin_with(const node::StepReport& report);
-  dds::TransportSettings transport_settings() const;
+  dds::TransportSettings transport_settings();
   ExitCode run_steps();
   void run_until_end();
   ExitCode end();
@@ -104,6 +108,7 @@ class NodeProcess {
   void note_refusals();
   void note_strangers();
   void note_waiting();
+  bool somebody_computes_for_long();
   void note_faults(const node::StepReport& report);
   void compute_step();
   void execute_commands();

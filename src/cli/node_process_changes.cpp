@@ -125,7 +125,7 @@ void NodeProcess::begin_anew() {
 void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
   last_published_ = {};  // the others wait for this state, and whoever comes last goes on at once
-  const auto deadline = Clock::now() + kPatienceWithOthers;
+  auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
     const dds::Status& status = entry.second.status;
     const bool is_here = status.state == dds::NodeState::kPaused && status.generation == generation_ &&
@@ -138,6 +138,7 @@ void NodeProcess::wait_until_all_stand() {
     if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
     execute_commands();
     look_for_deaths();
+    if (somebody_computes_for_long()) deadline = Clock::now() + kPatienceWithOthers;
     if (Clock::now() > deadline || stop_requested()) {
       throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
     }

@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "cli/long_step.h"
 #include "cli/node_process.h"
 #include "cli/stop_signal.h"
 
@@ -75,7 +76,8 @@ void NodeProcess::linger() {
     for (const auto& [region, seen] : control_.statuses()) {
       if (region == options_.region || !seen.is_live()) continue;
       running = true;
-      if (std::exchange(steps[region], seen.status.step) != seen.status.step) moved = Clock::now();
+      const bool has_moved = std::exchange(steps[region], seen.status.step) != seen.status.step;
+      if (has_moved || long_step(seen, Clock::now())) moved = Clock::now();
     }
     return running && !stop_requested() && Clock::now() < moved + kPatienceWithRunners;
   };

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "cli/long_step.h"
 #include "cli/node_process.h"
 
 namespace aurasim::cli {
@@ -49,6 +50,10 @@ void NodeProcess::note_waiting() {
   std::vector<std::string> whom;
   for (const core::RegionId region : missing) {
     std::string text = fmt::format("{}", core::value_of(region));
+    const auto other = control_.statuses().find(region);
+    if (other != control_.statuses().end()) {
+      if (const auto step = long_step(other->second, Clock::now())) text += fmt::format(" ({})", *step);
+    }
     for (const auto& [source, count] : status_.refused) {
       if (source == region) text += fmt::format(" ({} of its messages were refused)", count);
     }
@@ -58,6 +63,14 @@ void NodeProcess::note_waiting() {
   waiting_ = fmt::format("waits for regions [{}] before state {}, for {} s", fmt::join(whom, ", "), next,
                          std::chrono::duration_cast<std::chrono::seconds>(waited).count());
   if (is_news) spdlog::warn("region {} {}", core::value_of(options_.region), waiting_);
+}
+
+/// One step (long_step.h). Whoever waits for all of them has patience: it is not dead.
+bool NodeProcess::somebody_computes_for_long() {
+  const auto now = Clock::now();
+  return std::ranges::any_of(control_.statuses(), [&](const auto& entry) {
+    return entry.first != options_.region && long_step(entry.second, now).has_value();
+  });
 }
 
 /// Bodies that no world can bear (core/limits.h).

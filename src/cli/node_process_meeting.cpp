@@ -73,15 +73,18 @@ bool NodeProcess::domain_is_free() {
 }
 
 bool NodeProcess::meet_neighbours() {
-  const auto deadline = Clock::now() + options_.start_time_out;
+  const auto began = Clock::now();
+  Patience patience(options_.start_time_out, began);
   while (!transport_->all_matched()) {
     if (stop_requested() || another_run_is_here()) return false;
     name_the_dead();
-    if (Clock::now() > deadline) {
+    patience.look(met(), Clock::now());
+    if (patience.is_over(Clock::now())) {
       try {
         transport_->wait_until_matched(0ns);
       } catch (const dds::NeighboursMissing& missing) {
-        refuse(fmt::format("after {} s: {}", options_.start_time_out.count(), missing.what()));
+        refuse(fmt::format("after {} s, {} of them with nothing new: {}", whole_seconds(Clock::now() - began),
+                           whole_seconds(patience.waited(Clock::now())), missing.what()));
         return false;
       }
     }
@@ -90,6 +93,15 @@ bool NodeProcess::meet_neighbours() {
   if (another_run_is_here()) return false;
   enter(NodeEvent::kMet);
   return true;
+}
+
+/// How far all have come who are to begin together, as far as is known here.
+std::uint64_t NodeProcess::met() {
+  std::uint64_t met = transport_->found();
+  for (const auto& [region, seen] : control_.statuses()) {
+    met += seen.is_live() && seen.status.state == dds::NodeState::kWaiting ? 2 : 1;
+  }
+  return met;
 }
 
 /// The node of region 0 starts the run once every region waits for it.
@@ -110,18 +122,32 @@ void NodeProcess::start_when_all_wait() {
   start_ = start;
 }
 
+/// For people.
+std::string NodeProcess::who_does_not_wait() {
+  std::vector<std::uint32_t> absent, busy;
+  for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
+    const auto seen = control_.statuses().find(core::RegionId{r});
+    if (seen == control_.statuses().end()) {
+      absent.push_back(r);
+    } else if (seen->second.status.state != dds::NodeState::kWaiting) {
+      busy.push_back(r);
+    }
+  }
+  return fmt::format("regions that have not reported: [{}]; that still look for their neighbours: [{}]",
+                     fmt::join(absent, ", "), fmt::join(busy, ", "));
+}
+
 bool NodeProcess::wait_for_start() {
   publish();
-  const auto deadline = Clock::now() + options_.start_time_out;
+  const auto began = Clock::now();
+  Patience patience(options_.start_time_out, began);
   while (!start_) {
     if (stop_requested() || another_run_is_here()) return false;
-    if (Clock::now() > deadline) {
-      std::vector<std::uint32_t> absent;
-      for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
-        if (!control_.statuses().contains(core::RegionId{r})) absent.push_back(r);
-      }
-      refuse(fmt::format("the run has not started in {} s; regions that have not reported: [{}]",
-                         options_.start_time_out.count(), fmt::join(absent, ", ")));
+    patience.look(met(), Clock::now());
+    if (patience.is_over(Clock::now())) {
+      refuse(fmt::format("the run has not started in {} s, and for {} s there was nothing new; {}",
+                         whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())),
+                         who_does_not_wait()));
       return false;
     }
     name_the_dead();
@@ -172,8 +198,10 @@ dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunComman
   return command;
 }
 
-/// Hosts whose clocks are wrong are named; the run does not depend on them.
+/// Hosts whose clocks are wrong are named; the run does not depend on them. On one host there is one clock: what looks
+/// late there was long on its way.
 void NodeProcess::compare_clocks() {
+  if (participant_.stays_on_this_host()) return;
   for (const auto& [region, seen] : control_.statuses()) {
     if (std::chrono::abs(seen.clock_ahead) < node::kClockTolerance) continue;
     spdlog::warn("the wall clock of region {}'s host is {} this one's: steps are counted from when the start came",

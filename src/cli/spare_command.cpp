@@ -38,7 +38,7 @@ struct SpareArguments {
   RunLength length;
   LoadArguments load;
   SaveArguments save;
-  bool has_launcher = false;  // for the node that it becomes
+  LauncherArguments launcher;  // for the node that it becomes
 };
 
 class Spare {
@@ -124,7 +124,7 @@ void add_spare(CLI::App& program, Action& action) {
   arguments->keys.add_to(*command);
   command->add_option("--run", arguments->run, "the number of the run that is meant; 0: whichever is there");
   command->add_option("--report", arguments->report, "folder for what it records as a node");
-  add_has_launcher(*command, arguments->has_launcher);
+  arguments->launcher.add_to(*command);
   arguments->length.add_to(*command);
   arguments->load.add_to(*command);
   arguments->save.add_to(*command);

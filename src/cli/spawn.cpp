@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cli/heartbeat.h"
+
 namespace aurasim::cli {
 namespace {
 
@@ -39,6 +41,7 @@ std::vector<std::string> own_command_line() {
 
 void become(std::vector<std::string> words) {
   ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  keep_heartbeat(words);
   ::execv(words.at(0).c_str(), pointers_to(words).data());
   throw std::runtime_error("cannot start " + words[0]);
 }

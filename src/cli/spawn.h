@@ -21,7 +21,7 @@ void spawn_apart(std::vector<std::string> words);
 /// The words that this process was started with.
 std::vector<std::string> own_command_line();
 /// This process becomes the program `words[0]` with these arguments, which has no file or socket of ours but the
-/// standard ones. Throws std::runtime_error if that fails.
+/// standard ones and the heartbeat's pipe. Throws std::runtime_error if that fails.
 [[noreturn]] void become(std::vector<std::string> words);
 
 }  // namespace aurasim::cli

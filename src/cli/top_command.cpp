@@ -33,7 +33,9 @@ int watch(const FileArguments& files, const KeyArguments& keys, double seconds) 
     const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
     while (!stop_requested() && Clock::now() < next) control.wait(50ms);
     const TerminalSize size = view.size();
-    if (!view.show(live_table(control.statuses(), size) + listening_lines(control.statuses(), size))) break;
+    if (!view.show(live_table(control.statuses(), size, std::chrono::steady_clock::now()) +
+                   listening_lines(control.statuses(), size)))
+      break;
     if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
   }
   if (nobody()) fail_for_want_of_a_run(files, launch);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/horizon.h"
+#include "core/progress.h"
 
 namespace aurasim::core {
 namespace {
@@ -159,6 +160,7 @@ void Clusters::look_on() {
     if (asked_speed_[j] >= speed(j) && asked_hops_[j] >= hops(j)) continue;
     asked_speed_[j] = speed(j);
     asked_hops_[j] = hops(j);
+    Progress::mark();
     look_around(j);
   }
 }

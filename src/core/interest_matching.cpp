@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/horizon.h"
+#include "core/progress.h"
 
 namespace aurasim::core {
 
@@ -148,11 +149,17 @@ void InterestMatching::pair_up() {
   noticed_by_.assign(paths_.size(), 0);
   for (const std::uint32_t i : expecting_) noticed_[i] = 1;
   clusters_.take_grown(grown_);  // seen below as they are now
-  for (const ForeignBlock& block : foreign_.blocks()) notice(block);
+  for (const ForeignBlock& block : foreign_.blocks()) {
+    Progress::mark();
+    notice(block);
+  }
   take_news();
   notice_grown();
   pairs_.clear();
-  for (const ForeignBlock& block : foreign_.blocks()) find_pairs(block);
+  for (const ForeignBlock& block : foreign_.blocks()) {
+    Progress::mark();
+    find_pairs(block);
+  }
 }
 
 void InterestMatching::take_news() {
@@ -165,7 +172,10 @@ void InterestMatching::take_news() {
 
 void InterestMatching::notice_grown() {
   for (clusters_.take_grown(grown_); !grown_.empty(); clusters_.take_grown(grown_)) {
-    for (const std::uint32_t own : grown_) notice_again(own);
+    for (const std::uint32_t own : grown_) {
+      Progress::mark();
+      notice_again(own);
+    }
     take_news();
   }
 }
@@ -270,7 +280,10 @@ void InterestMatching::judge(const Ranks& ranks) {
   touched_.assign(paths_.size(), 0);
   expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
-  for (const Pair& pair : pairs_) judge(pair, ranks);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    Progress::mark_now_and_then(i);
+    judge(pairs_[i], ranks);
+  }
   for (const Pair& pair : together_pairs_) judge_touched(pair, ranks);
 }
 

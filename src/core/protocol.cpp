@@ -6,6 +6,7 @@
 #include "core/aura_record.h"
 #include "core/horizon.h"
 #include "core/make_aura.h"
+#include "core/progress.h"
 
 namespace aurasim::core {
 namespace {
@@ -149,7 +150,9 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   projection_.follow(snapshot);
   full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start;
   rank(snapshot.step);
+  Progress::mark();
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
+  Progress::mark();
   check(snapshot);
   projection_.classify(snapshot, matching_);
   note_who_waits(snapshot);
@@ -181,6 +184,7 @@ void Protocol::decide(const Snapshot& snapshot) {
     const std::uint32_t cluster = matching_.clusters().of(i);
     if (!matching_.clusters().is_complete(i) || decided_[cluster]) continue;
     decided_[cluster] = 1;
+    Progress::mark();
     const std::size_t size = matching_.clusters().size(i);
     largest_cluster_ = std::max(largest_cluster_, size);
     if (size >= RankClaimer::kLeastBodies && size > largest_guest_ && is_abroad(i)) largest_guest_ = size;
@@ -217,7 +221,7 @@ void Protocol::send_home(const Snapshot& snapshot) {
     goes_home_[clusters.of(i)] = 0;
     return true;
   };
-  while (std::erase_if(homing_, leaves_somebody) > 0) continue;
+  while (std::erase_if(homing_, leaves_somebody) > 0) Progress::mark();
   const std::vector<RegionId> dead = intake_.dead_regions();
   for (const std::uint32_t i : homing_) {
     const RegionId home = lowest_owner(i);

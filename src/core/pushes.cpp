@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/progress.h"
+
 namespace aurasim::core {
 
 Push Push::of(double speed_m_s, const BodyTraits& traits, double uncertainty) {
@@ -56,6 +58,7 @@ void Pushes::spread(std::vector<std::uint32_t>& raised) {
   while (!to_do_.empty()) {
     const auto [fast_m_s, i] = to_do_.top();
     to_do_.pop();
+    Progress::mark();
     if (fast_m_s < speed(i)) continue;  // it has become faster since, and is there again
     for (std::uint32_t at = first_link_[i]; at != kNone; at = links_[at].next) {
       const std::uint32_t to = links_[at].to;

@@ -7,6 +7,7 @@
 #include "core/aura_precision.h"
 #include "core/horizon.h"
 #include "core/interest_matching.h"
+#include "core/progress.h"
 
 namespace aurasim::core {
 namespace {
@@ -249,6 +250,7 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
 
 /// With those of the others from `from` on.
 void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double margin_m) {
+  Progress::mark();
   const double range = margin_m + one.reach_m;
   const auto range_at = [&](double speed_m_s) { return range + speed_m_s / kWays_per_s; };
   near_.for_each_near(one.middle, 0, range_at, [&](std::uint32_t i) {

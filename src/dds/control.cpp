@@ -103,7 +103,8 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
       status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, wakeup),
       map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
       roster({settings.region_count, settings.agreement, settings.run, settings.region,
-              status_writer ? status_writer->guid() : Guid(), participant.stays_on_this_host()},
+              status_writer ? status_writer->guid() : Guid(), participant.stays_on_this_host(),
+              participant.domain().believes_silence()},
              participant.domain().speakers()) {
   if (!settings.only_watches) {
     command_writer.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);

@@ -20,6 +20,7 @@ using core::value_of;
 namespace {
 
 constexpr auto kPatienceWithListeners = std::chrono::seconds(10);
+constexpr std::size_t kEndpointsOfALink = 6;
 
 /// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
 struct Link {
@@ -203,14 +204,17 @@ Link& DdsTransport::Impl::link_to(RegionId region) {
 }
 
 /// What is sent before a listener is matched would be lost to it. They have been expected for half a second, so there
-/// is mostly nothing to wait for.
+/// is mostly nothing to wait for. One that computes one step for long makes its endpoints after it.
 void DdsTransport::Impl::wait_for(const std::vector<RegionId>& listeners) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatienceWithListeners;
+  auto deadline = std::chrono::steady_clock::now() + kPatienceWithListeners;
   for (const RegionId region : listeners) {
     Link& link = link_to(region);
     while (!link.met && !link.lost && std::chrono::steady_clock::now() < deadline) {
       link.met = unmatched(link).empty();
       if (link.met) break;
+      if (settings.is_busy && settings.is_busy(region)) {
+        deadline = std::chrono::steady_clock::now() + kPatienceWithListeners;
+      }
       participant.progress();
       wakeup.wait(std::chrono::milliseconds(1));
     }
@@ -235,7 +239,6 @@ std::vector<std::string> DdsTransport::Impl::unmatched(const Link& link) const {
 }
 
 std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<RegionId>& regions) const {
-  constexpr std::size_t kEndpoints = 6;
   std::vector<std::string> texts;
   for (const auto& link : links) {
     const auto missing = unmatched(*link);
@@ -243,7 +246,7 @@ std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<Regi
       continue;
     }
     regions.push_back(link->region);
-    texts.push_back(missing.size() == kEndpoints
+    texts.push_back(missing.size() == kEndpointsOfALink
                         ? fmt::format("region {} (nothing heard of it)", value_of(link->region))
                         : fmt::format("region {} ({})", value_of(link->region), fmt::join(missing, ", ")));
   }
@@ -321,6 +324,12 @@ void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {
 bool DdsTransport::all_matched() const {
   return std::ranges::all_of(impl_->links,
                              [&](const auto& link) { return link->lost || impl_->unmatched(*link).empty(); });
+}
+
+std::size_t DdsTransport::found() const {
+  std::size_t found = 0;
+  for (const auto& link : impl_->links) found += kEndpointsOfALink - impl_->unmatched(*link).size();
+  return found;
 }
 
 void DdsTransport::take(core::Inbox& inbox) {

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ struct TransportSettings {
   std::uint32_t prototype_count = 0xffff'ffffU;
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
+  /// Does that region's node live, and compute one step for long? Whoever is to be listened to by it waits until it
+  /// has. Empty: none does.
+  std::function<bool(core::RegionId)> is_busy = {};
 };
 
 /// Samples and bytes (serialized, without RTPS headers) of one topic, all neighbours together.
@@ -73,6 +77,8 @@ class DdsTransport final : public transport::Transport {
   void wait_until_matched(std::chrono::nanoseconds time_out);
   /// True when wait_until_matched would return at once.
   bool all_matched() const;
+  /// How many endpoints of neighbours have been found, of six for each.
+  std::size_t found() const;
 
   /// Messages of a neighbour that are of this run and map but not sound go to Inbox::refusals.
   /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back and

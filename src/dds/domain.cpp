@@ -50,6 +50,16 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"observation", "aurasim::wire::Observation"},
 }};
 
+/// A process whose silence nobody believes is not forgotten for it either: it would have to be found anew, and what was
+/// sent meanwhile would be lost. Who has died is told by others long before.
+constexpr std::chrono::seconds kPatientLease{30};
+
+void be_patient_with_this(DomainParticipantQos& qos) {
+  auto& lease = qos.wire_protocol().builtin.discovery_config.leaseDuration;
+  if (std::chrono::nanoseconds(lease.to_ns()) >= kPatientLease) return;
+  lease = eprosima::fastrtps::Duration_t(static_cast<std::int32_t>(kPatientLease.count()), 0);
+}
+
 /// Regions in one process talk like regions in two: through the wire, by its protocol.
 void switch_intraprocess_delivery_off() {
   eprosima::fastrtps::LibrarySettingsAttributes library;
@@ -87,6 +97,8 @@ Domain::Domain(const Settings& settings)
     : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()), speakers_(guard_) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   loopback_only_ = on_loopback_only(qos);
+  believes_silence_ = settings.believes_silence || !loopback_only_;
+  if (!believes_silence_) be_patient_with_this(qos);
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
   if (impairment.any()) {
     delay_line_ =
@@ -108,7 +120,7 @@ Domain::Domain(const Settings& settings)
   guard_->set_own(prefix_of(participant_->guid().guidPrefix));
   speakers_.set_self(participant_->guid().guidPrefix);
   register_types();
-  liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit);
+  liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit, settings.show_life);
 }
 
 Domain::~Domain() = default;

@@ -84,6 +84,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   /// Nothing leaves this host.
   bool loopback_only() const { return loopback_only_; }
   LivelinessAsserter& liveliness() { return *liveliness_; }
+  /// Settings::believes_silence. Silence between hosts may be a cut, and is always believed.
+  bool believes_silence() const { return believes_silence_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
   /// What keeps malformed datagrams from Fast DDS.
@@ -105,6 +107,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::shared_ptr<DatagramGuard> guard_;
   Speakers speakers_;
   bool loopback_only_ = false;
+  bool believes_silence_ = true;
   std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;

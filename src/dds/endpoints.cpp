@@ -154,7 +154,8 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
     qos.reliability().kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
   }
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
-    watch_.set_grace(std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()) / 2);
+    const std::chrono::nanoseconds lease(qos.liveliness().lease_duration.to_ns());
+    watch_.set_grace(domain.believes_silence() ? lease / 2 : ReaderWatch::kForEver);
   }
   reader_ = subscriber_->create_datareader(
       &topic, qos, &watch_,

@@ -5,10 +5,15 @@
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
 
+#include "core/progress.h"
+
 namespace aurasim::dds {
 
-LivelinessAsserter::LivelinessAsserter(std::chrono::nanoseconds hang_limit)
-    : hang_limit_(hang_limit), last_progress_ns_(now_ns()), thread_([this] { run(); }) {}
+LivelinessAsserter::LivelinessAsserter(std::chrono::nanoseconds hang_limit, std::function<void()> show_life)
+    : hang_limit_(hang_limit),
+      show_life_(std::move(show_life)),
+      last_progress_ns_(now_ns()),
+      thread_([this] { run(); }) {}
 
 LivelinessAsserter::~LivelinessAsserter() {
   {
@@ -40,7 +45,9 @@ void LivelinessAsserter::run() {
   std::unique_lock lock(mutex_);
   std::int64_t woken_ns = now_ns();
   while (!stopping_) {
+    look_at_computation();
     if (!owner_hangs()) {
+      if (show_life_) show_life_();
       for (auto* writer : writers_) {
         writer->assert_liveliness();
       }
@@ -57,6 +64,12 @@ void LivelinessAsserter::note_stall(std::int64_t stall_ns) {
   if (stall_ns > longest_stall_ns_.load()) {
     longest_stall_ns_.store(stall_ns);
   }
+}
+
+void LivelinessAsserter::look_at_computation() {
+  const std::uint64_t marks = core::Progress::marks();
+  if (marks != marks_ || core::Progress::is_unseen()) progress();
+  marks_ = marks;
 }
 
 bool LivelinessAsserter::owner_hangs() const {

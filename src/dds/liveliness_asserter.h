@@ -1,11 +1,13 @@
-// Asserts the liveliness of a process: renews that of its writers while their owner makes progress. So a long frame is
-// not a death, but a process that hangs is.
+// Asserts the liveliness of a process: renews that of its writers while their owner makes progress: calls a transport
+// or a bus, or gets on with a computation (core/progress.h). So a long step is not a death, however long it takes, but
+// a process that hangs is.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -18,7 +20,8 @@ namespace aurasim::dds {
 
 class LivelinessAsserter {
  public:
-  explicit LivelinessAsserter(std::chrono::nanoseconds hang_limit);
+  /// `show_life`: called by its thread whenever it renews writers; empty: nothing is called.
+  explicit LivelinessAsserter(std::chrono::nanoseconds hang_limit, std::function<void()> show_life = {});
   ~LivelinessAsserter();
 
   /// Renews `writer` every `lease` / 4 from now on.
@@ -34,10 +37,12 @@ class LivelinessAsserter {
  private:
   void run();
   void note_stall(std::int64_t stall_ns);
+  void look_at_computation();
   bool owner_hangs() const;
   static std::int64_t now_ns();
 
   const std::chrono::nanoseconds hang_limit_;
+  const std::function<void()> show_life_;
   std::atomic<std::int64_t> last_progress_ns_;
   std::atomic<std::int64_t> longest_stall_ns_{0};
   std::mutex mutex_;
@@ -45,7 +50,8 @@ class LivelinessAsserter {
   bool stopping_ = false;
   std::chrono::nanoseconds interval_ = std::chrono::milliseconds(250);
   std::vector<eprosima::fastdds::dds::DataWriter*> writers_;
-  std::thread thread_;  // last: starts when all else is there
+  std::uint64_t marks_ = 0;  ///< of core::Progress, when last looked
+  std::thread thread_;       // last: starts when all else is there
 };
 
 }  // namespace aurasim::dds

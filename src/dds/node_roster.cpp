@@ -46,10 +46,10 @@ int rank_of(const SeenStatus& seen, bool stands) {
   return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : kIsNode;
 }
 
-/// Where Fast DDS matched a writer anew, the later match counts.
-bool is_lost(const std::vector<RemoteWriter>& writers, const Guid& guid) {
+/// Where Fast DDS matched a writer anew, the later match counts. Null: it never did.
+const RemoteWriter* find(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
-  return found == writers.rend() || found->lost;
+  return found == writers.rend() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
     for (Received& one : of_region) {
       if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
       one.seen.dead = dead_.contains(one.seen.status.process);
-      one.seen.lost = one.seen.dead || is_lost(writers, one.writer);
+      one.seen.lost = one.seen.dead || is_lost(one, find(writers, one.writer));
     }
     if (is_region(region)) choose_publisher(region, of_region);
     std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers_[region]; });
@@ -122,6 +122,11 @@ void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& 
   publishers_[region] = chosen->writer;
   statuses_[region] = chosen->seen;
   speakers_.set(region, chosen->writer.guidPrefix);
+}
+
+bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const {
+  if (writer == nullptr || writer->lost) return true;
+  return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }
 
 /// On this host its process is looked for; elsewhere, who lives says something.

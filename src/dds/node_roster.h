@@ -23,6 +23,7 @@ struct RosterSettings {
   std::optional<core::RegionId> region;         ///< whose node this process is
   Guid writer;                                  ///< of its statuses; only with a region
   bool stays_on_this_host = false;              ///< all processes can be looked for
+  bool believes_silence = true;                 ///< else who is silent is lost only if there is no such process
 };
 
 /// Used by one thread. `speakers` must outlive it.
@@ -61,6 +62,7 @@ class NodeRoster {
 
   bool is_region(core::RegionId region) const;
   bool has_room_for(core::RegionId region) const;
+  bool is_lost(const Received& one, const RemoteWriter* writer) const;
   bool shows_no_life(const Received& one) const;
   void choose_publisher(core::RegionId region, const std::vector<Received>& of_region);
   bool is_of_the_run(const Status& status, const Guid& writer) const;

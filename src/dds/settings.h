@@ -31,8 +31,14 @@ struct Settings {
   ImpairmentOverrides impairment;
   /// Participants of one run give different numbers, and so lose different datagrams with the same seed.
   std::uint64_t impairment_stream = 0;
-  /// A process whose owner has not called any transport or bus for this long no longer counts as alive.
+  /// A process whose owner has neither called any transport or bus nor marked progress (core/progress.h) for this long
+  /// no longer counts as alive.
   std::chrono::nanoseconds hang_limit = std::chrono::seconds(10);
+  /// Called every quarter second by a thread of its own as long as this process counts as alive.
+  std::function<void()> show_life;
+  /// A process that is silent for one and a half leases counts as lost. False where somebody else knows who has died
+  /// and says so: then the silence of a process that is there means that it is slow. Heeded on loopback only.
+  bool believes_silence = true;
   /// Joins a run with keys; nothing: an open one.
   std::optional<security::KeyFiles> keys;
   /// Called from DDS's threads with a sentence for each peer, reader or writer whom keys refuse.

@@ -43,7 +43,8 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
  public:
   explicit ReaderWatch(Wakeup& wakeup) : wakeup_(wakeup) {}
 
-  /// Before the reader exists. At least two proofs of life must fit into it.
+  static constexpr std::chrono::nanoseconds kForEver = std::chrono::nanoseconds::max();
+  /// Before the reader exists. At least two proofs of life must fit into it. kForEver: silence is never believed.
   void set_grace(std::chrono::nanoseconds grace) { grace_ = grace; }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/horizon.h"
+#include "core/progress.h"
 #include "node/scene_additions.h"
 #include "node/timed.h"
 #include "physics/clearance.h"
@@ -178,7 +179,9 @@ void Node::compute_step() {
     give_up_expected();
     apply(*changes);
     announce_births(n);
+    core::Progress::mark();
     world_.step();
+    core::Progress::mark();
     note_removals();
     note_effects();
     note_moves();
@@ -255,6 +258,7 @@ void Node::finish_state() {
   {
     const Timed timed(report_.durations.physics_s, setup_.clock);
     snapshot = &world_.snapshot();
+    core::Progress::mark();
   }
   if (setup_.hash_states) report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
   count(*snapshot);
@@ -271,6 +275,7 @@ void Node::finish_state() {
   report_.foreign_auras = protocol_->matching().foreign_auras();
   report_.projecting = protocol_->projection().projecting();
   report_.largest_cluster = protocol_->largest_cluster();
+  core::Progress::mark();
   release(*departures);
   report_.violations.assign(protocol_->violations().recent().begin(), protocol_->violations().recent().end());
   report_.violations_total = protocol_->violations().total();

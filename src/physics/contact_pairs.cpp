@@ -2,6 +2,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
+#include "core/progress.h"
 #include "physics/prefetch.h"
 
 namespace aurasim::physics {
@@ -18,6 +19,7 @@ bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilter
 void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher*, const btDispatcherInfo&) {
   btBroadphasePairArray& pairs = getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
+    core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
     if (i + kPrefetchDistance < pairs.size()) prefetch_pair(pairs[i + kPrefetchDistance]);
     if (i + kPrefetchDistance / 2 < pairs.size()) prefetch_parts(pairs[i + kPrefetchDistance / 2], manifolds_);
     callback->processOverlap(pairs[i]);

@@ -11,6 +11,7 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/construction.h"
 #include "physics/part_surfaces.h"
@@ -170,6 +171,7 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
   btRigidBody* const a = find_object(any.object0);
   btRigidBody* const b = find_object(any.object1);
   if (a == nullptr || b == nullptr || a == b || (a->isStaticObject() && b->isStaticObject())) return;
+  core::Progress::mark();
   world_.make_manifolds(*a, *b, of_pair_);
   for (const std::uint32_t index : records) {
     const core::ManifoldRecord& record = cluster.manifolds[index];
@@ -209,6 +211,7 @@ void Simulation::step() {
     push();
     joints_.follow();
     world_.step(settings_.step_s / settings_.looks());
+    core::Progress::mark();
     joints_.finish_look(world_);
   }
   stop_pushing();
@@ -286,6 +289,7 @@ void Simulation::list_contacts() {
     std::sort(of_body.begin(), of_body.end(), [](const auto& x, const auto& y) { return x.b < y.b; });
     first = contacts_before_[a];
   }
+  core::Progress::mark();
   const auto same = [](const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; };
   contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
 }

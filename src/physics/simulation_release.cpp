@@ -5,6 +5,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
@@ -71,6 +72,7 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
   });
   for (std::size_t i = 0; i < count; ++i) {
     core::ClusterState& cluster = copies.clusters[i];
+    core::Progress::mark();
     append_manifolds(std::move(manifolds[i]), frame_, cluster);
     if (!settings_.p_WO.isZero()) put_back_slid(cluster);
     copies.across += joints_.append_to(cluster);
@@ -97,6 +99,7 @@ std::vector<core::ClusterState> Simulation::release(std::span<const std::span<co
     if (leaves[i] && table_[i].born) born.push_back(table_[i].rigid.get());
   }
   for (const core::ClusterState& cluster : leaving.clusters) joints_.disconnect(cluster, table_, world_);
+  core::Progress::mark();
   world_.remove(born);
   table_.erase(leaves);
   snapshot_is_fresh_ = records_are_fresh_ = false;

@@ -8,6 +8,7 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
+#include "core/progress.h"
 #include "physics/driven_constraint.h"
 #include "physics/friction_anchors.h"
 #include "physics/prefetch.h"
@@ -69,6 +70,7 @@ class Refined : public BulletSolver {
       for (int j = i + 2 * kAtOnce; j < std::min(i + 3 * kAtOnce, count); ++j) prefetch_head(*manifolds[j]);
       for (int j = i + kAtOnce; j < std::min(i + 2 * kAtOnce, count); ++j) prefetch_points(*manifolds[j]);
       BulletSolver::convertContacts(manifolds + i, std::min(kAtOnce, count - i), info);
+      core::Progress::mark();
     }
     for (int i = 0; i < this->m_tmpSolverContactConstraintPool.size(); ++i) {
       btSolverConstraint& row = this->m_tmpSolverContactConstraintPool[i];
@@ -76,6 +78,14 @@ class Refined : public BulletSolver {
                  info);
     }
     friction_anchors_.pull_back(rows(), info);
+  }
+
+  btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                btPersistentManifold** manifolds, int manifold_count, btTypedConstraint** joints,
+                                int joint_count, const btContactSolverInfo& info, btIDebugDraw* drawer) override {
+    core::Progress::mark();
+    return BulletSolver::solveSingleIteration(iteration, bodies, body_count, manifolds, manifold_count, joints,
+                                              joint_count, info, drawer);
   }
 
   btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int count,
@@ -105,7 +115,14 @@ class DantzigSolver final : private Dantzig, public Refined<btMLCPSolver> {
   DantzigSolver() : Refined(&dantzig) {}
 
  protected:
+  /// The matrix and its factors: one call, with the cube of the rows.
+  bool solveMLCP(const btContactSolverInfo& info) override {
+    const core::Progress::Unseen unseen;
+    return Refined::solveMLCP(info);
+  }
+
   void createMLCPFast(const btContactSolverInfo& info) override {
+    const core::Progress::Unseen unseen;
     Refined::createMLCPFast(info);
     for (int i = 0; i < m_allConstraintPtrArray.size(); ++i) {
       const btScalar give = give_of(*m_allConstraintPtrArray[i]);

@@ -57,6 +57,15 @@ TEST_F(LiveTable, NamesWhoListensToWhomSinceWhenAndWhy) {
   EXPECT_EQ(listening_lines(statuses_), "region 1 listens to 0, 7 (since state 120, by 3)\n");
 }
 
+TEST_F(LiveTable, SaysWhoComputesOneStepForLong) {
+  have_regions(2);
+  const std::chrono::steady_clock::time_point now(std::chrono::seconds(100));
+  statuses_[core::RegionId{1}].status.state = dds::NodeState::kRunning;
+  statuses_[core::RegionId{1}].seen = now - std::chrono::seconds(12);
+  EXPECT_THAT(live_table(statuses_, {}, now), HasSubstr("region 1 computes one step for 12 s\n"));
+  EXPECT_THAT(live_table(statuses_, {}, now), Not(HasSubstr("region 0 computes")));
+}
+
 TEST_F(LiveTable, NamesWhoseMessagesAreRefused) {
   have_regions(1);
   statuses_[core::RegionId{0}].status.refused = {{core::RegionId{2}, 3}, {dds::kNoRegion, 170}};

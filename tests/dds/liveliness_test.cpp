@@ -1,4 +1,6 @@
 // Neighbours that die, hang, dawdle and come back. The lease of aura writers in qos/aurasim.xml is 1 s.
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "child.h"
@@ -86,6 +88,11 @@ TEST_F(Neighbour, WhoseOwnerHangsIsLost) {
   expect_event(0, PeerChange::kLost);
 }
 
+TEST_F(Neighbour, WhoseOwnerGetsOnWithAComputationIsNotLostHoweverLongItTakes) {
+  meet("computes", 200ms);
+  EXPECT_FALSE(wait_for_peer_events(1, 6s)) << "its hang limit is 0.5 s, and the lease 1 s";
+}
+
 TEST_F(Neighbour, ThatIsStoppedIsLostAndJoinsWhenItGoesOn) {
   meet("run");
   there_->kill(SIGSTOP);
@@ -96,6 +103,40 @@ TEST_F(Neighbour, ThatIsStoppedIsLostAndJoinsWhenItGoesOn) {
   expect_event(1, PeerChange::kJoined);
   here_->inbox.auras.clear();
   EXPECT_TRUE(take_until(*here_, [&] { return !here_->inbox.auras.empty(); }));
+}
+
+/// A launcher on this host knows which processes live. Busy ones may be silent for many leases.
+class SilentNeighbour : public Neighbour {
+ protected:
+  void meet_without_belief_in_silence() {
+    Settings settings = testing::settings_for(own_domain());
+    settings.believes_silence = false;
+    here_ = std::make_unique<Peer>(settings, 0, std::initializer_list<std::uint32_t>{1});
+    control_.emplace(here_->participant, ControlSettings{.region_count = 16});
+    start("watched");
+    here_->transport.wait_until_matched(testing::kDeadline);
+    ASSERT_EQ(there_->read_line(), "ready");
+    ASSERT_TRUE(take_until(*here_, [&] { return is_known() && !is_lost(); }));
+  }
+  bool is_known() { return control_->statuses().contains(RegionId{1}); }
+  bool is_lost() { return control_->statuses().at(RegionId{1}).lost; }
+
+  std::optional<ControlBus> control_;
+};
+
+TEST_F(SilentNeighbour, WhoseProcessIsThereIsNotLost) {
+  ASSERT_NO_FATAL_FAILURE(meet_without_belief_in_silence());
+  there_->kill(SIGSTOP);
+  EXPECT_FALSE(take_until(
+      *here_, [&] { return is_lost(); }, kParticipantLease + 2s));
+  EXPECT_TRUE(here_->inbox.peers.empty());
+  there_->kill(SIGCONT);
+}
+
+TEST_F(SilentNeighbour, WhoseProcessIsGoneIsLost) {
+  ASSERT_NO_FATAL_FAILURE(meet_without_belief_in_silence());
+  there_->kill(SIGKILL);
+  EXPECT_TRUE(take_until(*here_, [&] { return is_lost(); }));
 }
 
 TEST_F(Neighbour, ThatTakesItsLeaveIsLostAtOnce) {

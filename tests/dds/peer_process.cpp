@@ -1,12 +1,16 @@
 // A region in a process of its own, for tests that kill it. Prints "ready" when it is matched with its neighbour
 // and "outlived its lease" when that is so.
-//   dds_peer_process DOMAIN REGION NEIGHBOUR run|hang|long_frames [MILLISECONDS]
-// run: a batch every 10 ms. hang: for the given time like run, then its owner never calls again, with a hang limit of
-// 0.5 s. long_frames: a batch every 2.5 s. In all modes it publishes a status now and then.
+//   dds_peer_process DOMAIN REGION NEIGHBOUR run|watched|hang|computes|long_frames [MILLISECONDS]
+// run: a batch every 10 ms. watched: likewise, as a process whose silence nobody believes. hang: for the given time
+// like run, then its owner never calls again, with a hang limit of 0.5 s. computes: like hang, but its owner gets on
+// with a computation. long_frames: a batch every 2.5 s. In all modes it publishes a status now and then.
 #include <iostream>
 #include <string>
 
+#include <unistd.h>
+
 #include "control_samples.h"
+#include "core/progress.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds::testing {
@@ -22,9 +26,11 @@ struct Arguments {
 
 void take_part(const Arguments& arguments) {
   Settings settings = settings_for(arguments.domain);
-  if (arguments.mode == "hang") {
+  const bool calls_no_more = arguments.mode == "hang" || arguments.mode == "computes";
+  if (calls_no_more) {
     settings.hang_limit = 500ms;
   }
+  settings.believes_silence = arguments.mode != "watched";
   Peer peer(settings, arguments.region, {arguments.neighbour});
   ControlSettings control_settings;
   control_settings.region = peer.region();
@@ -40,12 +46,17 @@ void take_part(const Arguments& arguments) {
     peer.transport.take(peer.inbox);
     Status status = status_of(arguments.region);
     status.step = step;
+    status.pid = static_cast<std::uint32_t>(::getpid());
     control.publish_status(status);
     if (!outlived && peer.participant.outlived_its_lease()) {
       outlived = true;
       std::cout << "outlived its lease" << std::endl;
     }
-    if (arguments.mode == "hang" && std::chrono::steady_clock::now() - start > arguments.time) {
+    if (calls_no_more && std::chrono::steady_clock::now() - start > arguments.time) {
+      while (arguments.mode == "computes") {
+        core::Progress::mark();
+        std::this_thread::sleep_for(50ms);
+      }
       std::this_thread::sleep_for(1h);
     }
     std::this_thread::sleep_for(frame);

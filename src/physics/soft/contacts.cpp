@@ -11,6 +11,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btAabbUtil2.h>
 
+#include "core/progress.h"
 #include "physics/first_contacts.h"
 #include "physics/moving_static.h"
 #include "physics/part_surfaces.h"
@@ -129,7 +130,10 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
                                 lists_[i].touches_of_sleepers.end());
   }
   for (const List& list : lists_) {
-    for (const WillMeet& two : list.will_meet) meet(two, dispatcher, info);
+    for (const WillMeet& two : list.will_meet) {
+      core::Progress::mark();
+      meet(two, dispatcher, info);
+    }
   }
 }
 
@@ -143,6 +147,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
     return i < last && !(knows_sleepers && noted_slots(all[i]).are_noted() && both_sleep(noted_slots(all[i])));
   };
   for (int i = first; i < last; ++i) {
+    core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
     if (is_wanted(i + kPrefetchDistance)) prefetch_pair(all[i + kPrefetchDistance]);
     if (is_wanted(i + kPrefetchDistance / 2)) prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
     if (is_wanted(i + kPrefetchDistance / 4)) {

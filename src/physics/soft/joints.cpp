@@ -7,6 +7,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/joint_axes.h"
 #include "physics/soft/convert.h"
@@ -134,6 +135,7 @@ void SoftJoints::begin(soft::Mover* movers, const soft::Worker& worker) {
 void SoftJoints::solve(soft::Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
     soft::kernel().solve_joints(&blocks_[first], count, kinds_[kind], movers);
+    core::Progress::mark();
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "core/progress.h"
 #include "physics/prefetch.h"
 #include "physics/soft/convert.h"
 
@@ -186,12 +187,14 @@ void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* i
 void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().warm_start(&blocks_[first], count, static_cast<int>(points), movers);
+    core::Progress::mark();
   });
 }
 
 void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
   layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
+    core::Progress::mark();
   });
 }
 
@@ -199,6 +202,7 @@ void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
   for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
     layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
       soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
+      core::Progress::mark();
     });
   }
 }

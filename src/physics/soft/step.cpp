@@ -8,6 +8,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/contact_impulses.h"
 #include "physics/free_rotation.h"
@@ -346,6 +347,7 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody
   soft::from_bullet(gravity, pull);
   impl.patches.build(impl.movers, impl.inertias.data(), pull, impl.threads);
   impl.patches.begin_tally(impulses.wanted());
+  core::Progress::mark();
   impl.joints.clear();
   for (btTypedConstraint* joint : joints) {
     impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
@@ -355,6 +357,7 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody
   soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
   impl.joints.finish();
   impl.patches.remember(impl.threads);
+  core::Progress::mark();
   if (impulses.wanted()) impl.tell(impulses);
   soft::for_each_side_by_side(impl.threads, impl.held.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }

@@ -7,6 +7,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/progress.h"
 #include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
 #include "physics/settings.h"
@@ -38,12 +39,14 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     damp(step_s);
     bound();
     m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
+    core::Progress::mark();
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
     first_contacts_.look(manifolds_of(contacts_.touches()), *getPairCache());
     islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
     if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
     islands_.sort(contacts_.touches());
+    core::Progress::mark();
     step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
                 contact_impulses_);
     report_met();

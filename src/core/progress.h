@@ -1,0 +1,41 @@
+// Counts the work that this process gets done, so that a long computation can be told from a hang. Core and physics
+// have no clock: they count, and who has a clock looks whether the count still grows (dds/liveliness_asserter.h).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace aurasim::core {
+
+/// One count for the whole process: what lives or dies is a process. Any thread.
+class Progress {
+ public:
+  /// Marks that a part of a computation is done. Between two marks there is work for a second at most, whatever the
+  /// scene: loops whose length grows faster than the number of bodies call this inside.
+  static void mark() { marks_.fetch_add(1, std::memory_order_relaxed); }
+  /// Marks every 16th turn of a loop whose single turns are short.
+  static void mark_now_and_then(std::size_t turn) {
+    if (turn % 16 == 0) mark();
+  }
+  static std::uint64_t marks() { return marks_.load(std::memory_order_relaxed); }
+
+  /// Lives while a library computes that cannot be looked into. Its time must be bounded by what it was given.
+  class Unseen {
+   public:
+    Unseen() { unseen_.fetch_add(1, std::memory_order_relaxed); }
+    ~Unseen() {
+      mark();
+      unseen_.fetch_sub(1, std::memory_order_relaxed);
+    }
+    Unseen(const Unseen&) = delete;
+    Unseen& operator=(const Unseen&) = delete;
+  };
+  static bool is_unseen() { return unseen_.load(std::memory_order_relaxed) > 0; }
+
+ private:
+  inline static std::atomic<std::uint64_t> marks_{0};
+  inline static std::atomic<int> unseen_{0};
+};
+
+}  // namespace aurasim::core
