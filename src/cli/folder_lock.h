@@ -1,20 +1,30 @@
-// A folder that one process writes at a time.
+// A folder that one process uses at a time. The kernel lets go of it when the process ends, however it ends.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 namespace aurasim::cli {
 
 class FolderLock {
  public:
   /// Makes the folder if there is none, and holds it as long as this object and its process live. Throws
-  /// std::runtime_error when another process holds it, or there can be no such folder.
+  /// std::runtime_error when another process holds it to write its report, or there can be no such folder.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  /// Holds a folder that is there, once nobody else does. Null: there is no such folder, or its file system has no
+  /// locks.
+  static std::unique_ptr<FolderLock> when_free(const std::filesystem::path& folder);
+  /// The same at once. Null also where another process holds it.
+  static std::unique_ptr<FolderLock> if_free(const std::filesystem::path& folder);
+
  private:
+  explicit FolderLock(int folder) : folder_(folder) {}
+  static std::unique_ptr<FolderLock> hold(const std::filesystem::path& folder, int how);
+
   int folder_ = -1;
 };
 

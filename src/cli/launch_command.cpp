@@ -74,6 +74,9 @@ void prepare_saves(const config::Launch& launch, LaunchOptions& options) {
 }
 
 int run_launch(LaunchArguments arguments) {
+  for (const std::filesystem::path& folder : remove_keys_of_the_gone()) {
+    spdlog::info("removed the keys of a launch that was killed: {}", folder.string());
+  }
   std::unique_ptr<ThrowAwayKeys> throw_away = keys_for(arguments);
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
   look_at_keys(launch);

@@ -27,6 +27,8 @@ namespace aurasim::overseer {
 inline constexpr std::chrono::seconds kIdleLimit{15};  // of a connection that has been answered, and may ask again
 inline constexpr std::chrono::seconds kAnswerLimit{60};
 inline constexpr std::chrono::seconds kGoodbyeLimit{2};
+/// What is read and thrown away of a connection that is being closed.
+inline constexpr std::size_t kMostThrownAway = 4 * 1024 * 1024;
 inline constexpr std::uint32_t kLongestHeader = 16 * 1024;
 /// Requests of one connection; those beyond wait.
 inline constexpr double kRequests = 50;
@@ -82,12 +84,24 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     parser_->header_limit(kLongestHeader);
     parser_->body_limit(kLargestMeshFile);
     http::async_read_header(stream_, buffer_, *parser_, [self = this->shared_from_this()](Error error, std::size_t) {
-      if (!error) return self->route();
-      const bool is_fault = error != http::error::end_of_stream && error != boost::beast::error::timeout &&
-                            error != boost::asio::error::operation_aborted;
-      if (is_fault) self->hub_.refuse();
-      self->close();
+      if (error) return self->give_up(error);
+      self->route();
     });
+  }
+
+  /// Answers what is no request, where somebody may still be there to read it.
+  void give_up(Error error) {
+    using Http = boost::beast::http::error;
+    if (error == Http::header_limit || error == Http::buffer_overflow)
+      return refuse(431, fmt::format("the header is longer than {} bytes", kLongestHeader));
+    if (error == Http::body_limit) return refuse(413, "it is larger than 16 MiB");
+    const bool has_left = error == Http::end_of_stream || error == Http::partial_message;
+    if (error.category() == Error(Http::bad_method).category() && !has_left)
+      return refuse(400, fmt::format("this is no HTTP request: {}", error.message()));
+    const bool is_fault = error != Http::end_of_stream && error != boost::beast::error::timeout &&
+                          error != boost::asio::error::operation_aborted;
+    if (is_fault) hub_.refuse();
+    close();
   }
 
   std::string_view header(Field name) const { return view_of(parser_->get()[name]); }
@@ -99,6 +113,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     set_silent(false);
     if (is_twofold(Field::host) || is_twofold(Field::origin) || is_twofold(Field::authorization))
       return refuse(400, "a header stands there twice");
+    if (!names_a_host()) return refuse(400, "the Host header must be NAME or ADDRESS, or one of them and :PORT");
     const std::string why = hub_.access().why_not(header(Field::host), header(Field::origin), local_address_);
     if (!why.empty()) return refuse(403, why);
     const auto found =
@@ -106,6 +121,13 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(refusal->status, refusal->why);
     standing_ = std::get<Standing>(found);
     serve();
+  }
+
+  /// RFC 9112, section 3.2: HTTP/1.1 has a Host header, whose value may be empty.
+  bool names_a_host() const {
+    const auto& request = parser_->get();
+    if (request.count(Field::host) == 0) return request.version() < 11;
+    return header(Field::host).empty() || is_host(header(Field::host));
   }
 
   void serve() {
@@ -147,8 +169,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     if (!upload_) return refuse(503, "too many meshes are being sent: try again");
     socket_of(stream_).expires_after(hub_.settings().upload_limit);
     http::async_read(stream_, buffer_, *parser_, [self = this->shared_from_this()](Error error, std::size_t) {
-      if (error == http::error::body_limit) return self->refuse(413, "it is larger than 16 MiB");
-      if (error) return self->close();
+      if (error) return self->give_up(error);
       self->store_mesh();
     });
   }
@@ -209,13 +230,28 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   }
 
   void close() {
+    set_silent(true);
+    socket_of(stream_).expires_after(kGoodbyeLimit);
     if constexpr (kIsTls<Stream>) {
-      socket_of(stream_).expires_after(kGoodbyeLimit);
-      stream_.async_shutdown([self = this->shared_from_this()](Error) {});
+      stream_.async_shutdown([self = this->shared_from_this()](Error) { self->linger(); });
     } else {
-      Error ignored;
-      stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+      linger();
     }
+  }
+
+  /// A socket that is closed with unread bytes in it resets the connection: the answer might never be read.
+  void linger() {
+    Error gone;
+    socket_of(stream_).socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, gone);
+    buffer_.clear();
+    if (!gone) throw_away(kMostThrownAway);
+  }
+
+  void throw_away(std::size_t at_most) {
+    socket_of(stream_).async_read_some(buffer_.prepare(16 * 1024),
+                                       [self = this->shared_from_this(), at_most](Error error, std::size_t bytes) {
+                                         if (!error && bytes < at_most) self->throw_away(at_most - bytes);
+                                       });
   }
 
   /// To somebody who has left out the s of https.

@@ -113,6 +113,20 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
+bool is_host(std::string_view host) {
+  const std::string_view name = host_name(host);
+  const std::string_view rest = host.substr(name.size());
+  constexpr std::string_view kOfNames = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._";
+  constexpr std::string_view kOfAddresses = "0123456789abcdefABCDEF:.", kDigits = "0123456789";
+  const auto consists_of = [](std::string_view text, std::string_view allowed) {
+    return text.find_first_not_of(allowed) == std::string_view::npos;
+  };
+  const bool is_v6 = name.size() > 2 && name.front() == '[' && name.back() == ']' &&
+                     consists_of(name.substr(1, name.size() - 2), kOfAddresses);
+  const bool is_name = !name.empty() && consists_of(name, kOfNames);
+  return (is_v6 || is_name) && (rest.empty() || (rest.front() == ':' && consists_of(rest.substr(1), kDigits)));
+}
+
 bool matches_name(std::string_view name, std::string_view known) {
   if (!known.starts_with("*.")) return name == lower(known);
   const std::size_t dot = name.find('.');

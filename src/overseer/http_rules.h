@@ -22,6 +22,9 @@ std::string_view mime_type(const std::filesystem::path& file);
 std::string lower(std::string_view text);
 /// "localhost:8080" -> "localhost", "[::1]:80" -> "[::1]".
 std::string_view host_name(std::string_view host);
+/// Whether `host` is a name or an address, with a port or without: nothing that means another host to others, like
+/// "localhost:80@evil.example".
+bool is_host(std::string_view host);
 /// `known` may begin with "*.", which stands for one label, as in certificates.
 bool matches_name(std::string_view name, std::string_view known);
 /// A page of another site may ask our server through the user's browser. Its Origin gives it away; where it has made

@@ -59,6 +59,19 @@ void require(bool well, const char* doing) {
   if (!well) fail(doing);
 }
 
+/// `result` was to be read from `text`.
+template <class T>
+T found_in(const std::string& text, T result, const char* what) {
+  if (result) return result;
+  const bool is_empty = text.find_first_not_of(" \t\r\n") == std::string::npos;
+  const unsigned long error = ERR_peek_last_error();
+  const char* const reason = ERR_reason_error_string(error);
+  ERR_clear_error();
+  const std::string why = is_empty || reason == nullptr ? "" : fmt::format(" (OpenSSL: {})", reason);
+  throw BadKeys(fmt::format("found {}{}, allowed: {}; `aurasim keys` makes it anew (rotate NAME, or init)",
+                            is_empty ? "an empty file" : "something else", why, what));
+}
+
 Bio memory() { return Bio(checked(BIO_new(BIO_s_mem()), "take memory")); }
 Bio memory_of(const std::string& text) {
   return Bio(checked(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), "take memory"));
@@ -70,10 +83,12 @@ std::string text_in(const Bio& bio) {
 }
 
 Key key_in(const std::string& pem) {
-  return Key(checked(PEM_read_bio_PrivateKey(memory_of(pem).get(), nullptr, nullptr, nullptr), "read the private key"));
+  return Key(found_in(pem, PEM_read_bio_PrivateKey(memory_of(pem).get(), nullptr, nullptr, nullptr),
+                      "a private key in PEM format"));
 }
 X509Ptr certificate_in(const std::string& pem) {
-  return X509Ptr(checked(PEM_read_bio_X509(memory_of(pem).get(), nullptr, nullptr, nullptr), "read the certificate"));
+  return X509Ptr(
+      found_in(pem, PEM_read_bio_X509(memory_of(pem).get(), nullptr, nullptr, nullptr), "a certificate in PEM format"));
 }
 std::string pem_of(EVP_PKEY* key) {
   const Bio out = memory();
@@ -242,8 +257,8 @@ std::string make_revocations(const KeyPair& authority, const std::vector<std::st
 }
 
 std::vector<std::string> read_revocations(const std::string& list, const std::string& authority_certificate) {
-  const CrlPtr crl(
-      checked(PEM_read_bio_X509_CRL(memory_of(list).get(), nullptr, nullptr, nullptr), "read the revocations"));
+  const CrlPtr crl(found_in(list, PEM_read_bio_X509_CRL(memory_of(list).get(), nullptr, nullptr, nullptr),
+                            "a list of revocations in PEM format"));
   const X509Ptr issuer = certificate_in(authority_certificate);
   require(X509_CRL_verify(crl.get(), X509_get0_pubkey(issuer.get())) == 1, "verify the revocations");
   std::vector<std::string> serials;
@@ -267,7 +282,8 @@ std::string sign(const KeyPair& authority, const std::string& text) {
 
 std::string verified(const std::string& signed_text, const std::string& authority_certificate) {
   BIO* content = nullptr;
-  const Pkcs7 signature(checked(SMIME_read_PKCS7(memory_of(signed_text).get(), &content), "read a signed document"));
+  const Pkcs7 signature(found_in(signed_text, SMIME_read_PKCS7(memory_of(signed_text).get(), &content),
+                                 "a signed document in S/MIME format"));
   const Bio owner(content);
   const X509Ptr authority = certificate_in(authority_certificate);
   const Store store(checked(X509_STORE_new(), "take memory"));

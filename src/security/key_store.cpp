@@ -265,20 +265,18 @@ KeyFiles KeyStore::files_of(const std::string& name) const {
     check_date(file, about(file, read_certificate).valid);
   }
   find(name);  // its certificate is its own
-  about(files.certificate, [&](const std::string& certificate) {
-    if (!is_signed_by(certificate, identity)) {
-      throw BadKeys(fmt::format("not signed by {}", files.identity_ca.string()));
-    }
-    if (!about(files.key, [&](const std::string& key) { return key_fits(key, certificate); })) {
-      throw BadKeys(fmt::format("{} is not its private key", files.key.string()));
-    }
-    const std::string serial = read_certificate(certificate).serial;
-    about(files.revocations, [&](const std::string& list) {
-      const std::vector<std::string> revoked = read_revocations(list, identity);
-      if (std::ranges::find(revoked, serial) == revoked.end()) return;
-      throw BadKeys(fmt::format("{}: revoked", files.certificate.string()));
-    });
-  });
+  const std::string certificate = read_key_file(files.certificate);
+  if (!is_signed_by(certificate, identity)) {
+    throw BadKeys(fmt::format("{}: not signed by {}", files.certificate.string(), files.identity_ca.string()));
+  }
+  if (!about(files.key, [&](const std::string& key) { return key_fits(key, certificate); })) {
+    throw BadKeys(fmt::format("{}: {} is not its private key", files.certificate.string(), files.key.string()));
+  }
+  const std::vector<std::string> revoked =
+      about(files.revocations, [&](const std::string& list) { return read_revocations(list, identity); });
+  if (std::ranges::find(revoked, read_certificate(certificate).serial) != revoked.end()) {
+    throw BadKeys(fmt::format("{}: revoked", files.certificate.string()));
+  }
   about(files.governance, [&](const std::string& text) { verified(text, permissions_ca); });
   about(files.permissions, [&](const std::string& text) { verified(text, permissions_ca); });
   return files;

@@ -18,6 +18,7 @@ namespace aurasim::overseer {
 using ::testing::HasSubstr;
 using testing::Page;
 using testing::request;
+using ::testing::StartsWith;
 using testing::http::verb;
 using namespace std::chrono_literals;
 using Json = nlohmann::json;

@@ -4,13 +4,38 @@
 namespace aurasim::overseer {
 namespace {
 
-TEST_F(Web, BytesThatAreNotHttpHarmNobody) {
+TEST_F(Web, BytesThatAreNotHttpAreAnsweredAndHarmNobody) {
   serve();
-  testing::raw(port(), "\x16\x03\x01 this is TLS");
-  testing::raw(port(), std::string(100'000, 'A'));
-  testing::raw(port(), "GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999999999999\r\n\r\n");
-  testing::raw(port(), "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string host = "Host: localhost\r\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"400", "\x16\x03\x01 this is TLS\r\n\r\n"},
+      {"400", "GET\r\n\r\n"},
+      {"400", "GET / HTTP/1.1\r\nno colon\r\n\r\n"},
+      {"400", "GET / HTTP/1.1\r\n" + host + "Content-Length: 99999999999999999999\r\n\r\n"},
+      {"400", "GET / HTTP/1.1\r\n" + host + "Content-Length: 1\r\nTransfer-Encoding: chunked\r\n\r\n"},
+      {"400", "POST /api/shapes?name=a.obj HTTP/1.1\r\n" + host + "Transfer-Encoding: chunked\r\n\r\nxyz\r\n"},
+      {"413", "POST /api/shapes?name=a.obj HTTP/1.1\r\n" + host + "Content-Length: 99999999\r\n\r\n"},
+      {"431", "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\n" + host + "\r\n"},
+      {"431", "GET / HTTP/1.1\r\n" + host + "X: " + std::string(20'000, 'a') + "\r\n\r\n"},
+      // Most of it is not read when the answer is written.
+      {"431", std::string(2'000'000, 'A')},
+  };
+  for (const auto& [status, bytes] : cases) {
+    EXPECT_THAT(testing::raw(port(), bytes), StartsWith("HTTP/1.1 " + status + " ")) << bytes.substr(0, 200);
+  }
   EXPECT_EQ(request(port(), verb::get, "/healthz").status, 200U);
+}
+
+TEST_F(Web, WhatIsNoHostIsRefused) {
+  serve();
+  for (const char* host : {"localhost:8099@evil.com", "evil.com/localhost", "localhost:80:80", "local host",
+                           "localhost#evil.com", "[::1", "[::1]evil.com", "[::1@]", ":80", "localhost:8o"}) {
+    EXPECT_EQ(request(port(), verb::get, "/", {{"Host", host}}).status, 400U) << host;
+  }
+  EXPECT_THAT(testing::raw(port(), "GET / HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 400 ")) << "it needs one";
+  for (const char* host : {"localhost", "LOCALHOST:80", "[::1]:8080", "127.0.0.1:"}) {
+    EXPECT_EQ(request(port(), verb::get, "/", {{"Host", host}}).status, 200U) << host;
+  }
 }
 
 TEST_F(Web, BadMessagesAreAnsweredCountedAndHarmNobody) {

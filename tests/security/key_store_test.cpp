@@ -18,6 +18,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 constexpr days kValid{10};
 
@@ -82,6 +83,26 @@ TEST_F(Keys, WithAFileMissingAreRefusedByItsName) {
     EXPECT_THAT(refusal_of_region_2(), HasSubstr(file(name).string()));
     replace(file(name), text);
     fs::permissions(file(name), mode);
+  }
+  EXPECT_EQ(refusal_of_region_2(), "");
+}
+
+TEST_F(Keys, WithAFileThatIsEmptyOrSomethingElseAreRefusedWithWhatBelongsThere) {
+  for (const auto& [name, what] : std::vector<std::pair<std::string, std::string>>{
+           {"identity_ca.pem", "a certificate in PEM format"},
+           {"crl.pem", "a list of revocations in PEM format"},
+           {"governance.p7s", "a signed document in S/MIME format"},
+           {"names/region-2/certificate.pem", "a certificate in PEM format"},
+           {"names/region-2/key.pem", "a private key in PEM format"},
+           {"names/region-2/permissions.p7s", "a signed document in S/MIME format"}}) {
+    const std::string text = text_of(file(name));
+    replace(file(name), "");
+    EXPECT_EQ(refusal_of_region_2(), file(name).string() + ": found an empty file, allowed: " + what +
+                                         "; `aurasim keys` makes it anew (rotate NAME, or init)");
+    replace(file(name), "nothing of the kind\n");
+    EXPECT_THAT(refusal_of_region_2(), AllOf(StartsWith(file(name).string() + ": found something else (OpenSSL: "),
+                                             HasSubstr("allowed: " + what)));
+    replace(file(name), text);
   }
   EXPECT_EQ(refusal_of_region_2(), "");
 }
