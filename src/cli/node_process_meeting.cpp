@@ -201,7 +201,7 @@ dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunComman
 /// Hosts whose clocks are wrong are named; the run does not depend on them. On one host there is one clock: what looks
 /// late there was long on its way.
 void NodeProcess::compare_clocks() {
-  if (participant_.stays_on_this_host()) return;
+  if (participant_->stays_on_this_host()) return;
   for (const auto& [region, seen] : control_.statuses()) {
     if (std::chrono::abs(seen.clock_ahead) < node::kClockTolerance) continue;
     spdlog::warn("the wall clock of region {}'s host is {} this one's: steps are counted from when the start came",
