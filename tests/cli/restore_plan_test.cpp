@@ -50,6 +50,28 @@ TEST_F(RestorePlans, NobodyGoesBackBeforeEveryRegionHasSomebodyWhoStands) {
   EXPECT_FALSE(plan()) << "it still computes";
 }
 
+TEST_F(RestorePlans, NobodyGoesBackBeforeAllHearAll) {
+  survivor(0, {60});
+  survivor(1, {60});
+  survivor(2, {60}).dead = {RegionId{1}};
+  EXPECT_FALSE(plan()) << "region 2 does not hear region 1, and would wait for it in vain";
+  nodes_[RegionId{2}].status.dead.clear();
+  EXPECT_TRUE(plan());
+}
+
+TEST_F(RestorePlans, PartsOfWhoHasComeToTakeOverCountLikeOthers) {
+  survivor(0, {60, 120});
+  survivor(1, {60, 120});
+  takes_over(2);
+  keeps(2, 2, 120);
+  keeps(0, 2, 60);
+  const auto made = plan();
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->command.at_step, 120);
+  EXPECT_EQ(made->command.members[2].holder, RegionId{2}) << "found on its disk";
+  EXPECT_FALSE(made->command.members[2].survives);
+}
+
 TEST_F(RestorePlans, TheNewestStateWhosePartsAreAllThere) {
   survivor(0, {60, 120, 180});
   survivor(1, {60, 120, 180});

@@ -125,6 +125,25 @@ TEST_F(QuorumTest, OneAfterTheOtherTheyMayAllDieButOne) {
   EXPECT_EQ(judge(), Standing::kGoOn);
 }
 
+// Regions 3, 2 and 1 lose touch one after the other. If each loss were forgotten, region 0 would go on alone, while the
+// other three, who hear each other again, are the majority.
+TEST_F(QuorumTest, WhereTheLostComeBackTheMajorityIsOneOfAllRegions) {
+  quorum_.emplace(RegionId{0}, 4, Losses::kComeBack);
+  hear({1, 2, 3});
+  ASSERT_EQ(judge(), Standing::kGoOn);
+  lose(3);
+  judge();
+  hear({1, 2});
+  EXPECT_EQ(judge(), Standing::kGoOn);
+  lose(2);
+  judge();
+  hear({1});
+  EXPECT_EQ(judge(), Standing::kGoOn) << "half, with the lowest";
+  lose(1);
+  EXPECT_EQ(judge(), Standing::kCutOff);
+  EXPECT_EQ(quorum_->members().size(), 4U);
+}
+
 TEST_F(QuorumTest, WhoeverHasSaidThatItEndsIsNotMissed) {
   make(3, 4);
   for (const std::uint32_t region : {0U, 1U, 2U}) leave(region);
