@@ -83,7 +83,7 @@ int run_node(const NodeArguments& arguments) {
   options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
   options.save_keep = arguments.save.keep;
   options.kept = kept_folder(launch, arguments.save);
-  if (!arguments.has_launcher) check_room_for_saves(launch, arguments.save);
+  if (!arguments.launcher.is_there) check_room_for_saves(launch, arguments.save);
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;
