@@ -20,8 +20,9 @@ class StartWatch {
   StartWatch(std::size_t regions, std::chrono::seconds time_out, Clock::time_point now)
       : regions_(regions), time_out_(time_out + kNodesSpeakFirst), moved_(now) {}
 
-  /// Why the run cannot begin: for --start-time-out seconds, and some more, a node has said nothing, and no other one has come a step
-  /// further either. Where many nodes share few processors each one that does gives the rest as long again.
+  /// Why the run cannot begin: for --start-time-out seconds, and some more, a node has said nothing, and no other one
+  /// has come a step further either. Where many nodes share few processors each one that does gives the rest as long
+  /// again.
   std::optional<std::string> problem(const std::map<core::RegionId, dds::SeenStatus>& statuses, Clock::time_point now);
 
  private:
