@@ -148,17 +148,14 @@ void conclude_kept(const config::Launch& launch, const SaveArguments& save, std:
   const std::optional<fs::path> kept = kept_folder(launch, save);
   if (!kept) return;
   const fs::path folder = kept_folder_of(*kept, run);
+  std::optional<cut::StoredWorld> newest;
+  if (may_go_on) newest = newest_saved_world({folder}, {launch.world_identity(), {run}, launch_command(launch)});
   std::error_code ignored;
-  if (!may_go_on) {
+  if (!newest) {
     fs::remove_all(folder, ignored);
     return;
   }
-  const std::optional<cut::StoredWorld> newest =
-      newest_saved_world({folder}, {launch.world_identity(), {run}, launch_command(launch)});
-  if (newest) {
-    spdlog::info("state {} is kept on disk: `{}` goes on from it", newest->header.cut.step,
-                 resume_command(launch, save));
-  }
+  spdlog::info("state {} is kept on disk: `{}` goes on from it", newest->header.cut.step, resume_command(launch, save));
 }
 
 }  // namespace aurasim::cli

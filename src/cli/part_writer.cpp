@@ -1,6 +1,7 @@
 #include "cli/part_writer.h"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -130,11 +131,14 @@ void PartWriter::settle(const SaveLedger::Outcome& outcome) {
   note_whole(whole);
 }
 
-/// Now, and not before, earlier worlds of this name are not needed any more.
+/// Now, and not before, earlier worlds of this name are not needed any more. In the folder of states that are kept on
+/// disk a process that had this region before may have left some.
 void PartWriter::note_whole(const Save& whole) {
+  const bool is_kept = whole.kind == SaveKind::kKept;
   std::vector<std::uint64_t> stay = {whole.number};
   for (const Save& later : open_) stay.push_back(later.number);
-  cut::PartStore(whole.folder).remove_others(whole.world, core::value_of(region_), stay);
+  if (is_kept) std::ranges::transform(whole_[SaveKind::kKept], std::back_inserter(stay), &Save::number);
+  cut::PartStore(whole.folder).remove_others(is_kept ? "" : whole.world, core::value_of(region_), stay);
   if (whole.kind == SaveKind::kAsked) return;
   const Failing before = std::exchange(failing_[whole.kind], Failing::kNo);
   if (before == Failing::kSaid) words_.push_back(fmt::format("state {} is saved again", whole.step));

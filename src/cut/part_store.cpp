@@ -188,7 +188,7 @@ PartStore::Listing PartStore::list() const { return listing_of(folder_, contents
 
 void PartStore::remove_others(const std::string& world, std::uint32_t part, std::span<const std::uint64_t> kept) const {
   remove_parts(folder_, part, [&](const PartName& name) {
-    return name.world == world && std::ranges::find(kept, name.save) == kept.end();
+    return (world.empty() || name.world == world) && std::ranges::find(kept, name.save) == kept.end();
   });
 }
 

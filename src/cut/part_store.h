@@ -50,7 +50,8 @@ class PartStore {
   /// Throws BadCut.
   static SavedWorld read(const StoredWorld& world) { return merge_cuts(world.files); }
 
-  /// Removes what other saves than these have left here of this world and region, half-written files as well.
+  /// Removes what other saves than these have left here of this region and world, half-written files as well. No world:
+  /// of all.
   void remove_others(const std::string& world, std::uint32_t part, std::span<const std::uint64_t> kept) const;
   /// Removes all parts of a region, and then the folder if it is empty.
   void remove_all_of(std::uint32_t part) const;

@@ -239,6 +239,23 @@ TEST_F(PartWriters, StatesOnDiskStayUntilLaterOnesAreWhole) {
   EXPECT_FALSE(nodes_[0]->regular_ones_failed());
 }
 
+/// Nobody else knows of the files of the process that had the region before.
+TEST_F(PartWriters, WhoTakesARegionOverRemovesItsOldStates) {
+  for (core::Step step = 60; step <= 180; step += 60) {
+    keep_on_disk(step);
+    let_all_hear();
+  }
+  write_part(2, "state-240.cut", 240, SaveKind::kKept);
+  start_node(2);
+  life_ = 2;
+  for (core::Step step = 240; step <= 360; step += 60) {
+    keep_on_disk(step);
+    let_all_hear();
+  }
+  EXPECT_THAT(file_counts(), ElementsAre(2, 2, 2, 2));
+  EXPECT_EQ(state_of("state-360.cut"), 360);
+}
+
 /// A host that says nothing of its disk: the others do not fill theirs, and there is always a state that all have.
 TEST_F(PartWriters, StatesOfWhichNobodyKnowsWhetherTheyAreWholeAreLimited) {
   for (core::Step step = 60; step <= 3000; step += 60) keep_on_disk(step);

@@ -23,7 +23,7 @@ class Start : public testing::Test {
   }
 
   StartWatch::Clock::time_point now_{};
-  StartWatch watch_{3, 30s, now_};
+  StartWatch watch_{3, 20s, now_};  // and 10 s more
   std::map<core::RegionId, dds::SeenStatus> statuses_;
 };
 

@@ -68,16 +68,18 @@ TEST_F(SurvivalDisk, AllProcessesAtOnceAreSurvivedWithOneCommand) {
   kill_all(lost);
   EXPECT_THAT(lost.err(), HasSubstr("--resume"));
   ASSERT_EQ(kept().size(), 1U);
+  const fs::path ours = kept().front();
 
   // What else may lie there, and is not of this run: newer than all that is.
   const fs::path other = saves() / "run-00000000000000aa";
   fs::create_directories(other);
   fs::path one_part;
-  for (const auto& entry : fs::directory_iterator(kept().front())) {
+  for (const auto& entry : fs::directory_iterator(ours)) {
     if (entry.path().extension() != ".new") one_part = entry.path();
     fs::copy_file(entry.path(), other / entry.path().filename(), fs::copy_options::overwrite_existing);
   }
-  std::ofstream(kept().front() / "state-999999.cut") << "junk";
+  ASSERT_FALSE(one_part.empty());
+  std::ofstream(ours / "state-999999.cut") << "junk";
   std::ofstream(one_part.string() + ".new") << "half";
 
   Process& again = run("again", with_saves() + Words{"--resume"} + set({"time.pace=none"}));
