@@ -67,7 +67,7 @@ class Watcher {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       const double time_s = now_s();
       const bool stands = marks == core::Progress::marks();
-      if (stands) longest_s_ = std::max(longest_s_, time_s - since_s);
+      if (stands) longest_s_ = std::max(longest_s_.load(), time_s - since_s);
       if (!stands) since_s = time_s;
       marks = core::Progress::marks();
       all_s_ = time_s - begin_s;
