@@ -49,11 +49,13 @@ RecoverySettings recovery_settings(const config::Launch& launch, const NodeOptio
   return settings;
 }
 
-/// A launcher on this host knows which of its processes live, and ends those that hang: nobody else judges that.
+/// A launcher on this host that hears our heartbeat knows which of its processes live, and ends those that hang: nobody
+/// else judges that.
 dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& options) {
   dds::Settings settings =
       with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region));
-  settings.believes_silence = !options.has_launcher || launch.survival.on_death != config::OnDeath::kRecover;
+  const bool is_watched = options.has_launcher && options.heartbeat >= 0;
+  settings.believes_silence = !is_watched || launch.survival.on_death != config::OnDeath::kRecover;
   settings.show_life = [heartbeat = Heartbeat(options.heartbeat)] { heartbeat.beat(); };
   return settings;
 }

@@ -11,19 +11,22 @@ inline std::int64_t whole_seconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration_cast<std::chrono::seconds>(time).count();
 }
 
-/// The limit counts from the last news, not from the beginning, and grows with how long the others take: where news
-/// come every 20 s they may come after 40 s, too.
+/// The limit counts from the last news, not from the beginning. It grows with how long the others take: where news come
+/// every 20 s they may come after 40 s, too. It also grows with how slow the caller itself has become: who cannot look
+/// ten times a second is on a busy machine, as the others are.
 class Patience {
  public:
   using Clock = std::chrono::steady_clock;
 
-  Patience(Clock::duration limit, Clock::time_point now) : limit_(limit), news_(now) {}
+  Patience(Clock::duration limit, Clock::time_point now) : limit_(limit), news_(now), looked_(now) {}
 
-  /// `progress`: how far the others have come. More than ever before is news.
+  /// Call it often. `progress`: how far the others have come. More than ever before is news.
   void look(std::uint64_t progress, Clock::time_point now) {
+    limit_ = std::max(limit_, kTimesALook * (now - looked_));
+    looked_ = now;
     if (progress <= most_) return;
     most_ = progress;
-    limit_ = std::max(limit_, kTimes * (now - news_));
+    limit_ = std::max(limit_, kTimesTheNews * (now - news_));
     news_ = now;
   }
   bool is_over(Clock::time_point now) const { return now > news_ + limit_; }
@@ -31,10 +34,10 @@ class Patience {
   Clock::duration waited(Clock::time_point now) const { return now - news_; }
 
  private:
-  static constexpr int kTimes = 2;
+  static constexpr int kTimesTheNews = 2, kTimesALook = 60;
 
   Clock::duration limit_;
-  Clock::time_point news_;
+  Clock::time_point news_, looked_;
   std::uint64_t most_ = 0;
 };
 

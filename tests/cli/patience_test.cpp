@@ -8,38 +8,58 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Patience::Clock::time_point kBegin{100s};
-
-TEST(PatienceTest, WithoutAnyNewsTheLimitCountsFromTheBeginning) {
-  Patience patience(30s, kBegin);
-  patience.look(0, kBegin + 29s);
-  EXPECT_FALSE(patience.is_over(kBegin + 30s));
-  EXPECT_TRUE(patience.is_over(kBegin + 31s));
-}
-
-TEST(PatienceTest, EveryStepForwardBeginsItAnew) {
-  Patience patience(30s, kBegin);
-  for (int i = 1; i <= 10; ++i) {
-    EXPECT_FALSE(patience.is_over(kBegin + i * 20s));
-    patience.look(static_cast<std::uint64_t>(i), kBegin + i * 20s);
+class Waiting : public ::testing::Test {
+ protected:
+  /// Looks every `look`; the others have come so far.
+  void pass(Patience::Clock::duration time, std::uint64_t progress, Patience::Clock::duration look = 50ms) {
+    for (const auto end = now_ + time; now_ < end;) {
+      now_ += look;
+      patience_.look(progress, now_);
+    }
   }
-  EXPECT_FALSE(patience.is_over(kBegin + 220s));
-  EXPECT_TRUE(patience.is_over(kBegin + 250s));
+  bool is_over() const { return patience_.is_over(now_); }
+
+  Patience::Clock::time_point now_{100s};
+  Patience patience_{30s, now_};
+};
+
+TEST_F(Waiting, WithoutAnyNewsTheLimitCountsFromTheBeginning) {
+  pass(29s, 0);
+  EXPECT_FALSE(is_over());
+  pass(2s, 0);
+  EXPECT_TRUE(is_over());
 }
 
-TEST(PatienceTest, WhatGoesBackAndForthIsNoNews) {
-  Patience patience(30s, kBegin);
-  patience.look(5, kBegin);
-  for (int i = 1; i <= 40; ++i) patience.look(static_cast<std::uint64_t>(4 + i % 2), kBegin + i * 1s);
-  EXPECT_TRUE(patience.is_over(kBegin + 40s));
+TEST_F(Waiting, EveryStepForwardBeginsItAnew) {
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    pass(14s, i);
+    EXPECT_FALSE(is_over());
+  }
+  pass(10s, 10);
+  EXPECT_FALSE(is_over());
+  pass(10s, 10);
+  EXPECT_TRUE(is_over());
 }
 
-TEST(PatienceTest, GrowsWithHowLongNewsTakeToCome) {
-  Patience patience(30s, kBegin);
-  patience.look(1, kBegin + 28s);
-  patience.look(2, kBegin + 56s);
-  EXPECT_FALSE(patience.is_over(kBegin + 56s + 50s)) << "they came 28 s apart";
-  EXPECT_TRUE(patience.is_over(kBegin + 56s + 57s));
+TEST_F(Waiting, WhatGoesBackAndForthIsNoNews) {
+  pass(1s, 5);
+  for (std::uint64_t i = 0; i < 40; ++i) pass(1s, 4 + i % 2);
+  EXPECT_TRUE(is_over());
+}
+
+TEST_F(Waiting, PatienceGrowsWithHowLongNewsTakeToCome) {
+  pass(28s, 0);
+  pass(50s, 1);
+  EXPECT_FALSE(is_over()) << "the first news took 28 s";
+  pass(8s, 1);
+  EXPECT_TRUE(is_over());
+}
+
+TEST_F(Waiting, PatienceGrowsWithHowSlowTheWaiterItselfIs) {
+  pass(40s, 0, 2s);
+  EXPECT_FALSE(is_over()) << "it looks every 2 s instead of 20 times a second";
+  pass(90s, 0);
+  EXPECT_TRUE(is_over());
 }
 
 }  // namespace
