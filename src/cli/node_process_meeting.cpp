@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "cli/long_work.h"
 #include "cli/node_process.h"
+#include "cli/silence.h"
 #include "cli/stop_signal.h"
 
 namespace aurasim::cli {
@@ -19,6 +21,12 @@ constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
 std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
   return fmt::format("{:.1f} s {}", std::chrono::duration<double>(std::chrono::abs(ahead)).count(),
                      ahead > 0ns ? "ahead of" : "behind");
+}
+
+/// Of the node of region 0, which says it for all.
+LongWork waiting_for_nodes(std::size_t regions) {
+  return {fmt::format("waiting for the nodes of {} regions to be there", regions),
+          [](const std::string& text) { spdlog::info("{}", text); }};
 }
 
 }  // namespace
@@ -72,16 +80,33 @@ bool NodeProcess::domain_is_free() {
   return true;
 }
 
+bool NodeProcess::hears_another_node() {
+  return std::ranges::any_of(control_.statuses(), [this](const auto& entry) { return entry.first != options_.region; });
+}
+
+/// That are there, this one included.
+double NodeProcess::share_of_nodes() {
+  std::size_t there = control_.statuses().contains(options_.region) ? 0 : 1;
+  for (const auto& [region, seen] : control_.statuses()) there += seen.is_live();
+  return static_cast<double>(there) / static_cast<double>(launch_.regions.size());
+}
+
 bool NodeProcess::meet_neighbours() {
   const auto deadline = Clock::now() + options_.start_time_out;
+  SilenceWord silence(launch_, participant_);
+  LongWork waiting = waiting_for_nodes(launch_.regions.size());
   while (!transport_->all_matched()) {
     if (stop_requested() || another_run_is_here()) return false;
     name_the_dead();
+    silence.look(hears_another_node());
+    if (options_.region == core::RegionId{0}) waiting.reached(share_of_nodes());
     if (Clock::now() > deadline) {
       try {
         transport_->wait_until_matched(0ns);
       } catch (const dds::NeighboursMissing& missing) {
-        refuse(fmt::format("after {} s: {}", options_.start_time_out.count(), missing.what()));
+        const bool is_alone = !hears_another_node();
+        refuse(fmt::format("after {} s: {}{}", options_.start_time_out.count(), missing.what(),
+                           is_alone ? word_about_keys(participant_.peers_by_keys(), launch_) : ""));
         return false;
       }
     }
@@ -113,6 +138,7 @@ void NodeProcess::start_when_all_wait() {
 bool NodeProcess::wait_for_start() {
   publish();
   const auto deadline = Clock::now() + options_.start_time_out;
+  LongWork waiting = waiting_for_nodes(launch_.regions.size());
   while (!start_) {
     if (stop_requested() || another_run_is_here()) return false;
     if (Clock::now() > deadline) {
@@ -127,6 +153,7 @@ bool NodeProcess::wait_for_start() {
     name_the_dead();
     publish();
     start_when_all_wait();
+    if (options_.region == core::RegionId{0}) waiting.reached(share_of_nodes());
     execute_commands();
     control_.wait(50ms);
   }
