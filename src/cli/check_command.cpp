@@ -1,9 +1,11 @@
+#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "cli/launch_setup.h"
+#include "cli/long_work.h"
 #include "cli/scene_warnings.h"
 #include "cli/web_setup.h"
 #include "config/launch.h"
@@ -32,7 +34,12 @@ void add_check(CLI::App& program, Action& action) {
       fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
                  files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
                  launch.regions.size(), launch.lookahead(), listening_distance_m(launch));
-      for (const std::string& text : scene_warnings(launch)) fmt::print(stderr, "warning: {}\n", text);
+      std::fflush(stdout);
+      LongWork work("looking for bodies that overlap",
+                    [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
+      for (const std::string& text : scene_warnings(launch, [&work](double share) { work.reached(share); })) {
+        fmt::print(stderr, "warning: {}\n", text);
+      }
       return 0;
     };
   });

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "cli/launch_setup.h"
 #include "cli/saved_world.h"
 #include "config/launch_variants.h"
+#include "config/shapes.h"
 #include "core/limits.h"
 
 namespace aurasim::cli {
@@ -58,32 +58,6 @@ std::string problem_with_radius(double radius_m, const config::Launch& launch) {
   return {};
 }
 
-/// How thick a shape is along its thinnest axis.
-struct Thickness {
-  double operator()(const core::Sphere& s) const { return 2 * s.radius; }
-  double operator()(const core::Box& s) const { return 2 * s.half_extents.minCoeff(); }
-  double operator()(const core::Capsule& s) const { return s.height > 0 ? 2 * s.radius : 0; }
-  double operator()(const core::Cylinder& s) const { return std::min(2 * s.radius, s.height); }
-  double operator()(const core::ConvexHull& s) const {
-    if (s.points.empty()) return 0;
-    core::Vec3 low = s.points.front(), high = low;
-    for (const core::Vec3& p : s.points) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    return (high - low).minCoeff();
-  }
-  double operator()(const core::Compound& s) const {
-    double thinnest = std::numeric_limits<double>::infinity();
-    for (const core::CompoundPart& part : s.parts) thinnest = std::min(thinnest, std::visit(*this, part.shape));
-    return s.parts.empty() ? 0 : thinnest;
-  }
-  template <class Other>
-  double operator()(const Other&) const {
-    return std::numeric_limits<double>::infinity();
-  }
-};
-
 std::string problem_with_shape(const core::Shape& shape, bool moves, const config::Launch& launch) {
   if (const auto* mesh = std::get_if<core::TriangleMesh>(&shape)) {
     if (moves) return "a mesh of triangles cannot move; use its hull";
@@ -95,7 +69,7 @@ std::string problem_with_shape(const core::Shape& shape, bool moves, const confi
   if (!(radius_m >= kSmallestRadius_m && radius_m <= kLargestRadius_m)) {
     return fmt::format("its radius is {:.4g} m, allowed: {} to {} m", radius_m, kSmallestRadius_m, kLargestRadius_m);
   }
-  const double thickness_m = std::visit(Thickness{}, shape);
+  const double thickness_m = config::thickness_m(shape);
   if (!(thickness_m >= kThinnest_m)) {
     return fmt::format("it is {:.4g} m thin, allowed: {} m or more", thickness_m, kThinnest_m);
   }

@@ -93,7 +93,7 @@ int echo(const EchoArguments& arguments) {
       if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
     }
   }
-  if (nobody()) fail_for_want_of_a_run(arguments.files, launch);
+  if (nobody()) fail_for_want_of_a_run(arguments.files, launch, participant);
   leave(left == 0 ? 0 : 1);
 }
 

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
+#include "cli/closing_line.h"
 #include "cli/guard_log.h"
 #include "cli/kept_on_disk.h"
 #include "cli/key_choice.h"
@@ -17,6 +18,7 @@
 #include "cli/saved_world.h"
 #include "cli/spawn.h"
 #include "cli/stop_signal.h"
+#include "cli/terminal.h"
 #include "node/report.h"
 
 namespace aurasim::cli {
@@ -358,7 +360,10 @@ ExitCode Launcher::conclude() {
     if (child.died) code = ExitCode::kFailed;
     if (!child.died && child.exit_code != 0 && code == ExitCode::kOk) code = static_cast<ExitCode>(child.exit_code);
   }
-  if (!options_.report) return code;
+  if (!options_.report) {
+    print(closing_line(control_.statuses(), children_.size(), has_begun_, launch_.step_s()));
+    return code;
+  }
   if (code == ExitCode::kRefused || !node::has_records(*options_.report)) {
     spdlog::warn("no report: the run has not begun");
     node::clear_report(*options_.report);

@@ -11,6 +11,7 @@
 #include "cli/kept_on_disk.h"
 #include "cli/launch_setup.h"
 #include "cli/leave.h"
+#include "cli/long_work.h"
 #include "cli/node_process.h"
 #include "cli/other_role.h"
 #include "cli/run_length.h"
@@ -70,7 +71,10 @@ int run_node(const NodeArguments& arguments) {
   }
   // Once in a run; `launch` starts this node as well.
   if (arguments.region == 0 && !arguments.takes_over) {
-    for (const std::string& text : scene_warnings(launch)) spdlog::warn("{}", text);
+    LongWork work("looking for bodies that overlap", [](const std::string& text) { spdlog::info("{}", text); });
+    for (const std::string& text : scene_warnings(launch, [&work](double share) { work.reached(share); })) {
+      spdlog::warn("{}", text);
+    }
   }
   catch_stop_signals();
   NodeOptions options;

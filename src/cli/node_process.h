@@ -84,6 +84,8 @@ class NodeProcess {
   ExitCode meet_and_run();
   ExitCode take_over();
   bool domain_is_free();
+  bool hears_another_node();
+  double share_of_nodes();
   bool meet_neighbours();
   bool another_run_is_here();
   bool another_agreement_is_here();

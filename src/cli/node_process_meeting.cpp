@@ -6,7 +6,9 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "cli/long_work.h"
 #include "cli/node_process.h"
+#include "cli/silence.h"
 #include "cli/stop_signal.h"
 
 namespace aurasim::cli {
@@ -22,6 +24,12 @@ constexpr auto kBetweenLooks = 200us;
 std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
   return fmt::format("{:.1f} s {}", std::chrono::duration<double>(std::chrono::abs(ahead)).count(),
                      ahead > 0ns ? "ahead of" : "behind");
+}
+
+/// Of the node of region 0, which says it for all.
+LongWork waiting_for_nodes(std::size_t regions) {
+  return {fmt::format("waiting for the nodes of {} regions to be there", regions),
+          [](const std::string& text) { spdlog::info("{}", text); }};
 }
 
 }  // namespace
@@ -75,19 +83,36 @@ bool NodeProcess::domain_is_free() {
   return true;
 }
 
+bool NodeProcess::hears_another_node() {
+  return std::ranges::any_of(control_.statuses(), [this](const auto& entry) { return entry.first != options_.region; });
+}
+
+/// That are there, this one included.
+double NodeProcess::share_of_nodes() {
+  std::size_t there = control_.statuses().contains(options_.region) ? 0 : 1;
+  for (const auto& [region, seen] : control_.statuses()) there += seen.is_live();
+  return static_cast<double>(there) / static_cast<double>(launch_.regions.size());
+}
+
 bool NodeProcess::meet_neighbours() {
   const auto began = Clock::now();
   Patience patience(options_.start_time_out, began);
+  SilenceWord silence(launch_, *participant_);
+  LongWork waiting = waiting_for_nodes(launch_.regions.size());
   while (!transport_->all_matched()) {
     if (stop_requested() || another_run_is_here()) return false;
     name_the_dead();
+    silence.look(hears_another_node());
+    if (options_.region == core::RegionId{0}) waiting.reached(share_of_nodes());
     patience.look(met(), Clock::now());
     if (patience.is_over(Clock::now())) {
       try {
         transport_->wait_until_matched(0ns);
       } catch (const dds::NeighboursMissing& missing) {
-        refuse(fmt::format("after {} s, {} of them with nothing new: {}", whole_seconds(Clock::now() - began),
-                           whole_seconds(patience.waited(Clock::now())), missing.what()));
+        const bool is_alone = !hears_another_node();
+        refuse(fmt::format("after {} s, {} of them with nothing new: {}{}", whole_seconds(Clock::now() - began),
+                           whole_seconds(patience.waited(Clock::now())), missing.what(),
+                           is_alone ? word_about_keys(participant_->peers_by_keys(), launch_) : ""));
         return false;
       }
     }
@@ -149,6 +174,7 @@ bool NodeProcess::wait_for_start() {
   publish();
   const auto began = Clock::now();
   Patience patience(options_.start_time_out, began);
+  LongWork waiting = waiting_for_nodes(launch_.regions.size());
   while (!start_) {
     if (stop_requested() || another_run_is_here()) return false;
     patience.look(met(), Clock::now());
@@ -161,6 +187,7 @@ bool NodeProcess::wait_for_start() {
     name_the_dead();
     publish();
     start_when_all_wait();
+    if (options_.region == core::RegionId{0}) waiting.reached(share_of_nodes());
     execute_commands();
     wait_for_others();
   }

@@ -12,6 +12,7 @@
 #include "cli/leave.h"
 #include "cli/mesh_process.h"
 #include "cli/run_command_sink.h"
+#include "cli/silence.h"
 #include "cli/stop_signal.h"
 #include "cli/web_setup.h"
 #include "overseer/overseer.h"
@@ -57,8 +58,12 @@ int oversee(const OverseerArguments& arguments) {
   overseer::Overseer overseer(launch, participant, control, *web, *sink);
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
   catch_stop_signals();
-  leave_after([&overseer] {
-    while (!stop_requested()) overseer.turn();
+  SilenceWord silence(launch, participant);
+  leave_after([&] {
+    while (!stop_requested()) {
+      overseer.turn();
+      silence.look(!control.statuses().empty());
+    }
     return ExitCode::kOk;
   });
 }

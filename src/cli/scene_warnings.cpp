@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "core/spatial_grid.h"
+#include "core/box_tree.h"
+#include "core/limits.h"
 #include "physics/clearance.h"
 
 namespace aurasim::cli {
@@ -85,66 +86,96 @@ class OfAKind {
   std::size_t count_ = 0;
 };
 
+core::BoxTree::Box box_around(const core::Shape& shape, const Pose& pose) {
+  core::BoxTree::Box box{pose.p_WB, pose.p_WB};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 d_B = pose.q_WB.conjugate() * Vec3::Unit(axis);
+    const Vec3 opposite_B = -d_B;
+    box.high[axis] += std::visit(ExtentAlong{d_B}, shape);
+    box.low[axis] -= std::visit(ExtentAlong{opposite_B}, shape);
+  }
+  return box;
+}
+
 /// The bodies of a scene, and its convex statics as if they were bodies, so that one can be measured against another.
 class StartOfScene {
  public:
-  explicit StartOfScene(const config::Launch& launch) : launch_(launch), scene_(launch.scene) {
-    for (const core::StaticBody& body : scene_.statics) add_as_prototype(body);
+  explicit StartOfScene(const config::Launch& launch)
+      : launch_(launch),
+        scene_(launch.scene),
+        bodies_(boxes_of_bodies()),
+        statics_(boxes_of_statics()),
+        overlapping_(scene_.bodies.size()) {
     query_ = physics::make_clearance_query(scene_);
-    for (const core::InitialBody& body : scene_.bodies) {
-      largest_radius_ = std::max(largest_radius_, query_->bounding_radius(body.prototype));
-    }
-    grid_.clear(std::max(2 * largest_radius_, 1e-3));
-    for (std::uint32_t i = 0; i < scene_.bodies.size(); ++i) grid_.add(i, scene_.bodies[i].pose.p_WB);
-    grid_.build();
     for (const core::JointSpec& joint : scene_.joints) {
       if (joint.b && !joint.collide) joined_.insert(std::minmax(joint.a, *joint.b));
     }
   }
 
-  void add_overlaps_of_bodies(OfAKind& overlaps) const {
-    for (std::uint32_t i = 0; i < scene_.bodies.size(); ++i) {
-      const core::InitialBody& a = scene_.bodies[i];
-      std::vector<std::uint32_t> others;
-      for_each_near(a.pose.p_WB, query_->bounding_radius(a.prototype), [&](std::uint32_t j) {
-        if (j > i && !joined_.contains({a.id, scene_.bodies[j].id})) others.push_back(j);
-      });
-      std::ranges::sort(others);
-      for (const std::uint32_t j : others) {
-        const core::InitialBody& b = scene_.bodies[j];
-        const double depth = depth_of(a.prototype, a.pose, b);
-        if (depth > 0)
-          overlaps.add(fmt::format("{} overlaps {} by {:.2g} m at the start", body_at_place(launch_, i),
-                                   body_text(launch_, j), depth));
-      }
-    }
+  /// With one of those that it overlaps, unless one of them has named it. To be called for all in their order.
+  void add_overlap_of_body(std::uint32_t i, OfAKind& overlaps) {
+    if (overlapping_[i]) return;
+    const core::InitialBody& a = scene_.bodies[i];
+    bodies_.any(bodies_[i], [&](std::uint32_t j) {
+      const core::InitialBody& b = scene_.bodies[j];
+      if (i == j || joined_.contains(std::minmax(a.id, b.id))) return false;
+      const double depth = depth_of(a.prototype, a.pose, b);
+      if (depth <= 0) return false;
+      overlapping_[i] = overlapping_[j] = true;
+      overlaps.add(fmt::format("{} overlaps {} by {:.2g} m at the start", body_at_place(launch_, i),
+                               body_text(launch_, j), depth));
+      return true;
+    });
   }
 
-  void add_overlaps_of_statics(OfAKind& overlaps) const {
-    for (std::size_t s = 0; s < scene_.statics.size(); ++s) {
-      const core::StaticBody& body = scene_.statics[s];
-      const core::Shape& shape = scene_.shapes[body.shape].shape;
-      if (const auto* plane = std::get_if<core::Plane>(&shape)) {
-        add_overlaps_of_plane(body, *plane, overlaps);
-      } else if (!std::holds_alternative<core::TriangleMesh>(shape)) {
-        add_overlaps_of_static(body, static_prototypes_[s], overlaps);
-      }
+  std::size_t overlapping() const {
+    return static_cast<std::size_t>(std::count(overlapping_.begin(), overlapping_.end(), true));
+  }
+
+  /// One static for each body.
+  void add_overlap_with_static(std::uint32_t i, OfAKind& overlaps) const {
+    for (const core::StaticBody* const plane : planes_) {
+      if (add_overlap_with_plane(i, *plane, overlaps)) return;
     }
+    const core::InitialBody& one = scene_.bodies[i];
+    statics_.any(bodies_[i], [&](std::uint32_t at) {
+      const ConvexStatic& other = convex_statics_[at];
+      const double depth = depth_of(other.prototype, other.body->pose, one);
+      if (depth <= 0) return false;
+      overlaps.add(fmt::format("{} is {:.2g} m deep in the static \"{}\" at the start", body_at_place(launch_, i),
+                               depth, other.body->name));
+      return true;
+    });
   }
 
  private:
-  void add_as_prototype(const core::StaticBody& body) {
-    const core::Shape& shape = scene_.shapes[body.shape].shape;
-    const bool convex =
-        !std::holds_alternative<core::Plane>(shape) && !std::holds_alternative<core::TriangleMesh>(shape);
-    static_prototypes_.push_back(core::PrototypeId{static_cast<std::uint32_t>(convex ? scene_.prototypes.size() : 0)});
-    if (convex) scene_.prototypes.push_back({.name = body.name, .shape = body.shape, .material = body.material});
+  struct ConvexStatic {
+    const core::StaticBody* body = nullptr;
+    core::PrototypeId prototype{};  ///< of a body with its shape
+  };
+
+  const core::Shape& shape_of(const core::InitialBody& body) const {
+    return scene_.shapes[scene_.prototypes[core::value_of(body.prototype)].shape].shape;
+  }
+  std::vector<core::BoxTree::Box> boxes_of_bodies() const {
+    std::vector<core::BoxTree::Box> boxes;
+    for (const core::InitialBody& body : scene_.bodies) boxes.push_back(box_around(shape_of(body), body.pose));
+    return boxes;
   }
 
-  template <class Visit>
-  void for_each_near(const Vec3& p, double radius, Visit&& visit) const {
-    const Vec3 range = Vec3::Constant(radius + largest_radius_);
-    grid_.for_each_in(p - range, p + range, visit);
+  std::vector<core::BoxTree::Box> boxes_of_statics() {
+    std::vector<core::BoxTree::Box> boxes;
+    for (const core::StaticBody& body : scene_.statics) {
+      const core::Shape& shape = scene_.shapes[body.shape].shape;
+      if (std::holds_alternative<core::Plane>(shape)) {
+        planes_.push_back(&body);
+      } else if (!std::holds_alternative<core::TriangleMesh>(shape)) {
+        convex_statics_.push_back({&body, core::PrototypeId{static_cast<std::uint32_t>(scene_.prototypes.size())}});
+        scene_.prototypes.push_back({.name = body.name, .shape = body.shape, .material = body.material});
+        boxes.push_back(box_around(shape, body.pose));
+      }
+    }
+    return boxes;
   }
 
   /// How deep the two are in each other; 0 if that is nothing to speak of.
@@ -157,41 +188,27 @@ class StartOfScene {
     return kDeepShare * std::min(query_->bounding_radius(body.prototype), other_radius);
   }
 
-  void add_overlaps_of_static(const core::StaticBody& body, core::PrototypeId prototype, OfAKind& overlaps) const {
-    std::vector<std::uint32_t> near;
-    for_each_near(body.pose.p_WB, query_->bounding_radius(prototype), [&](std::uint32_t i) { near.push_back(i); });
-    std::ranges::sort(near);
-    for (const std::uint32_t i : near) {
-      const double depth = depth_of(prototype, body.pose, scene_.bodies[i]);
-      if (depth > 0) {
-        overlaps.add(fmt::format("{} is {:.2g} m deep in the static \"{}\" at the start", body_at_place(launch_, i),
-                                 depth, body.name));
-      }
-    }
-  }
-
-  void add_overlaps_of_plane(const core::StaticBody& body, const core::Plane& plane, OfAKind& overlaps) const {
+  bool add_overlap_with_plane(std::uint32_t i, const core::StaticBody& body, OfAKind& overlaps) const {
+    const auto& plane = std::get<core::Plane>(scene_.shapes[body.shape].shape);
     const Vec3 normal_W = body.pose.q_WB * plane.normal;
     const double offset = plane.offset + body.pose.p_WB.dot(normal_W);
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      const core::InitialBody& one = scene_.bodies[i];
-      const core::Shape& shape = scene_.shapes[scene_.prototypes[core::value_of(one.prototype)].shape].shape;
-      const double height = one.pose.p_WB.dot(normal_W) - offset;
-      const Vec3 d_B = one.pose.q_WB.conjugate() * -normal_W;
-      const double depth = std::visit(ExtentAlong{d_B}, shape) - height;
-      if (depth > deep(one, std::numeric_limits<double>::infinity())) {
-        overlaps.add(fmt::format("{} is {:.2g} m {} the static \"{}\" at the start", body_at_place(launch_, i), depth,
-                                 height < 0 ? "below the surface of" : "deep in", body.name));
-      }
-    }
+    const core::InitialBody& one = scene_.bodies[i];
+    const double height = one.pose.p_WB.dot(normal_W) - offset;
+    const Vec3 d_B = one.pose.q_WB.conjugate() * -normal_W;
+    const double depth = std::visit(ExtentAlong{d_B}, shape_of(one)) - height;
+    if (depth <= deep(one, std::numeric_limits<double>::infinity())) return false;
+    overlaps.add(fmt::format("{} is {:.2g} m {} the static \"{}\" at the start", body_at_place(launch_, i), depth,
+                             height < 0 ? "below the surface of" : "deep in", body.name));
+    return true;
   }
 
   const config::Launch& launch_;
   core::Scene scene_;
+  std::vector<const core::StaticBody*> planes_;
+  std::vector<ConvexStatic> convex_statics_;
+  core::BoxTree bodies_, statics_;
+  std::vector<bool> overlapping_;  ///< bodies that are in a message, or would be, were there fewer
   std::unique_ptr<core::ClearanceQuery> query_;
-  std::vector<core::PrototypeId> static_prototypes_;  ///< as scene_.statics; of those that are convex
-  core::SpatialGrid grid_;
-  double largest_radius_ = 0;
   std::set<std::pair<core::BodyId, core::BodyId>> joined_;
 };
 
@@ -208,6 +225,18 @@ void add_fast_bodies(const config::Launch& launch, OfAKind& fast) {
   }
 }
 
+/// Their spin is cut down in the first substep.
+void add_spinning_bodies(const config::Launch& launch, OfAKind& spinning) {
+  const double fastest_rad_s = core::limits::fastest_spin_rad_s(launch.step_s() / launch.time.substeps);
+  for (std::size_t i = 0; i < launch.scene.bodies.size(); ++i) {
+    const double spin_rad_s = launch.scene.bodies[i].w_WB.norm();
+    if (spin_rad_s <= fastest_rad_s) continue;
+    spinning.add(fmt::format(
+        "{} starts with a spin of {:.4g} rad/s, more than a quarter turn in a substep: {:.4g} rad/s are left of it",
+        body_at_place(launch, i), spin_rad_s, fastest_rad_s));
+  }
+}
+
 void add_fast_injectors(const config::Launch& launch, OfAKind& fast) {
   for (std::size_t i = 0; i < launch.scene.injectors.size(); ++i) {
     const core::Injector& injector = launch.scene.injectors[i];
@@ -220,16 +249,23 @@ void add_fast_injectors(const config::Launch& launch, OfAKind& fast) {
 
 }  // namespace
 
-std::vector<std::string> scene_warnings(const config::Launch& launch) {
-  OfAKind fast, overlaps, sunk;
+std::vector<std::string> scene_warnings(const config::Launch& launch, const std::function<void(double)>& reached) {
+  constexpr std::uint32_t kToldEvery = 64;
+  OfAKind fast, spinning, overlaps, sunk;
   add_fast_bodies(launch, fast);
+  add_spinning_bodies(launch, spinning);
   add_fast_injectors(launch, fast);
-  const StartOfScene start(launch);
-  start.add_overlaps_of_bodies(overlaps);
-  start.add_overlaps_of_statics(sunk);
+  StartOfScene start(launch);
+  const auto bodies = static_cast<std::uint32_t>(launch.scene.bodies.size());
+  for (std::uint32_t i = 0; i < bodies; ++i) {
+    start.add_overlap_of_body(i, overlaps);
+    start.add_overlap_with_static(i, sunk);
+    if (reached && i % kToldEvery == 0) reached(static_cast<double>(i) / bodies);
+  }
   std::vector<std::string> all;
   fast.move_to(all, "that are too fast");
-  overlaps.move_to(all, "overlaps of bodies");
+  spinning.move_to(all, "that spin too fast");
+  overlaps.move_to(all, fmt::format("such overlaps; {} of {} bodies overlap another one", start.overlapping(), bodies));
   sunk.move_to(all, "bodies in statics");
   return all;
 }

@@ -19,6 +19,7 @@
 #include "cli/leave.h"
 #include "cli/run_steering.h"
 #include "cli/saved_parts.h"
+#include "cli/silence.h"
 #include "core/limits.h"
 
 namespace aurasim::cli {
@@ -210,8 +211,9 @@ int send(const SendArguments& arguments) {
   RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
     const bool differs = !control.strangers().empty();
-    fail(fmt::format("no run of {} in DDS domain {}{}", arguments.files.file, launch.dds.domain,
-                     differs ? ", but one that differs: give the same file and --set as its nodes have" : ""));
+    fail(fmt::format("no run of {} in DDS domain {}{}{}", arguments.files.file, launch.dds.domain,
+                     differs ? ", but one that differs: give the same file and --set as its nodes have" : "",
+                     word_about_keys(participant.peers_by_keys(), launch)));
   }
   leave_after([&]() -> ExitCode {
     if (arguments.what == "drain") drain(arguments, control);

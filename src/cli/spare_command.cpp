@@ -17,6 +17,7 @@
 #include "cli/other_role.h"
 #include "cli/run_length.h"
 #include "cli/saved_world.h"
+#include "cli/silence.h"
 #include "cli/spawn.h"
 #include "cli/stop_signal.h"
 #include "dds/control.h"
@@ -44,7 +45,8 @@ struct SpareArguments {
 class Spare {
  public:
   Spare(const config::Launch& launch, const std::string& as, std::uint64_t run)
-      : participant_(with_keys(dds_settings(launch), launch, member_for(launch, as, {security::Role::kSpare}))),
+      : launch_(launch),
+        participant_(with_keys(dds_settings(launch), launch, member_for(launch, as, {security::Role::kSpare}))),
         control_(participant_, {.region = dds::kNoRegion,
                                 .agreement = launch.agreement(),
                                 .run = run_if_known(run),
@@ -63,6 +65,7 @@ class Spare {
   /// The region and run to take over; nothing: the run has ended, or somebody has asked us to.
   std::optional<dds::RunCommand> wait() {
     bool has_seen_it = false;
+    SilenceWord silence(launch_, participant_);
     while (!stop_requested()) {
       const auto& statuses = control_.statuses();
       const auto lives = [](const auto& entry) { return entry.second.is_live(); };
@@ -74,6 +77,7 @@ class Spare {
         return std::nullopt;
       }
       has_seen_it = has_seen_it || live != statuses.end();
+      silence.look(has_seen_it);
       for (const dds::RunCommand& command : control_.take_commands()) {
         if (command.kind == dds::RunCommandKind::kTake && command.process == status_.process) return command;
       }
@@ -96,6 +100,7 @@ class Spare {
     control_.publish_status(status_);
   }
 
+  const config::Launch& launch_;
   dds::Participant participant_;
   dds::ControlBus control_;
   dds::Status status_;

@@ -38,7 +38,7 @@ int watch(const FileArguments& files, const KeyArguments& keys, double seconds) 
       break;
     if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
   }
-  if (nobody()) fail_for_want_of_a_run(files, launch);
+  if (nobody()) fail_for_want_of_a_run(files, launch, participant);
   leave(0);
 }
 

@@ -36,15 +36,17 @@ const KeysOf<core::Material>& keys_of_material() {
 }
 
 const KeysOf<core::Prototype>& keys_of_prototype() {
+  using namespace core::limits;
   using core::Prototype;
   static const KeysOf<Prototype> keys(
       "prototype", "What bodies of one kind share.",
       {
           shape_key("one that can move: no mesh, no heightfield, no plane"),
-          required("mass", &Prototype::mass_kg, number(Range::above(0, 1e9), "kg"),
+          required("mass", &Prototype::mass_kg, number(Range::from_to(kLightestOfScene_kg, kHeaviestOfScene_kg), "kg"),
                    "spread evenly over the shape, unless it has an `inertia`; of a compound, about its origin"),
           optional(
-              "inertia", &Prototype::inertia, vec3("kg m^2", Range::above(0, 1e12)),
+              "inertia", &Prototype::inertia,
+              vec3("kg m^2", Range::from_to(kSmallestInertia_kg_m2, kLargestInertia_kg_m2)),
               "[ixx, iyy, izz], moments of inertia about the centre of mass along the axes of the body; none above "
               "the sum of the two others")
               .otherwise("that of mass spread evenly over the shape"),

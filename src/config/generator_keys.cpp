@@ -13,7 +13,7 @@ Key gap_key() {
 
 Key count_key() { return required("count", integer(1, kMostInLine), "how many bodies"); }
 
-Key step_key() { return required("step", vec3("m"), "from the centre of one body to that of the next"); }
+Key step_key() { return required("step", vec3("m", kPlace), "from the centre of one body to that of the next"); }
 
 const KeyTable& stack_keys() {
   static const KeyTable keys{.title = "generator: stack", .about = "One body upon the other.", .keys = {count_key()}};
@@ -40,7 +40,8 @@ const KeyTable& block_keys() {
       .title = "generator: block",
       .about = "Rows, columns and layers.",
       .keys = {required("counts", list(3, 3, integer(1, kMostInLine)), "[nx, ny, nz], how many along each axis"),
-               optional("spacing", vec3("m", kSize), "of the centres along x, y, z").otherwise("they touch")}};
+               optional("spacing", vec3("m", Range::above(0, 1e6)), "of the centres along x, y, z")
+                   .otherwise("they touch")}};
   return keys;
 }
 
@@ -76,7 +77,8 @@ const KeyTable& formation_keys() {
       .about = "What all of them take.",
       .keys = {
           required("prototype", name_of("prototype"), "what kind of bodies"),
-          optional("position", vec3("m"), "of the middle of the bottom; of a row and a chain: of the first centre")
+          optional("position", vec3("m", kPlace),
+                   "of the middle of the bottom; of a row and a chain: of the first centre")
               .usual("[0, 0, 0]"),
           optional("yaw_deg", number(Range::from_to(-3600, 3600), "degrees"),
                    "turns the whole about the vertical through `position`")

@@ -164,6 +164,7 @@ void add_bodies(const Formation& formation, const Field& blame, SceneDraft& draf
   core::Quat q_FB = core::Quat::Identity();
   if (formation.chain) q_FB = core::Quat::FromTwoVectors(Vec3::UnitZ(), formation.chain->step_F);
   std::size_t index = 0;
+  std::optional<Vec3> too_far_W;
   for (const Vec3& p_FC : formation.centres_F) {
     DraftBody body;
     body.source = source_of(blame, formation.name ? fmt::format("{}.{}", *formation.name, index++) : "");
@@ -173,8 +174,10 @@ void add_bodies(const Formation& formation, const Field& blame, SceneDraft& draf
     body.body.pose.q_WB = formation.X_WF.q_WB * q_FB;
     body.body.v_WB = formation.v_WB;
     body.body.w_WB = formation.w_WB;
+    if (!too_far_W && !is_within_reach(body.body.pose.p_WB)) too_far_W = body.body.pose.p_WB;
     draft.bodies.push_back(body);
   }
+  if (too_far_W) complain_of_place(blame, "a body", *too_far_W);
 }
 
 using Placement = void (*)(const Fields&, Formation&, const SceneDraft&);

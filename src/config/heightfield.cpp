@@ -33,7 +33,7 @@ const KeyTable& heightfield_keys() {
       .title = "shape: heightfield",
       .about = "Ground given as a grid of heights, centred on the origin. Statics only.",
       .keys = {required("cell", numbers(2, kSize, "m"), "distance of two heights along x and along y"),
-               required("heights", list(2, kMostRows, list(2, kMostRows, number(kAnyNumber, "m"))),
+               required("heights", list(2, kMostRows, list(2, kMostRows, number(kPlace, "m"))),
                         "rows from -y to +y, each from -x to +x, all of one length")}};
   return keys;
 }

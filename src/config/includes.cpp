@@ -123,6 +123,7 @@ void take_over_statics(const Included& included, std::unordered_set<std::string>
 }
 
 void take_over_moving(const Included& included, SceneDraft& draft) {
+  std::optional<core::Vec3> too_far_W;
   for (DraftBody body : included.draft.bodies) {
     body.id = std::nullopt;
     body.body.prototype = shifted(body.body.prototype, included);
@@ -132,8 +133,10 @@ void take_over_moving(const Included& included, SceneDraft& draft) {
     const std::string name = body.source.name.empty() ? "" : name_in(included, body.source.name);
     body.source = source_of(included.blame, name);
     if (!name.empty()) draft.name_next_body(name, included.blame);
+    if (!too_far_W && !is_within_reach(body.body.pose.p_WB)) too_far_W = body.body.pose.p_WB;
     draft.bodies.push_back(std::move(body));
   }
+  if (too_far_W) complain_of_place(included.blame, "a body", *too_far_W);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr std::size_t kMostPrototypes = 1000;
 const KeyTable& volume_keys() {
   static const KeyTable keys{.title = "injector: volume",
                              .about = "A box in which bodies appear, anywhere.",
-                             .keys = {required("center", vec3("m"), "of the box"),
+                             .keys = {required("center", vec3("m", kPlace), "of the box"),
                                       required("size", vec3("m", kExtent), "whole edges, along x, y, z")}};
   return keys;
 }
@@ -33,7 +33,7 @@ const KeyTable& per_region_keys() {
       .title = "injector: per: regions",
       .about = "A volume around the middle of each region of the scene's `layout`. Each gets the same share.",
       .keys = {required("size", vec3("m", kExtent), "whole edges, along x, y, z"),
-               required("height", number(kAnyNumber, "m"), "of the centres, above z = 0")}};
+               required("height", number(kPlace, "m"), "of the centres, above z = 0")}};
   return keys;
 }
 
@@ -45,7 +45,7 @@ const KeyTable& per_boundary_keys() {
           "it each of its sides.",
       .keys = {required("distance", number(kExtent, "m"), "of the centres from the boundary"),
                required("size", vec3("m", kExtent), "[across, along, up]: whole edges, as seen from the boundary"),
-               required("height", number(kAnyNumber, "m"), "of the centres, above z = 0")}};
+               required("height", number(kPlace, "m"), "of the centres, above z = 0")}};
   return keys;
 }
 
@@ -68,7 +68,7 @@ const KeysOf<Injector>& keys_of_injector() {
           own_name_key("each once", "`injector N`, N from 0 in the order of the file"),
           optional("seed", &Injector::seed, integer(0, INT64_MAX), "of its random numbers"),
           required("count", integer(1, static_cast<std::int64_t>(kMostBodies)), "how many bodies, then it ends"),
-          required("rate", &Injector::rate_per_s, number(Range::above(0, 1e5), "bodies/s"), "evenly paced"),
+          required("rate", &Injector::rate_per_s, number(Range::from_to(1e-6, 1e5), "bodies/s"), "evenly paced"),
           optional("start", &Injector::start_s, number(Range::from_to(0, 1e6), "s"),
                    "simulated time of the first body"),
           optional("velocity", map(velocity_keys), "of the bodies when they appear").otherwise("at rest"),

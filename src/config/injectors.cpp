@@ -182,6 +182,13 @@ core::BodyId next_free_id(const core::Scene& scene) {
   return core::BodyId{scene.bodies.empty() ? 0 : value_of(scene.bodies.back().id) + 1};
 }
 
+/// Where its bodies may appear.
+void check_volume(const core::Injector& injector, const Field& blame) {
+  for (const Vec3& corner_W : {injector.volume_min, injector.volume_max}) {
+    if (!is_within_reach(corner_W)) return complain_of_place(blame, "a corner of a volume", corner_W);
+  }
+}
+
 void check_ids(const Field& blame, const SceneDraft& draft) {
   const std::uint64_t next = value_of(next_free_id(draft.scene));
   if (static_cast<std::int64_t>(next) <= kLargestBodyId + 1) return;
@@ -189,7 +196,8 @@ void check_ids(const Field& blame, const SceneDraft& draft) {
 }
 
 /// One injector for each volume. They start one after the other, so that all of them together are evenly paced.
-void add_injectors(const core::Injector& whole, const std::vector<Volume>& volumes, SceneDraft& draft) {
+void add_injectors(const core::Injector& whole, const std::vector<Volume>& volumes, const Field& blame,
+                   SceneDraft& draft) {
   double share_so_far = 0;
   std::uint64_t bodies_so_far = 0;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
@@ -212,6 +220,7 @@ void add_injectors(const core::Injector& whole, const std::vector<Volume>& volum
     part.volume_min = volume.centre - volume.size / 2;
     part.volume_max = volume.centre + volume.size / 2;
     part.first_id = next_free_id(draft.scene);
+    check_volume(part, blame);
     draft.scene.injectors.push_back(std::move(part));
   }
 }
@@ -235,7 +244,7 @@ void read_injectors(const Field& field, SceneDraft& draft) {
       item.complain(fmt::format("found {} volumes, allowed: {} in the whole scene", volumes.size(), kMostInjectors));
       continue;
     }
-    add_injectors(whole, volumes, draft);
+    add_injectors(whole, volumes, item, draft);
     draft.injector_sources.resize(draft.scene.injectors.size(), source_of(item, whole.name));
     check_ids(item, draft);
   }
@@ -246,6 +255,7 @@ void add_injector(core::Injector injector, const Field& blame, SceneDraft& draft
     return blame.complain(fmt::format("found one more injector, allowed: {} in the whole scene", kMostInjectors));
   }
   injector.first_id = next_free_id(draft.scene);
+  check_volume(injector, blame);
   draft.injected_bodies += injector.max_bodies;
   draft.injector_sources.push_back(source_of(blame, injector.name));
   draft.scene.injectors.push_back(std::move(injector));

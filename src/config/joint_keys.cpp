@@ -1,7 +1,6 @@
 #include "config/joint_keys.h"
 
 #include <limits>
-#include <numbers>
 
 #include "config/joints.h"
 #include "config/scene_draft.h"
@@ -17,7 +16,6 @@ const KeyTable& coupling_keys() { return keys_of_coupling(); }
 
 Key axis_key(std::string_view meaning) { return optional("axis", vec3(), meaning).usual("[0, 0, 1]"); }
 
-constexpr double kDegree = std::numbers::pi / 180;
 const Range kTurns_deg = Range::from_to(-360'000, 360'000);
 const Range kGain = Range::from_to(0, 1e9);
 
@@ -240,7 +238,7 @@ const KeysOf<JointSpec>& keys_of_joint() {
           optional("spring", map(spring_keys), "six axes: locked, free or sprung"),
           required("bodies", list(1, 2, name_of("named body")), "[A, B]: names of bodies; [A] joins A to the world"),
           own_name_key("by which reports refer to it", "`joint N`, N from 0 in the order of the file"),
-          optional("position", vec3("m"), "of the joint in the world at the start").otherwise("that of body A"),
+          optional("position", vec3("m", kPlace), "of the joint in the world at the start").otherwise("that of body A"),
           optional("collide", &JointSpec::collide, flag(), "whether A and B collide with each other"),
           optional("break_impulse", &JointSpec::break_impulse, number(Range::above(0, 1e9), "N s or N m s"),
                    "breaks for good when it takes more in 1/240 s, or as much for longer or shorter substeps")

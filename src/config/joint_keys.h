@@ -1,10 +1,15 @@
 // The tables of keys of joints, kind by kind.
 #pragma once
 
+#include <numbers>
+
 #include "config/keys_of.h"
 #include "core/joint.h"
 
 namespace aurasim::config {
+
+/// In radians.
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 const KeysOf<core::JointSpec>& keys_of_joint();
 const KeysOf<core::JointMotor>& motor_keys();

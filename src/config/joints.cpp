@@ -1,7 +1,6 @@
 #include "config/joints.h"
 
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,6 @@ using core::JointLimits;
 using core::Vec3;
 
 constexpr double kSmallestAxis = 1e-6;
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// [low, high], in the unit of the result times `unit`.
 std::optional<JointLimits> read_limits(const Field& field, double unit) {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/limits.h"
+
 namespace aurasim::config {
 
 /// The numbers that a field may have. All are finite.
@@ -28,8 +30,10 @@ struct Range {
 
 /// Any coordinate or component, in the unit of the field: far beyond use, far from overflow.
 inline constexpr Range kAnyNumber = Range::from_to(-1e7, 1e7);
-/// A length that must not vanish.
-inline constexpr Range kSize = Range::above(0, 1e6);
+/// A coordinate of what is in the world.
+inline constexpr Range kPlace = Range::from_to(-core::limits::kFarthestPlace_m, core::limits::kFarthestPlace_m);
+/// A radius, an edge or a height.
+inline constexpr Range kSize = Range::from_to(core::limits::kSmallestSize_m, core::limits::kLargestSize_m);
 
 struct KeyTable;
 /// Tables refer to each other, in circles too (parts of a shape are shapes): they are made when first asked for.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "config/addresses.h"
 #include "config/fields.h"
 #include "config/launch_checks.h"
 #include "config/launch_keys.h"
@@ -43,6 +44,14 @@ std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   return shipped_profiles();
 }
 
+void check_each(const Field& list, std::string_view allowed, bool (*is_good)(const std::string&)) {
+  const bool has_items = list.is_list() && !list.node()->children.empty() && list.node()->children.size() <= 256;
+  if (!has_items) return;  // which has been said
+  for (const Field& item : list.items()) {
+    if (item.is_text() && !is_good(item.node()->text)) item.refuse(allowed);
+  }
+}
+
 void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds) {
   dds.profiles = usual_profiles(folder);
   if (!field.given()) return;
@@ -61,6 +70,12 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
     if (!std::filesystem::is_directory(dds.security, error)) {
       f.refuse(fmt::format("a folder of keys ({} is none)", dds.security.string()));
     }
+  }
+  check_each(fields["interfaces"], "an IPv4 address of this host, such as 10.0.0.7, or \"*\": all of them",
+             [](const std::string& text) { return text == "*" || is_ipv4(text); });
+  check_each(fields["peers"], "ADDRESS or ADDRESS:PORT, IPv4, such as 10.0.0.7 or 10.0.0.7:7410", is_ipv4_with_port);
+  if (dds.impair.bandwidth_B_s && *dds.impair.bandwidth_B_s > 0 && *dds.impair.bandwidth_B_s < 1) {
+    Fields(fields["impair"])["bandwidth"].refuse("0, or at least 1 B/s");
   }
   if (dds.discovery != Discovery::kMulticast && dds.peers.empty() && !fields.has("peers")) {
     field.complain("needs peers, allowed: peers: [ADDRESS, ...] with discovery: peers or server");
@@ -95,6 +110,9 @@ void read_overseer(const Field& field, const std::filesystem::path& folder, Over
   if (!field.given()) return;
   const Fields fields(field);
   overseer_keys().read_members(fields, overseer);
+  if (const Field f = fields["bind"]; f.is_text() && !is_address(f.node()->text)) {
+    f.refuse("an address to listen on, such as 127.0.0.1, 0.0.0.0 or ::1");
+  }
   if (const Field f = fields["tls"]; f.given()) {
     const Fields files(f);
     const auto certificate = files["certificate"].text(), key = files["key"].text();

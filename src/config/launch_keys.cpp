@@ -61,11 +61,12 @@ const KeysOf<Tolerances>& tolerances_keys() {
       "may "
       "have come late, or been missed.",
       {
-          optional("speed", &Tolerances::speed_m_s, number(Range::above(0, 1e4), "m/s"),
+          optional("speed", &Tolerances::speed_m_s, number(Range::from_to(1e-3, 1e4), "m/s"),
                    "no body is faster; auras reach, and regions have to be wide, in proportion to it"),
           optional("latency", &Tolerances::latency_s, number(Range::from_to(0, 10), "s"),
                    "no message is longer on its way from node to node"),
-          optional("frame", &Tolerances::frame_s, number(Range::above(0, 10), "s"), "no node takes longer for a step"),
+          optional("frame", &Tolerances::frame_s, number(Range::from_to(1e-6, 10), "s"),
+                   "no node takes longer for a step"),
       });
   return keys;
 }
@@ -178,7 +179,7 @@ const KeysOf<Dds>& dds_keys() {
 const KeysOf<Observe>& observe_keys() {
   static const KeysOf<Observe> keys("observe", "What nodes tell those who watch.",
                                     {
-                                        optional("tick_hz", &Observe::tick_hz, number(Range::above(0, 1000), "Hz"),
+                                        optional("tick_hz", &Observe::tick_hz, number(Range::from_to(1e-3, 1000), "Hz"),
                                                  "how often nodes tell the viewer what has changed"),
                                     });
   return keys;
@@ -214,7 +215,7 @@ const KeysOf<Ros2>& ros2_keys() {
       {
           optional("domain", &Ros2::domain, integer(0, 232), "ROS_DOMAIN_ID of those who listen")
               .otherwise("the run's"),
-          optional("tf_hz", &Ros2::tf_hz, number(Range::above(0, 1000), "Hz"),
+          optional("tf_hz", &Ros2::tf_hz, number(Range::from_to(1e-3, 1000), "Hz"),
                    "simulated; how often /clock, /tf and /joint_states are said"),
           optional("frame", &Ros2::frame, text("a frame"), "parent of all frames in /tf"),
           optional("cmd_vel", &Ros2::cmd_vel, list(0, 1000, text("the name of a body")),

@@ -12,6 +12,9 @@ namespace {
 using core::Rectangle;
 using core::RegionMap;
 
+/// Of a region.
+constexpr Range kSide = Range::from_to(1e-3, 1e6);
+
 enum class Kind { kColumns, kGrid, kBrick, kBoxes };
 
 const Value& any_layout() {
@@ -25,7 +28,7 @@ const KeyTable& columns_keys() {
                              .about = "Side by side along x, centred on the origin.",
                              .keys = {optional("layout", words({"columns"}), "this layout").usual("columns"),
                                       required("count", integer(1, kMostRegions), "how many regions"),
-                                      required_unless_central("width", number(kSize, "m"), "of each of them")}};
+                                      required_unless_central("width", number(kSide, "m"), "of each of them")}};
   return keys;
 }
 
@@ -36,7 +39,7 @@ const KeyTable& grid_keys() {
       .keys = {required("layout", words({"grid", "brick"}), "this layout"),
                required("rows", integer(1, kMostRegions), "along y; rows times columns is at most 1024"),
                required("columns", integer(1, kMostRegions), "along x"),
-               required("cell", numbers(2, kSize, "m"), "size of each region, along x and y")}};
+               required("cell", numbers(2, kSide, "m"), "size of each region, along x and y")}};
   return keys;
 }
 
@@ -46,7 +49,7 @@ const KeyTable& counted_grid_keys() {
       .about = "The most square grid of so many cells, with no more rows than columns.",
       .keys = {required("layout", words({"grid", "brick"}), "this layout"),
                required("count", integer(1, kMostRegions), "how many regions"),
-               required_unless_central("cell", numbers(2, kSize, "m"), "size of each region, along x and y")}};
+               required_unless_central("cell", numbers(2, kSide, "m"), "size of each region, along x and y")}};
   return keys;
 }
 
@@ -170,10 +173,10 @@ std::optional<RegionLayout> read_boxes(const Fields& fields) {
     const auto edges = item.numbers();
     if (!edges) continue;
     const std::vector<double>& e = *edges;
-    if (e[0] < e[2] && e[1] < e[3]) {
+    if (e[2] - e[0] >= kSide.low && e[3] - e[1] >= kSide.low) {
       boxes.push_back({e[0], e[1], e[2], e[3]});
     } else {
-      item.refuse("[x0, y0, x1, y1] with x0 < x1 and y0 < y1");
+      item.refuse(fmt::format("[x0, y0, x1, y1] with x0 < x1 and y0 < y1, each side at least {:g} m", kSide.low));
     }
   }
   if (items.empty() || boxes.size() != items.size()) return std::nullopt;

@@ -39,7 +39,7 @@ const KeyTable& pose_keys() {
   static const KeyTable keys{
       .title = "position and orientation",
       .about = "Where a thing stands, of its origin.",
-      .keys = {optional("position", vec3("m"), "[x, y, z]; z is up").usual("[0, 0, 0]"),
+      .keys = {optional("position", vec3("m", kPlace), "[x, y, z]; z is up").usual("[0, 0, 0]"),
                optional("orientation", map(orientation_keys), "how it is turned").otherwise("not turned")}};
   return keys;
 }
@@ -123,6 +123,15 @@ core::Pose read_pose(const Fields& fields) {
   pose.p_WB = fields["position"].vec3().value_or(pose.p_WB);
   pose.q_WB = read_orientation(fields["orientation"]);
   return pose;
+}
+
+/// Written so that NaN is out of reach.
+bool is_within_reach(const core::Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m; }
+
+void complain_of_place(const Field& blame, std::string_view what, const core::Vec3& p_W) {
+  blame.complain(fmt::format("found {} at [{:.4g}, {:.4g}, {:.4g}] m, allowed: each coordinate from -{:g} to {:g} m",
+                             what, p_W.x(), p_W.y(), p_W.z(), core::limits::kFarthestPlace_m,
+                             core::limits::kFarthestPlace_m));
 }
 
 std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft) {

@@ -85,6 +85,12 @@ const KeyTable& orientation_keys();
 /// `position` and `orientation` of a map that shares pose_keys.
 core::Pose read_pose(const Fields& fields);
 
+/// Whether something may be there (core::limits::kFarthestPlace_m). Each coordinate of a file is, and so is not always
+/// what several add up to.
+bool is_within_reach(const core::Vec3& p_W);
+/// What to say of a place that is not: "found ... at ..., allowed: ...".
+void complain_of_place(const Field& blame, std::string_view what, const core::Vec3& p_W);
+
 /// `orientation` alone.
 core::Quat read_orientation(const Field& field);
 

@@ -41,7 +41,8 @@ const KeyTable& compound_keys() {
 }
 
 Key scale_key() {
-  return optional("scale", number(kSize).or_else(vec3("", kSize)), "all points times this, or each axis times its own")
+  const Range any = Range::from_to(1e-9, 1e6);
+  return optional("scale", number(any).or_else(vec3("", any)), "all points times this, or each axis times its own")
       .usual("1");
 }
 
@@ -70,20 +71,21 @@ const KeyTable& plane_keys() {
 }  // namespace
 
 const KeyTable& capsule_keys() {
-  static const KeyTable keys{
-      .title = "shape: capsule",
-      .about = "A cylinder with round caps. Its axis is z. Exactly one of the heights.",
-      .keys = {required("radius", number(kSize, "m"), "of the caps"),
-               optional("height", number(kSize, "m"), "between the centres of the caps"),
-               optional("total_height", number(kSize, "m"), "over all; more than twice the radius")},
-      .one_of = {"height", "total_height"}};
+  static const KeyTable keys{.title = "shape: capsule",
+                             .about = "A cylinder with round caps. Its axis is z. Exactly one of the heights.",
+                             .keys = {required("radius", number(kSize, "m"), "of the caps"),
+                                      optional("height", number(kSize, "m"), "between the centres of the caps"),
+                                      optional("total_height", number(Range::above(0, kSize.high), "m"),
+                                               "over all; more than twice the radius")},
+                             .one_of = {"height", "total_height"}};
   return keys;
 }
 
 const KeyTable& hull_of_points_keys() {
-  static const KeyTable keys{.title = "shape: convex_hull of points",
-                             .about = "The smallest convex shape that holds all of them.",
-                             .keys = {required("points", list(4, kMostPoints, vec3("m")), "not all in one plane")}};
+  static const KeyTable keys{
+      .title = "shape: convex_hull of points",
+      .about = "The smallest convex shape that holds all of them.",
+      .keys = {required("points", list(4, kMostPoints, vec3("m", kPlace)), "not all in one plane")}};
   return keys;
 }
 

@@ -1,5 +1,6 @@
 #include "config/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "config/meshes.h"
 #include "config/scene_draft.h"
 #include "config/shape_keys.h"
+#include "core/limits.h"
 
 namespace aurasim::config {
 namespace {
@@ -195,6 +197,22 @@ std::optional<Shape> read_compound(const Fields& fields, const SceneDraft& draft
   return compound;
 }
 
+/// What sizes, scales and places of parts amount to.
+void check_size(const Field& field, const Shape& shape) {
+  using namespace core::limits;
+  constexpr double kRounded = 1e-9;
+  if (std::holds_alternative<core::Plane>(shape)) return;
+  const double radius_m = core::bounding_radius(shape);
+  if (!(radius_m <= kLargestSize_m)) {
+    field.complain(
+        fmt::format("found a shape that reaches {:.4g} m from its origin, allowed: {:g} m", radius_m, kLargestSize_m));
+  } else if (!std::holds_alternative<core::Compound>(shape) &&  // its parts have been looked at
+             !(thickness_m(shape) >= kSmallestSize_m * (1 - kRounded))) {
+    field.complain(fmt::format("found a shape that is {:.4g} m thin, allowed: {:g} m or more", thickness_m(shape),
+                               kSmallestSize_m));
+  }
+}
+
 /// `field` is the value of a key of shape_keys.
 std::optional<Shape> read_shape_kind(const Field& field, const SceneDraft& draft) {
   const std::string kind = field.path().substr(field.path().rfind('.') + 1);
@@ -214,6 +232,7 @@ std::optional<Shape> read_shape_kind(const Field& field, const SceneDraft& draft
   if (kind == "heightfield") shape = read_heightfield(fields);
   if (kind == "plane") shape = read_plane(fields);
   fields.close();
+  if (shape) check_size(field, *shape);
   return shape;
 }
 
@@ -257,6 +276,32 @@ Bounds bounds_of_part(const core::CompoundPart& part) {
   return hull_of(corners);
 }
 
+/// How thick a shape is along its thinnest axis.
+struct Thickness {
+  double operator()(const core::Sphere& s) const { return 2 * s.radius; }
+  double operator()(const core::Box& s) const { return 2 * s.half_extents.minCoeff(); }
+  double operator()(const core::Capsule& s) const { return s.height > 0 ? 2 * s.radius : 0; }
+  double operator()(const core::Cylinder& s) const { return std::min(2 * s.radius, s.height); }
+  double operator()(const core::ConvexHull& s) const {
+    if (s.points.empty()) return 0;
+    core::Vec3 low = s.points.front(), high = low;
+    for (const core::Vec3& p : s.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    return (high - low).minCoeff();
+  }
+  double operator()(const core::Compound& s) const {
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (const core::CompoundPart& part : s.parts) thinnest = std::min(thinnest, std::visit(*this, part.shape));
+    return s.parts.empty() ? 0 : thinnest;
+  }
+  template <class Other>
+  double operator()(const Other&) const {
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
 }  // namespace
 
 std::optional<Shape> read_shape(const Field& field, const SceneDraft& draft) {
@@ -274,6 +319,8 @@ std::optional<Shape> read_shape(const Field& field, const SceneDraft& draft) {
 bool can_move(const Shape& shape) {
   return !std::holds_alternative<core::TriangleMesh>(shape) && !std::holds_alternative<core::Plane>(shape);
 }
+
+double thickness_m(const Shape& shape) { return std::visit(Thickness{}, shape); }
 
 Bounds bounds_of(const Shape& shape) { return std::visit(BoundsOf(), shape); }
 

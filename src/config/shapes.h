@@ -20,6 +20,10 @@ std::optional<core::Shape> read_shape(const Field& field, const SceneDraft& draf
 /// Whether bodies may have it: not a triangle mesh and not a plane.
 bool can_move(const core::Shape& shape);
 
+/// How thick it is along the thinnest axis of its frame; of a compound: its thinnest part. Infinite for what cannot
+/// move.
+double thickness_m(const core::Shape& shape);
+
 /// Axis-aligned box around a shape, in the frame of its pose.
 struct Bounds {
   core::Vec3 low = core::Vec3::Zero();

@@ -18,7 +18,16 @@ inline constexpr double kFastestSpin_rad_s = 1e6;
 inline constexpr double kFastestStatic_m_s = 100;
 inline constexpr double kFastestStatic_rad_s = 50;
 
-// Of commands.
+// Of scene files: what a world bears without a state that is not finite, or a body that is taken out of it at once.
+// Wider than what commands may ask for, since who writes a scene chooses its regions and its step.
+inline constexpr double kSmallestSize_m = 1e-4;  ///< radius, edge, height; thickness in any direction, of what moves
+inline constexpr double kLargestSize_m = 1e6;
+inline constexpr double kLightestOfScene_kg = 1e-6;
+inline constexpr double kHeaviestOfScene_kg = 1e9;
+inline constexpr double kSmallestInertia_kg_m2 = 1e-15;  ///< that of the lightest ball of the smallest size: 4e-15
+inline constexpr double kLargestInertia_kg_m2 = 1e12;
+
+// Of commands, and places of scenes.
 inline constexpr double kFarthestPlace_m = 1e6;
 inline constexpr double kHardestImpulse_Ns = 1e7;
 inline constexpr double kHardestPush = 1e9;             ///< N or N m, of setpoints; also rad, m and their gains

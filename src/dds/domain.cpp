@@ -176,6 +176,7 @@ eprosima::fastdds::dds::Topic& Domain::topic(TopicId id) {
 
 void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                       eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) {
+  peer_keys_.note(info);
   if (refusals_) SecurityLog::instance().note(info);
 }
 
@@ -183,6 +184,7 @@ void Domain::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipa
                                          eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) {
   using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
   if (info.status != ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) return;
+  peer_keys_.note_refused(info.guid);
   SecurityLog::instance().refused(info.guid);
 }
 

@@ -15,6 +15,7 @@
 
 #include "dds/delay_line.h"
 #include "dds/liveliness_asserter.h"
+#include "dds/peer_keys.h"
 #include "dds/profiles.h"
 #include "dds/security_log.h"
 #include "dds/settings.h"
@@ -79,6 +80,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Profiles& profiles() { return profiles_; }
   Directory& directory() { return directory_; }
   Speakers& speakers() { return speakers_; }
+  /// Who of the others speaks with keys.
+  const PeerKeys& peer_keys() const { return peer_keys_; }
   /// After which peers forget a silent participant.
   std::chrono::nanoseconds lease() const;
   /// Nothing leaves this host.
@@ -106,6 +109,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Directory directory_;
   std::shared_ptr<DatagramGuard> guard_;
   Speakers speakers_;
+  PeerKeys peer_keys_;
   bool loopback_only_ = false;
   bool believes_silence_ = true;
   std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys

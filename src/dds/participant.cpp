@@ -32,6 +32,8 @@ std::uint64_t Participant::refused_of_strangers() const {
   return domain_->speakers().refused() + guarded.refused[static_cast<std::size_t>(Refusal::kRepeat)];
 }
 
+PeersByKeys Participant::peers_by_keys() const { return domain_->peer_keys().count(); }
+
 std::vector<std::string> Participant::take_said() {
   std::vector<std::string> said = domain_->speakers().take_said();
   for (const auto& [process, answer] : domain_->guard().take_new_askers()) {

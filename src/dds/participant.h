@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/peers_by_keys.h"
 #include "dds/settings.h"
 
 namespace aurasim::dds {
@@ -42,6 +43,8 @@ class Participant {
   std::optional<ImpairmentReport> impairment() const;
   /// Samples of processes that are no nodes of the run, and repeats for them, that were refused. Any thread.
   std::uint64_t refused_of_strangers() const;
+  /// Who else is in the domain, with keys and without. Any thread.
+  PeersByKeys peers_by_keys() const;
   /// For the log: who is refused what, since the last call. Any thread.
   std::vector<std::string> take_said();
 

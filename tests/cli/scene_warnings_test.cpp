@@ -1,5 +1,8 @@
 #include "cli/scene_warnings.h"
 
+#include <algorithm>
+#include <chrono>
+
 #include "config/workspace.h"
 
 namespace aurasim::cli {
@@ -97,10 +100,66 @@ injectors:
   EXPECT_THAT(warnings(fast, {"tolerances.speed=1000", "regions.count=1"}), IsEmpty());
 }
 
+TEST_F(SceneWarnings, SpinsThatPhysicsCutsDownAreNamed) {
+  const std::string top = "bodies: [{prototype: ball, position: [0, 0, 2], spin: [0, 0, 900]}]\n";
+  EXPECT_THAT(warnings(top, {"time.substeps=8"}), ElementsAre(HasSubstr("scene.yaml:9:10: body 0 starts with a spin of "
+                                                                        "900 rad/s, more than a quarter turn in a "
+                                                                        "substep: 754 rad/s are left of it")));
+  EXPECT_THAT(warnings(top, {"time.substeps=16"}), IsEmpty());
+}
+
 TEST_F(SceneWarnings, ManyOfAKindAreCounted) {
   const auto all = warnings("generators:\n  - row: {prototype: ball, count: 30, step: [2, 0, 0]}\n");
   ASSERT_EQ(all.size(), 11u);
   EXPECT_THAT(all[10], testing::StartsWith("and 20 more"));
+}
+
+/// Every brick overlaps every other one: looking at all pairs took 100 s for a quarter of them.
+TEST_F(SceneWarnings, AHeapWhoseBodiesAllOverlapIsLookedThroughInNLogN) {
+  const std::string heap =
+      "generators:\n  - block: {prototype: brick, counts: [100, 20, 20], spacing: [0.002, 0.002, 0.002], position: "
+      "[0, 0, 2]}\n";
+  const auto begin = std::chrono::steady_clock::now();
+  const auto all = warnings(heap);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  ASSERT_EQ(all.size(), 11u);
+  EXPECT_THAT(all[0], HasSubstr("scene.yaml:10:12: body 0 overlaps body "));
+  EXPECT_THAT(all[10], AllOf(testing::StartsWith("and "), HasSubstr("40000 of 40000 bodies overlap another one")));
+}
+
+TEST_F(SceneWarnings, EachBodyThatOverlapsAnotherOneIsNamedBesideALargeOne) {
+  const std::string large =
+      "  - {prototype: plate, position: [0, 0, 5]}\n  - {prototype: ball, position: [40, 0, 5.3]}\n";
+  workspace_.write("scene.yaml", R"(shapes:
+  ball: {sphere: {radius: 0.5}}
+  plate: {box: {size: [100, 100, 1]}}
+prototypes:
+  ball: {shape: ball, mass: 1}
+  plate: {shape: plate, mass: 1}
+bodies:
+)" + large + R"(generators:
+  - row: {prototype: ball, count: 20, step: [2, 0, 0], position: [-20, 0, 6.01]}
+  - row: {prototype: ball, count: 3, step: [2, 0, 0], position: [-20, 9, 5.8]}
+)");
+  const auto all =
+      scene_warnings(config::read_launch(workspace_.write("launch.yaml", "scene: scene.yaml\nregions: {count: 1}\n")));
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_THAT(all[0], HasSubstr("body 0 overlaps body "));
+  std::string text;
+  for (const std::string& line : all) text += line + "\n";
+  for (const char* name : {"body 1 ", "body 22 ", "body 23 ", "body 24 "}) EXPECT_THAT(text, HasSubstr(name));
+}
+
+TEST_F(SceneWarnings, HowFarTheyAreIsSaid) {
+  std::vector<double> said;
+  workspace_.write("scene.yaml",
+                   "shapes: {ball: {sphere: {radius: 0.5}}}\nprototypes: {ball: {shape: ball, mass: 1}}\n"
+                   "generators: [{row: {prototype: ball, count: 1000, step: [2, 0, 0]}}]\n");
+  scene_warnings(config::read_launch(workspace_.write("launch.yaml", config::kSmallLaunch)),
+                 [&said](double share) { said.push_back(share); });
+  ASSERT_GT(said.size(), 10u);
+  EXPECT_TRUE(std::ranges::is_sorted(said));
+  EXPECT_LE(said.back(), 1);
 }
 
 TEST_F(SceneWarnings, BodiesOfGeneratorsHaveThePlaceOfTheGenerator) {

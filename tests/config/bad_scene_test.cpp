@@ -17,6 +17,8 @@ std::string injector(const std::string& rest) {
   return with_ball("injectors:\n  - {rate: 1, count: 5, prototypes: [ball], " + rest + "}\n");
 }
 
+const std::string kBalls = "shapes: {ball: {sphere: {radius: 0.5}}}\nprototypes: {ball: {shape: ball, mass: 1}}\n";
+
 const std::vector<BadCase> kBadScenes = {
     {"UnknownKey",
      with_ball("bodys: []\n"),
@@ -65,10 +67,10 @@ const std::vector<BadCase> kBadScenes = {
      {"scene.yaml:2:8: shapes.it.sphere: found nothing, allowed: a map, the sizes of the sphere"}},
     {"NegativeRadius",
      shape("{sphere: {radius: -1}}"),
-     {"scene.yaml:2:25: shapes.it.sphere.radius: found \"-1\", allowed: a number above 0"}},
+     {"scene.yaml:2:25: shapes.it.sphere.radius: found \"-1\", allowed: a number from 0.0001"}},
     {"FlatBox",
      shape("{box: {size: [1, 0, 1]}}"),
-     {"scene.yaml:2:24: shapes.it.box.size[1]: found \"0\", allowed: a number above 0"}},
+     {"scene.yaml:2:24: shapes.it.box.size[1]: found \"0\", allowed: a number from 0.0001"}},
     {"CapsuleOfTwoHeights",
      shape("{capsule: {radius: 1, height: 1, total_height: 3}}"),
      {"scene.yaml:2:17: shapes.it.capsule: found a map of 3, allowed: one of height"}},
@@ -119,17 +121,17 @@ const std::vector<BadCase> kBadScenes = {
      {"scene.yaml:6:35: statics[0].material: found \"wool\", allowed: a material of this scene: default"}},
     {"NoMass",
      "prototypes: {ball: {shape: {sphere: {radius: 1}}}}\n",
-     {"scene.yaml:1:20: prototypes.ball.mass: missing, allowed: a number above 0"}},
+     {"scene.yaml:1:20: prototypes.ball.mass: missing, allowed: a number from 1e-06"}},
     {"MassZero",
      "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 0}}\n",
-     {"scene.yaml:1:57: prototypes.ball.mass: found \"0\", allowed: a number above 0"}},
+     {"scene.yaml:1:57: prototypes.ball.mass: found \"0\", allowed: a number from 1e-06"}},
     {"InertiaOfNoBody",
      "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 1, inertia: [1, 1, 3]}}\n",
      {"scene.yaml:1:69: prototypes.ball.inertia: found a list of 3, allowed: three moments of inertia of which none is "
       "above the sum of the two others"}},
     {"InertiaZero",
      "prototypes: {ball: {shape: {sphere: {radius: 1}}, mass: 1, inertia: [0, 1, 1]}}\n",
-     {"scene.yaml:1:70: prototypes.ball.inertia[0]: found \"0\", allowed: a number above 0"}},
+     {"scene.yaml:1:70: prototypes.ball.inertia[0]: found \"0\", allowed: a number from 1e-15"}},
     {"MovingPlane",
      "prototypes: {ground: {shape: {plane: {}}, mass: 1}}\n",
      {"scene.yaml:1:30: prototypes.ground.shape: found a mesh, heightfield or plane, allowed: a shape that can move"}},
@@ -202,6 +204,30 @@ const std::vector<BadCase> kBadScenes = {
      {"scene.yaml:6:37: injectors[0].prototypes: found a list of 0, allowed: a list of 1 to 1000"}},
     {"LayoutAWord", "layout: round\n", {"scene.yaml:1:9: layout: found \"round\", allowed: launch, or a map"}},
     {"NameWithALineEnd", "name: \"a\\nb\"\n", {"scene.yaml:1:7: name: found \"a\\x0ab\", allowed: a name"}},
+    {"MassOfNothing",
+     "shapes: {ball: {sphere: {radius: 0.5}}}\nprototypes: {ball: {shape: ball, mass: 1e-320}}\n",
+     {"scene.yaml:2:40: prototypes.ball.mass: found \"1e-320\", allowed: a number from 1e-06 to 1000000000"}},
+    {"BodyThatTheWorldWouldTakeOut",
+     kBalls + "bodies: [{prototype: ball, position: [1e7, 0, 0]}]\n",
+     {"scene.yaml:3:39: bodies[0].position[0]: found \"1e7\", allowed: a number from -1000000 to 1000000"}},
+    {"RowThatLeavesTheWorld",
+     kBalls + "generators: [{row: {prototype: ball, count: 3, step: [9e5, 0, 0]}}]\n",
+     {"scene.yaml:3:20: generators[0].row: found a body at [1.8e+06, 0, 0] m, allowed: each coordinate from -1e+06 to "
+      "1e+06 m"}},
+    {"VolumeThatLeavesTheWorld",
+     kBalls +
+         "injectors: [{count: 3, rate: 1, prototypes: [ball], volume: {center: [9e5, 0, 0], size: [4e5, 1, 1]}}]\n",
+     {"scene.yaml:3:13: injectors[0]: found a corner of a volume at [1.1e+06, 0.5, 0.5] m, allowed: each coordinate"}},
+    {"RateOfOnceInAnAge",
+     kBalls +
+         "injectors: [{count: 3, rate: 1e-320, prototypes: [ball], volume: {center: [0, 0, 0], size: [4, 1, 1]}}]\n",
+     {"scene.yaml:3:30: injectors[0].rate: found \"1e-320\", allowed: a number from 1e-06 to 100000"}},
+    {"HullThatIsTooThin",
+     "shapes: {it: {convex_hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 5e-5]]}}}\n",
+     {"scene.yaml:1:28: shapes.it.convex_hull: found a shape that is 5e-05 m thin, allowed: 0.0001 m or more"}},
+    {"ShapeThatReachesTooFar",
+     "shapes: {it: {capsule: {radius: 1e6, height: 1e6}}}\n",
+     {"scene.yaml:1:24: shapes.it.capsule: found a shape that reaches 1.5e+06 m from its origin, allowed: 1e+06 m"}},
 };
 
 class BadScene : public testing::TestWithParam<BadCase> {};

@@ -92,7 +92,8 @@ std::string sample_of(const Value& value) {
       if (value.what == "another scene file") return "part.yaml";
       if (value.what == "an XML file") return "qos.xml";
       if (value.what == "a folder") return ".";
-      return value.what == "a name" || value.what == "an address" ? "it" : "it.obj";
+      if (value.what == "an address") return "127.0.0.1";
+      return value.what == "a name" ? "it" : "it.obj";
     case Value::Kind::kWord:
       return std::string(value.words.back().name);
     case Value::Kind::kName:

@@ -54,6 +54,15 @@ class Launch : public SystemTest {
   }
 };
 
+TEST_F(Launch, EndsWithALineWithoutATableAndAReport) {
+  Process& run = start(Words{"launch", launch_file("two_spheres"), "--headless", "--steps", "90"} + in_own_domain());
+  expect_exit(run, 0);
+  EXPECT_THAT(run.out(),
+              ::testing::MatchesRegex("ended with state 90, 1.50 s: 2 bodies, [0-9]+ hand-offs, 0 late and 0 "
+                                      "missed collisions\n"))
+      << run.said();
+}
+
 TEST_F(Launch, OneBodyCrossesOneBorderBetweenTwoProcesses) {
   const Report report = report_of("run");
   Process& run = start(Words{"launch", launch_file("two_spheres"), "--duration", "2"} + in_own_domain() +

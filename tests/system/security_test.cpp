@@ -25,6 +25,10 @@ class Security : public SystemTest {
     return std::regex_search(said, found, std::regex("--set dds.security=(\\S+)")) ? found[1].str() : "";
   }
 
+  /// What a process without keys says of others, and what is to be done.
+  static constexpr const char* kSpeakWithKeys =
+      "with keys, and this one has none: --set dds.security=FOLDER gives it those of the run";
+
   fs::path keys() const { return folder() / "keys"; }
   void make_keys() {
     expect_exit(start({"keys", "init", keys().string()}), 0);
@@ -73,11 +77,41 @@ TEST_F(Security, EverybodyDoesWhatTheirKeysAreFor) {
   expect_refusal(Words{"send", "stop", demo, "--as", "hall"} + with_keys(), "allowed for this: operator");
   Process& stranger = start(Words{"top", demo, "--duration", "3"} + in_own_domain());
   expect_exit(stranger, 1);
-  EXPECT_THAT(stranger.err(), HasSubstr("no node of"));
+  EXPECT_THAT(stranger.err(), AllOf(HasSubstr("no node of"), HasSubstr(kSpeakWithKeys)));
+  for (const Words& words :
+       {Words{"send", "pause", demo}, Words{"node", demo, "--region", "2", "--start-time-out", "4"},
+        Words{"echo", "replica_key", demo, "--duration", "3"}}) {
+    Process& another = start(words + in_own_domain());
+    another.wait(kGenerous);
+    EXPECT_THAT(another.err(), HasSubstr(kSpeakWithKeys)) << another.said();
+  }
   EXPECT_TRUE(wait_until([&] { return run.err().find("without keys") != std::string::npos; }, kGenerous)) << run.said();
 
   expect_exit(start(Words{"send", "stop", demo} + with_keys()), 0);
   expect_exit(run, 0);
+}
+
+TEST_F(Security, WhoHasKeysIsToldOfAnOpenRunAndOfOtherKeys) {
+  make_keys();
+  const std::string demo = launch_file("demo");
+  Process& open = launch("open", demo);
+  expect_reaches(report_of("open"), 4, 30);
+  Process& send = start(Words{"send", "pause", demo} + with_keys());
+  expect_exit(send, 1);
+  EXPECT_THAT(send.err(), HasSubstr("without keys, and this one with keys: leave out dds.security")) << send.said();
+  expect_exit(start(Words{"send", "stop", demo} + in_own_domain()), 0);
+  expect_exit(open, 0);
+
+  const std::string others = (folder() / "others").string();
+  expect_exit(start({"keys", "init", others}), 0);
+  expect_exit(start({"keys", "add", others, "desk", "--role", "operator"}), 0);
+  Process& closed = launch("closed", demo, set({"dds.security=" + keys().string()}));
+  expect_reaches(report_of("closed"), 4, 30);
+  Process& stranger = start(Words{"send", "pause", demo} + in_own_domain() + set({"dds.security=" + others}));
+  expect_exit(stranger, 1);
+  EXPECT_THAT(stranger.err(), HasSubstr("with other keys than those in " + others)) << stranger.said();
+  expect_exit(start(Words{"send", "stop", demo} + with_keys()), 0);
+  expect_exit(closed, 0);
 }
 
 TEST_F(Security, KeysThatAreWrongEndAProgramWithWordsAboutThem) {

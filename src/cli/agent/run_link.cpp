@@ -9,6 +9,7 @@
 #include "cli/drain.h"
 #include "cli/key_choice.h"
 #include "cli/launch_setup.h"
+#include "cli/silence.h"
 
 namespace aurasim::cli::agent {
 namespace {
@@ -156,7 +157,8 @@ void RunLink::meet(const Patience& patience) {
     if (patience.is_over() && steering_.is_there() && !launched_) break;  // some of its nodes may be gone
     if (patience.is_over() && !launched_) {
       throw Problem(Kind::kNoSuchRun,
-                    fmt::format("no run of {} in DDS domain {}", launch_.file.string(), launch_.dds.domain));
+                    fmt::format("no run of {} in DDS domain {}{}", launch_.file.string(), launch_.dds.domain,
+                                word_about_keys(participant_.peers_by_keys(), launch_)));
     }
     patience.check("the nodes have not begun");
     turn(kRound);
