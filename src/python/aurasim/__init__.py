@@ -18,9 +18,15 @@ import atexit
 import json
 import os
 import weakref
+from importlib.util import find_spec
 from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
 
 import numpy as np
+
+if find_spec(f"{__name__}._aurasim") is None:
+    raise ImportError(f"aurasim: the module _aurasim is not in {os.path.dirname(__file__)}. In a build tree: cmake --build "
+                      "build/release --target aurasim_python, and PYTHONPATH=build/release/src/python. Or: pip install "
+                      "--no-build-isolation .")
 
 from ._aurasim import (  # noqa: F401
     Acknowledgement,
@@ -129,13 +135,14 @@ class World:
                saves: str | os.PathLike[str] | None = None, spares: int = 0, key: str = "", program: str = "",
                log: str = "", timeout: float = 60.0) -> World:
         """Starts a run on this host, which ends when this World is closed or this program ends. `paused`: it stands in
-        state 0; with `load`, a saved world, soon after the state that was saved. `report`: folder for what the nodes
+        state 0; with `load`, a saved world, in the state that was saved. `report`: folder for what the nodes
         record; `saves`: folder for their parts of saved worlds."""
         return cls(_World.launch(os.fspath(file), _override_texts(set), key, program, log, timeout, paused,
                                  _path(load), _path(report), _path(saves), spares))
 
     def close(self, timeout: float = 30.0) -> int:
-        """Ends what it has started. Returns the launcher's exit code, 0 if there is none."""
+        """Ends what it has started, and waits for that. Returns the launcher's exit code, or that of an agent that died
+        before (128 + its signal); 0 if nothing was launched."""
         return self._world.close(timeout)
 
     @property
