@@ -44,6 +44,8 @@ std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments,
 
 /// Null; or why a saved world may not be called so: it becomes a file's name on every node's host.
 const char* problem_with_save_name(const std::string& name);
+/// Likewise for who asks: with what was found, and what a name is for. Empty: it may.
+std::string refused_save_name(const std::string& name);
 
 /// The file of the newest state that nodes have saved without being asked, as far as this host has parts of it; empty:
 /// there is none.
