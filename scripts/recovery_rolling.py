@@ -106,14 +106,14 @@ def soak(options):
                                             pathlib.Path(f"/proc/{run.process.pid}/status").read_text()).group(1))])
                 next_look = now + 10
             if now > next_act and case.state_of(folder, "run") + 300 < options.steps:
-                act(case, run, dice, counts, folder)
+                act(case, run, dice, counts)
                 next_act = time.monotonic() + dice.uniform(2, 12)
             time.sleep(0.1)
         run.wait(300)
         return result_of(case, run, folder, {"counts": counts, "sizes": sizes, "minutes": options.soak})
 
 
-def act(case, run, dice, counts, folder):
+def act(case, run, dice, counts):
     what = dice.choice(["kills", "kills", "drains", "saves"])
     counts[what] += 1
     if what == "kills":
@@ -122,7 +122,7 @@ def act(case, run, dice, counts, folder):
     if what == "drains":
         told = case.send(["drain", str(dice.randrange(REGIONS))])
     else:
-        told = case.send(["save", f"{folder}/world-{counts['saves'] % 3}.cut"])
+        told = case.send(["save", f"world-{counts['saves'] % 3}.cut"])
     try:
         told.communicate(timeout=60)
     except Exception:  # it is not the client that is measured

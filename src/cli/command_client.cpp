@@ -84,7 +84,9 @@ void CommandClient::accept(const core::CommandReply& reply, UnderWay& under_way)
                                                                  : Clock::duration(kPatienceAfterIt));
   delivery.at_step = reply.at_step;
   delivery.object = reply.object;
-  if (delivery.is_save && paused_in() >= reply.at_step) {  // of a state that is kept: the others hear so from us
+  if (!delivery.is_save) return;
+  under_way.stands = reply.text == core::kSavedAsItStands || paused_in() >= reply.at_step;
+  if (under_way.stands) {  // the others hear so from us
     under_way.command.at_step = reply.at_step;
     under_way.again = Clock::now();
   }
@@ -165,16 +167,16 @@ bool CommandClient::is_on_its_way(const UnderWay& under_way) {
          });
 }
 
+bool CommandClient::has_gone_on_from(core::Step step) {
+  return std::ranges::any_of(live_nodes(), [step](const dds::Status* node) { return node->step > step; });
+}
+
 bool CommandClient::has_ended(UnderWay& under_way) {
   Delivery& delivery = under_way.delivery;
   if (delivery.is_ray) return ray_has_ended(under_way);
   if (delivery.is_save && delivery.text.empty() && all_have_answered(under_way)) {
     delivery.done = true;
     delivery.text = fmt::format("saved state {}", delivery.at_step);
-    const std::optional<core::Step> paused = paused_in();
-    if (paused > delivery.at_step) {
-      delivery.text += fmt::format(", the newest that is certain while the run is paused in {}", *paused);
-    }
     return true;
   }
   if (under_way.accepted && under_way.has_time && !delivery.done) {
@@ -182,19 +184,26 @@ bool CommandClient::has_ended(UnderWay& under_way) {
     delivery.text = fmt::format("takes effect in step {}", delivery.at_step);
     return true;
   }
+  if (under_way.stands && !under_way.has_gone_on && has_gone_on_from(delivery.at_step)) {
+    under_way.has_gone_on = true;  // those that have not saved it never will
+    under_way.deadline = std::min(under_way.deadline, Clock::now() + kPatienceAfterIt);
+  }
   if (is_on_its_way(under_way)) under_way.deadline = std::max(under_way.deadline, Clock::now() + kPatienceAfterIt);
   if (Clock::now() < under_way.deadline) {
     const std::optional<core::Step> paused = paused_in();
     if (!under_way.accepted || under_way.changes_the_run || !paused) return false;  // nodes also stand to change
-    if (delivery.is_save && *paused >= delivery.at_step) return false;              // what is kept is being written
+    if (delivery.is_save && (under_way.stands || *paused >= delivery.at_step)) return false;  // it is being written
     delivery.done = !delivery.is_save;
     delivery.text = fmt::format("the run is paused; takes effect in step {}", delivery.at_step);
     return true;
   }
   if (!delivery.text.empty()) return true;
-  delivery.timed_out = !under_way.accepted || !under_way.subject;
+  delivery.timed_out = !under_way.has_gone_on && (!under_way.accepted || !under_way.subject);
   delivery.text = !under_way.accepted ? fmt::format("no node has taken it: {} are alive, and {} listen",
                                                     live_nodes().size(), endpoint_.listeners())
+                  : under_way.has_gone_on
+                      ? fmt::format("the run has gone on from state {} before all regions had saved it: ask again",
+                                    delivery.at_step)
                   : delivery.is_save  ? "some regions have not saved their parts"
                   : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
                                       : "it was taken, but nobody has shown its effect";

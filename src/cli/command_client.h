@@ -55,7 +55,9 @@ class CommandClient {
     Delivery delivery;
     bool accepted = false;
     bool changes_the_run = false;
-    bool has_time = false;  ///< its state was named: who asked does not wait for it
+    bool stands = false;       ///< a world is saved in the state in which the run stands
+    bool has_gone_on = false;  ///< and some node has left that state since
+    bool has_time = false;     ///< its state was named: who asked does not wait for it
     std::optional<core::BodyId> subject;
     std::vector<core::RegionId> asked;  ///< by a ray; none: all
     std::vector<core::RegionId> answered;
@@ -72,6 +74,7 @@ class CommandClient {
   bool all_have_answered(UnderWay& under_way);
   bool ray_has_ended(UnderWay& under_way);
   bool is_on_its_way(const UnderWay& under_way);
+  bool has_gone_on_from(core::Step step);
 
   dds::ControlBus& control_;
   std::uint64_t agreement_;

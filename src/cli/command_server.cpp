@@ -88,7 +88,7 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
     if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
       answer(one.command, *ray, node);
     } else if (comes_after_the_pause(one.command, node, run)) {
-      save_kept(one.command, std::get<core::Save>(one.command.ask), node, run);
+      save_as_it_stands(one.command, std::get<core::Save>(one.command.ask), node, run);
     } else if (!run.leads) {
       endpoint_.forget(one.command.request);  // who leads next may have to obey it
     } else if (const auto* rate = std::get_if<core::SetRate>(&one.command.ask)) {
@@ -166,27 +166,20 @@ bool CommandServer::comes_after_the_pause(const core::Command& command, const no
   return std::max(command.at_step, node.protocol().earliest_effect()) + until_certain > *run.holds_at;
 }
 
-/// While nothing is computed, what can be saved is what is kept anyhow. The lead says in which state, and who has asked
-/// tells that to the others, by asking again. Whoever does not stand yet hears of it later.
-void CommandServer::save_kept(const core::Command& command, const core::Save& ask, const node::Node& node,
-                              const RunView& run) {
-  const char* const problem = problem_with_save_name(ask.file);
-  const bool is_for_us = problem == nullptr && (run.leads || command.at_step > 0);
-  if (node.current_step() < *run.holds_at || (!run.leads && !is_for_us)) return endpoint_.forget(command.request);
-  if (problem != nullptr) return refuse(command.request, problem);
-  const std::optional<core::Step> step = command.at_step > 0 ? command.at_step : node.newest_kept();
-  if (!step || !node.kept_part(*step)) {
-    if (!run.leads) return endpoint_.forget(command.request);
-    return refuse(command.request,
-                  fmt::format("the run is paused in state {}, and no earlier state {} kept that is certain to be right",
-                              node.current_step(), step ? fmt::format("{} is", *step) : std::string("is")));
-  }
-  kept_saves_.push_back({command.request, *step, ask.file});
+/// The lead says in which state, and who has asked tells that to the others, by asking again. Whoever does not stand
+/// yet hears of it once more later. In state 0 nobody has to be told: there is no other.
+void CommandServer::save_as_it_stands(const core::Command& command, const core::Save& ask, const node::Node& node,
+                                      const RunView& run) {
+  const core::Step now = node.current_step();
+  if (now < *run.holds_at || (!run.leads && command.at_step != now)) return endpoint_.forget(command.request);
+  if (const char* const problem = problem_with_save_name(ask.file)) return refuse(command.request, problem);
+  standing_saves_.push_back({command.request, now, ask.file});
   if (!run.leads) return;
   core::CommandReply reply;
   reply.request = command.request;
   reply.outcome = core::Outcome::kAccepted;
-  reply.at_step = *step;
+  reply.at_step = now;
+  reply.text = core::kSavedAsItStands;
   endpoint_.reply(std::move(reply));
 }
 

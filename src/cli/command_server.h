@@ -32,8 +32,8 @@ struct RunView {
   std::function<std::vector<core::RegionId>(std::uint64_t hash)> lacking;
 };
 
-/// A world that is to be saved in a state that has been computed.
-struct KeptSave {
+/// A world that is to be saved in the state in which the run stands.
+struct StandingSave {
   std::uint64_t request = 0;
   core::Step step = 0;
   std::string file;
@@ -69,7 +69,7 @@ class CommandServer {
   /// The rate that somebody has asked for since the last call; only on the lead.
   std::optional<double> take_wanted_rate() { return std::exchange(wanted_rate_, std::nullopt); }
   /// Asked for in a pause since the last call.
-  std::vector<KeptSave> take_kept_saves() { return std::exchange(kept_saves_, {}); }
+  std::vector<StandingSave> take_standing_saves() { return std::exchange(standing_saves_, {}); }
   /// On the lead: the state after which the run is to change as a whole.
   std::optional<core::Step> change_at() const { return change_at_; }
   /// On the lead: somebody has asked to go back to an earlier state, whichever is kept.
@@ -98,7 +98,8 @@ class CommandServer {
   void take_over(node::Node& node, core::Generation generation);
   void tell_again(const core::Order& order, const node::Node& node);
   bool comes_after_the_pause(const core::Command& command, const node::Node& node, const RunView& run) const;
-  void save_kept(const core::Command& command, const core::Save& ask, const node::Node& node, const RunView& run);
+  void save_as_it_stands(const core::Command& command, const core::Save& ask, const node::Node& node,
+                         const RunView& run);
   bool is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run);
   void wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run);
   void publish_additions(const node::StepReport& report);
@@ -132,7 +133,7 @@ class CommandServer {
   std::optional<double> wanted_rate_;
   std::optional<core::Command> wanted_back_;
   std::optional<core::Step> change_at_;
-  std::vector<KeptSave> kept_saves_;
+  std::vector<StandingSave> standing_saves_;
   core::Step decided_at_ = -1;
   std::size_t decided_ = 0;  ///< commands in that state
 };

@@ -3,15 +3,34 @@
 #include <algorithm>
 
 namespace aurasim::cli {
+namespace {
 
-std::optional<core::Step> holds_at_after(const dds::RunCommand& command, std::optional<core::Step> holds_at) {
-  using Kind = dds::RunCommandKind;
-  if (command.kind == Kind::kPause) return command.at_step;
-  if (command.kind == Kind::kResume) return std::nullopt;
-  if (command.kind == Kind::kStep && holds_at) return std::max(*holds_at, command.at_step);
-  return holds_at;
+/// A command is under way for less than a second. What was asked for so long before is known to all.
+constexpr std::size_t kMost = 1024;
+
+}  // namespace
+
+void AskedSteps::begin(core::Step state) {
+  asked_.clear();
+  begin_ = state;
 }
 
-core::Step first_state_of(const dds::RunCommand& step) { return step.at_step - step.count + 1; }
+void AskedSteps::add(const dds::RunCommand& step) {
+  if (step.generation != generation_) begin(0);
+  generation_ = step.generation;
+  const Asked asked{step.at_step - step.count, step.request, step.count};
+  const auto place = std::ranges::lower_bound(asked_, asked);
+  if (place != asked_.end() && *place == asked) return;  // a copy
+  asked_.insert(place, asked);
+  if (asked_.size() <= kMost) return;
+  begin_ = std::max(begin_, asked_.front().from) + asked_.front().count;
+  asked_.erase(asked_.begin());
+}
+
+core::Step AskedSteps::end() const {
+  core::Step end = begin_;
+  for (const Asked& asked : asked_) end = std::max(end, asked.from) + asked.count;
+  return end;
+}
 
 }  // namespace aurasim::cli

@@ -1,17 +1,37 @@
 // In which state a node of a paused run stands. No clock, no DDS.
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <vector>
 
 #include "dds/control_messages.h"
 
 namespace aurasim::cli {
 
-/// After a pause, a step or a resume; `holds_at` was before. Nothing: it does not stand. A step goes to the state that
-/// it names: who followed the others there, before it heard of the step, goes no farther.
-std::optional<core::Step> holds_at_after(const dds::RunCommand& command, std::optional<core::Step> holds_at);
+/// The steps that clients have asked for in a pause. A step names the state that its sender knew, and how many states
+/// it wants. Steps add up, also those of clients that knew the same state: each is as many states more. Nodes may
+/// receive them in any order and come to the same state.
+class AskedSteps {
+ public:
+  /// The run stands, or is to stand, in `state`: steps that were asked for before are done or void.
+  void begin(core::Step state);
+  /// A step command. One of another generation than those before begins anew.
+  void add(const dds::RunCommand& step);
+  /// Where all of them lead.
+  core::Step end() const;
 
-/// Of a step: what is due at its `epoch_ns`.
-core::Step first_state_of(const dds::RunCommand& step);
+ private:
+  struct Asked {
+    core::Step from = 0;  ///< the state that the sender knew
+    std::uint64_t request = 0;
+    std::int64_t count = 0;
+
+    auto operator<=>(const Asked&) const = default;
+  };
+
+  core::Generation generation_ = 0;
+  core::Step begin_ = 0;
+  std::vector<Asked> asked_;  ///< ascending; the newest kMost of them, begin_ has the others
+};
 
 }  // namespace aurasim::cli

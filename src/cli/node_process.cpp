@@ -297,9 +297,14 @@ bool NodeProcess::wait_until_due() {
   if (hold_at_ && node_->current_step() >= *hold_at_) {
     if (phase_ != NodePhase::kPaused) enter(NodeEvent::kHeld);
     publish();
-    observers_->while_paused(*node_);
-    control_.wait(20ms);
     node_->ready();
+    observers_->while_paused(*node_);
+    // Observers wait for what bodies under way to us do in this state.
+    if (node_->has_all_until(node_->current_step())) {
+      control_.wait(20ms);
+    } else {
+      transport_->wait_for_arrival(2ms);
+    }
     fence_is_open();
     paused_ += Clock::now() - begin;
     return false;
@@ -342,6 +347,7 @@ void NodeProcess::compute_step() {
   keep_the_end();
   const node::StepReport& report = node_->step();
   if (report.put_back_from) return note_redo(report);
+  if (!doubtful_saves_.empty()) look_at_doubtful_saves(std::nullopt);
   command_server_->after_step(report);  // observers look for what it tells
   observers_->after_step(*node_, report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
@@ -371,6 +377,7 @@ void NodeProcess::note_redo(const node::StepReport& report) {
                   report.put_back_for.size() > 1 ? fmt::format(" and {} more pairs", report.put_back_for.size() - 1)
                                                  : std::string());
   spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+  look_at_doubtful_saves(report.step);
   status_.redos = node_->redos();
   observers_->put_back();
   record(node_->confirmed());

@@ -17,6 +17,7 @@
 #include "cli/command_server.h"
 #include "cli/exit_code.h"
 #include "cli/fence.h"
+#include "cli/hold.h"
 #include "cli/node_phase.h"
 #include "cli/part_writer.h"
 #include "cli/patience.h"
@@ -126,7 +127,8 @@ class NodeProcess {
   SavedBy saved_by() const;
   std::vector<std::filesystem::path> save_folders() const;
   void save_regularly();
-  void save_what_is_kept();
+  void save_as_it_stands();
+  void look_at_doubtful_saves(std::optional<core::Step> back_to);
   void compute_until_change();
   void step_back(const RunView& run);
   void send_back(dds::RunCommand restore, const core::Command& back);
@@ -175,6 +177,8 @@ class NodeProcess {
   void open_ros2();
   void tell_ros2();
   void change_rate(double rate);
+  void hold_in(core::Step state);
+  void step_on(const dds::RunCommand& step);
   void apply_orders();
   void execute(const dds::RunCommand& command);
   Worlds known_worlds() const;
@@ -228,11 +232,13 @@ class NodeProcess {
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
   std::vector<std::uint64_t> saved_runs_;   ///< numbers that this run's saved worlds have had
-  core::Step saved_last_ = 0;               ///< state of the last save that nobody has asked for, on the lead
-  std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
-  core::Step checkpoint_ = 0;               ///< the next state that is kept to be gone back to
-  core::Step recorded_ = 0;                 ///< state that all records have been given to `recorder_` of
-  core::Step secured_ = 0;                  ///< and that they are on disk of
+  std::vector<StandingSave> standing_saves_;  ///< asked for, and not written yet
+  std::vector<StandingSave> doubtful_saves_;  ///< written of states that a redo may still go back to before
+  core::Step saved_last_ = 0;                 ///< state of the last save that nobody has asked for, on the lead
+  std::optional<Checkpoints> checkpoints_;    ///< once the domain is known to be free
+  core::Step checkpoint_ = 0;                 ///< the next state that is kept to be gone back to
+  core::Step recorded_ = 0;                   ///< state that all records have been given to `recorder_` of
+  core::Step secured_ = 0;                    ///< and that they are on disk of
   std::unique_ptr<node::Node> node_;
   std::optional<node::Recorder> recorder_;
   node::Pacer pacer_;
@@ -242,6 +248,7 @@ class NodeProcess {
   core::Generation generation_ = 0;
   std::optional<core::Generation> begun_;  ///< whose states node_ computes, or has computed last
   std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
+  AskedSteps asked_steps_;                 ///< since it was paused
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   RunControlLimits run_control_limits_;

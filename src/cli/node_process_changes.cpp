@@ -84,7 +84,7 @@ bool NodeProcess::change_if_due() {
   failed_changes_ = 0;
   life_of_node_ = life_;
   before_change_.reset();
-  if (stands) hold_at_ = node_->current_step();
+  if (stands) hold_in(node_->current_step());
   return true;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "cli/hold.h"
 #include "cli/node_process.h"
 
 namespace aurasim::cli {
@@ -63,18 +62,15 @@ void NodeProcess::obey(const dds::RunCommand& command) {
     case Kind::kTake:
       break;
     case Kind::kPause:
-      hold_at_ = holds_at_after(command, hold_at_);
+      hold_in(command.at_step);
       hurry_until_ = std::max(hurry_until_, command.at_step);
       break;
     case Kind::kStep:
-      if (hold_at_) {
-        pacer_.set_epoch(first_state_of(command), command.epoch_ns, command.clock_ahead, node::read_clocks());
-        hold_at_ = holds_at_after(command, hold_at_);
-      }
+      if (hold_at_) step_on(command);
       break;
     case Kind::kResume:
       if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
-      hold_at_ = holds_at_after(command, hold_at_);
+      hold_at_.reset();
       break;
     case Kind::kReset:
       reset_ = command;
@@ -90,6 +86,21 @@ void NodeProcess::obey(const dds::RunCommand& command) {
       status_.rate = command.rate;
       break;
   }
+}
+
+void NodeProcess::hold_in(core::Step state) {
+  hold_at_ = state;
+  asked_steps_.begin(state);
+}
+
+/// Of a run that is paused. States that somebody has asked for before keep their pace.
+void NodeProcess::step_on(const dds::RunCommand& step) {
+  const core::Step next = *hold_at_ + 1;
+  node::Pacer later = pacer_;
+  later.set_epoch(next, step.epoch_ns, step.clock_ahead, node::read_clocks());
+  if (later.due(next) > pacer_.due(next)) pacer_ = later;
+  asked_steps_.add(step);
+  hold_at_ = std::max(*hold_at_, asked_steps_.end());
 }
 
 /// What was said to this world before it had begun here: its start would have undone it.
@@ -120,9 +131,12 @@ bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
 bool NodeProcess::reset_if_due() {
   if (!reset_ || node_->current_step() < reset_->at_step) return false;
   const dds::RunCommand reset = *reset_;
+  const bool stands = hold_at_.has_value();
   reset_.reset();
   enter(NodeEvent::kReset);
   begin_generation(reset.generation + 1, reset);
+  if (stands) hold_in(node_->current_step());
+  last_published_ = {};  // who has asked waits for it
   return true;
 }
 
@@ -159,7 +173,7 @@ void NodeProcess::serve_clients() {
   };
   run.holds_at = hold_at_;
   command_server_->serve(*node_, run);
-  save_what_is_kept();
+  save_as_it_stands();
   if (run.leads) {
     save_regularly();
     compute_until_change();

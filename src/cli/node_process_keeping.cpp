@@ -36,14 +36,37 @@ void NodeProcess::save_parts() {
   note_saves();
 }
 
-/// In a pause.
-void NodeProcess::save_what_is_kept() {
-  for (const KeptSave& save : command_server_->take_kept_saves()) {
-    std::optional<core::WorldCut> part = node_->kept_part(save.step);
-    if (!part) continue;
+/// In a pause, as soon as all is here that was on its way.
+void NodeProcess::save_as_it_stands() {
+  for (StandingSave& save : command_server_->take_standing_saves()) standing_saves_.push_back(std::move(save));
+  std::erase_if(standing_saves_, [this](const StandingSave& save) {
+    if (save.step != node_->current_step()) {
+      command_server_->refuse(save.request, fmt::format("the run has gone on from state {} before it was saved there: "
+                                                        "ask again",
+                                                        save.step));
+      return true;
+    }
+    std::optional<core::WorldCut> part = node_->present_part();
+    if (!part) return false;
+    if (save.step > node_->confirmed_step()) doubtful_saves_.push_back(save);
     command_server_->add_meshes(*part);
     saves_.write(std::move(*part), launch_, save_of(), SaveKind::kAsked, save.request, save.file);
-  }
+    return true;
+  });
+}
+
+/// What was saved in a pause was certain to be right only later. `back_to`: all have gone back to this state, to
+/// compute those after it again.
+void NodeProcess::look_at_doubtful_saves(std::optional<core::Step> back_to) {
+  std::erase_if(doubtful_saves_, [&](const StandingSave& save) {
+    if (!back_to || save.step <= *back_to) return save.step <= node_->confirmed_step();
+    notice_ = fmt::format(
+        "{} was saved in state {}, which is computed again since bodies had touched on two nodes: save it "
+        "anew",
+        save.file, save.step);
+    spdlog::warn("region {}: {}", core::value_of(options_.region), notice_);
+    return true;
+  });
 }
 
 /// Every node does so by itself, in the same states.

@@ -62,7 +62,7 @@ void NodeProcess::publish(const std::string& text) {
   const bool is_cut_off = phase_ == NodePhase::kRecovering && fence_.is_cut_off();
   const dds::NodeState state = is_cut_off ? dds::NodeState::kCutOff : state_of(phase_).value();
   // Many that wait on few processors would have nothing but each other's statuses to do.
-  const bool only_waits = phase_ == NodePhase::kWaiting && !begun_ && participant_.stays_on_this_host();
+  const bool only_waits = phase_ == NodePhase::kWaiting && !begun_ && participant_->stays_on_this_host();
   if (state == status_.state && now - last_published_ < (only_waits ? kWaitingPeriod : kStatusPeriod)) return;
   last_published_ = now;
   note_strangers();

@@ -1,6 +1,7 @@
 #include "cli/observation_publisher.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace aurasim::cli {
 
@@ -47,9 +48,24 @@ void ObservationPublisher::after_step(node::Node& node, const node::StepReport& 
 void ObservationPublisher::while_paused(node::Node& node) {
   if (!look(node)) return;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-    const Told now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
+    const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
     const auto told = told_.find(asked.key);
-    if (told == told_.end() || told->second != now) tell(node, asked);
+    if (told == told_.end() || told->second.state != now) tell(node, asked);
+  }
+  tell_foreseen(node);
+}
+
+/// The new host of a body under way makes its states up when it joins. In a run that stands that is not yet.
+void ObservationPublisher::tell_foreseen(node::Node& node) {
+  std::optional<std::vector<node::MadeUp>> foreseen;
+  for (const dds::ObservationServer::Asked& asked : server_.asked()) {
+    Told& told = told_[asked.key];
+    if (std::exchange(told.hand_offs, node.hand_offs_to_come()) == node.hand_offs_to_come()) continue;
+    if (!foreseen) foreseen = node.foresee();
+    for (const node::MadeUp& state : *foreseen) {
+      const bool is_wanted = asked.interest->is_for(state.step) || state.step == node.current_step();
+      if (is_wanted) server_.send(asked.key, feed_->compose(*asked.interest, state, node.redos()));
+    }
   }
 }
 
@@ -59,7 +75,7 @@ void ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::
       feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
   observation.scene_order = node.newest_scene_order();
   server_.send(asked.key, observation);
-  told_.insert_or_assign(asked.key, Told{asked.arrivals, settings_.generation, node.redos(), node.current_step()});
+  told_.insert_or_assign(asked.key, Told{{asked.arrivals, settings_.generation, node.redos(), node.current_step()}, 0});
 }
 
 void ObservationPublisher::tell_made_up(const node::Node& node, const node::StepReport& report) {

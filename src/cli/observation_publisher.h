@@ -29,14 +29,19 @@ class ObservationPublisher {
   bool look(node::Node& node);
   void tell(node::Node& node, const dds::ObservationServer::Asked& asked);
   void tell_made_up(const node::Node& node, const node::StepReport& report);
+  void tell_foreseen(node::Node& node);
 
-  struct Told {
+  struct State {
     std::uint64_t arrivals = 0;
     core::Generation generation = 0;
     std::uint32_t redo = 0;
     core::Step step = -1;
 
-    bool operator==(const Told&) const = default;
+    bool operator==(const State&) const = default;
+  };
+  struct Told {
+    State state;
+    std::size_t hand_offs = 0;  ///< that had come and did not take effect yet: what they bring was told, too
   };
 
   node::FeedSettings settings_;

@@ -8,12 +8,12 @@
 namespace aurasim::cli {
 
 struct PutTogether {
-  bool is_whole = false;  ///< false: the parts are on their nodes' hosts
+  std::string file;  ///< empty: the parts are on their nodes' hosts, or in several folders
   std::uintmax_t bytes = 0;
 };
 
-/// Makes `file` of the parts, and removes these, if all of them are on this host. Throws cut::BadCut or
-/// std::runtime_error.
-PutTogether put_together(const std::vector<std::string>& parts, const std::string& file);
+/// Makes one file of the parts, called `name` and in their folder, and removes the parts, if all of them are in one
+/// folder of this host. Throws cut::BadCut or std::runtime_error.
+PutTogether put_together(const std::vector<std::string>& parts, const std::string& name);
 
 }  // namespace aurasim::cli

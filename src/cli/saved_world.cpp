@@ -84,6 +84,12 @@ const char* problem_with_save_name(const std::string& name) {
   return nullptr;
 }
 
+std::string refused_save_name(const std::string& name) {
+  const char* const problem = problem_with_save_name(name);
+  if (problem == nullptr) return {};
+  return fmt::format("{}: found '{}'. It is a file in the nodes' folder of saved worlds (--saves)", problem, name);
+}
+
 std::optional<cut::StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders,
                                                    const SavedBy& by) {
   std::vector<cut::StoredWorld> worlds;

@@ -45,6 +45,8 @@ std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments,
 
 /// Null; or why a saved world may not be called so: it becomes a file's name on every node's host.
 const char* problem_with_save_name(const std::string& name);
+/// Likewise for who asks: with what was found, and what a name is for. Empty: it may.
+std::string refused_save_name(const std::string& name);
 
 /// What nodes have saved, and to whom it has to belong.
 struct SavedBy {

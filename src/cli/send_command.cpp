@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -19,6 +18,7 @@
 #include "cli/leave.h"
 #include "cli/run_steering.h"
 #include "cli/saved_parts.h"
+#include "cli/saved_world.h"
 #include "cli/silence.h"
 #include "core/limits.h"
 
@@ -48,7 +48,7 @@ struct SendArguments {
   std::string mesh_file;
   bool in_parts = false;
   std::string scene;
-  std::string save_file;
+  std::string save_name;
   std::optional<std::uint64_t> body;
   std::uint32_t region = 0;
   std::string named;
@@ -93,6 +93,11 @@ core::StaticId static_named(const std::string& named, const core::Scene& scene) 
   return core::StaticId{id};
 }
 
+std::string sound_name(const std::string& name) {
+  if (const std::string why = refused_save_name(name); !why.empty()) fail(why);
+  return name;
+}
+
 core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClient& client) {
   if (a.what == "spawn") {
     core::NewBody body;
@@ -118,9 +123,9 @@ core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClien
   }
   if (a.what == "rate") return core::SetRate{a.rate};
   if (a.what == "scene") return core::ChangeScene{a.scene};
-  if (a.what == "load") return core::Load{a.save_file};
+  if (a.what == "load") return core::Load{sound_name(a.save_name)};
   if (a.what == "back") return core::Load{};
-  if (a.what == "save") return core::Save{std::filesystem::path(a.save_file).filename().string()};
+  if (a.what == "save") return core::Save{sound_name(a.save_name)};
   if (a.what == "ray") return core::Ray{vector(a.from), vector(a.to), {}};
   core::Repartition regions;
   for (std::size_t i = 0; i + 3 < a.boxes.size(); i += 4) {
@@ -131,18 +136,18 @@ core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClien
 
 nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The parts become the file that was asked for, if all of them are on this host.
-nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::string& file) {
-  const PutTogether made = put_together(parts, file);
-  if (made.is_whole) return {{"file", file}, {"bytes", made.bytes}};
-  spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", file);
+/// The parts become one file, if all of them are on this host.
+nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::string& name) {
+  const PutTogether made = put_together(parts, name);
+  if (!made.file.empty()) return {{"file", made.file}, {"bytes", made.bytes}};
+  spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", name);
   return {{"parts", parts}};
 }
 
 [[noreturn]] void print_delivery(const Delivery& delivery, const SendArguments& arguments) {
   if (!delivery.done) fail(delivery.text);
   nlohmann::json out = {{"step", delivery.at_step}};
-  if (delivery.is_save && !delivery.files.empty()) out.update(whole_or_parts(delivery.files, arguments.save_file));
+  if (delivery.is_save && !delivery.files.empty()) out.update(whole_or_parts(delivery.files, arguments.save_name));
   if (delivery.object)
     out[*delivery.object >= 0 ? "body" : "static"] = *delivery.object >= 0 ? *delivery.object : -1 - *delivery.object;
   if (delivery.is_ray) {
@@ -348,11 +353,11 @@ void add_send(CLI::App& program, Action& action) {
        [](CLI::App& c, SendArguments& a) { c.add_option("REGION", a.region, "whose node")->required(); }},
       {"save", "keep the world in a file",
        [](CLI::App& c, SendArguments& a) {
-         c.add_option("WORLD", a.save_file, "the file; launch --load goes on from it")->required();
+         c.add_option("WORLD", a.save_name, "its name: of a file in the nodes' --saves folder")->required();
        }},
       {"load", "go on from a saved world",
        [](CLI::App& c, SendArguments& a) {
-         c.add_option("WORLD", a.save_file, "in the nodes' --saves folder")->required();
+         c.add_option("WORLD", a.save_name, "its name: of a file in the nodes' --saves folder")->required();
        }},
       {"back", "go back to the newest earlier state that is kept", none},
       {"ray", "what is first on the way from a point to another?", ray_options}};

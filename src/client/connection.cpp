@@ -10,6 +10,7 @@
 
 #include <aurasim/errors.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -17,6 +18,10 @@
 #include <unistd.h>
 
 #include "client/last_words.h"
+
+extern "C" {  // glibc 2.36 has not said so itself
+#include <sys/pidfd.h>
+}
 
 extern char** environ;
 
@@ -29,6 +34,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kLookEvery = 100ms;
 constexpr auto kGrace = 20s;  ///< the agent ends a request itself when its time is over
 constexpr auto kPatienceWithItsEnd = 10s;
+constexpr int kNap_ms = 100;
 constexpr off_t kLongestLastWords_B = 4000;
 
 template <class Kind>
@@ -120,10 +126,17 @@ void Connection::start(const std::string& program, int socket) {
 Connection::~Connection() {
   if (::getpid() == owner_) {
     end(Clock::now() + kPatienceWithItsEnd);
-  } else if (socket_ >= 0) {
-    ::close(socket_);
+    end_launcher(Clock::now() + kPatienceWithItsEnd);
+  } else {
+    if (socket_ >= 0) ::close(socket_);
+    if (launcher_ >= 0) ::close(launcher_);
   }
   ::close(log_);
+}
+
+/// Nothing is watched where the kernel cannot: then the launcher ends a moment after an agent that dies.
+void Connection::watch_launcher(pid_t launcher) {
+  if (launcher > 0 && launcher_ < 0) launcher_ = ::pidfd_open(launcher, 0);
 }
 
 Message Connection::ask(Message question, Seconds time_out) {
@@ -154,7 +167,7 @@ Message Connection::read_answer(std::uint64_t request, Clock::time_point deadlin
 }
 
 int Connection::close(Seconds time_out) {
-  if (!is_open()) return 0;
+  if (!is_open()) return end_launcher(after(time_out));
   int exit_code = 0;
   try {
     const std::function<bool()> until_then = std::exchange(interrupted_, {});
@@ -162,23 +175,41 @@ int Connection::close(Seconds time_out) {
   } catch (const Error&) {
   }
   end(Clock::now() + kPatienceWithItsEnd);
-  return exit_code;
+  const int of_agent = end_launcher(after(time_out));
+  return exit_code != 0 ? exit_code : of_agent;
+}
+
+/// An agent that ends in order has waited for its launcher. One that dies takes the launcher with it (SIGTERM), and
+/// that ends when all nodes have. Returns the agent's exit code, if there was a launcher.
+int Connection::end_launcher(Clock::time_point deadline) {
+  if (launcher_ < 0) return 0;
+  pollfd its_end{launcher_, POLLIN, 0};
+  bool is_over = false;
+  while (!is_over && Clock::now() < deadline) is_over = ::poll(&its_end, 1, kNap_ms) > 0;
+  if (!is_over) {
+    ::pidfd_send_signal(launcher_, SIGKILL, nullptr, 0);
+    ::poll(&its_end, 1, kNap_ms);
+  }
+  ::close(std::exchange(launcher_, -1));
+  return exit_code_;
 }
 
 /// It ends by itself when it sees that we are gone, and what it has started ends with it.
 void Connection::end(Clock::time_point deadline) {
   if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   if (pid_ <= 0) return;
-  while (::waitpid(pid_, nullptr, WNOHANG) == 0) {
+  int status = 0;
+  while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() >= deadline) {
       ::kill(pid_, SIGKILL);
-      while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+      while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
       }
       break;
     }
     const timespec nap{0, 2'000'000};
     ::nanosleep(&nap, nullptr);
   }
+  exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   pid_ = 0;
 }
 

@@ -12,7 +12,7 @@
 namespace aurasim::client {
 
 /// Changes with every change of what is said.
-inline constexpr int kAgentProtocol = 2;
+inline constexpr int kAgentProtocol = 3;
 
 struct Message {
   nlohmann::json head;

@@ -107,17 +107,18 @@ World World::connect(const std::string& file, const ConnectOptions& options) {
 
 World World::launch(const std::string& file, const LaunchOptions& options) {
   World world(std::make_shared<Impl>(options.program, options.log, options.interrupted));
-  world.impl_->ask({{"do", "launch"},
-                    {"protocol", kAgentProtocol},
-                    {"file", file},
-                    {"set", options.overrides},
-                    {"as", options.as},
-                    {"paused", options.paused},
-                    {"load", options.load},
-                    {"report", options.report},
-                    {"saves", options.saves},
-                    {"spares", options.spares}},
-                   options.time_out);
+  const json begun = world.impl_->ask({{"do", "launch"},
+                                       {"protocol", kAgentProtocol},
+                                       {"file", file},
+                                       {"set", options.overrides},
+                                       {"as", options.as},
+                                       {"paused", options.paused},
+                                       {"load", options.load},
+                                       {"report", options.report},
+                                       {"saves", options.saves},
+                                       {"spares", options.spares}},
+                                      options.time_out);
+  world.impl_->connection.watch_launcher(begun.value("launcher", 0));
   return world;
 }
 
@@ -193,8 +194,8 @@ std::uint32_t World::drain(std::uint32_t region, Seconds time_out) {
   return impl_->ask({{"do", "drain"}, {"region", region}}, time_out).value("pid", 0U);
 }
 
-SavedWorld World::save(const std::string& file, Seconds time_out) {
-  return saved_world_of(impl_->ask({{"do", "save"}, {"file", absolute(file)}}, time_out));
+SavedWorld World::save(const std::string& name, Seconds time_out) {
+  return saved_world_of(impl_->ask({{"do", "save"}, {"name", name}}, time_out));
 }
 Acknowledgement World::load(const std::string& name, Seconds time_out) {
   return impl_->act_one({{"kind", "load"}, {"name", name}}, 0, time_out);

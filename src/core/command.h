@@ -62,6 +62,10 @@ enum class Outcome : std::uint8_t {
   kSeen,      ///< answer of one region: to a ray, or that its part of the world is saved
 };
 
+/// Text of a reply kAccepted to a Save of a run that stands: the state that is saved is the present one. Whoever has
+/// asked tells that to the other nodes, by asking again with this state.
+inline constexpr const char* kSavedAsItStands = "as it stands";
+
 struct CommandReply {
   RegionId source{};
   std::uint64_t request = 0;

@@ -73,6 +73,8 @@ class Intake {
   bool fenced() const { return fenced_; }
   /// Messages of neighbours that were alive, refused; each neighbour has been held for dead since.
   const std::vector<Refusal>& refusals() const { return refusals_; }
+  /// Hand-offs that have come and do not take effect yet.
+  std::span<const HandOff> to_come() const { return waiting_; }
   /// Bodies sent to a region that died, which may not be taken back yet.
   const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
   const IntakeCounters& counters() const { return counters_; }

@@ -1,6 +1,7 @@
 #include "experiment/virtual_cluster.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -84,6 +85,7 @@ VirtualCluster::Event VirtualCluster::next() {
     double event_s = std::numeric_limits<double>::infinity();
     Member* chosen = nullptr;
     for (Member& member : members_) {
+      if (member.node->current_step() >= last_) continue;
       const double at_s = member.waiting ? std::max(network_.next_arrival_s(), network_.now_s()) : due_s(member);
       if (at_s >= event_s) continue;
       event_s = at_s;
@@ -101,6 +103,16 @@ VirtualCluster::Event VirtualCluster::next() {
     }
     compute(*chosen, network_.now_s());
     return {chosen->node->region(), report_};
+  }
+}
+
+void VirtualCluster::stand_in(core::Step state) {
+  last_ = state;
+  while (slowest() < state) next();
+  last_ = std::numeric_limits<core::Step>::max();
+  while (std::isfinite(network_.next_arrival_s())) {
+    network_.advance_to(std::max(network_.next_arrival_s(), network_.now_s()));
+    for (Member& member : members_) member.node->ready();
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,6 +62,8 @@ class VirtualCluster {
     const node::StepReport* report = nullptr;  ///< valid until the next event
   };
   Event next();
+  /// As in a pause: all nodes compute this state and none the next, and what they have sent arrives.
+  void stand_in(core::Step state);
 
   std::size_t size() const { return members_.size(); }
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
@@ -100,6 +103,7 @@ class VirtualCluster {
   std::vector<Member> members_;
   std::uint64_t random_;
   const node::StepReport* report_ = nullptr;
+  core::Step last_ = std::numeric_limits<core::Step>::max();  ///< no node goes beyond it
 };
 
 }  // namespace aurasim::experiment

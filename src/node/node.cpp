@@ -34,6 +34,14 @@ bool is_of_the_scene(const core::ClusterState& cluster, const core::Scene& scene
                              [&](const auto& m) { return is_known(m.object0) && is_known(m.object1); });
 }
 
+MadeUp made_up(core::Step step, std::span<const core::BodyRecord> bodies, const core::ClusterState& cluster) {
+  MadeUp state{step, {bodies.begin(), bodies.end()}, {}, {}};
+  for (const core::BodyRecord& body : cluster.bodies) {
+    if (!std::ranges::binary_search(bodies, body.id, {}, &core::BodyRecord::id)) state.gone.push_back(body.id);
+  }
+  return state;
+}
+
 }  // namespace
 
 Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map,
@@ -216,7 +224,7 @@ void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
   world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
                [&](core::Step step, std::span<const core::BodyRecord> bodies) {
                  if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
-                 if (is_observed_) report_.made_up.push_back({step, {bodies.begin(), bodies.end()}, {}});
+                 if (is_observed_) report_.made_up.push_back(made_up(step, bodies, adoption.cluster));
                  protocol_->note_made_up(step, nth, bodies);
                });
   note_made_up_contacts();
@@ -235,6 +243,25 @@ void Node::note_made_up_contacts() {
   for (std::size_t i = 0; first + i < report_.made_up.size(); ++i) {
     report_.made_up[first + i].contacts = std::move(contacts[i].contacts);
   }
+}
+
+std::vector<MadeUp> Node::foresee() {
+  std::vector<MadeUp> states;
+  for (const core::HandOff& hand_off : protocol_->intake().to_come()) {
+    if (hand_off.stamp >= current_step() || !is_of_the_scene(hand_off.cluster, scene_)) continue;
+    const std::size_t first = states.size();
+    std::vector<physics::MadeUpContacts> contacts = world_.foresee(
+        hand_off.cluster, hand_off.stamp, [&](core::Step step, std::span<const core::BodyRecord> bodies) {
+          states.push_back(made_up(step, bodies, hand_off.cluster));
+        });
+    for (std::size_t i = 0; i < contacts.size(); ++i) states[first + i].contacts = std::move(contacts[i].contacts);
+  }
+  return states;
+}
+
+/// In deterministic mode state n needs what was sent in states up to n - K.
+bool Node::has_all_until(core::Step last) const {
+  return protocol_->missing(last + setup_.protocol.aura.lookahead).empty();
 }
 
 void Node::note_arrivals(const core::Adoption& adoption) {

@@ -33,7 +33,6 @@ struct Cut {
   std::vector<std::uint64_t> next_injection;
   core::RankClaimer claimer;
   CollisionCounts collisions;
-  bool is_whole = false;  ///< all that joins has come
 };
 
 struct NodeSetup {
@@ -106,6 +105,7 @@ struct MadeUp {
   core::Step step = 0;
   std::vector<core::BodyRecord> bodies;        ///< ascending id
   std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
+  std::vector<core::BodyId> gone;              ///< of those that were handed over: taken out on the way. Ascending
 };
 
 /// What one step did. Valid until the next.
@@ -179,11 +179,9 @@ class Node {
   void save(core::Step step);
   /// The parts that are complete: nothing can come to question them any more, and all that was under way is here.
   std::vector<core::WorldCut> take_saved();
-  /// The newest state that it has kept by itself, and that is certain: nothing can come to question it any more, and
-  /// all that was under way is here. The same on all nodes that stand in the same state, but for alarms under way.
-  std::optional<core::Step> newest_kept() const;
-  /// Its part of the world in such a state, as save() would have it; nothing: it is not kept, or not certain.
-  std::optional<core::WorldCut> kept_part(core::Step step) const;
+  /// This region's part of the world in the present state, while the run stands; nothing: some of what was sent here up
+  /// to then has not come. A redo may still go back to before this state: then the part is of a world that was void.
+  std::optional<core::WorldCut> present_part() const;
   /// What this node knows by now that a world saved in an earlier state does not: a part of it without bodies, with all
   /// orders.
   core::WorldCut orders_now(const core::WorldCut& earlier) const;
@@ -205,6 +203,14 @@ class Node {
   void observe(bool states, bool contacts);
   /// As it has grown.
   const core::Scene& scene() const { return scene_; }
+
+  /// What bodies on their way here do up to the present state, whose hand-offs have come: they make it up when they
+  /// join, to the same bits. Changes nothing. By hand-off, each ascending by state.
+  std::vector<MadeUp> foresee();
+  /// How many hand-offs have come that do not take effect yet.
+  std::size_t hand_offs_to_come() const { return protocol_->intake().to_come().size(); }
+  /// Everything is here that others have sent to this node in states up to `last`.
+  bool has_all_until(core::Step last) const;
 
   /// After the last step: may what is still under way be taken in?
   bool ready_to_settle();
@@ -267,7 +273,6 @@ class Node {
   void note_arrived();
   void save_if_due();
   core::WorldCut part_of_world(Cut cut) const;
-  bool is_certain(const Cut& cut) const;
   void add_orders(core::WorldCut& part, core::Step after) const;
   void announce_spawns(core::Step birth);
   void apply(const core::Changes& changes);

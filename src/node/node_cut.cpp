@@ -23,12 +23,10 @@ void Node::save(core::Step step) {
 
 /// Before the clusters for the next state are taken in: those that left before a state that is saved are among them.
 void Node::note_arrived() {
-  const auto has_all = [&](core::Step step) {
-    const core::Step wanted = step + setup_.protocol.aura.lookahead;
-    return current_step() + 1 >= wanted && protocol_->missing(wanted).empty();
-  };
-  for (Saving& saving : saving_) saving.is_whole = saving.cut && has_all(saving.step);
-  for (Cut& cut : cuts_) cut.is_whole = cut.is_whole || has_all(cut.step);
+  for (Saving& saving : saving_) {
+    saving.is_whole =
+        saving.cut && current_step() + 1 >= saving.step + setup_.protocol.aura.lookahead && has_all_until(saving.step);
+  }
 }
 
 void Node::save_if_due() {
@@ -83,19 +81,14 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
   core::forget_moves_before(after + 1, part.orders);
 }
 
-bool Node::is_certain(const Cut& cut) const { return cut.is_whole && cut.step <= confirmed_step(); }
-
-std::optional<core::Step> Node::newest_kept() const {
-  for (auto cut = cuts_.rbegin(); cut != cuts_.rend(); ++cut) {
-    if (is_certain(*cut)) return cut->step;
+std::optional<core::WorldCut> Node::present_part() const {
+  if (!has_all_until(current_step())) return std::nullopt;
+  Cut now = cut();
+  for (const core::HandOff& to_come : protocol_->intake().to_come()) {
+    if (to_come.stamp > current_step()) continue;
+    now.joining.push_back({to_come.source, to_come.stamp, to_come.sequence, to_come.reason, false, to_come.cluster});
   }
-  return std::nullopt;
-}
-
-std::optional<core::WorldCut> Node::kept_part(core::Step step) const {
-  const auto cut = std::ranges::find(cuts_, step, &Cut::step);
-  if (cut == cuts_.end() || !is_certain(*cut)) return std::nullopt;
-  return part_of_world(*cut);
+  return part_of_world(std::move(now));
 }
 
 std::vector<core::WorldCut> Node::take_saved() {

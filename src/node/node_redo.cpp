@@ -28,7 +28,9 @@ core::Step Node::confirmed_step() const {
   return protocol_->alarms_given_up() ? protocol_->confirmed_but_for_alarms() : protocol_->confirmed();
 }
 
+/// Where nothing is computed again nobody goes back to it.
 void Node::take_cut() {
+  if (!setup_.protocol.aura.redo) return;
   const Timed timed(report_.durations.cut_s, setup_.clock);
   cuts_.push_back(cut());
 }
@@ -48,10 +50,7 @@ void Node::keep(core::Step last) {
 /// What is older than anything that a redo can still go back to. All nodes go back to the same state, so none may let
 /// go of it, or of the reports since, before all have.
 void Node::forget_cuts() {
-  if (!setup_.protocol.aura.redo) {
-    while (cuts_.size() > 1 && is_certain(cuts_[1])) cuts_.pop_front();
-    return;
-  }
+  if (!setup_.protocol.aura.redo) return;
   const core::Step oldest = cut_before(protocol_->confirmed() + 1, kOlderCuts).step;
   while (cuts_.front().step < oldest) cuts_.pop_front();
   if (begun_with_ && cuts_.front().step > begun_with_->step) begun_with_.reset();

@@ -172,6 +172,8 @@ Observation ObservationFeed::compose(const Interest& interest, const MadeUp& sta
       observation.outside.push_back(body.id);
     }
   }
+  observation.outside.insert(observation.outside.end(), state.gone.begin(), state.gone.end());
+  std::ranges::sort(observation.outside);
   add_joints(interest, bodies, observation);
   add_contacts(interest, bodies, state.contacts, observation);
   return observation;

@@ -15,13 +15,15 @@ class RegionWorld::Impl {
       : scene(scene_in),
         shapes(std::make_shared<ShapeSet>(scene)),
         simulation(scene, settings, shapes, timeline),
-        scratch(scene, settings, shapes, timeline) {}
+        scratch(scene, settings, shapes, timeline),
+        ahead(scene, settings, shapes, timeline) {}
 
   const core::Scene& scene;
   Timeline timeline;
   std::shared_ptr<ShapeSet> shapes;
   Simulation simulation;
   ScratchWorld scratch;
+  ScratchWorld ahead;              ///< of clusters that have not joined: what happens there is reported when they do
   std::vector<Collision> made_up;  ///< first contacts of clusters that caught up since the last step
   std::vector<Collision> collisions;
 };
@@ -46,6 +48,18 @@ void RegionWorld::adopt(const core::ClusterState& cluster, core::Step stamp, con
   } else {
     impl_->simulation.join(impl_->scratch.catch_up(cluster, stamp, step_number(), caught_up, impl_->made_up));
   }
+}
+
+std::vector<MadeUpContacts> RegionWorld::foresee(const core::ClusterState& cluster, core::Step stamp,
+                                                 const CatchUpListener& caught_up) {
+  ScratchWorld& ahead = impl_->ahead;
+  std::vector<Collision> seen_when_it_joins;
+  if (stamp < step_number()) ahead.catch_up(cluster, stamp, step_number(), caught_up, seen_when_it_joins);
+  ahead.take_removed();
+  ahead.take_applied();
+  ahead.take_declined();
+  ahead.take_unbearable();
+  return ahead.take_contacts();
 }
 
 core::ClusterState RegionWorld::release(std::span<const core::BodyId> bodies) {
@@ -142,6 +156,7 @@ const std::vector<Collision>& RegionWorld::collisions() const { return impl_->co
 void RegionWorld::watch_contacts(bool wanted) {
   impl_->simulation.watch_contacts(wanted);
   impl_->scratch.watch_contacts(wanted);
+  impl_->ahead.watch_contacts(wanted);
 }
 
 const std::vector<core::ContactImpulse>& RegionWorld::contact_impulses() const {

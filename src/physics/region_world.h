@@ -47,6 +47,11 @@ class RegionWorld {
   /// step_number() in a scratch world, then joins with its contact cache. Calls `caught_up` for every state made up.
   void adopt(const core::ClusterState& cluster, core::Step stamp, const CatchUpListener& caught_up = {});
 
+  /// Computes the states of a cluster after `stamp` up to step_number(), as adopt() would make them up, and leaves this
+  /// world as it is. Returns what has pressed on what in them, if that is watched.
+  std::vector<MadeUpContacts> foresee(const core::ClusterState& cluster, core::Step stamp,
+                                      const CatchUpListener& caught_up);
+
   /// Takes bodies out with everything that a hand-off has to carry. Every id must be here, or std::invalid_argument
   /// is thrown with nothing done. Contacts and joints with bodies that stay behind are cut and counted (see
   /// severed_contacts).

@@ -157,8 +157,8 @@ void add_steering(PyWorld& world) {
   world.def("drain", [](SharedWorld& w, std::uint32_t region, double t) {
     return w.with([=](World& o) { return o.drain(region, Seconds(t)); });
   });
-  world.def("save", [](SharedWorld& w, const std::string& file, double t) {
-    return w.with([&](World& o) { return o.save(file, Seconds(t)); });
+  world.def("save", [](SharedWorld& w, const std::string& name, double t) {
+    return w.with([&](World& o) { return o.save(name, Seconds(t)); });
   });
   world.def("load", [](SharedWorld& w, const std::string& name, double t) {
     return w.with([&](World& o) { return o.load(name, Seconds(t)); });

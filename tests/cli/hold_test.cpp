@@ -1,5 +1,8 @@
-// In which state nodes stand after a pause, steps and a resume, whatever each has done before it hears of them.
+// In which state nodes stand after steps, in whatever order each has heard of them.
 #include "cli/hold.h"
+
+#include <algorithm>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -7,45 +10,80 @@ namespace aurasim::cli {
 namespace {
 
 using core::Step;
-using Kind = dds::RunCommandKind;
 
-dds::RunCommand command(Kind kind, Step at_step, std::int64_t count = 0) {
+/// Of a client that knows state `from`.
+dds::RunCommand step(std::uint64_t request, Step from, std::int64_t count, core::Generation generation = 1) {
   dds::RunCommand command;
-  command.kind = kind;
-  command.at_step = at_step;
+  command.kind = dds::RunCommandKind::kStep;
+  command.request = request;
+  command.generation = generation;
+  command.at_step = from + count;
   command.count = count;
   return command;
 }
 
-TEST(Hold, AStepGoesToTheStateThatItNames) {
-  const dds::RunCommand step = command(Kind::kStep, 105, 5);
-  EXPECT_EQ(holds_at_after(step, 100), 105);
-  EXPECT_EQ(first_state_of(step), 101);
+Step end_of(Step paused_at, const std::vector<dds::RunCommand>& steps) {
+  AskedSteps asked;
+  asked.begin(paused_at);
+  for (const dds::RunCommand& one : steps) asked.add(one);
+  return asked.end();
 }
 
-TEST(Hold, ANodeThatHasFollowedTheOthersBeforeItHearsOfAStepGoesNoFarther) {
-  const dds::RunCommand step = command(Kind::kStep, 105, 5);
-  for (const Step followed_to : {100, 103, 105}) EXPECT_EQ(holds_at_after(step, followed_to), 105) << followed_to;
+TEST(AskedSteps, LeadToTheStateThatTheyName) {
+  EXPECT_EQ(end_of(100, {step(1, 100, 5)}), 105);
+  EXPECT_EQ(end_of(100, {step(1, 100, 5), step(2, 105, 3)}), 108);
 }
 
-TEST(Hold, TwoStepsAddUpWhereverANodeHearsOfThem) {
-  const dds::RunCommand first = command(Kind::kStep, 105, 5), second = command(Kind::kStep, 108, 3);
-  for (const Step followed_to : {100, 105, 108}) {
-    EXPECT_EQ(holds_at_after(second, holds_at_after(first, followed_to)), 108) << followed_to;
+TEST(AskedSteps, AddUpAlsoFromOneState) {
+  EXPECT_EQ(end_of(100, {step(1, 100, 5), step(2, 100, 5)}), 110);
+  EXPECT_EQ(end_of(100, {step(1, 100, 5), step(2, 100, 5), step(3, 105, 5)}), 115) << "it had seen one of the two";
+}
+
+TEST(AskedSteps, ThatComeTwiceCountOnce) {
+  EXPECT_EQ(end_of(100, {step(1, 100, 5), step(2, 100, 1), step(1, 100, 5)}), 106);
+}
+
+TEST(AskedSteps, OfWhoKnewALaterStateThanThePauseNamedGoOnFromThere) {
+  EXPECT_EQ(end_of(100, {step(1, 103, 5)}), 108) << "nodes that were farther have made the others follow";
+}
+
+TEST(AskedSteps, BeginAnewWithAPause) {
+  AskedSteps asked;
+  asked.begin(100);
+  asked.add(step(1, 100, 100'000));
+  asked.begin(300);
+  asked.add(step(2, 300, 5));
+  EXPECT_EQ(asked.end(), 305) << "the pause has ended the long step";
+}
+
+TEST(AskedSteps, OfAnotherGenerationBeginAnew) {
+  EXPECT_EQ(end_of(600, {step(1, 600, 60), step(2, 540, 5, 2)}), 545) << "the run has gone back between the two";
+}
+
+TEST(AskedSteps, AddUpWhenThereAreMoreThanAreKept) {
+  AskedSteps asked;
+  asked.begin(0);
+  for (std::uint64_t i = 0; i < 10'000; ++i) asked.add(step(i + 1, static_cast<Step>(i), 2));
+  EXPECT_EQ(asked.end(), 20'000);
+}
+
+/// Two clients take turns as they like; each knows some state in which the run has stood.
+TEST(AskedSteps, LeadAllNodesToOneStateInWhateverOrderTheyHear) {
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<dds::RunCommand> steps;
+    Step known = 100, sum = 100;
+    for (std::uint64_t request = 1; request <= 20; ++request) {
+      const auto count = static_cast<std::int64_t>(1 + random() % 9);
+      steps.push_back(step(request, known, count));
+      sum += count;
+      if (random() % 3 != 0) known = sum - static_cast<Step>(random() % 2) * count;
+    }
+    for (int node = 0; node < 5; ++node) {
+      std::ranges::shuffle(steps, random);
+      EXPECT_EQ(end_of(100, steps), sum) << "seed " << seed;
+    }
   }
-}
-
-TEST(Hold, NobodyGoesBackForAStepThatComesLate) { EXPECT_EQ(holds_at_after(command(Kind::kStep, 105, 5), 110), 110); }
-
-TEST(Hold, AStepSaysNothingToANodeThatRuns) {
-  EXPECT_EQ(holds_at_after(command(Kind::kStep, 105, 5), std::nullopt), std::nullopt);
-}
-
-TEST(Hold, APauseNamesItsStateAndAResumeEndsIt) {
-  EXPECT_EQ(holds_at_after(command(Kind::kPause, 105), std::nullopt), 105);
-  EXPECT_EQ(holds_at_after(command(Kind::kPause, 105), 200), 105);
-  EXPECT_EQ(holds_at_after(command(Kind::kResume, 105), 105), std::nullopt);
-  EXPECT_EQ(holds_at_after(command(Kind::kStop, 300), 105), 105);
 }
 
 }  // namespace

@@ -36,16 +36,17 @@ class Merged : public ::testing::Test {
     Observation observation = of(source, step);
     observation.kind = Observation::Kind::kMadeUp;
     add(observation, id, source, 1);
+    observation.bodies.back().row.p_WB.x() = 7;
     return observation;
   }
   void both(core::Step step, std::uint32_t redo = 0) {
     states_.accept(of(0, step, redo), now_s_);
     states_.accept(of(1, step, redo), now_s_);
   }
-  std::vector<MergedState> take(bool stands = false) { return states_.take(kBoth, stands, now_s_); }
-  std::vector<core::Step> steps(bool stands = false) {
+  std::vector<MergedState> take() { return states_.take(kBoth, now_s_); }
+  std::vector<core::Step> steps() {
     std::vector<core::Step> steps;
-    for (const MergedState& state : take(stands)) steps.push_back(state.step);
+    for (const MergedState& state : take()) steps.push_back(state.step);
     return steps;
   }
 
@@ -77,7 +78,7 @@ TEST_F(Merged, StatesComeInTheirOrder) {
   ASSERT_EQ(taken.size(), 2U);
   EXPECT_TRUE(taken[0].is_complete());
   ASSERT_EQ(taken[0].bodies.size(), 1U);
-  EXPECT_FALSE(taken[0].bodies[0].under_way) << "the exact row counts";
+  EXPECT_EQ(taken[0].bodies[0].row.p_WB.x(), 7) << "the exact row counts";
 }
 
 TEST_F(Merged, WhatIsMadeUpMayComeFirst) {
@@ -117,16 +118,44 @@ TEST_F(Merged, WhatDoesNotComeIsNamed) {
   EXPECT_TRUE(taken[1].is_complete());
 }
 
-TEST_F(Merged, NothingIsWaitedForInARunThatStandsOrForTooLong) {
-  for (const bool stands : {true, false}) {
-    MergedStates states({.latest_steps = 4, .patience_s = 1});
-    Observation left = of(0, 5);
-    add(left, 3, 1, 1, true);
-    states.accept(left, now_s_);
-    states.accept(of(1, 5), now_s_);
-    EXPECT_EQ(states.take(kBoth, stands, now_s_).size(), stands ? 1U : 0U);
-    EXPECT_EQ(states.take(kBoth, stands, now_s_ + 1.1).size(), stands ? 0U : 1U);
-  }
+TEST_F(Merged, NothingIsWaitedForTooLong) {
+  Observation left = of(0, 5);
+  add(left, 3, 1, 1, true);
+  states_.accept(left, now_s_);
+  states_.accept(of(1, 5), now_s_);
+  EXPECT_THAT(steps(), IsEmpty());
+  now_s_ += 1.1;
+  const std::vector<MergedState> taken = take();
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_THAT(taken[0].missing, ElementsAre(BodyId{3}));
+}
+
+TEST_F(Merged, ABodyUnderWayIsMarkedThoughItIsKnownWhereItIs) {
+  Observation left = of(0, 5);
+  add(left, 3, 1, 1, true);
+  states_.accept(left, now_s_);
+  states_.accept(of(1, 5), now_s_);
+  states_.accept(made_up(1, 5, 3), now_s_);
+  const std::vector<MergedState> taken = take();
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_TRUE(taken[0].is_complete());
+  ASSERT_EQ(taken[0].bodies.size(), 1U);
+  EXPECT_TRUE(taken[0].bodies[0].under_way);
+}
+
+TEST_F(Merged, ABodyThatWasTakenOutOnItsWayIsNotWaitedFor) {
+  Observation left = of(0, 5);
+  add(left, 3, 1, 1, true);
+  states_.accept(left, now_s_);
+  states_.accept(of(1, 5), now_s_);
+  Observation gone = of(1, 5);
+  gone.kind = Observation::Kind::kMadeUp;
+  gone.outside = {BodyId{3}};
+  states_.accept(gone, now_s_);
+  const std::vector<MergedState> taken = take();
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_TRUE(taken[0].is_complete());
+  EXPECT_THAT(taken[0].bodies, IsEmpty());
 }
 
 TEST_F(Merged, ARegionThatHasLeftAStateOutIsNamed) {

@@ -65,6 +65,19 @@ class Sensing(WorldTest):
             self.compare(lambda world, first: {"all": True, "contacts": True}, check, time__lookahead=lookahead)
         self.assertGreater(rows[0], 1000)
 
+    def test_in_lock_step_nobody_is_missing(self):
+        for lookahead in (2, 3):
+            world = self.launch("corner_stacks", time__sync="deterministic", time__pace="none",
+                                time__lookahead=lookahead)
+            with world.observe(all=True, contacts=True) as observer:
+                self.assertEqual(observer.next().step, 0)
+                for step in range(1, self.STEPS + 1):
+                    self.assertEqual(world.step().step, step)
+                    state = observer.next(timeout=GENEROUS_S)
+                    self.assertEqual((state.step, state.missing.tolist()), (step, []))
+            self.assertGreater(sum(node.hand_offs_out for node in world.nodes()), 0, "or this test proves nothing")
+            world.close()
+
     def test_a_lidar_over_four_regions_sees_what_it_sees_on_one_node(self):
         directions = aurasim.RayFan.grid(-np.pi, np.pi, 100, -0.4, 0.3, 10)
         self.assertEqual(directions.shape, (1000, 3))

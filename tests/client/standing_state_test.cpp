@@ -77,6 +77,47 @@ TEST(StandingState, TheHighestEpochIsTheTruthAndUnderOneEpochTheHost) {
   EXPECT_FALSE(bodies[3].under_way);
 }
 
+core::Observation told_by(std::uint32_t source, core::Step step = kStep) {
+  core::Observation told;
+  told.source = RegionId{source};
+  told.generation = kGeneration;
+  told.stamp = step;
+  return told;
+}
+
+void add(core::Observation& told, std::uint64_t id, std::uint32_t host, bool stale, double x) {
+  core::ObservedBody body;
+  body.row.id = BodyId{id};
+  body.row.epoch = 2;
+  body.row.host = RegionId{host};
+  body.row.p_WB.x() = x;
+  body.stale = stale;
+  told.bodies.push_back(body);
+}
+
+TEST(StandingState, OfABodyUnderWayTheNewHostTellsWhereItIs) {
+  StandingState state(kGeneration, kStep);
+  core::Observation former = told_by(0);
+  add(former, 7, 1, true, 1);
+  add(former, 8, 1, false, 5);  // has left in this very state
+  state.accept(former);
+  state.accept(told_by(1));
+  ASSERT_TRUE(state.is_complete(kBoth));
+  EXPECT_THAT(state.missing(), ::testing::ElementsAre(BodyId{7}));
+  core::Observation earlier = told_by(1, kStep - 1), foreseen = told_by(1);
+  earlier.kind = foreseen.kind = core::Observation::Kind::kMadeUp;
+  add(earlier, 7, 1, false, 2);
+  add(foreseen, 7, 1, false, 3);
+  state.accept(earlier);
+  EXPECT_FALSE(state.missing().empty()) << "of an earlier state";
+  state.accept(foreseen);
+  EXPECT_TRUE(state.missing().empty());
+  const std::vector<WorldBody> bodies = state.bodies();
+  ASSERT_EQ(bodies.size(), 2U);
+  EXPECT_EQ(bodies[0].row.p_WB.x(), 3);
+  EXPECT_TRUE(bodies[0].under_way && bodies[1].under_way);
+}
+
 TEST(StandingState, WhatARegionHadThatHasDiedSinceIsNotOfThisState) {
   StandingState state(kGeneration, kStep);
   core::Replica dead = key_frame(0);

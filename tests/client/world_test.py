@@ -58,6 +58,49 @@ class Steering(WorldTest):
         world.reset()
         self.assertGreater(world.pause().generation, paused.generation)
 
+    def test_a_reset_of_a_paused_run_stands_in_its_first_state(self):
+        world = self.launch()
+        first = world.bodies()
+        other = self.connect()
+        for steps in (7, 40):
+            world.step(steps)
+            world.reset()
+            for seen in (world, other):
+                self.assertTrue(wait_until(lambda: seen.bodies().generation > first.generation))
+                self.assertEqual(seen.bodies().step, 0)
+                self.assertEqual(seen.bodies().positions.tobytes(), first.positions.tobytes())
+            self.assertEqual({(node.state, node.step) for node in world.nodes()}, {("paused", 0)})
+            first = world.bodies()
+        self.assertEqual(world.step(3).step, 3)
+        world.resume()
+        self.assertTrue(wait_until(lambda: world.bodies().step > 30))
+        world.reset()
+        self.assertTrue(wait_until(lambda: world.bodies().generation > first.generation and world.bodies().step > 30),
+                        "a run that is not paused goes on after a reset")
+
+    def test_steps_of_two_clients_add_up(self):
+        worlds = [self.launch(), self.connect()]
+        self.assertTrue(wait_until(lambda: worlds[1].bodies().step == 0))
+        both = threading.Barrier(2)
+
+        def step_ten_times(world):
+            both.wait()
+            for _ in range(10):
+                before = world.bodies().step
+                self.assertGreaterEqual(world.step(5).step, before + 5)
+
+        threads = [threading.Thread(target=step_ten_times, args=(world,)) for world in worlds]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(3 * GENEROUS_S)
+            self.assertFalse(thread.is_alive())
+        for world in worlds:
+            self.assertTrue(wait_until(lambda: world.bodies().step >= 100))
+            self.assertEqual(world.bodies().step, 100)
+        self.assertEqual({node.step for node in worlds[0].nodes()}, {100})
+        self.assertEqual(worlds[1].step().step, 101)
+
     def test_two_clients_of_one_run(self):
         first = self.launch()
         second = self.connect()
@@ -147,15 +190,48 @@ class Steering(WorldTest):
     def test_a_world_is_saved_and_gone_on_from(self):
         world = self.launch(paused=False, time__sync="deterministic")
         self.assertTrue(wait_until(lambda: world.bodies().step > 100))
-        file = self.folder / "world.cut"
-        saved = world.save(file)
+        saved = world.save("world.cut")
+        file = self.folder / "saves" / "world.cut"
         self.assertEqual(saved.file, str(file))
-        self.assertTrue(file.exists())
+        self.assertEqual(sorted(path.name for path in file.parent.iterdir()), ["world.cut"])
         world.close()
         again = self.launch(load=file, time__sync="deterministic", regions__count=1)
-        stood = again.bodies()
-        self.assertGreaterEqual(stood.step, saved.step)
-        self.assertLess(stood.step, saved.step + 600)
+        self.assertEqual(again.bodies().step, saved.step, "it stands in the state that was saved")
+        self.assertEqual(again.step(5).step, saved.step + 5)
+        again.reset()
+        self.assertEqual(again.bodies().step, saved.step)
+
+    def test_of_a_paused_run_the_state_that_stands_is_saved(self):
+        world = self.launch(time__sync="deterministic", time__pace="none")
+        seen = {}
+        for steps in (0, 1, 10, 9, 15, 35, 20, 33):
+            if steps:
+                world.step(steps)
+            seen[world.save(f"at-{world.bodies().step}").step] = world.bodies()
+            self.assertIn(world.bodies().step, seen)
+        later = world.step(60)
+        for step, bodies in seen.items():
+            world.load(f"at-{step}")
+            self.assertEqual(world.bodies().step, step)
+            for name in ("ids", "positions", "rotations", "linear_velocities", "angular_velocities"):
+                self.assertEqual(getattr(world.bodies(), name).tobytes(), getattr(bodies, name).tobytes(),
+                                 f"state {step}: {name}")
+            went_on = world.step(later.step - step)
+            self.assertEqual(went_on.positions.tobytes(), later.positions.tobytes(), f"from state {step}")
+
+    def test_a_saved_world_has_a_name_and_no_path(self):
+        world = self.launch()
+        for call in (world.save, world.load):
+            for name in (str(self.folder / "world.cut"), "../world.cut", "a/b", "", ".hidden", "-x", "a" * 200, "a b"):
+                with self.subTest(call=call.__name__, name=name), \
+                        self.assertRaisesRegex(aurasim.Refused, "a saved world's name"):
+                    call(name)
+        self.assertEqual(world.save("a.cut").step, 0)
+        with self.assertRaisesRegex(aurasim.Refused, "nothing.cut"):
+            world.load("nothing.cut")
+        world.step(4)
+        world.load("a.cut")
+        self.assertEqual(world.bodies().step, 0)
 
     def test_a_launched_run_writes_its_report(self):
         world = self.launch(report=self.folder / "report")
@@ -215,8 +291,17 @@ class Errors(WorldTest):
 
     def test_steps_are_for_a_run_that_is_paused(self):
         world = self.launch(paused=False)
-        with self.assertRaisesRegex(aurasim.Refused, "paused"):
-            world.step()
+        other = self.connect()
+        begin = time.monotonic()
+        for _ in range(3):
+            with self.assertRaisesRegex(aurasim.Refused, "paused"):
+                world.step()
+        self.assertLess(time.monotonic() - begin, 10, "at once, and not after a time-out")
+        for _ in range(5):
+            paused = other.pause()
+            self.assertEqual(world.step(2).step, paused.step + 2)
+            other.resume()
+            self.assertTrue(wait_until(lambda: {node.state for node in world.nodes()} == {"running"}))
 
     def test_a_time_out_ends_the_call_and_not_the_world(self):
         world = self.launch()
@@ -251,7 +336,16 @@ class Errors(WorldTest):
         os.kill(world.agent_pid, signal.SIGKILL)
         with self.assertRaises(aurasim.Ended):
             world.bodies()
-        self.assertTrue(wait_until(lambda: not processes_of_domain(self.domain.number)), "its run ends with it")
+        self.assertNotEqual(world.close(), 0, "it has not ended as it should")
+        self.assertEqual(processes_of_domain(self.domain.number), [], "its run ends with it")
+
+    def test_close_after_the_agent_has_died_waits_for_the_end_of_its_run(self):
+        for paused in (False, True):
+            world = self.launch(paused=paused, report=self.folder / f"report {paused}")
+            os.kill(world.agent_pid, signal.SIGKILL)
+            self.assertNotEqual(world.close(), 0)
+            self.assertEqual(processes_of_domain(self.domain.number), [])
+            self.assertEqual(world.close(), 0, "closed already")
 
     def test_no_program(self):
         with self.assertRaises(aurasim.NoProgram):

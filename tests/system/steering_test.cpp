@@ -84,11 +84,16 @@ TEST_F(Steering, PauseStepResumeResetStop) {
   const std::int64_t paused_again_at = expect_all("paused");
   EXPECT_LT(paused_again_at, resumed_at) << "the world begins anew";
 
+  send({"reset"});
+  EXPECT_EQ(expect_all("paused"), 0) << "a run that is paused stands in its first state";
+  send({"step", "--count", "7"});
+  EXPECT_EQ(expect_all("paused"), 7);
+
   send({"stop"});
   expect_exit(run, 0);
   expect_all_bodies_accounted_for(report);
-  EXPECT_EQ(report.count("steps"), paused_again_at);
-  expect_only_the_last_world_recorded(report, paused_again_at);
+  EXPECT_EQ(report.count("steps"), 7);
+  expect_only_the_last_world_recorded(report, 7);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "cli/agent/agent.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -144,8 +143,8 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return {ray_json(act_alone(core::Ray{vector_of(asked, "from"), vector_of(asked, "to"), {}}, patience)), {}};
   }
   if (what == "save") {
-    const std::string file = asked.value("file", "");
-    return {save_json(act_alone(core::Save{std::filesystem::path(file).filename().string()}, patience), file), {}};
+    const std::string name = save_name_of(asked);
+    return {save_json(act_alone(core::Save{name}, patience), name), {}};
   }
   if (what == "drain") return {{{"pid", run().drain(core::RegionId{asked.value("region", 0U)}, patience)}}, {}};
   static const std::map<std::string, Steer> steering = {
@@ -180,21 +179,18 @@ json Agent::open(const json& asked, const Patience& patience) {
   run_ = std::move(run);
   try {
     run_->meet(patience);
-    if (launches && asked.value("paused", false)) begin_paused(asked, patience);
+    if (launches && asked.value("paused", false)) begin_paused(patience);
   } catch (...) {
     if (launches) run_->launched()->ask_to_stop();
     throw;
   }
-  return {{"version", version_and_commit()}};
+  return {{"version", version_and_commit()}, {"launcher", launches ? run_->launched()->pid() : 0}};
 }
 
-/// No node can be told to wait before it has begun. In a pause the same scene begins anew, and stands.
-void Agent::begin_paused(const json& asked, const Patience& patience) {
-  const core::Generation before = run_->pause(patience).generation;
-  if (!asked.value("load", "").empty()) return;
-  const Delivery anew = act_alone(core::ChangeScene{run_->launch().scene_file.stem().string()}, patience);
-  if (!anew.done) throw Problem(anew.timed_out ? Kind::kTimedOut : Kind::kRefused, anew.text);
-  run_->wait_for_generation_after(before, patience);
+/// No node can be told to wait before it has begun. In a pause the run begins anew, and stands in its first state.
+void Agent::begin_paused(const Patience& patience) {
+  run_->pause(patience);
+  run_->steer(Steer::kReset, patience);
 }
 
 json Agent::act(const json& asked, const Patience& patience) {

@@ -23,7 +23,7 @@ class Agent {
   client::Message answer(const client::Message& question, const Patience& patience);
   client::Message answer_of_run(const std::string& what, const nlohmann::json& asked, const Patience& patience);
   nlohmann::json open(const nlohmann::json& asked, const Patience& patience);
-  void begin_paused(const nlohmann::json& asked, const Patience& patience);
+  void begin_paused(const Patience& patience);
   nlohmann::json act(const nlohmann::json& asked, const Patience& patience);
   Delivery act_alone(core::Ask ask, const Patience& patience);
   nlohmann::json close(const Patience& patience);

@@ -153,12 +153,12 @@ json ray_json(const Delivery& delivery) {
   return ray;
 }
 
-json save_json(const Delivery& delivery, const std::string& file) {
+json save_json(const Delivery& delivery, const std::string& name) {
   if (!delivery.done) refuse(delivery);
-  const bool is_whole = put_together(delivery.files, file).is_whole;
+  const std::string file = put_together(delivery.files, name).file;
   return {{"step", delivery.at_step},
-          {"file", is_whole ? file : std::string()},
-          {"parts", is_whole ? std::vector<std::string>{} : delivery.files}};
+          {"file", file},
+          {"parts", file.empty() ? delivery.files : std::vector<std::string>{}}};
 }
 
 }  // namespace aurasim::cli::agent

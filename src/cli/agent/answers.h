@@ -14,7 +14,7 @@ nlohmann::json info_json(const RunLink& run);
 nlohmann::json act_json(const Delivery& delivery);
 /// Throw Problem if it is not done.
 nlohmann::json ray_json(const Delivery& delivery);
-/// Makes `file` of its parts.
-nlohmann::json save_json(const Delivery& delivery, const std::string& file);
+/// Makes one file of its parts, beside them.
+nlohmann::json save_json(const Delivery& delivery, const std::string& name);
 
 }  // namespace aurasim::cli::agent

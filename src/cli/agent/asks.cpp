@@ -9,6 +9,7 @@
 
 #include "cli/agent/problem.h"
 #include "cli/client_mesh.h"
+#include "cli/saved_world.h"
 
 namespace aurasim::cli::agent {
 namespace {
@@ -116,6 +117,13 @@ core::Vec3 vector_of(const json& of, const char* key) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
+std::string save_name_of(const json& of) {
+  const json& found = member(of, "name");
+  const std::string name = found.is_string() ? found.get<std::string>() : std::string();
+  if (const std::string why = refused_save_name(name); !why.empty()) throw Problem(Kind::kRefused, why);
+  return name;
+}
+
 core::Ask ask_of(const json& of, const core::Scene& scene, CommandClient& client) {
   const std::string kind = of.value("kind", "");
   if (kind == "spawn") return body_of(of, client);
@@ -132,7 +140,7 @@ core::Ask ask_of(const json& of, const core::Scene& scene, CommandClient& client
   if (kind == "rate") return core::SetRate{number_of(of, "rate")};
   if (kind == "scene") return core::ChangeScene{of.value("name", "")};
   if (kind == "regions") return regions_of(of);
-  if (kind == "load") return core::Load{of.value("name", "")};
+  if (kind == "load") return core::Load{save_name_of(of)};
   if (kind == "back") return core::Load{};
   throw Problem(Kind::kRefused, "no act is called '" + kind + "'");
 }

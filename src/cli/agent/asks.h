@@ -15,6 +15,8 @@ core::Ask ask_of(const nlohmann::json& json, const core::Scene& scene, CommandCl
 core::StaticId static_of(const nlohmann::json& json, const core::Scene& scene);
 /// "p", m, and "q", a quaternion w x y z of any length. Throws Problem.
 core::Pose pose_of(const nlohmann::json& json);
+/// "name", of a saved world. Throws Problem.
+std::string save_name_of(const nlohmann::json& json);
 /// Three numbers, all finite. Throws Problem.
 core::Vec3 vector_of(const nlohmann::json& json, const char* key);
 

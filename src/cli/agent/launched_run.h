@@ -19,6 +19,8 @@ class LaunchedRun {
   LaunchedRun& operator=(const LaunchedRun&) = delete;
 
   bool is_running();
+  /// 0: it does not run any more.
+  pid_t pid() const { return pid_; }
   /// 128 + a signal that has ended it. Once it does not run any more.
   int exit_code() const { return exit_code_; }
   /// All nodes stop in one state and write their reports; after the deadline it is killed. Returns its exit code.

@@ -1,8 +1,6 @@
 #include "cli/agent/merged_states.h"
 
 #include <algorithm>
-#include <iterator>
-#include <tuple>
 #include <utility>
 
 namespace aurasim::cli::agent {
@@ -11,38 +9,12 @@ namespace {
 /// States that are kept waiting, at most: the oldest go.
 constexpr std::size_t kMostPending = 4096;
 
-using Observations = std::vector<const core::Observation*>;
-
 Observations all_of(const std::map<core::RegionId, core::Observation>& hosted,
                     const std::vector<core::Observation>& made_up) {
   Observations all;
   for (const auto& [source, observation] : hosted) all.push_back(&observation);
   for (const core::Observation& observation : made_up) all.push_back(&observation);
   return all;
-}
-
-/// The highest epoch is the truth; under one epoch, exact rows before those of earlier states, and the host's before
-/// those of who has handed it over.
-std::vector<WorldBody> bodies_of(const Observations& all) {
-  struct Row {
-    const core::ObservedBody* body;
-    bool under_way;
-  };
-  std::vector<Row> rows;
-  for (const core::Observation* observation : all) {
-    for (const core::ObservedBody& body : observation->bodies) {
-      rows.push_back({&body, body.row.host != observation->source});
-    }
-  }
-  const auto rank = [](const Row& row) {
-    return std::tuple(row.body->row.id, ~row.body->row.epoch, row.body->stale, row.under_way);
-  };
-  std::ranges::stable_sort(rows, {}, rank);
-  std::vector<WorldBody> bodies;
-  for (const Row& row : rows) {
-    if (bodies.empty() || bodies.back().row.id != row.body->row.id) bodies.push_back({row.body->row, row.under_way});
-  }
-  return bodies;
 }
 
 }  // namespace
@@ -83,17 +55,6 @@ void MergedStates::accept(core::Observation observation, double now_s) {
   if (pending_.size() > kMostPending) pending_.erase(pending_.begin());
 }
 
-std::vector<core::BodyId> MergedStates::missing(const Pending& pending) const {
-  std::set<core::BodyId> under_way, known;
-  for (const core::Observation* observation : all_of(pending.hosted, pending.made_up)) {
-    for (const core::ObservedBody& body : observation->bodies) (body.stale ? under_way : known).insert(body.row.id);
-    known.insert(observation->outside.begin(), observation->outside.end());
-  }
-  std::vector<core::BodyId> missing;
-  std::ranges::set_difference(under_way, known, std::back_inserter(missing));
-  return missing;
-}
-
 bool MergedStates::have_passed(core::Step step, const std::set<core::RegionId>& regions) const {
   return std::ranges::all_of(regions, [&](core::RegionId region) {
     const auto told = told_.find(region);
@@ -102,12 +63,13 @@ bool MergedStates::have_passed(core::Step step, const std::set<core::RegionId>& 
 }
 
 bool MergedStates::is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions,
-                           bool stands, double now_s) const {
+                           double now_s) const {
   if (now_s - pending.since_s > settings_.patience_s) return true;
   const bool all_have_told =
       std::ranges::all_of(regions, [&](core::RegionId region) { return pending.hosted.contains(region); });
   if (!all_have_told) return have_passed(step, regions);
-  return stands || missing(pending).empty() || have_passed(step + settings_.latest_steps, regions);
+  return missing_in(all_of(pending.hosted, pending.made_up)).empty() ||
+         have_passed(step + settings_.latest_steps, regions);
 }
 
 MergedState MergedStates::merge(core::Step step, const Pending& pending,
@@ -116,11 +78,11 @@ MergedState MergedStates::merge(core::Step step, const Pending& pending,
   state.generation = *generation_;
   state.redo = pending.redo;
   state.step = step;
-  state.missing = missing(pending);
   for (const core::RegionId region : regions) {
     if (!pending.hosted.contains(region)) state.silent.push_back(region);
   }
   const Observations all = all_of(pending.hosted, pending.made_up);
+  state.missing = missing_in(all);
   for (const auto& [source, observation] : pending.hosted) {
     state.sequence = state.sequence == 0 ? observation.sequence : std::min(state.sequence, observation.sequence);
     state.scene_order = std::max(state.scene_order, observation.scene_order);
@@ -139,27 +101,14 @@ MergedState MergedStates::merge(core::Step step, const Pending& pending,
     return x.a == y.a && x.b == y.b;
   };
   state.contacts.erase(std::unique(state.contacts.begin(), state.contacts.end(), same_pair), state.contacts.end());
-  // A body in a box when it left may be outside by now.
-  std::set<core::BodyId> outside;
-  for (const core::Observation* observation : all) {
-    outside.insert(observation->outside.begin(), observation->outside.end());
-  }
-  std::set<core::BodyId> exact;
-  for (const core::Observation* observation : all) {
-    for (const core::ObservedBody& body : observation->bodies) {
-      if (!body.stale) exact.insert(body.row.id);
-    }
-  }
-  std::erase_if(state.bodies,
-                [&](const WorldBody& body) { return outside.contains(body.row.id) && !exact.contains(body.row.id); });
   return state;
 }
 
-std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regions, bool stands, double now_s) {
+std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regions, double now_s) {
   std::vector<MergedState> states;
   while (!pending_.empty() && !regions.empty()) {
     const auto& [step, pending] = *pending_.begin();
-    if (!is_over(step, pending, regions, stands, now_s)) break;
+    if (!is_over(step, pending, regions, now_s)) break;
     MergedState state = merge(step, pending, regions);
     // Before the first whole state some regions have not yet heard what is wanted.
     if (state.silent.empty() || has_given_) {

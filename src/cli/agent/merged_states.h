@@ -2,7 +2,8 @@
 // no wire.
 //
 // A body on its way between hosts is in no region's hands for up to K - 1 states. Its former host names it; its next
-// one makes the states up and tells them later. A state waits for that, and what does not come is named.
+// one makes the states up and tells them: when it joins, or before that in a run that stands. A state waits for that,
+// and what does not come is named.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 #include <set>
 #include <vector>
 
-#include "cli/agent/standing_state.h"
+#include "cli/agent/told_bodies.h"
 #include "core/observation.h"
 
 namespace aurasim::cli::agent {
@@ -45,8 +46,8 @@ class MergedStates {
   void accept(core::Observation observation, double now_s);
 
   /// Those that are complete, or that nothing more comes of: in order, each once; after a redo again, from where it has
-  /// gone back to. `regions`: those that are alive. `stands`: the run does, so nothing is made up.
-  std::vector<MergedState> take(const std::set<core::RegionId>& regions, bool stands, double now_s);
+  /// gone back to. `regions`: those that are alive.
+  std::vector<MergedState> take(const std::set<core::RegionId>& regions, double now_s);
 
   /// The highest generation that was heard of.
   std::optional<core::Generation> generation() const { return generation_; }
@@ -61,9 +62,7 @@ class MergedStates {
 
   void begin_generation(core::Generation generation);
   void go_back(core::Step to, std::uint32_t redo);
-  std::vector<core::BodyId> missing(const Pending& pending) const;
-  bool is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions, bool stands,
-               double now_s) const;
+  bool is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions, double now_s) const;
   bool have_passed(core::Step step, const std::set<core::RegionId>& regions) const;
   MergedState merge(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions) const;
 

@@ -59,7 +59,7 @@ void Observer::want() {
   for (Surroundings& around_it : surroundings_) around_it.note(sequence);
 }
 
-void Observer::turn(const std::set<core::RegionId>& regions, bool stands) {
+void Observer::turn(const std::set<core::RegionId>& regions) {
   if (map_version_ != watch_.observer_settings().map_version) {
     map_version_ = watch_.observer_settings().map_version;
     endpoint_.use(watch_.observer_settings());
@@ -67,7 +67,7 @@ void Observer::turn(const std::set<core::RegionId>& regions, bool stands) {
   if (scene_) scene_->look();
   const double now_s = overseer::view_clock_s();
   for (core::Observation& observation : endpoint_.take()) states_.accept(std::move(observation), now_s);
-  for (MergedState& state : states_.take(regions, stands, now_s)) {
+  for (MergedState& state : states_.take(regions, now_s)) {
     look_around(state);
     whole_.push_back({std::move(state), now_s});
   }

@@ -30,8 +30,8 @@ class Observer {
   /// The participant and the watch outlive it.
   Observer(dds::Participant& participant, const overseer::WorldWatch& watch, AskedInterest asked);
 
-  /// Takes in what has come; as often as you like. `regions`: those that are alive; `stands`: the run does.
-  void turn(const std::set<core::RegionId>& regions, bool stands);
+  /// Takes in what has come; as often as you like. `regions`: those that are alive.
+  void turn(const std::set<core::RegionId>& regions);
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
   bool has_next() const { return !ready_.empty(); }

@@ -21,7 +21,7 @@ constexpr auto kPatienceWithObservation = 5s;  ///< that some node does not give
 constexpr std::size_t kMostObservers = 16;     ///< of one client
 constexpr auto kPatienceWithSilence = 5s;      ///< of all nodes, before the run has ended
 constexpr auto kStillHereEvery = 20ms;
-constexpr auto kPatienceWithAPause = 10s;     ///< a world that goes back in a pause computes until it is where it stood
+constexpr auto kLongestWayOfStatus = 50ms;    ///< of two nodes' statuses the later one may come first
 constexpr auto kPatienceAmongStrangers = 3s;  ///< ours would have been heard as soon as they
 
 }  // namespace
@@ -43,7 +43,7 @@ void RunLink::turn(std::chrono::milliseconds time_out) {
   hear_of_standing_states();
   if (!observers_.empty()) {
     const std::set<core::RegionId> live = live_regions();
-    for (const auto& [number, observer] : observers_) observer->turn(live, stands());
+    for (const auto& [number, observer] : observers_) observer->turn(live);
   }
   if (has_met_) look_for_the_end();
   say_still_here();
@@ -186,14 +186,7 @@ const std::map<core::RegionId, dds::SeenStatus>& RunLink::nodes(const Patience& 
 }
 
 WorldState RunLink::step(std::int64_t count, const Patience& patience) {
-  const auto begin = Clock::now();
-  while (!is_known_to_stand()) {
-    patience.check("steps are for a run that is paused");
-    if (Clock::now() > begin + kPatienceWithAPause) {
-      throw Problem(Kind::kRefused, "steps are for a run that is paused");
-    }
-    turn(kRound);
-  }
+  wait_until_it_stands(patience);
   known_standing(patience);
   const Standing wanted{stands_in_->generation, stands_in_->step + count};
   say_still_here_until(wanted, patience);
@@ -215,13 +208,32 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   return {state.generation(), state.step(), true, state.bodies()};
 }
 
+/// A step of another client may be on its way, and a world that goes back in a pause computes until it is where it
+/// stood. A run that nobody has paused never stands.
+void RunLink::wait_until_it_stands(const Patience& patience) {
+  const auto begin = Clock::now();
+  const auto goes_on = [begin](const dds::SeenStatus& seen) {
+    const bool is_news = seen.seen > begin + kLongestWayOfStatus;
+    return is_news && seen.is_live() && seen.status.state == dds::NodeState::kRunning && !seen.status.holds_at;
+  };
+  while (!is_known_to_stand()) {
+    patience.check("the run is paused, and has not come to the state in which it is to stand");
+    if (std::ranges::any_of(watch_.nodes(), [&](const auto& node) { return goes_on(node.second); })) {
+      throw Problem(Kind::kRefused, "steps are for a run that is paused, and this one runs: pause it first");
+    }
+    turn(kRound);
+  }
+}
+
 void RunLink::steer(Steer kind, const Patience& patience) {
+  const bool stood = kind == Steer::kReset && is_known_to_stand();
   stands_in_.reset();
   if (kind == Steer::kStop) has_met_ = false;  // its end is no error
   const dds::RunCommand command = steering_.send(kind);
   const auto has_ended = [&] { return launched_ && !launched_->is_running(); };
   wait_until([&] { return steering_.has_taken_effect(command) || has_ended(); }, patience,
              fmt::format("{} was sent, but not every node shows its effect", dds::name_of(kind)));
+  if (stood) wait_until([this] { return stands(); }, patience, "the run has begun anew, and does not stand yet");
   has_met_ = true;
 }
 

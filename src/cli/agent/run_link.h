@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cli/agent/launched_run.h"
@@ -28,7 +29,7 @@ namespace aurasim::cli::agent {
 struct WorldState {
   core::Generation generation = 0;
   core::Step step = 0;
-  bool exact = false;  ///< of this very state, bit by bit; else as far as they have been published
+  bool exact = false;  ///< all of this very state, bit by bit; else as far as they have been published
   std::vector<WorldBody> bodies;
 };
 
@@ -56,8 +57,6 @@ class RunLink {
   WorldState state(const Patience& patience);
   WorldState pause(const Patience& patience);
   WorldState step(std::int64_t count, const Patience& patience);
-  /// Until some node says that it is in a later one: what is asked for from then on is of that.
-  void wait_for_generation_after(core::Generation before, const Patience& patience);
   /// resume, reset, stop.
   void steer(dds::RunCommandKind kind, const Patience& patience);
   /// Tells all nodes. Returns the state from which on it has effect; 0: as soon as all can know of it. In a run that
@@ -93,6 +92,7 @@ class RunLink {
   Standing farthest();
   bool stands();
   bool is_known_to_stand();
+  void wait_until_it_stands(const Patience& patience);
   bool all_have_published(const Standing& wanted);
   bool all_say_that_they_stand();
   std::optional<WorldState> look_at_standing_state(const Patience& patience);
@@ -100,6 +100,9 @@ class RunLink {
   bool collect(StandingState& state, const Patience& patience);
   bool collect_key_frames(StandingState& state, const Patience& patience);
   void watch_standing_states();
+  using When = std::tuple<core::Generation, std::uint32_t, core::Step>;  ///< with the redo: which state, and which one
+  static When when(const core::Observation& told) { return {told.generation, told.redo, told.stamp}; }
+  When newest_told() const;
   void hear_of_standing_states();
   bool take_standing(StandingState& state);
   WorldState seen_state(const Patience& patience);
@@ -120,6 +123,7 @@ class RunLink {
   std::optional<Standing> stands_in_;                 ///< as all regions have shown; nothing: not known
   std::optional<dds::ObserverEndpoint> standing_;     ///< tells all bodies of states in which the run stands
   std::map<core::RegionId, core::Observation> told_;  ///< by it, the last of each region
+  std::vector<core::Observation> foreseen_;           ///< by it, of bodies under way in the newest of these states
   Observers observers_;
   std::uint64_t last_observer_ = 0;
   bool has_met_ = false;

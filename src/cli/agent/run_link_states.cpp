@@ -36,10 +36,6 @@ RunLink::Standing RunLink::farthest() {
   return farthest;
 }
 
-void RunLink::wait_for_generation_after(core::Generation before, const Patience& patience) {
-  wait_until([&] { return farthest().generation > before; }, patience, "no node begins anew");
-}
-
 /// What nodes say of themselves comes after the states that they tell.
 bool RunLink::all_say_that_they_stand() {
   return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
@@ -70,25 +66,42 @@ void RunLink::watch_standing_states() {
 void RunLink::hear_of_standing_states() {
   if (!standing_) return;
   for (core::Observation& observation : standing_->take()) {
+    if (observation.kind == core::Observation::Kind::kMadeUp) {
+      foreseen_.push_back(std::move(observation));
+      continue;
+    }
     const core::RegionId source = observation.source;
     told_.insert_or_assign(source, std::move(observation));
   }
+  const When newest = newest_told();
+  std::erase_if(foreseen_, [&newest](const core::Observation& one) { return when(one) < newest; });
 }
 
-/// True once it is complete: all regions have told one state. What was told before a redo does not count any more.
-bool RunLink::take_standing(StandingState& state) {
-  const auto when = [](const core::Observation& told) { return std::tuple(told.generation, told.redo, told.stamp); };
-  std::tuple<core::Generation, std::uint32_t, core::Step> newest{};
+RunLink::When RunLink::newest_told() const {
+  When newest{};
   for (const auto& [region, told] : told_) newest = std::max(newest, when(told));
+  return newest;
+}
+
+/// True once it is complete: all regions have told one state, and of each body under way where it is by then. What was
+/// told before a redo does not count any more.
+bool RunLink::take_standing(StandingState& state) {
+  const When newest = newest_told();
   const bool all_have_told = std::ranges::all_of(live_regions(), [&](core::RegionId region) {
     const auto told = told_.find(region);
     return told != told_.end() && when(told->second) == newest;
   });
   if (!all_have_told) return false;
+  StandingState found = state;
   for (const auto& [region, told] : told_) {
-    if (when(told) == newest) state.accept(told);
+    if (when(told) == newest) found.accept(told);
   }
-  return state.is_complete(live_regions());
+  for (const core::Observation& one : foreseen_) {
+    if (when(one) == newest) found.accept(one);
+  }
+  const bool is_whole = found.is_complete(live_regions()) && found.missing().empty();
+  if (is_whole) state = std::move(found);
+  return is_whole;
 }
 
 /// False: it does not stand, or some node has not found this reader.
@@ -125,7 +138,7 @@ std::optional<WorldState> RunLink::look_at_standing_state(const Patience& patien
   StandingState state(least.generation, least.step);
   if (!collect(state, patience)) return std::nullopt;
   stands_in_ = Standing{state.generation(), state.step()};
-  return WorldState{state.generation(), state.step(), true, state.bodies()};
+  return WorldState{state.generation(), state.step(), state.missing().empty(), state.bodies()};
 }
 
 WorldState RunLink::standing_state(const Patience& patience) {

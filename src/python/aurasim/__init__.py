@@ -18,9 +18,15 @@ import atexit
 import json
 import os
 import weakref
+from importlib.util import find_spec
 from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
 
 import numpy as np
+
+if find_spec(f"{__name__}._aurasim") is None:
+    raise ImportError(f"aurasim: the module _aurasim is not in {os.path.dirname(__file__)}. In a build tree: cmake --build "
+                      "build/release --target aurasim_python, and PYTHONPATH=build/release/src/python. Or: pip install "
+                      "--no-build-isolation .")
 
 from ._aurasim import (  # noqa: F401
     Acknowledgement,
@@ -129,13 +135,14 @@ class World:
                saves: str | os.PathLike[str] | None = None, spares: int = 0, key: str = "", program: str = "",
                log: str = "", timeout: float = 60.0) -> World:
         """Starts a run on this host, which ends when this World is closed or this program ends. `paused`: it stands in
-        state 0; with `load`, a saved world, soon after the state that was saved. `report`: folder for what the nodes
+        state 0; with `load`, a saved world, in the state that was saved. `report`: folder for what the nodes
         record; `saves`: folder for their parts of saved worlds."""
         return cls(_World.launch(os.fspath(file), _override_texts(set), key, program, log, timeout, paused,
                                  _path(load), _path(report), _path(saves), spares))
 
     def close(self, timeout: float = 30.0) -> int:
-        """Ends what it has started. Returns the launcher's exit code, 0 if there is none."""
+        """Ends what it has started, and waits for that. Returns the launcher's exit code, or that of an agent that died
+        before (128 + its signal); 0 if nothing was launched."""
         return self._world.close(timeout)
 
     @property
@@ -189,15 +196,17 @@ class World:
         return self._world.pause(timeout)
 
     def step(self, count: int = 1, timeout: float = 60.0) -> Bodies:
-        """Computes `count` states of a paused run; returns the bodies of the last, once all regions have published
-        it."""
+        """Computes `count` states more of a paused run; returns the bodies of the last, once all regions have told it.
+        Steps of several clients add up: then it may be a later state. Raises Refused at once if the run is not
+        paused."""
         return self._world.step(count, timeout)
 
     def resume(self, timeout: float = 60.0) -> None:
         self._world.resume(timeout)
 
     def reset(self, timeout: float = 60.0) -> None:
-        """The scene, or the saved world that it was launched with, begins anew, and runs."""
+        """The scene, or the saved world that the run has begun with, begins anew. A paused run stands in its first
+        state."""
         self._world.reset(timeout)
 
     def stop(self, timeout: float = 60.0) -> None:
@@ -209,7 +218,8 @@ class World:
         return self._world.set_rate(rate, timeout)
 
     def set_scene(self, name: str, timeout: float = 60.0) -> Acknowledgement:
-        """Begins anew with another scene beside the launch file's; a paused run stands in its state 0."""
+        """Begins anew with another scene beside the launch file's, or with the same one as its file is now; a paused
+        run stands in its state 0."""
         return self._world.set_scene(name, timeout)
 
     def set_regions(self, boxes: Sequence[Vector], timeout: float = 60.0) -> Acknowledgement:
@@ -222,12 +232,15 @@ class World:
 
     # Keep.
 
-    def save(self, file: str | os.PathLike[str], timeout: float = 60.0) -> SavedWorld:
-        """Keeps the world in a file. Of a paused run: the newest state that is certain."""
-        return self._world.save(os.path.abspath(file), timeout)
+    # A saved world has a name, of letters, digits, '.', '_' and '-', and is a file in the nodes' folder of saved worlds
+    # (`saves` of launch()). A path is Refused.
+
+    def save(self, name: str, timeout: float = 60.0) -> SavedWorld:
+        """Keeps the world. A paused run is saved in the state in which it stands."""
+        return self._world.save(name, timeout)
 
     def load(self, name: str, timeout: float = 60.0) -> Acknowledgement:
-        """Goes on from a saved world in the nodes' folder of saves."""
+        """Goes on from a saved world; a paused run stands in its state."""
         return self._world.load(name, timeout)
 
     def back(self, timeout: float = 60.0) -> Acknowledgement:

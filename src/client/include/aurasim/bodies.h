@@ -13,8 +13,8 @@ struct Bodies {
   std::int64_t step = 0;         ///< number of the state
   double time_s = 0;             ///< simulated, since state 0
   std::uint32_t generation = 0;  ///< counts resets, other scenes and other regions
-  /// All regions have published this very state. False while the run goes on: then it is the newest that all had
-  /// published, and what has moved by less than 0.1 mm may be older.
+  /// Every row is of this very state, as the nodes have it. False while the run goes on: then it is the newest that all
+  /// had published, and what has moved by less than 0.1 mm may be older.
   bool exact = false;
 
   std::vector<std::uint64_t> ids;         ///< n
@@ -26,8 +26,8 @@ struct Bodies {
   std::vector<std::uint32_t> epochs;      ///< n: how often it has changed host
   std::vector<std::uint32_t> prototypes;  ///< n: index into RunInfo::prototypes; those from there on are clients'
   std::vector<std::uint8_t> asleep;       ///< n: 1: does not move
-  /// n: 1: its last host has handed it over, and the next has not published it yet. Its row is of the state in which it
-  /// left: this one, or up to RunInfo::lookahead - 1 states older.
+  /// n: 1: handed over. Its former host does not compute it any more in this state, and its next host not yet. Where
+  /// `exact` is set its row is of this state all the same; else it may be of the state in which it left.
   std::vector<std::uint8_t> under_way;
 
   std::size_t size() const { return ids.size(); }

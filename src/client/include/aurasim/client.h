@@ -51,7 +51,7 @@ struct LaunchOptions {
   std::string program = {};
   std::string log = {};
   std::function<bool()> interrupted = {};
-  bool paused = false;      ///< stands in state 0; with `load`, soon after the state that was saved
+  bool paused = false;      ///< stands in state 0; with `load`, in the state that was saved
   std::string load = {};    ///< a saved world to go on from
   std::string report = {};  ///< folder for what the nodes record
   std::string saves = {};   ///< folder for the nodes' parts of saved worlds; empty: `saves`
@@ -153,7 +153,7 @@ struct RayHit {
 
 struct SavedWorld {
   std::int64_t step = 0;
-  std::string file;                ///< the whole world; empty: the parts are on other hosts
+  std::string file;                ///< the whole world; empty: the parts are on other hosts, or in several folders
   std::vector<std::string> parts;  ///< else
 };
 
@@ -192,8 +192,9 @@ class AURASIM_API World {
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// Ends what it has started: a run that was launched ends in one state on all nodes and writes its report. Returns
-  /// the launcher's exit code; 0 where none was launched, and when closed before.
+  /// Ends what it has started: a run that was launched ends in one state on all nodes and writes its report. Returns,
+  /// once all has ended, the launcher's exit code, or that of an agent that died before (128 + its signal); 0 where
+  /// none was launched, and when closed before.
   int close(Seconds time_out = Seconds{30});
   bool closed() const;
   /// Of the agent; 0: closed.
@@ -215,15 +216,17 @@ class AURASIM_API World {
   // Steer. All nodes do so in one state.
   /// Returns the bodies of the state in which all stand.
   Bodies pause(Seconds time_out = kUsualTimeOut);
-  /// Computes `count` states of a paused run; returns the bodies of the last one, once all regions have published it.
+  /// Computes `count` states more of a paused run; returns the bodies of the last one, once all regions have told it.
+  /// Steps of several clients add up: then it may be a later state. Throws Refused at once if the run is not paused.
   Bodies step(std::int64_t count = 1, Seconds time_out = kUsualTimeOut);
   void resume(Seconds time_out = kUsualTimeOut);
-  /// The scene, or the saved world that it was launched with, begins anew, and runs.
+  /// The scene, or the saved world that the run has begun with, begins anew. A paused run stands in its first state.
   void reset(Seconds time_out = kUsualTimeOut);
   void stop(Seconds time_out = kUsualTimeOut);
   /// Simulated seconds per second, 0.01 to 10.
   Acknowledgement set_rate(double rate, Seconds time_out = kUsualTimeOut);
-  /// Begins anew with another scene beside the launch file's. In a paused run all stand in its state 0.
+  /// Begins anew with another scene beside the launch file's, or with the same one as its file is now. In a paused run
+  /// all stand in its state 0.
   Acknowledgement set_scene(const std::string& name, Seconds time_out = kUsualTimeOut);
   /// One box for each region, x0 y0 x1 y1, m; infinite sides allowed.
   Acknowledgement set_regions(const std::vector<std::array<double, 4>>& boxes, Seconds time_out = kUsualTimeOut);
@@ -231,9 +234,11 @@ class AURASIM_API World {
   std::uint32_t drain(std::uint32_t region, Seconds time_out = kUsualTimeOut);
 
   // Keep.
-  /// Of a paused run: the newest state that is certain, at most about a second older.
-  SavedWorld save(const std::string& file, Seconds time_out = kUsualTimeOut);
-  /// Goes on from a saved world in the nodes' folder of saves.
+  // A saved world has a name, of letters, digits, '.', '_' and '-', and is a file in the nodes' folder of saved worlds
+  // (LaunchOptions::saves). A path is Refused.
+  /// A paused run is saved in the state in which it stands, any other in the next one that all nodes can save.
+  SavedWorld save(const std::string& name, Seconds time_out = kUsualTimeOut);
+  /// Goes on from a saved world; a paused run stands in its state.
   Acknowledgement load(const std::string& name, Seconds time_out = kUsualTimeOut);
   /// Goes back to the newest earlier state that is kept.
   Acknowledgement back(Seconds time_out = kUsualTimeOut);
