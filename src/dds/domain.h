@@ -84,6 +84,9 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   /// Nothing leaves this host.
   bool loopback_only() const { return loopback_only_; }
   LivelinessAsserter& liveliness() { return *liveliness_; }
+  /// Wakes the thread that uses this process's endpoints, whichever of them something has come to: that thread waits
+  /// for one of them and serves all. Endpoints that are used by another thread have a wakeup of their own.
+  Wakeup& wakeup() { return wakeup_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
   /// What keeps malformed datagrams from Fast DDS.
@@ -100,6 +103,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void register_types();
 
+  Wakeup wakeup_;
   Profiles profiles_;
   Directory directory_;
   std::shared_ptr<DatagramGuard> guard_;
