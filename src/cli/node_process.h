@@ -17,6 +17,7 @@
 #include "cli/command_server.h"
 #include "cli/exit_code.h"
 #include "cli/fence.h"
+#include "cli/hold.h"
 #include "cli/node_phase.h"
 #include "cli/replica_publisher.h"
 #include "cli/ros2_link.h"
@@ -150,6 +151,7 @@ class NodeProcess {
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
   void hear_programs();
+  bool has_heard_what_steps_name();
   void open_ros2();
   void tell_ros2();
   void change_rate(double rate);
@@ -219,6 +221,8 @@ class NodeProcess {
   core::Generation generation_ = 0;
   std::optional<core::Generation> begun_;  ///< whose states node_ computes, or has computed last
   std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
+  PauseFollower pause_follower_;
+  AwaitedWords awaited_words_;
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   RunControlLimits run_control_limits_;

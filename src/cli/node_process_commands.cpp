@@ -70,6 +70,7 @@ void NodeProcess::obey(const dds::RunCommand& command) {
       if (hold_at_) {
         pacer_.set_epoch(first_state_of(command), command.epoch_ns, command.clock_ahead, node::read_clocks());
         hold_at_ = holds_at_after(command, hold_at_);
+        if (command.at_step > node_->current_step()) awaited_words_.add(command, Clock::now());
       }
       break;
     case Kind::kResume:

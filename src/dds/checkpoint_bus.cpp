@@ -28,6 +28,7 @@ struct CheckpointBus::Impl {
   Impl(Participant& participant_in, core::RegionId region_in)
       : participant(participant_in),
         region(region_in),
+        wakeup(participant.domain().wakeup()),
         to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup) {
     read();
   }
@@ -40,7 +41,7 @@ struct CheckpointBus::Impl {
 
   Participant& participant;
   core::RegionId region;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedWriter<wire::Checkpoint> to_all;
   core::Generation life = 0;
   std::optional<core::RegionId> keeper;
@@ -75,7 +76,6 @@ bool CheckpointBus::is_kept() {
 
 std::vector<Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
-  impl_->wakeup.clear();
   std::vector<Checkpoint> taken;
   const Speakers& speakers = impl_->participant.domain().speakers();
   // In a recovery, whoever keeps another's part gives it.
