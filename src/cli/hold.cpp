@@ -5,6 +5,10 @@
 namespace aurasim::cli {
 namespace {
 
+using namespace std::chrono_literals;
+
+constexpr auto kLongestUnderWay = 200ms;  ///< of a command to a node, also if it is lost once or twice
+constexpr auto kPatienceWithWords = 1s;
 /// A command is under way for less than a second. What was asked for so long before is known to all.
 constexpr std::size_t kMost = 1024;
 
@@ -31,6 +35,29 @@ core::Step AskedSteps::end() const {
   core::Step end = begin_;
   for (const Asked& asked : asked_) end = std::max(end, asked.from) + asked.count;
   return end;
+}
+
+core::Step PauseFollower::holds_at(core::Step holds_at, core::Step farthest, Time now) {
+  if (farthest <= holds_at) {
+    behind_since_.reset();
+    return holds_at;
+  }
+  if (!behind_since_) behind_since_ = now;
+  return now < *behind_since_ + kLongestUnderWay ? holds_at : farthest;
+}
+
+void AwaitedWords::add(const dds::RunCommand& step, Time now) {
+  if (step.after.number > 0) words_.push_back({step.after, now});
+}
+
+bool AwaitedWords::are_here(const HasHeard& has_heard, Time now) {
+  std::erase_if(words_, [&](const Awaited& awaited) {
+    if (has_heard(awaited.word)) return true;
+    if (now < awaited.since + kPatienceWithWords) return false;
+    given_up_.push_back(awaited.word);
+    return true;
+  });
+  return words_.empty();
 }
 
 }  // namespace aurasim::cli

@@ -223,6 +223,7 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   if (options_.report) recorder_.emplace(*options_.report, options_.region);
   pacer_.set_epoch(first_step(), begin.epoch_ns, begin.clock_ahead, node::read_clocks());
   hold_at_.reset();
+  awaited_words_.clear();
   paused_ = {};
   begin_with(options_.world ? node_->start(*options_.world) : node_->start());
   began_ = std::max(pacer_.due(first_step()), Clock::now());
@@ -293,7 +294,7 @@ void NodeProcess::run_until_end() {
 bool NodeProcess::wait_until_due() {
   const core::Step next = node_->current_step() + 1;
   const auto begin = Clock::now();
-  if (hold_at_) hold_at_ = std::max(*hold_at_, farthest_paused_step());
+  if (hold_at_) hold_at_ = pause_follower_.holds_at(*hold_at_, farthest_paused_step(), begin);
   if (hold_at_ && node_->current_step() >= *hold_at_) {
     if (phase_ != NodePhase::kPaused) enter(NodeEvent::kHeld);
     publish();
@@ -310,6 +311,10 @@ bool NodeProcess::wait_until_due() {
     return false;
   }
   if (phase_ == NodePhase::kPaused) enter(NodeEvent::kGoesOn);
+  if (!has_heard_what_steps_name()) {
+    control_.wait(20ms);
+    return false;
+  }
   if (const std::chrono::nanoseconds until = time_until(next); until > 0ns) {
     transport_->wait_for_arrival(std::min<std::chrono::nanoseconds>(until, 20ms));
     node_->ready();
@@ -326,7 +331,7 @@ bool NodeProcess::wait_until_due() {
   return false;
 }
 
-/// Nodes that catch up may be past the state of a pause before they hear of it: then the others come to where they are.
+/// The latest state in which a node of this world stands.
 core::Step NodeProcess::farthest_paused_step() {
   core::Step farthest = 0;
   for (const auto& [region, seen] : control_.statuses()) {
@@ -346,6 +351,8 @@ void NodeProcess::compute_step() {
   const auto begin = Clock::now();
   keep_the_end();
   const node::StepReport& report = node_->step();
+  control_.note_state();
+  programs_->note_state();
   if (report.put_back_from) return note_redo(report);
   if (!doubtful_saves_.empty()) look_at_doubtful_saves(std::nullopt);
   command_server_->after_step(report);  // observers look for what it tells

@@ -174,6 +174,7 @@ class NodeProcess {
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
   void hear_programs();
+  bool has_heard_what_steps_name();
   void open_ros2();
   void tell_ros2();
   void change_rate(double rate);
@@ -249,6 +250,8 @@ class NodeProcess {
   std::optional<core::Generation> begun_;  ///< whose states node_ computes, or has computed last
   std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
   AskedSteps asked_steps_;                 ///< since it was paused
+  PauseFollower pause_follower_;
+  AwaitedWords awaited_words_;
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   RunControlLimits run_control_limits_;

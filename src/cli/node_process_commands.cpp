@@ -66,7 +66,9 @@ void NodeProcess::obey(const dds::RunCommand& command) {
       hurry_until_ = std::max(hurry_until_, command.at_step);
       break;
     case Kind::kStep:
-      if (hold_at_) step_on(command);
+      if (!hold_at_) break;
+      step_on(command);
+      if (*hold_at_ > node_->current_step()) awaited_words_.add(command, Clock::now());
       break;
     case Kind::kResume:
       if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());

@@ -36,4 +36,16 @@ void NodeProcess::hear_programs() {
   }
 }
 
+/// A step names what its program has said before: no node computes the state without it.
+bool NodeProcess::has_heard_what_steps_name() {
+  const bool all_heard = awaited_words_.are_here(
+      [this](const core::ProgramWord& word) { return programs_->has_heard(word); }, std::chrono::steady_clock::now());
+  for (const core::ProgramWord& word : awaited_words_.take_given_up()) {
+    ++unheard_setpoints_;
+    spdlog::warn("a step names setpoints {} of program {:x}, which have not come: state {} is computed without them",
+                 word.number, word.program, node_->current_step() + 1);
+  }
+  return all_heard;
+}
+
 }  // namespace aurasim::cli

@@ -22,7 +22,7 @@ bool ObservationPublisher::look(node::Node& node) {
     if (is_observed_) node.observe(false, false);
     is_observed_ = false;
     feed_.reset();
-    told_.clear();
+    served_.clear();
     return false;
   }
   const bool wants_contacts = std::ranges::any_of(
@@ -41,7 +41,14 @@ void ObservationPublisher::after_step(node::Node& node, const node::StepReport& 
   feed_->note(report, node.protocol().departures().open());
   tell_made_up(node, report);
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-    if (asked.interest->is_for(report.step)) tell(node, asked);
+    if (!asked.interest->is_for(report.step)) continue;
+    ObserverPace& pace = served_[asked.key].pace;
+    if (!pace.is_for(report.step, asked.interest->every)) continue;
+    if (tell(node, asked)) {
+      pace.note_told();
+    } else {
+      pace.note_too_slow();
+    }
   }
 }
 
@@ -49,8 +56,7 @@ void ObservationPublisher::while_paused(node::Node& node) {
   if (!look(node)) return;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
     const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
-    const auto told = told_.find(asked.key);
-    if (told == told_.end() || told->second.state != now) tell(node, asked);
+    if (served_[asked.key].told.state != now) tell(node, asked);
   }
   tell_foreseen(node);
 }
@@ -59,7 +65,7 @@ void ObservationPublisher::while_paused(node::Node& node) {
 void ObservationPublisher::tell_foreseen(node::Node& node) {
   std::optional<std::vector<node::MadeUp>> foreseen;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-    Told& told = told_[asked.key];
+    Told& told = served_[asked.key].told;
     if (std::exchange(told.hand_offs, node.hand_offs_to_come()) == node.hand_offs_to_come()) continue;
     if (!foreseen) foreseen = node.foresee();
     for (const node::MadeUp& state : *foreseen) {
@@ -69,13 +75,18 @@ void ObservationPublisher::tell_foreseen(node::Node& node) {
   }
 }
 
-/// What cannot be sent is lost: the next state is told as if it had been.
-void ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::Asked& asked) {
+bool ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::Asked& asked) {
+  if (!server_.takes_more(asked.key)) return false;
+  Told& told = served_[asked.key].told;
+  const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
   core::Observation observation =
       feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
   observation.scene_order = node.newest_scene_order();
-  server_.send(asked.key, observation);
-  told_.insert_or_assign(asked.key, Told{{asked.arrivals, settings_.generation, node.redos(), node.current_step()}, 0});
+  const bool goes_on = told.state.arrivals == now.arrivals && told.state.generation == now.generation && told.state.redo == now.redo;
+  if (goes_on && told.state.step < now.step) observation.previous = told.state.step;
+  if (!server_.send(asked.key, observation)) return false;
+  told = {now, 0};
+  return true;
 }
 
 void ObservationPublisher::tell_made_up(const node::Node& node, const node::StepReport& report) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "cli/observer_pace.h"
 #include "config/launch.h"
 #include "dds/observation_bus.h"
 #include "node/node.h"
@@ -27,7 +28,8 @@ class ObservationPublisher {
 
  private:
   bool look(node::Node& node);
-  void tell(node::Node& node, const dds::ObservationServer::Asked& asked);
+  /// False: it takes no more now.
+  bool tell(node::Node& node, const dds::ObservationServer::Asked& asked);
   void tell_made_up(const node::Node& node, const node::StepReport& report);
   void tell_foreseen(node::Node& node);
 
@@ -44,10 +46,15 @@ class ObservationPublisher {
     std::size_t hand_offs = 0;  ///< that had come and did not take effect yet: what they bring was told, too
   };
 
+  struct Served {
+    Told told;  ///< last
+    ObserverPace pace;
+  };
+
   node::FeedSettings settings_;
   dds::ObservationServer server_;
   std::optional<node::ObservationFeed> feed_;  ///< while somebody asks
-  std::map<std::uint64_t, Told> told_;         ///< by observer
+  std::map<std::uint64_t, Served> served_;     ///< by observer
   bool is_observed_ = false;
 };
 

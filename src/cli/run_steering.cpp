@@ -130,12 +130,14 @@ core::Step RunSteering::stepped_to(core::Generation generation) const {
   return is_news ? last_step_.until : 0;
 }
 
-dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count) {
+dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count,
+                                       const core::ProgramWord& after) {
   dds::RunCommand command;
   command.kind = Kind::kStep;
   command.count = count;
   command.generation = generation;
   command.at_step = from + count;
+  command.after = after;
   for (const auto& [region, seen] : control_.statuses()) {
     if (belongs(seen)) command.run = seen.status.run;
   }

@@ -45,8 +45,9 @@ class RunSteering {
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
   /// Of a run that stands in state `from` of this generation: the next ones are due at once. For a client that waits
-  /// for each of them.
-  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count);
+  /// for each of them. No node computes them before it has heard `after`.
+  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count,
+                            const core::ProgramWord& after);
 
   /// Does every live node show the effect of `command`?
   bool has_taken_effect(const dds::RunCommand& command);

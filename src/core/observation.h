@@ -46,6 +46,9 @@ struct Observation {
   Step stamp = 0;
   std::uint64_t map_version = 0;
   std::uint64_t sequence = 1;  ///< of the interest that it answers
+  /// The state that the source has told this observer before. It tells none of those between the two, because the
+  /// observer takes no more; -1: not said.
+  Step previous = -1;
   Kind kind = Kind::kHosted;
   std::uint64_t scene_order = 0;  ///< sequence of the newest order that has changed the scene, as far as source knows
   std::vector<ObservedBody> bodies;  ///< ascending id

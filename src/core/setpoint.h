@@ -57,6 +57,14 @@ struct Setpoints {
   std::vector<StaticSetpoint> statics = {};
 };
 
+/// A message of one program on topic control, by its number.
+struct ProgramWord {
+  std::uint64_t program = 0;  ///< Setpoints::client
+  std::uint64_t number = 0;   ///< Setpoints::sequence; 0: no message
+
+  bool operator==(const ProgramWord&) const = default;
+};
+
 /// Never falls silent.
 inline constexpr std::uint64_t kRecordedClient = 0;
 

@@ -29,6 +29,7 @@ struct CheckpointBus::Impl {
   Impl(Participant& participant_in, core::RegionId region_in)
       : participant(participant_in),
         region(region_in),
+        wakeup(participant.domain().wakeup()),
         to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup) {
     read();
   }
@@ -41,7 +42,7 @@ struct CheckpointBus::Impl {
 
   Participant& participant;
   core::RegionId region;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedWriter<wire::Checkpoint> to_all;
   core::Generation life = 0;
   std::vector<core::RegionId> keepers;
@@ -84,7 +85,6 @@ bool CheckpointBus::send_to_all(const Checkpoint& checkpoint) {
 
 std::vector<Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
-  impl_->wakeup.clear();
   std::vector<Checkpoint> taken;
   const Speakers& speakers = impl_->participant.domain().speakers();
   // In a recovery, whoever keeps another's part gives it.

@@ -53,13 +53,14 @@ struct CommandServerEndpoint::Impl {
       : participant(participant_in),
         region(region_in),
         map_version(map_version_in),
+        wakeup(participant.domain().wakeup()),
         commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
         replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup) {}
 
   Participant& participant;
   core::RegionId region;
   std::uint64_t map_version;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedReader<wire::Command> commands;
   TypedWriter<wire::CommandReply> replies;
   Requests requests;
@@ -119,13 +120,14 @@ const WireErrors& CommandServerEndpoint::refused() const { return impl_->command
 struct CommandClientEndpoint::Impl {
   explicit Impl(Participant& participant_in)
       : participant(participant_in),
+        wakeup(participant.domain().wakeup()),
         commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
         replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup),
         shapes(participant.domain(), in_world(TopicId::kShape), wakeup) {}
 
   Participant& participant;
   std::uint64_t sender = draw_id();
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedWriter<wire::Command> commands;
   TypedReader<wire::CommandReply> replies;
   TypedWriter<wire::MeshShape> shapes;

@@ -74,7 +74,7 @@ struct ControlBus::Impl {
   Participant& participant;
   ControlSettings settings;
   std::uint64_t sender = draw_id();
-  Wakeup wakeup;
+  Wakeup& wakeup;
   std::optional<Writer> status_writer;
   Reader status_reader;
   std::optional<Writer> map_writer;
@@ -99,6 +99,7 @@ struct ControlBus::Impl {
 ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& settings_in)
     : participant(participant_in),
       settings(settings_in),
+      wakeup(participant.domain().wakeup()),
       status_writer(status_writer_of(participant.domain(), settings.region, wakeup)),
       status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, wakeup),
       map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
@@ -314,6 +315,8 @@ std::vector<RunCommand> ControlBus::take_commands() {
   for (HeardCommand& one : heard) impl_->judge(std::move(one), commands);
   return commands;
 }
+
+void ControlBus::note_state() { impl_->asked.allow_more(kWordsAState); }
 
 void ControlBus::refuse(const RunCommand& command, const std::string& why) {
   const auto sender = impl_->requests.find(command.request);

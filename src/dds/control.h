@@ -71,6 +71,8 @@ class ControlBus {
   /// Commands of others that were not returned before, in order of arrival; each request id once. What only a node may
   /// say is refused of anybody else.
   std::vector<RunCommand> take_commands();
+  /// This node has computed a state: whoever steps the run may send a command for the next one.
+  void note_state();
   /// It cannot be meant: counted against who has sent it.
   void refuse(const RunCommand& command, const std::string& why);
 

@@ -288,6 +288,8 @@ void encode(const RunCommand& command, std::uint64_t sender, wire::RunControl& o
   out.request(command.request);
   out.kind(static_cast<std::uint8_t>(command.kind));
   out.count(command.count);
+  out.program(command.after.program);
+  out.word(command.after.number);
   out.epoch_ns(command.epoch_ns);
   out.rate(command.rate);
   out.region(value_of(command.region));
@@ -317,6 +319,7 @@ Decoded<RunCommand> decode(const wire::RunControl& in, const Expected& expected)
                      .run = in.run(),
                      .at_step = in.stamp(),
                      .count = in.count(),
+                     .after = {in.program(), in.word()},
                      .epoch_ns = in.epoch_ns(),
                      .rate = in.rate(),
                      .region = RegionId{in.region()},

@@ -11,6 +11,7 @@
 #include "core/ids.h"
 #include "core/introduction.h"
 #include "core/region_map.h"
+#include "core/setpoint.h"
 
 namespace aurasim::dds {
 
@@ -146,6 +147,7 @@ struct RunCommand {
   std::uint64_t run = 0;          ///< likewise
   core::Step at_step = 0;         ///< takes effect when this state has been computed
   std::int64_t count = 0;         ///< kStep: how many steps, up to `at_step`
+  core::ProgramWord after{};      ///< kStep: computed once this has been heard on topic control; number 0: at once
   std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume and kStep: of the first one
   double rate = 1;  ///< kRate: from `at_step` on, which is due at `epoch_ns`, simulated seconds per second
   /// kLost: whose node has died; kDrain: whose node is to give its region to another process; kTake: what a spare is to

@@ -165,7 +165,7 @@ struct DdsTransport::Impl {
   TransportSettings settings;
   Expected expected;
   Participant& participant;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   Writer aura_writer;
   std::vector<std::unique_ptr<Link>> links;  ///< to settings.neighbours, then to others as they were asked for
   wire::AuraBatch aura;                      // reused for every sample
@@ -178,6 +178,7 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
     : settings(settings_in),
       expected(expected_of(settings_in)),
       participant(participant_in),
+      wakeup(participant.domain().wakeup()),
       aura_writer(participant.domain(),
                   {TopicId::kAura, {in_life(partition_of(settings.region), settings.life)}, settings.region}, wakeup) {
   for (const RegionId neighbour : settings.neighbours) {
@@ -334,7 +335,6 @@ std::size_t DdsTransport::found() const {
 
 void DdsTransport::take(core::Inbox& inbox) {
   impl_->participant.progress();
-  impl_->wakeup.clear();
   TransportCounters& counters = impl_->counters;
   for (const auto& link : impl_->links) {
     Expected expected = impl_->expected;

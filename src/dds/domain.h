@@ -89,6 +89,9 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   LivelinessAsserter& liveliness() { return *liveliness_; }
   /// Settings::believes_silence. Silence between hosts may be a cut, and is always believed.
   bool believes_silence() const { return believes_silence_; }
+  /// Wakes the thread that uses this process's endpoints, whichever of them something has come to: that thread waits
+  /// for one of them and serves all. Endpoints that are used by another thread have a wakeup of their own.
+  Wakeup& wakeup() { return wakeup_; }
   /// What holds datagrams back; null where nothing is impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
   /// What keeps malformed datagrams from Fast DDS.
@@ -105,6 +108,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void register_types();
 
+  Wakeup wakeup_;
   Profiles profiles_;
   Directory directory_;
   std::shared_ptr<DatagramGuard> guard_;

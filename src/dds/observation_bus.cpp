@@ -18,6 +18,20 @@ namespace {
 constexpr double kInterestsASecond = 100;
 constexpr double kInterestsAtOnce = 300;
 
+/// Of one observer's, that it has not acknowledged: less than the writer keeps, and what fits into its socket's buffer.
+constexpr std::size_t kMostUnderWay = 48;
+constexpr std::size_t kMostUnderWay_B = 2'000'000;
+
+/// That an observer takes before it looks at anything else: large ones may come faster than they are decoded.
+constexpr std::size_t kMostAtOnce = 64;
+
+/// As it is on the wire, but for some octets.
+std::size_t size_of(const core::Observation& observation) {
+  constexpr std::size_t kBody_B = 85, kJoint_B = 20, kContact_B = 72;
+  return kBody_B * observation.bodies.size() + 8 * observation.outside.size() + kJoint_B * observation.joints.size() +
+         kContact_B * observation.contacts.size();
+}
+
 }  // namespace
 
 struct ObservationServer::Impl {
@@ -29,12 +43,14 @@ struct ObservationServer::Impl {
     core::Interest interest;
     Guid origin;
     std::uint64_t changes = 0;
+    std::size_t under_way = 0, under_way_B = 0;  ///< sent since it had acknowledged all
     TypedWriter<wire::Observation> writer;
   };
 
   Impl(Participant& participant_in, core::RegionId region_in)
       : participant(participant_in),
         region(region_in),
+        wakeup(participant.domain().wakeup()),
         interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
 
   void hear(core::Interest&& interest, const Origin& origin);
@@ -47,7 +63,7 @@ struct ObservationServer::Impl {
 
   Participant& participant;
   core::RegionId region;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedReader<wire::Interest> interests;
   std::map<std::uint64_t, Observer> observers;  ///< by client
   std::vector<Asked> asked;
@@ -115,25 +131,44 @@ bool ObservationServer::anybody_asks() const { return !impl_->observers.empty();
 
 const std::vector<ObservationServer::Asked>& ObservationServer::asked() const { return impl_->asked; }
 
+bool ObservationServer::takes_more(std::uint64_t key) {
+  const auto found = impl_->observers.find(key);
+  if (found == impl_->observers.end()) return false;
+  Impl::Observer& observer = found->second;
+  if (observer.under_way > 0 && observer.writer.all_acknowledged()) observer.under_way = observer.under_way_B = 0;
+  return observer.under_way < kMostUnderWay && observer.under_way_B < kMostUnderWay_B;
+}
+
 bool ObservationServer::send(std::uint64_t key, const core::Observation& observation) {
   const auto observer = impl_->observers.find(key);
-  return observer != impl_->observers.end() && observer->second.writer.send(observation) != WriteResult::kFailed;
+  if (observer == impl_->observers.end()) return false;
+  ++observer->second.under_way;
+  observer->second.under_way_B += size_of(observation);
+  return observer->second.writer.send(observation) != WriteResult::kFailed;
 }
 
 std::uint64_t ObservationServer::refused() const { return impl_->refused; }
 
 struct ObserverEndpoint::Impl {
-  Impl(Participant& participant_in, const ObserverSettings& settings)
+  Impl(Participant& participant_in, const ObserverSettings& settings_in)
       : participant(participant_in),
-        expected(expected_of(settings)),
+        settings(settings_in),
+        wakeup(participant.domain().wakeup()),
         observations(participant.domain(), {TopicId::kObservation, {partition_of_observer(client)}, {}, {}}, wakeup),
         interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
+
+  void say_what_is_wanted() {
+    if (interests.send(*wanted, std::uint64_t{0}) == WriteResult::kFailed) {
+      throw DdsError("cannot say what is wanted: topic interest does not take it");
+    }
+  }
 
   Participant& participant;
   std::uint64_t client = draw_id();
   std::uint64_t sequence = 0;
-  Expected expected;
-  Wakeup wakeup;
+  ObserverSettings settings;
+  std::optional<core::Interest> wanted;
+  Wakeup& wakeup;
   TypedReader<wire::Observation> observations;
   TypedWriter<wire::Interest> interests;
 };
@@ -154,24 +189,24 @@ std::uint64_t ObserverEndpoint::client() const { return impl_->client; }
 std::uint64_t ObserverEndpoint::want(core::Interest interest) {
   interest.client = impl_->client;
   interest.sequence = ++impl_->sequence;
-  if (impl_->interests.send(interest, std::uint64_t{0}) == WriteResult::kFailed) {
-    throw DdsError("cannot say what is wanted: topic interest does not take it");
-  }
+  impl_->wanted = std::move(interest);
+  impl_->say_what_is_wanted();
   return impl_->sequence;
 }
 
 std::vector<core::Observation> ObserverEndpoint::take() {
   impl_->participant.progress();
-  impl_->wakeup.clear();
   std::vector<core::Observation> observations;
   const Speakers& speakers = impl_->participant.domain().speakers();
-  impl_->observations.take_each(impl_->expected, [&](core::Observation&& observation, const Origin& origin) {
+  const auto take_one = [&](core::Observation&& observation, const Origin& origin) {
     const bool may_say =
         speakers.may_speak(origin.writer, observation.source) && speakers.is_at_home(origin.writer, observation.source);
     if (may_say) return observations.push_back(std::move(observation));
     impl_->observations.refuse_from(origin,
                                     fmt::format("it is not the node of region {}", core::value_of(observation.source)));
-  });
+  };
+  const auto ignore = [](const wire::Observation&, WireError) {};
+  impl_->observations.take_each(expected_of(impl_->settings), take_one, ignore, kMostAtOnce);
   return observations;
 }
 
@@ -180,7 +215,9 @@ void ObserverEndpoint::wait(std::chrono::nanoseconds time_out) {
   impl_->wakeup.wait(time_out);
 }
 
-void ObserverEndpoint::use(const ObserverSettings& settings) { impl_->expected = expected_of(settings); }
+void ObserverEndpoint::use(const ObserverSettings& settings) {
+  if (std::exchange(impl_->settings, settings) != settings && impl_->wanted) impl_->say_what_is_wanted();
+}
 
 std::uint64_t ObserverEndpoint::refused() const { return impl_->observations.refused().total(); }
 

@@ -33,6 +33,8 @@ class ObservationServer {
   };
   /// Of those who can be told: ascending by client. Valid until the next look().
   const std::vector<Asked>& asked() const;
+  /// False while too much of what it was sent is under way: it would lose some of it.
+  bool takes_more(std::uint64_t key);
   /// False when the write failed.
   bool send(std::uint64_t key, const core::Observation& observation);
 
@@ -55,10 +57,13 @@ class ObserverEndpoint {
   /// Takes the place of what it wanted before; client and sequence are filled in. Returns the sequence. Throws DdsError
   /// when the write failed.
   std::uint64_t want(core::Interest interest);
+  /// In order of arrival, at most 64 of those that have come.
   std::vector<core::Observation> take();
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);
-  /// The run has another map by now.
+  /// As the run is now. Where that is news, what is wanted is said once more, under the same sequence: a state that was
+  /// told before has been refused here by the old settings, and nodes tell it again to whoever asks again. Throws
+  /// DdsError when the write failed.
   void use(const ObserverSettings& settings);
 
   std::uint64_t refused() const;

@@ -61,8 +61,9 @@ MaybeError check_values(const wire::Observation& in, const Expected& expected) {
   }
   if (!unit_quaternions(in.q_WB())) return WireError::kRotation;
   const bool in_range =
-      in.stamp() >= 0 && in.sequence_number() > 0 && all_body_ids(in.id()) && all_body_ids(in.outside()) &&
-      strictly_ascending(in.id()) && strictly_ascending(in.outside()) && all_below(in.host(), expected.region_count) &&
+      in.stamp() >= 0 && in.sequence_number() > 0 && in.previous() >= -1 && in.previous() < in.stamp() &&
+      all_body_ids(in.id()) && all_body_ids(in.outside()) && strictly_ascending(in.id()) &&
+      strictly_ascending(in.outside()) && all_below(in.host(), expected.region_count) &&
       all_below(in.prototype(), expected.prototype_count) && all_below(in.joint(), expected.joint_count) &&
       all_within(in.p_WB(), bearable::kFarthest_m) && all_within(in.v_WB(), bearable::kFastest_m_s) &&
       all_within(in.w_WB(), bearable::kFastestSpin_rad_s) && all_within(in.contact_normal(), 1 + kRotationTolerance) &&
@@ -104,6 +105,7 @@ void encode(const Observation& observation, wire::Observation& out) {
   out.stamp(observation.stamp);
   out.map_version(observation.map_version);
   out.sequence_number(observation.sequence);
+  out.previous(observation.previous);
   out.kind(static_cast<std::uint8_t>(observation.kind));
   out.scene_order(observation.scene_order);
   put_bodies(observation.bodies, out);
@@ -123,6 +125,7 @@ Decoded<Observation> decode(const wire::Observation& in, const Expected& expecte
   observation.stamp = in.stamp();
   observation.map_version = in.map_version();
   observation.sequence = in.sequence_number();
+  observation.previous = in.previous();
   observation.kind = static_cast<Observation::Kind>(in.kind());
   observation.scene_order = in.scene_order();
   observation.bodies.reserve(in.id().size());

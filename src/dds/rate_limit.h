@@ -28,6 +28,11 @@ class RateLimit {
     return true;
   }
 
+  /// Each source that is known may send so many more, up to as many as at once.
+  void allow_more(double messages) {
+    for (auto& [source, bucket] : buckets_) bucket.tokens = std::min(at_once_, bucket.tokens + messages);
+  }
+
  private:
   static constexpr std::size_t kMostSources = 1024;
 

@@ -17,6 +17,10 @@ inline constexpr double kWordsAtOnce = 1000;
 inline constexpr double kSetpointsASecond = 1000;
 inline constexpr double kSetpointsAtOnce = 4000;
 
+/// Besides, for each state that the node computes: a program in lock-step says so much for each, however fast they are.
+inline constexpr double kWordsAState = 1;
+inline constexpr double kSetpointsAState = 4;
+
 inline std::string words_of_ration() { return fmt::format("{:g} a second, {:g} at once", kWordsASecond, kWordsAtOnce); }
 
 }  // namespace aurasim::dds

@@ -38,12 +38,13 @@ struct ReplicaReader::Impl {
   Impl(Participant& participant_in, const ObserverSettings& settings)
       : participant(participant_in),
         expected(expected_of(settings)),
+        wakeup(participant.domain().wakeup()),
         deltas(participant.domain(), {TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, wakeup),
         keys(participant.domain(), {TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, wakeup) {}
 
   Participant& participant;
   Expected expected;
-  Wakeup wakeup;
+  Wakeup& wakeup;
   TypedReader<wire::Replica> deltas;
   TypedReader<wire::Replica> keys;
   std::uint64_t received = 0;
@@ -56,7 +57,6 @@ ReplicaReader::~ReplicaReader() = default;
 
 std::vector<core::Replica> ReplicaReader::take() {
   impl_->participant.progress();
-  impl_->wakeup.clear();
   std::vector<core::Replica> replicas;
   const Speakers& speakers = impl_->participant.domain().speakers();
   for (TypedReader<wire::Replica>* reader : {&impl_->deltas, &impl_->keys}) {

@@ -1,6 +1,8 @@
 #include "dds/setpoint_bus.h"
 
 #include <algorithm>
+#include <deque>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -15,13 +17,39 @@ namespace {
 /// Of one message: both fit into a datagram of 64 kB.
 constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
 
+/// Programs whose last word a node remembers: more than steer one run.
+constexpr std::size_t kMostPrograms = 1024;
+
+/// The last word of each program. When there are too many programs, the one that came first is forgotten.
+class LastWords {
+ public:
+  void note(const core::ProgramWord& word) {
+    const auto [known, is_new] = last_.try_emplace(word.program, word.number);
+    if (!is_new) known->second = std::max(known->second, word.number);
+    if (is_new) order_.push_back(word.program);
+    if (order_.size() <= kMostPrograms) return;
+    last_.erase(order_.front());
+    order_.pop_front();
+  }
+
+  bool has(const core::ProgramWord& word) const {
+    const auto known = last_.find(word.program);
+    return known != last_.end() && known->second >= word.number;
+  }
+
+ private:
+  std::map<std::uint64_t, std::uint64_t> last_;
+  std::deque<std::uint64_t> order_;
+};
+
 }  // namespace
 
 struct SetpointReader::Impl {
-  explicit Impl(Participant& participant) : reader(participant.domain(), in_world(TopicId::kControl), wakeup) {}
+  explicit Impl(Participant& participant)
+      : reader(participant.domain(), in_world(TopicId::kControl), participant.domain().wakeup()) {}
 
-  Wakeup wakeup;
   TypedReader<wire::Setpoints> reader;
+  LastWords last_words;
   RateLimit<ProcessPrefix> rates{kSetpointsASecond, kSetpointsAtOnce};
   std::uint64_t too_many = 0;
 };
@@ -33,8 +61,8 @@ SetpointReader::~SetpointReader() = default;
 std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
   std::vector<core::Setpoints> taken;
   const auto now = std::chrono::steady_clock::now();
-  impl_->wakeup.clear();
   impl_->reader.take_each({}, [&](core::Setpoints&& setpoints, const Origin& origin) {
+    impl_->last_words.note({setpoints.client, setpoints.sequence});
     if (setpoints.generation != generation) return;
     const bool is_a_program = setpoints.client != core::kRecordedClient;
     if (!is_a_program || !impl_->rates.allows(origin.writer.guidPrefix, now)) {
@@ -47,11 +75,16 @@ std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
   return taken;
 }
 
+bool SetpointReader::has_heard(const core::ProgramWord& word) const { return impl_->last_words.has(word); }
+
+void SetpointReader::note_state() { impl_->rates.allow_more(kSetpointsAState); }
+
 std::uint64_t SetpointReader::refused() const { return impl_->too_many + impl_->reader.refused().total(); }
 
 struct SetpointWriter::Impl {
   explicit Impl(Participant& participant_in)
-      : participant(participant_in), writer(participant.domain(), in_world(TopicId::kControl), wakeup) {}
+      : participant(participant_in),
+        writer(participant.domain(), in_world(TopicId::kControl), participant.domain().wakeup()) {}
 
   void write(const core::Setpoints& setpoints) {
     if (writer.send(setpoints, std::uint64_t{0}) == WriteResult::kFailed) {
@@ -62,7 +95,6 @@ struct SetpointWriter::Impl {
   Participant& participant;
   std::uint64_t client = draw_id();
   std::uint64_t sequence = 0;
-  Wakeup wakeup;
   TypedWriter<wire::Setpoints> writer;
 };
 
@@ -89,7 +121,7 @@ void SetpointWriter::send(core::Setpoints setpoints) {
   } while (body < bodies.size() || joint < joints.size());
 }
 
-bool SetpointWriter::is_known() { return impl_->writer.all_acknowledged(); }
+core::ProgramWord SetpointWriter::last_word() const { return {impl_->client, impl_->sequence}; }
 
 std::size_t SetpointWriter::listeners() const { return impl_->writer.foreign_reader_count(); }
 

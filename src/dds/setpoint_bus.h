@@ -20,6 +20,11 @@ class SetpointReader {
 
   /// Those for this generation that have come since the last call, in order of arrival.
   std::vector<core::Setpoints> take(core::Generation generation);
+  /// Has a message of this program with this number, or a later one, come by the last take()? True also when the
+  /// message was for another generation, or was dropped.
+  bool has_heard(const core::ProgramWord& word) const;
+  /// This node has computed a state: programs may say something for the next one.
+  void note_state();
   /// Messages that were dropped: their sender has sent far more than a state needs, or what is none.
   std::uint64_t refused() const;
 
@@ -36,8 +41,8 @@ class SetpointWriter {
 
   /// Numbers them, and says who sends them; large ones go in several messages. Throws DdsError when the write failed.
   void send(core::Setpoints setpoints);
-  /// All nodes that were there when they were sent have them.
-  bool is_known();
+  /// The last message that was sent; number 0: none was.
+  core::ProgramWord last_word() const;
   std::size_t listeners() const;
 
  private:

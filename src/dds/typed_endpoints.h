@@ -1,6 +1,8 @@
 // Writers and readers of one kind of message each: coded on the way out, checked on the way in.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -43,11 +45,11 @@ class TypedReader : public Reader {
   using Reader::Reader;
 
   /// Calls `visit(message)`, or `visit(message, origin)`, for each that has come, and `refuse(sample, error)` for each
-  /// that is none.
+  /// that is none. Of those that come faster than they are taken, at most `at_most`.
   template <class Visit, class Refuse>
-  void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse) {
+  void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse, std::size_t at_most = SIZE_MAX) {
     Origin origin;
-    while (take(&sample_, &origin)) {
+    while (at_most-- > 0 && take(&sample_, &origin)) {
       auto decoded = decode(sample_, expected);
       if (const auto* error = std::get_if<WireError>(&decoded)) {
         refused_.add(*error);

@@ -2,7 +2,9 @@
 #include "cli/hold.h"
 
 #include <algorithm>
+#include <map>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@ namespace aurasim::cli {
 namespace {
 
 using core::Step;
+using namespace std::chrono_literals;
 
 /// Of a client that knows state `from`.
 dds::RunCommand step(std::uint64_t request, Step from, std::int64_t count, core::Generation generation = 1) {
@@ -84,6 +87,95 @@ TEST(AskedSteps, LeadAllNodesToOneStateInWhateverOrderTheyHear) {
       EXPECT_EQ(end_of(100, steps), sum) << "seed " << seed;
     }
   }
+}
+
+class PauseFollowing : public ::testing::Test {
+ protected:
+  Step stands_in(Step holds_at, Step farthest) { return follower_.holds_at(holds_at, farthest, now_); }
+  void pass(std::chrono::milliseconds time) { now_ += time; }
+
+ private:
+  PauseFollower follower_;
+  PauseFollower::Time now_{std::chrono::seconds(5)};
+};
+
+TEST_F(PauseFollowing, ANodeComesToWhereAnotherStands) {
+  EXPECT_EQ(stands_in(100, 100), 100);
+  stands_in(100, 104);
+  pass(1s);
+  EXPECT_EQ(stands_in(100, 104), 104);
+}
+
+TEST_F(PauseFollowing, ANodeDoesNotFollowAStepThatItIsAboutToHearOf) {
+  for (Step step = 100; step < 200; ++step) {
+    EXPECT_EQ(stands_in(step, step + 1), step) << "the others have heard of it a moment ago";
+    pass(20ms);
+    EXPECT_EQ(stands_in(step + 1, step + 1), step + 1);
+  }
+}
+
+class Awaited : public ::testing::Test {
+ protected:
+  void step_after(std::uint64_t program, std::uint64_t number) {
+    dds::RunCommand command = step(1, 100, 5);
+    command.after = {program, number};
+    words_.add(command, now_);
+  }
+  void hear(std::uint64_t program, std::uint64_t number) { heard_[program] = number; }
+  bool goes_on() {
+    return words_.are_here(
+        [this](const core::ProgramWord& word) {
+          return heard_.contains(word.program) && heard_[word.program] >= word.number;
+        },
+        now_);
+  }
+  void pass(std::chrono::milliseconds time) { now_ += time; }
+
+  AwaitedWords words_;
+
+ private:
+  std::map<std::uint64_t, std::uint64_t> heard_;
+  AwaitedWords::Time now_{std::chrono::seconds(5)};
+};
+
+TEST_F(Awaited, AStepThatNamesNoWordIsNotHeldUp) {
+  step_after(7, 0);
+  EXPECT_TRUE(goes_on());
+}
+
+TEST_F(Awaited, AStepWaitsForTheWordThatItNames) {
+  hear(7, 11);
+  step_after(7, 12);
+  EXPECT_FALSE(goes_on());
+  hear(8, 40);
+  EXPECT_FALSE(goes_on()) << "another program's";
+  hear(7, 13);
+  EXPECT_TRUE(goes_on()) << "words come in order: a later one is as good";
+  EXPECT_TRUE(words_.take_given_up().empty());
+}
+
+TEST_F(Awaited, StepsOfTwoProgramsWaitForBoth) {
+  step_after(7, 1), step_after(8, 1);
+  hear(7, 1);
+  EXPECT_FALSE(goes_on());
+  hear(8, 1);
+  EXPECT_TRUE(goes_on());
+}
+
+TEST_F(Awaited, AWordThatNeverComesIsGivenUpAndTold) {
+  step_after(7, 12);
+  pass(900ms);
+  EXPECT_FALSE(goes_on());
+  pass(200ms);
+  EXPECT_TRUE(goes_on());
+  EXPECT_EQ(words_.take_given_up(), (std::vector<core::ProgramWord>{{7, 12}}));
+  EXPECT_TRUE(words_.take_given_up().empty()) << "once";
+}
+
+TEST_F(Awaited, ANewWorldWaitsForNothingThatWasSaidToTheOneBefore) {
+  step_after(7, 12);
+  words_.clear();
+  EXPECT_TRUE(goes_on());
 }
 
 }  // namespace

@@ -66,6 +66,39 @@ TEST_F(Merged, AStateIsWholeWhenAllRegionsHaveToldIt) {
   EXPECT_THAT(steps(), IsEmpty()) << "too late";
 }
 
+TEST_F(Merged, AStateThatARegionHasLeftOutIsNotGiven) {
+  both(4);
+  for (const core::Step step : {5, 6, 7, 8}) states_.accept(of(0, step), now_s_);
+  EXPECT_THAT(steps(), ElementsAre(4));
+  Observation next = of(1, 8);
+  next.previous = 4;
+  states_.accept(next, now_s_);
+  const std::vector<MergedState> taken = take();
+  ASSERT_EQ(taken.size(), 1U) << "5, 6 and 7 are of one region alone, and always will be";
+  EXPECT_EQ(taken[0].step, 8);
+  EXPECT_TRUE(taken[0].is_complete());
+}
+
+TEST_F(Merged, AStateThatWasToldAndHasNotComeIsGivenAsFarAsItIsKnown) {
+  both(4);
+  for (const core::Step step : {5, 6, 7}) states_.accept(of(0, step), now_s_);
+  Observation next = of(1, 7);
+  next.previous = 6;  // 5 and 6 were overwritten on their way
+  states_.accept(next, now_s_);
+  EXPECT_THAT(steps(), ElementsAre(4, 5, 6, 7));
+}
+
+TEST_F(Merged, WhatWasLeftOutBeforeARedoIsTold) {
+  both(4);
+  states_.accept(of(0, 8), now_s_);
+  Observation next = of(1, 8);
+  next.previous = 4;
+  states_.accept(next, now_s_);
+  EXPECT_THAT(steps(), ElementsAre(4, 8));
+  for (const core::Step step : {5, 6, 7}) both(step, 1);
+  EXPECT_THAT(steps(), ElementsAre(5, 6, 7));
+}
+
 TEST_F(Merged, StatesComeInTheirOrder) {
   Observation left = of(0, 5);
   add(left, 3, 1, 1, true);

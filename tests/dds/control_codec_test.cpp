@@ -123,6 +123,7 @@ TEST(CommandCodec, RoundTripKeepsEverything) {
   for (const auto kind : {RunCommandKind::kStart, RunCommandKind::kStep, RunCommandKind::kStop}) {
     RunCommand command = command_of(kind);
     command.request = 5;
+    command.after = {17, 4711};
     wire::RunControl sample;
     encode(command, 99, sample);
     const auto decoded = decode(sample, {});
@@ -131,6 +132,7 @@ TEST(CommandCodec, RoundTripKeepsEverything) {
     encode(std::get<RunCommand>(decoded), 99, again);
     EXPECT_EQ(again, sample);
     EXPECT_EQ(std::get<RunCommand>(decoded).kind, kind);
+    EXPECT_EQ(std::get<RunCommand>(decoded).after, (core::ProgramWord{17, 4711}));
   }
 }
 

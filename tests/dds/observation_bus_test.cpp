@@ -42,6 +42,21 @@ class ObservationBus : public ::testing::Test {
   ObservationServer node_{at_node_, RegionId{1}};
 };
 
+/// What comes before the observer has heard of the new scene is refused here, and a node tells each state once.
+TEST_F(ObservationBus, AnObserverAsksAnewWhenTheRunHasChanged) {
+  ObserverEndpoint observer(at_client_, kRun);
+  observer.want(all_bodies());
+  ASSERT_TRUE(holds_in_time([&] { return asked() == 1; }));
+  const std::uint64_t before = node_.asked().front().arrivals;
+  observer.use(kRun);
+  ObserverSettings changed = kRun;
+  changed.prototype_count += 3;
+  observer.use(changed);
+  EXPECT_TRUE(holds_in_time([&] { return asked() == 1 && node_.asked().front().arrivals > before; }));
+  EXPECT_EQ(node_.asked().front().interest->all, true);
+  EXPECT_EQ(node_.asked().front().interest->sequence, 1U) << "it wants nothing else";
+}
+
 TEST_F(ObservationBus, EachObserverIsToldWhatIsForIt) {
   ObserverEndpoint one(at_client_, kRun), other(at_client_, kRun);
   core::Interest interest = all_bodies();

@@ -38,6 +38,7 @@ core::Observation some_observation(std::size_t bodies = 5) {
   observation.stamp = 99;
   observation.map_version = 0xfedc'ba98'7654'3210U;
   observation.sequence = 4;
+  observation.previous = 96;
   observation.kind = core::Observation::Kind::kMadeUp;
   for (const core::ReplicaBody& row : testing::replica_of(bodies).bodies) {
     observation.bodies.push_back({row, core::value_of(row.id) % 2 == 0});
@@ -129,6 +130,9 @@ TEST(ObservationCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(observation_after([](auto& w) { w.map_version(1); }), "map_version");
   EXPECT_EQ(observation_after([](auto& w) { w.source(4); }), "range");
   EXPECT_EQ(observation_after([](auto& w) { w.stamp(-1); }), "range");
+  EXPECT_EQ(observation_after([](auto& w) { w.previous(-1); }), "accepted");
+  EXPECT_EQ(observation_after([](auto& w) { w.previous(-2); }), "range");
+  EXPECT_EQ(observation_after([](auto& w) { w.previous(99); }), "range");
   EXPECT_EQ(observation_after([](auto& w) { w.kind(2); }), "enum");
   EXPECT_EQ(observation_after([](auto& w) { w.flags()[0] = 4; }), "enum");
   EXPECT_EQ(observation_after([](auto& w) { w.id().pop_back(); }), "length");

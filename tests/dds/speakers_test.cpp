@@ -129,6 +129,21 @@ TEST(ARateLimit, LetsSoManyThroughAtOnceAndThenSoManyASecond) {
   EXPECT_EQ(passed(1, 1h), 20);
 }
 
+TEST(ARateLimit, LetsMoreThroughThatWasEarnedOtherwise) {
+  RateLimit<int> limit(10, 20);
+  const RateLimit<int>::Time now{};
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(limit.allows(1, now));
+  EXPECT_FALSE(limit.allows(1, now));
+  limit.allow_more(2);
+  EXPECT_TRUE(limit.allows(1, now));
+  EXPECT_TRUE(limit.allows(1, now));
+  EXPECT_FALSE(limit.allows(1, now));
+  limit.allow_more(1000);
+  int let_through = 0;
+  while (limit.allows(1, now)) ++let_through;
+  EXPECT_EQ(let_through, 20) << "as many as at once";
+}
+
 TEST(ARateLimit, RemembersOnlySoManySources) {
   RateLimit<int> limit(10, 20);
   const auto start = std::chrono::steady_clock::time_point() + 1h;

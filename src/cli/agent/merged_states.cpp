@@ -26,6 +26,7 @@ void MergedStates::begin_generation(core::Generation generation) {
   has_given_ = false;
   pending_.clear();
   told_.clear();
+  left_out_.clear();
 }
 
 /// What was told of this state and later ones before is void.
@@ -33,6 +34,7 @@ void MergedStates::go_back(core::Step to, std::uint32_t redo) {
   std::erase_if(pending_, [&](const auto& entry) { return entry.first >= to && entry.second.redo < redo; });
   for (auto& [region, step] : told_) step = std::min(step, to - 1);
   given_ = std::min(given_, to - 1);
+  left_out_.clear();
   redo_ = redo;
 }
 
@@ -48,11 +50,21 @@ void MergedStates::accept(core::Observation observation, double now_s) {
   if (is_hosted) {
     core::Step& told = told_.try_emplace(observation.source, observation.stamp).first->second;
     told = std::max(told, observation.stamp);
+    if (observation.previous >= 0 && observation.previous + 1 < observation.stamp) {
+      left_out_.push_back({observation.source, observation.previous + 1, observation.stamp - 1});
+    }
     pending.hosted.insert_or_assign(observation.source, std::move(observation));
   } else {
     pending.made_up.push_back(std::move(observation));
   }
   if (pending_.size() > kMostPending) pending_.erase(pending_.begin());
+}
+
+/// A region that has told nothing of it and never will: so the state is never whole.
+bool MergedStates::is_left_out(core::Step step, const Pending& pending) const {
+  return std::ranges::any_of(left_out_, [&](const LeftOut& states) {
+    return states.first <= step && step <= states.last && !pending.hosted.contains(states.source);
+  });
 }
 
 bool MergedStates::have_passed(core::Step step, const std::set<core::RegionId>& regions) const {
@@ -108,6 +120,10 @@ std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regi
   std::vector<MergedState> states;
   while (!pending_.empty() && !regions.empty()) {
     const auto& [step, pending] = *pending_.begin();
+    if (is_left_out(step, pending)) {
+      pending_.erase(pending_.begin());
+      continue;
+    }
     if (!is_over(step, pending, regions, now_s)) break;
     MergedState state = merge(step, pending, regions);
     // Before the first whole state some regions have not yet heard what is wanted.
@@ -118,6 +134,8 @@ std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regi
     }
     pending_.erase(pending_.begin());
   }
+  const core::Step first = pending_.empty() ? given_ + 1 : std::min(pending_.begin()->first, given_ + 1);
+  std::erase_if(left_out_, [first](const LeftOut& states) { return states.last < first; });
   return states;
 }
 

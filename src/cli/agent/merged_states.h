@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -45,7 +46,8 @@ class MergedStates {
   /// `now_s`: of any clock that does not go back.
   void accept(core::Observation observation, double now_s);
 
-  /// Those that are complete, or that nothing more comes of: in order, each once; after a redo again, from where it has
+  /// Those that are complete, or that nothing more comes of, without those that a region has left out because they were
+  /// too many: in order, each once; after a redo again, from where it has
   /// gone back to. `regions`: those that are alive.
   std::vector<MergedState> take(const std::set<core::RegionId>& regions, double now_s);
 
@@ -63,6 +65,7 @@ class MergedStates {
   void begin_generation(core::Generation generation);
   void go_back(core::Step to, std::uint32_t redo);
   bool is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions, double now_s) const;
+  bool is_left_out(core::Step step, const Pending& pending) const;
   bool have_passed(core::Step step, const std::set<core::RegionId>& regions) const;
   MergedState merge(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions) const;
 
@@ -73,6 +76,11 @@ class MergedStates {
   bool has_given_ = false;
   std::map<core::Step, Pending> pending_;
   std::map<core::RegionId, core::Step> told_;  ///< the newest state of each region
+  struct LeftOut {
+    core::RegionId source{};
+    core::Step first = 0, last = 0;
+  };
+  std::deque<LeftOut> left_out_;  ///< states that regions have not told, because the observer takes no more
 };
 
 }  // namespace aurasim::cli::agent

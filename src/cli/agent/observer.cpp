@@ -29,7 +29,6 @@ Observer::Observer(dds::Participant& participant, const overseer::WorldWatch& wa
     : watch_(watch),
       asked_(std::move(asked)),
       endpoint_(participant, watch.observer_settings()),
-      map_version_(watch.observer_settings().map_version),
       states_({.latest_steps = 2 * watch.launch().lookahead() + 2}) {
   if (!asked_.fans.empty()) scene_.emplace(participant, watch);
   for (const FanSpec& fan : asked_.fans) {
@@ -60,10 +59,7 @@ void Observer::want() {
 }
 
 void Observer::turn(const std::set<core::RegionId>& regions) {
-  if (map_version_ != watch_.observer_settings().map_version) {
-    map_version_ = watch_.observer_settings().map_version;
-    endpoint_.use(watch_.observer_settings());
-  }
+  endpoint_.use(watch_.observer_settings());
   if (scene_) scene_->look();
   const double now_s = overseer::view_clock_s();
   for (core::Observation& observation : endpoint_.take()) states_.accept(std::move(observation), now_s);
@@ -80,19 +76,31 @@ void Observer::sense_what_is_known(double now_s) {
     Whole& oldest = whole_.front();
     const bool is_known = !scene_ || scene_->has_all_up_to(oldest.state.scene_order);
     if (!is_known && now_s - oldest.since_s < kPatienceWithScene_s) return;
+    const std::uint64_t left_out = states_left_out_before(oldest.state);
     ready_.push_back(sense(std::move(oldest.state)));
+    ready_.back().skipped = left_out;
     whole_.pop_front();
     if (ready_.size() <= kMostReady) continue;
+    skipped_ += ready_.front().skipped + 1;
     ready_.pop_front();
-    ++skipped_;
   }
+}
+
+/// Nodes leave states out that this process is too slow for, as they do where the client is.
+std::uint64_t Observer::states_left_out_before(const MergedState& state) {
+  const Place place{state.generation, state.redo, state.step};
+  const Place last = std::exchange(last_, place);
+  const core::Step every = asked_.selection.every;
+  const bool goes_on = last.generation == place.generation && last.redo == place.redo && place.step > last.step;
+  if (every == 0 || last.step < 0 || !goes_on) return 0;
+  return static_cast<std::uint64_t>((place.step - 1) / every - last.step / every);
 }
 
 std::optional<Observed> Observer::next() {
   if (ready_.empty()) return std::nullopt;
   Observed oldest = std::move(ready_.front());
   ready_.pop_front();
-  oldest.skipped = std::exchange(skipped_, 0);
+  oldest.skipped += std::exchange(skipped_, 0);
   return oldest;
 }
 

@@ -21,7 +21,7 @@ struct Observed {
   MergedState state;  ///< of the bodies that were asked for
   std::vector<FanResult> fans;
   std::vector<TriggerResult> triggers;
-  std::uint64_t skipped = 0;  ///< states before this one that the client was too slow for
+  std::uint64_t skipped = 0;  ///< states before this one that the client, or this process, was too slow for
 };
 
 /// Used by one thread.
@@ -41,6 +41,7 @@ class Observer {
  private:
   void want();
   void sense_what_is_known(double now_s);
+  std::uint64_t states_left_out_before(const MergedState& state);
   void look_around(const MergedState& state);
   Observed sense(MergedState state);
   FanResult cast(std::size_t i, const MergedState& state) const;
@@ -50,7 +51,6 @@ class Observer {
   const overseer::WorldWatch& watch_;
   AskedInterest asked_;
   dds::ObserverEndpoint endpoint_;
-  std::uint64_t map_version_;
   MergedStates states_;
   std::optional<SeenScene> scene_;          ///< for rays
   std::vector<Surroundings> surroundings_;  ///< of fans, then of triggers
@@ -61,6 +61,12 @@ class Observer {
   };
   std::deque<Whole> whole_;  ///< perhaps the scene is not yet known as it was in them
   std::deque<Observed> ready_;
+  struct Place {
+    core::Generation generation = 0;
+    std::uint32_t redo = 0;
+    core::Step step = -1;
+  };
+  Place last_;  ///< of the last state that was whole
   std::uint64_t skipped_ = 0;
 };
 

@@ -59,24 +59,28 @@ void RunLink::say_still_here() {
 }
 
 /// A run that computes many states at once might be through with them before it hears another word.
-void RunLink::say_still_here_until(const Standing& wanted, const Patience& patience) {
+void RunLink::say_still_here_until(const Standing& wanted) {
   if (!setpoints_) return;
   const core::Step apart = std::max<core::Step>(1, launch().control_rules().silence / 2);
-  for (core::Step step = stands_in_->step + 1; step <= wanted.step; step += apart) {
+  core::Step step = stands_in_->step + 1;
+  if (said_up_to_.generation == wanted.generation) step = std::max(step, said_up_to_.step + apart);
+  for (; step <= wanted.step; step += apart) {
     core::Setpoints word;
     word.generation = wanted.generation;
     word.at_step = step;
     setpoints_->send(std::move(word));
+    said_up_to_ = {wanted.generation, step};
   }
-  wait_until([this] { return setpoints_->is_known(); }, patience, "not every node has heard what it is to do");
 }
 
 core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience) {
   if (!setpoints_) setpoints_.emplace(participant_);
   wait_until([this] { return setpoints_->listeners() >= live_regions().size(); }, patience,
              "not every node hears this client");
-  if (setpoints.at_step == 0 && is_known_to_stand()) setpoints.at_step = known_standing(patience).step + 1;
+  const bool is_for_the_next = setpoints.at_step == 0 && is_known_to_stand();
+  if (is_for_the_next) setpoints.at_step = known_standing(patience).step + 1;
   setpoints.generation = farthest().generation;
+  if (is_for_the_next) said_up_to_ = {setpoints.generation, setpoints.at_step};
   said_last_ = Clock::now();
   const core::Step at_step = setpoints.at_step;
   setpoints_->send(std::move(setpoints));
@@ -189,9 +193,10 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   wait_until_it_stands(patience);
   known_standing(patience);
   const Standing wanted{stands_in_->generation, stands_in_->step + count};
-  say_still_here_until(wanted, patience);
+  say_still_here_until(wanted);
   watch_standing_states();
-  steering_.send_step(wanted.generation, stands_in_->step, count);
+  steering_.send_step(wanted.generation, stands_in_->step, count,
+                      setpoints_ ? setpoints_->last_word() : core::ProgramWord());
   stands_in_.reset();
   StandingState state(wanted.generation, wanted.step);
   std::optional<Clock::time_point> published_since;
@@ -244,6 +249,7 @@ void RunLink::wait_for_listeners(const Patience& patience) {
 std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Patience& patience) {
   wait_for_listeners(patience);
   const bool stood = is_known_to_stand();
+  const core::Generation before = farthest().generation;
   bool changes = false;
   std::map<std::uint64_t, std::size_t> places;
   std::vector<Delivery> deliveries(commands.size());
@@ -265,6 +271,13 @@ std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Pa
   if (changes) {
     stands_in_.reset();
     wait_until([&] { return steering_.is_there() && (!stood || stands()); }, patience, "the run does not go on");
+    const bool has_changed = std::ranges::all_of(deliveries, &Delivery::done);
+    // The answer may come before anything of the new world: who asks for bodies then is not given the old ones.
+    for (const auto end = Clock::now() + kPatienceWithAReader;
+         has_changed && farthest().generation <= before && Clock::now() < end;) {
+      patience.check("the run does not begin anew");
+      turn(kRound);
+    }
   }
   return deliveries;
 }

@@ -108,7 +108,7 @@ class RunLink {
   WorldState seen_state(const Patience& patience);
   const Standing& known_standing(const Patience& patience);
   void say_still_here();
-  void say_still_here_until(const Standing& wanted, const Patience& patience);
+  void say_still_here_until(const Standing& wanted);
 
   config::Launch launch_;  ///< as it was given
   std::optional<security::Member> member_;
@@ -119,6 +119,7 @@ class RunLink {
   overseer::WorldWatch watch_;
   std::optional<dds::SetpointWriter> setpoints_;  ///< once it has steered anything
   Clock::time_point said_last_;                   ///< that it is still here
+  Standing said_up_to_;  ///< it has said so for this state, and for all before it no longer ago than silence allows
   std::unique_ptr<LaunchedRun> launched_;
   std::optional<Standing> stands_in_;                 ///< as all regions have shown; nothing: not known
   std::optional<dds::ObserverEndpoint> standing_;     ///< tells all bodies of states in which the run stands

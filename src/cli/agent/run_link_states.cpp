@@ -60,11 +60,11 @@ void RunLink::watch_standing_states() {
     all.all = true;
     standing_->want(all);
   }
-  standing_->use(watch_.observer_settings());
 }
 
 void RunLink::hear_of_standing_states() {
   if (!standing_) return;
+  standing_->use(watch_.observer_settings());
   for (core::Observation& observation : standing_->take()) {
     if (observation.kind == core::Observation::Kind::kMadeUp) {
       foreseen_.push_back(std::move(observation));
@@ -114,6 +114,8 @@ bool RunLink::collect(StandingState& state, const Patience& patience) {
     if (!is_known_to_stand()) return false;
     standing_->wait(kRound);
     turn(0ms);
+    const Standing newest = farthest();
+    if (newest.generation > state.generation()) state = StandingState(newest.generation, newest.step);  // begun anew
   }
   return true;
 }
