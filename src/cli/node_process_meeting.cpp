@@ -1,6 +1,5 @@
 // How the nodes of a run find each other, see that nobody else is there, and begin together.
 #include <algorithm>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,8 +15,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
-/// Of each region, between two looks at all: each word of another would be a reason to look.
-constexpr auto kBetweenLooks = 200us;
 
 std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
   return fmt::format("{:.1f} s {}", std::chrono::duration<double>(std::chrono::abs(ahead)).count(),
@@ -91,16 +88,11 @@ bool NodeProcess::meet_neighbours() {
         return false;
       }
     }
-    wait_for_others();
+    control_.wait(50ms);
   }
   if (another_run_is_here()) return false;
   enter(NodeEvent::kMet);
   return true;
-}
-
-void NodeProcess::wait_for_others() {
-  std::this_thread::sleep_for(launch_.regions.size() * kBetweenLooks);
-  control_.wait(50ms);
 }
 
 /// How far all have come who are to begin together, as far as is known here.
@@ -162,7 +154,7 @@ bool NodeProcess::wait_for_start() {
     publish();
     start_when_all_wait();
     execute_commands();
-    wait_for_others();
+    control_.wait(50ms);
   }
   enter(NodeEvent::kStarted);
   return true;
