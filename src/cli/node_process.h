@@ -92,7 +92,6 @@ class NodeProcess {
   bool another_agreement_is_here();
   bool the_same_run_is_here();
   void name_the_dead();
-  void wait_for_others();
   std::uint64_t met();
   std::string who_does_not_wait();
   void start_when_all_wait();

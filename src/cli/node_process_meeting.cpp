@@ -1,6 +1,5 @@
 // How the nodes of a run find each other, see that nobody else is there, and begin together.
 #include <algorithm>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +17,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
-/// Of each region, between two looks at all: each word of another would be a reason to look.
-constexpr auto kBetweenLooks = 200us;
 
 std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
   return fmt::format("{:.1f} s {}", std::chrono::duration<double>(std::chrono::abs(ahead)).count(),
@@ -116,16 +113,11 @@ bool NodeProcess::meet_neighbours() {
         return false;
       }
     }
-    wait_for_others();
+    control_.wait(50ms);
   }
   if (another_run_is_here()) return false;
   enter(NodeEvent::kMet);
   return true;
-}
-
-void NodeProcess::wait_for_others() {
-  std::this_thread::sleep_for(launch_.regions.size() * kBetweenLooks);
-  control_.wait(50ms);
 }
 
 /// How far all have come who are to begin together, as far as is known here.
@@ -189,7 +181,7 @@ bool NodeProcess::wait_for_start() {
     start_when_all_wait();
     if (options_.region == core::RegionId{0}) waiting.reached(share_of_nodes());
     execute_commands();
-    wait_for_others();
+    control_.wait(50ms);
   }
   enter(NodeEvent::kStarted);
   return true;

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kStatusPeriod = 100ms, kWaitingPeriod = 1s;
+constexpr auto kStatusPeriod = 100ms;
 
 dds::Durations summary_of(std::vector<double>& values) {
   return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
@@ -61,9 +61,7 @@ void NodeProcess::publish(const std::string& text) {
   const auto now = Clock::now();
   const bool is_cut_off = phase_ == NodePhase::kRecovering && fence_.is_cut_off();
   const dds::NodeState state = is_cut_off ? dds::NodeState::kCutOff : state_of(phase_).value();
-  // Many that wait on few processors would have nothing but each other's statuses to do.
-  const bool only_waits = phase_ == NodePhase::kWaiting && !begun_ && participant_->stays_on_this_host();
-  if (state == status_.state && now - last_published_ < (only_waits ? kWaitingPeriod : kStatusPeriod)) return;
+  if (state == status_.state && now - last_published_ < kStatusPeriod) return;
   last_published_ = now;
   note_strangers();
   status_.state = state;
