@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "core/box_tree.h"
-#include "core/limits.h"
 #include "physics/clearance.h"
 
 namespace aurasim::cli {
@@ -225,18 +224,6 @@ void add_fast_bodies(const config::Launch& launch, OfAKind& fast) {
   }
 }
 
-/// Their spin is cut down in the first substep.
-void add_spinning_bodies(const config::Launch& launch, OfAKind& spinning) {
-  const double fastest_rad_s = core::limits::fastest_spin_rad_s(launch.step_s() / launch.time.substeps);
-  for (std::size_t i = 0; i < launch.scene.bodies.size(); ++i) {
-    const double spin_rad_s = launch.scene.bodies[i].w_WB.norm();
-    if (spin_rad_s <= fastest_rad_s) continue;
-    spinning.add(fmt::format(
-        "{} starts with a spin of {:.4g} rad/s, more than a quarter turn in a substep: {:.4g} rad/s are left of it",
-        body_at_place(launch, i), spin_rad_s, fastest_rad_s));
-  }
-}
-
 void add_fast_injectors(const config::Launch& launch, OfAKind& fast) {
   for (std::size_t i = 0; i < launch.scene.injectors.size(); ++i) {
     const core::Injector& injector = launch.scene.injectors[i];
@@ -251,9 +238,8 @@ void add_fast_injectors(const config::Launch& launch, OfAKind& fast) {
 
 std::vector<std::string> scene_warnings(const config::Launch& launch, const std::function<void(double)>& reached) {
   constexpr std::uint32_t kToldEvery = 64;
-  OfAKind fast, spinning, overlaps, sunk;
+  OfAKind fast, overlaps, sunk;
   add_fast_bodies(launch, fast);
-  add_spinning_bodies(launch, spinning);
   add_fast_injectors(launch, fast);
   StartOfScene start(launch);
   const auto bodies = static_cast<std::uint32_t>(launch.scene.bodies.size());
@@ -264,7 +250,6 @@ std::vector<std::string> scene_warnings(const config::Launch& launch, const std:
   }
   std::vector<std::string> all;
   fast.move_to(all, "that are too fast");
-  spinning.move_to(all, "that spin too fast");
   overlaps.move_to(all, fmt::format("such overlaps; {} of {} bodies overlap another one", start.overlapping(), bodies));
   sunk.move_to(all, "bodies in statics");
   return all;

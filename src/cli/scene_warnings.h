@@ -10,7 +10,7 @@
 namespace aurasim::cli {
 
 /// Bodies that overlap another one, a convex static or the ground at the start, or lie below it; bodies and injectors
-/// that are faster than tolerances.speed, or spin faster than physics can turn them. Each names its bodies, and the
+/// that are faster than tolerances.speed. Each names its bodies, and the
 /// place in the scene file. At most 10 of a kind one by one, then their count. In n log n, where no more than a few
 /// bodies are near each other without an overlap. `reached` is called with the share of the work that is done, 0 to 1.
 std::vector<std::string> scene_warnings(const config::Launch& launch,

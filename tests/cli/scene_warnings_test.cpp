@@ -100,14 +100,6 @@ injectors:
   EXPECT_THAT(warnings(fast, {"tolerances.speed=1000", "regions.count=1"}), IsEmpty());
 }
 
-TEST_F(SceneWarnings, SpinsThatPhysicsCutsDownAreNamed) {
-  const std::string top = "bodies: [{prototype: ball, position: [0, 0, 2], spin: [0, 0, 900]}]\n";
-  EXPECT_THAT(warnings(top, {"time.substeps=8"}), ElementsAre(HasSubstr("scene.yaml:9:10: body 0 starts with a spin of "
-                                                                        "900 rad/s, more than a quarter turn in a "
-                                                                        "substep: 754 rad/s are left of it")));
-  EXPECT_THAT(warnings(top, {"time.substeps=16"}), IsEmpty());
-}
-
 TEST_F(SceneWarnings, ManyOfAKindAreCounted) {
   const auto all = warnings("generators:\n  - row: {prototype: ball, count: 30, step: [2, 0, 0]}\n");
   ASSERT_EQ(all.size(), 11u);
