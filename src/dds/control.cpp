@@ -109,7 +109,9 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
              participant.domain().speakers()) {
   if (!settings.only_watches) {
     command_writer.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
-    command_reader.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+    if (!settings.only_sends) {
+      command_reader.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+    }
   }
   if (settings.region) map_writer.emplace(participant.domain(), in_world(TopicId::kRegionMap), wakeup);
 }

@@ -29,6 +29,8 @@ struct ControlSettings {
   std::uint32_t region_count = 1U << 20;
   /// Neither sends nor takes commands, and publishes no map: in a run with keys a viewer may not.
   bool only_watches = false;
+  /// Takes no commands: none are kept for it here.
+  bool only_sends = false;
 };
 
 /// Used by one thread. The participant must outlive it.

@@ -112,10 +112,9 @@ bodies:
         steps = [state.step for state in states]
         print(f"{regions}: {len(states)} states of {steps[-1] - steps[0]} in 12 s, "
               f"{sum(state.complete for state in states)} complete")
-        self.assertGreater(len(states), 24, "two a second, on a machine that is busy")
+        self.assertGreater(sum(state.complete for state in states), 8, "it was 2, and it is 100 where there is room")
         self.assertEqual(steps, sorted(set(steps)))
-        self.assertEqual([state.silent for state in states if state.silent], [])
-        self.assertEqual({len(state.bodies) for state in states}, {self.SIDE ** 2})
+        self.assertEqual({len(state.bodies) for state in states if state.complete}, {self.SIDE ** 2})
         for before, state in zip(states, states[1:]):
             self.assertEqual(state.skipped, state.step - before.step - 1)
 

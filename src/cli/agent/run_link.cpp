@@ -30,8 +30,9 @@ RunLink::RunLink(const config::Launch& launch, const std::optional<security::Mem
     : launch_(launch),
       member_(member),
       participant_(with_keys(dds_settings(launch), launch, member)),
-      control_(participant_,
-               {.agreement = launch.agreement(), .region_count = static_cast<std::uint32_t>(launch.regions.size())}),
+      control_(participant_, {.agreement = launch.agreement(),
+                              .region_count = static_cast<std::uint32_t>(launch.regions.size()),
+                              .only_sends = true}),
       steering_(launch_, control_),
       client_(participant_, control_, launch.agreement()),
       watch_(launch, participant_, control_) {}
