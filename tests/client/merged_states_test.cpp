@@ -208,6 +208,15 @@ TEST_F(Merged, BeforeTheFirstWholeStateNothingIsSaid) {
   EXPECT_THAT(steps(), ElementsAre(7));
 }
 
+TEST_F(Merged, TheFirstWholeStateIsWaitedForHoweverLateARegionHearsWhatIsWanted) {
+  states_.accept(of(0, 5), now_s_);
+  EXPECT_THAT(steps(), IsEmpty());
+  now_s_ += 20;
+  EXPECT_THAT(steps(), IsEmpty());
+  states_.accept(of(1, 5), now_s_);
+  EXPECT_THAT(steps(), ElementsAre(5)) << "the run stands: there will be no other";
+}
+
 TEST_F(Merged, AfterARedoStatesComeAgain) {
   for (core::Step step = 5; step <= 8; ++step) both(step);
   EXPECT_THAT(steps(), ElementsAre(5, 6, 7, 8));

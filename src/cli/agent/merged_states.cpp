@@ -8,6 +8,8 @@ namespace {
 
 /// States that are kept waiting, at most: the oldest go.
 constexpr std::size_t kMostPending = 4096;
+/// Likewise before the first whole state, for which there is no time limit.
+constexpr std::size_t kMostBeforeTheFirst = 256;
 
 Observations all_of(const std::map<core::RegionId, core::Observation>& hosted,
                     const std::vector<core::Observation>& made_up) {
@@ -57,7 +59,7 @@ void MergedStates::accept(core::Observation observation, double now_s) {
   } else {
     pending.made_up.push_back(std::move(observation));
   }
-  if (pending_.size() > kMostPending) pending_.erase(pending_.begin());
+  if (pending_.size() > (has_given_ ? kMostPending : kMostBeforeTheFirst)) pending_.erase(pending_.begin());
 }
 
 /// A region that has told nothing of it and never will: so the state is never whole.
@@ -76,11 +78,12 @@ bool MergedStates::have_passed(core::Step step, const std::set<core::RegionId>& 
 
 bool MergedStates::is_over(core::Step step, const Pending& pending, const std::set<core::RegionId>& regions,
                            double now_s) const {
-  if (now_s - pending.since_s > settings_.patience_s) return true;
+  const bool is_late = now_s - pending.since_s > settings_.patience_s;
   const bool all_have_told =
       std::ranges::all_of(regions, [&](core::RegionId region) { return pending.hosted.contains(region); });
-  if (!all_have_told) return have_passed(step, regions);
-  return missing_in(all_of(pending.hosted, pending.made_up)).empty() ||
+  // Before the first whole state some regions have not heard what is wanted: in a run that stands it is the only one.
+  if (!all_have_told) return have_passed(step, regions) || (has_given_ && is_late);
+  return is_late || missing_in(all_of(pending.hosted, pending.made_up)).empty() ||
          have_passed(step + settings_.latest_steps, regions);
 }
 

@@ -237,7 +237,9 @@ void RunLink::steer(Steer kind, const Patience& patience) {
   if (kind == Steer::kStop) has_met_ = false;  // its end is no error
   const dds::RunCommand command = steering_.send(kind);
   const auto has_ended = [&] { return launched_ && !launched_->is_running(); };
-  wait_until([&] { return steering_.has_taken_effect(command) || has_ended(); }, patience,
+  // What is asked for from then on is of the new world: the watch may be behind what the steering has seen.
+  const auto is_seen = [&] { return kind != Steer::kReset || farthest().generation > command.generation; };
+  wait_until([&] { return (steering_.has_taken_effect(command) && is_seen()) || has_ended(); }, patience,
              fmt::format("{} was sent, but not every node shows its effect", dds::name_of(kind)));
   if (stood) wait_until([this] { return stands(); }, patience, "the run has begun anew, and does not stand yet");
   has_met_ = true;

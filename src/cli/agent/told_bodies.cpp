@@ -64,9 +64,8 @@ std::vector<WorldBody> bodies_of(const Observations& told) {
 std::vector<core::BodyId> missing_in(const Observations& told) {
   const Changing known = changing_in(told);
   std::vector<core::BodyId> missing;
-  std::ranges::copy_if(known.as_they_left, std::back_inserter(missing), [&](core::BodyId id) {
-    return !known.exactly.contains(id) && !known.outside.contains(id);
-  });
+  std::ranges::copy_if(known.as_they_left, std::back_inserter(missing),
+                       [&](core::BodyId id) { return !known.exactly.contains(id) && !known.outside.contains(id); });
   return missing;
 }
 
