@@ -81,8 +81,9 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       options_(options),
       participant_(std::make_unique<dds::Participant>(settings_of_node(launch, options))),
       control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
-                              static_cast<std::uint32_t>(launch.regions.size())}),
-      fence_(fence_settings(), {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
+                               static_cast<std::uint32_t>(launch.regions.size())}),
+      fence_(fence_settings(),
+             {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
       saves_({options.saves, {}}, options.region, launch.regions.size(), options.save_keep),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
       recovery_(recovery_settings(launch, options, !participant_->stays_on_this_host())) {

@@ -231,7 +231,7 @@ class NodeProcess {
   std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
   std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
   PartWriter saves_;
-  std::vector<std::uint64_t> saved_runs_;   ///< numbers that this run's saved worlds have had
+  std::vector<std::uint64_t> saved_runs_;     ///< numbers that this run's saved worlds have had
   std::vector<StandingSave> standing_saves_;  ///< asked for, and not written yet
   std::vector<StandingSave> doubtful_saves_;  ///< written of states that a redo may still go back to before
   core::Step saved_last_ = 0;                 ///< state of the last save that nobody has asked for, on the lead

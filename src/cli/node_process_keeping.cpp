@@ -92,7 +92,8 @@ void NodeProcess::keep_checkpoints() {
   std::vector<std::uint32_t> keepers;
   for (const core::RegionId keeper : checkpoints_->keepers()) keepers.push_back(core::value_of(keeper));
   notice_ = fmt::format(
-      "one of regions [{}], which keep copies of this region, takes longer to receive a part of the world than from one "
+      "one of regions [{}], which keep copies of this region, takes longer to receive a part of the world than from "
+      "one "
       "checkpoint to the next: after a death all may have to go back farther (survival.checkpoint)",
       fmt::join(keepers, ", "));
   spdlog::warn("{}", notice_);

@@ -127,14 +127,18 @@ void NodeProcess::meet_anew() {
 /// A process that has come to take a region over, and is of no use. Throws when nobody knows the world.
 bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
   if (recovery_.is_not_needed(nodes, Clock::now())) return true;
-  if (recovery_.nobody_knows_the_world(nodes, Clock::now())) throw std::runtime_error(world_is_lost(save_folders(), saved_by()));
+  if (recovery_.nobody_knows_the_world(nodes, Clock::now()))
+    throw std::runtime_error(world_is_lost(save_folders(), saved_by()));
   return false;
 }
 
 RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) const {
-  return {nodes,     leaving_,
-          status_.process, node_ != nullptr,
-          may_go_on, fence_.is_cut_off(),
+  return {nodes,
+          leaving_,
+          status_.process,
+          node_ != nullptr,
+          may_go_on,
+          fence_.is_cut_off(),
           node_ ? node_->current_step() : first_step()};
 }
 
@@ -159,8 +163,8 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
 void NodeProcess::go_on_without(const std::vector<core::RegionId>& vacant) {
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
-  notice_ = fmt::format("nobody has taken over regions [{}] in {} s", fmt::join(regions, ", "),
-                        launch_.survival.patience_s);
+  notice_ =
+      fmt::format("nobody has taken over regions [{}] in {} s", fmt::join(regions, ", "), launch_.survival.patience_s);
   if (life_ != life_of_node_) {  // in a recovery that was broken off we have let go of all endpoints
     return fence_.close(notice_ + ": the run cannot go on");
   }
@@ -225,7 +229,8 @@ void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
 
 /// Another process has this region since state `step`.
 void NodeProcess::give_way(core::Step step) {
-  fence_.close(fmt::format("another process has taken over region {} in state {}", core::value_of(options_.region), step));
+  fence_.close(
+      fmt::format("another process has taken over region {} in state {}", core::value_of(options_.region), step));
   throw_away_after(step);
 }
 

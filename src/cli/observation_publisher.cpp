@@ -82,7 +82,8 @@ bool ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::
   core::Observation observation =
       feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
   observation.scene_order = node.newest_scene_order();
-  const bool goes_on = told.state.arrivals == now.arrivals && told.state.generation == now.generation && told.state.redo == now.redo;
+  const bool goes_on =
+      told.state.arrivals == now.arrivals && told.state.generation == now.generation && told.state.redo == now.redo;
   if (goes_on && told.state.step < now.step) observation.previous = told.state.step;
   if (!server_.send(asked.key, observation)) return false;
   told = {now, 0};

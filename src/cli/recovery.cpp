@@ -157,7 +157,8 @@ bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::t
 
 /// Of two processes, the lease of one for the other may have run out while the other's has not: one direction of a link
 /// was down, or both for about as long as a lease. Fast DDS 2.9.1 never matches such a pair again (the acknowledgements
-/// of the one begin to count anew, and the other takes them for old). A process that joins DDS anew is a new one to both.
+/// of the one begin to count anew, and the other takes them for old). A process that joins DDS anew is a new one to
+/// both.
 bool Recovery::meets_anew(const RecoveryView& view, Clock::time_point now) {
   const bool is_unheard = std::ranges::any_of(view.nodes, [this](const auto& entry) {
     const auto& [region, seen] = entry;
@@ -181,8 +182,7 @@ bool Recovery::meets_anew(const RecoveryView& view, Clock::time_point now) {
 bool Recovery::calls_spares(const SeenNodes& nodes, Clock::time_point now) const {
   if (settings_.has_launcher && now < began_ + kLaunchersFirst) return false;
   return std::ranges::none_of(nodes, [this](const auto& entry) {
-    return entry.first < settings_.region && !entry.second.lost &&
-           entry.second.status.state == NodeState::kRecovering;
+    return entry.first < settings_.region && !entry.second.lost && entry.second.status.state == NodeState::kRecovering;
   });
 }
 
@@ -214,8 +214,7 @@ void Recovery::note_kept(const SeenNodes& nodes, core::Generation era) {
 /// Whoever is there for another region, if anybody is, has come to take over, too. A node that is cut off knows it.
 bool Recovery::nobody_knows_the_world(const SeenNodes& nodes, Clock::time_point now) {
   const bool somebody_does = std::ranges::any_of(nodes, [this](const auto& entry) {
-    return entry.first != settings_.region && is_heard(entry.second) &&
-           entry.second.status.state != NodeState::kSpare;
+    return entry.first != settings_.region && is_heard(entry.second) && entry.second.status.state != NodeState::kSpare;
   });
   if (somebody_does) alone_since_ = now;
   return now > alone_since_ + kPatienceOfSuccessor;

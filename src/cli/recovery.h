@@ -28,10 +28,10 @@ std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generati
 /// What a node knows of its own world when it looks for a reason to stand.
 struct OwnWorld {
   core::RegionId region{};
-  core::Generation current = 0;             ///< that it computes, or is about to begin
-  std::vector<core::RegionId> silent;       ///< neighbours whose streams have ended, or said what cannot be
+  core::Generation current = 0;              ///< that it computes, or is about to begin
+  std::vector<core::RegionId> silent;        ///< neighbours whose streams have ended, or said what cannot be
   const dds::RunCommand* restore = nullptr;  ///< the newest that it has heard; null: none
-  bool is_going_back = false;               ///< all have agreed on `restore`, and not all have begun
+  bool is_going_back = false;                ///< all have agreed on `restore`, and not all have begun
 };
 
 /// Why this node must not compute its next state: another node of its generation has died, has left, or stands itself.
@@ -45,39 +45,39 @@ enum class RestoreMeaning : std::uint8_t {
   kReplaced  ///< another process has the region: this one's world is not the run's any more
 };
 /// `begun`: the generation that the process computes in. `known`: the newest that it computes in, is about to begin, or
-/// has heard a restore of. Two nodes that do not hear the same may send restores of one generation: the process that one
-/// of them leaves out gives way, so that the other one does not wait for it in vain.
+/// has heard a restore of. Two nodes that do not hear the same may send restores of one generation: the process that
+/// one of them leaves out gives way, so that the other one does not wait for it in vain.
 RestoreMeaning meaning_of(const dds::RunCommand& restore, core::RegionId region, std::uint64_t process,
                           core::Generation begun, core::Generation known);
 
 struct RecoverySettings {
   core::RegionId region{};
-  std::uint32_t regions = 1;  ///< of the run
+  std::uint32_t regions = 1;                       ///< of the run
   std::chrono::steady_clock::duration patience{};  ///< with a vacant region, before a host computes two
-  bool can_be_cut = false;    ///< the others may be on other hosts
-  bool has_launcher = false;  ///< it starts processes again by itself, and is faster than spares
+  bool can_be_cut = false;                         ///< the others may be on other hosts
+  bool has_launcher = false;                       ///< it starts processes again by itself, and is faster than spares
   core::Step checkpoint_steps = 1;
 };
 
 /// What a node sees while it stands.
 struct RecoveryView {
-  const SeenNodes& nodes;                   ///< this node's own status included
-  const std::set<std::uint64_t>& leaving;   ///< processes that have said that they leave
-  std::uint64_t process = 0;                ///< this one
-  bool knows_world = true;                  ///< false: it has come to take a region over
-  bool may_go_on = true;                    ///< it hears the majority (Fence)
-  bool is_cut_off = false;                  ///< it knows that it does not
-  core::Step step = 0;                      ///< in which it stands
+  const SeenNodes& nodes;                  ///< this node's own status included
+  const std::set<std::uint64_t>& leaving;  ///< processes that have said that they leave
+  std::uint64_t process = 0;               ///< this one
+  bool knows_world = true;                 ///< false: it has come to take a region over
+  bool may_go_on = true;                   ///< it hears the majority (Fence)
+  bool is_cut_off = false;                 ///< it knows that it does not
+  core::Step step = 0;                     ///< in which it stands
 };
 
 /// What a node that stands does now.
 struct RecoveryActs {
-  std::vector<core::RegionId> vacant;      ///< regions that nobody is there for
-  std::vector<core::RegionId> call_spares; ///< regions that a spare is to be called for, if there is one
-  std::vector<core::RegionId> stand_ins;   ///< regions that this host starts a second process for
-  bool meets_anew = false;                 ///< this process leaves DDS and joins it again, with the world that it has
-  std::optional<core::Step> replaced_in;   ///< the others go on from this state with another process in its place
-  bool gives_up = false;                   ///< nobody has come for a vacant region, however often that was tried
+  std::vector<core::RegionId> vacant;       ///< regions that nobody is there for
+  std::vector<core::RegionId> call_spares;  ///< regions that a spare is to be called for, if there is one
+  std::vector<core::RegionId> stand_ins;    ///< regions that this host starts a second process for
+  bool meets_anew = false;                  ///< this process leaves DDS and joins it again, with the world that it has
+  std::optional<core::Step> replaced_in;    ///< the others go on from this state with another process in its place
+  bool gives_up = false;                    ///< nobody has come for a vacant region, however often that was tried
 };
 
 class Recovery {

@@ -13,8 +13,8 @@ struct RestorePlan {
   dds::RunCommand command{};  ///< kRestore, without the times
 };
 
-/// Nothing as long as a region has nobody, somebody still computes, or somebody does not hear all others. The state is the newest whose parts are all
-/// there, or the first one of the scene (RunCommand::count is 1 then).
+/// Nothing as long as a region has nobody, somebody still computes, or somebody does not hear all others. The state is
+/// the newest whose parts are all there, or the first one of the scene (RunCommand::count is 1 then).
 std::optional<RestorePlan> plan_restore(const std::map<core::RegionId, dds::SeenStatus>& nodes, std::size_t regions);
 
 }  // namespace aurasim::cli

@@ -23,8 +23,8 @@ class CheckpointBus {
   /// From now on these regions keep our parts. `life`: with which generation the run went on after the last death; a
   /// process that the others have given up, and that may still be there, gets and gives nothing.
   void use_keepers(const std::vector<core::RegionId>& keepers, core::Generation life);
-  /// A part to keep (kToKeep), to each keeper that has acknowledged all parts before it. Returns to how many it was sent:
-  /// a keeper behind a slow link misses some, and does not hold the others up.
+  /// A part to keep (kToKeep), to each keeper that has acknowledged all parts before it. Returns to how many it was
+  /// sent: a keeper behind a slow link misses some, and does not hold the others up.
   std::size_t send_to_keepers(const Checkpoint& checkpoint);
   /// To all nodes, in a recovery. Of a source and kind the last one counts, for those, too, who come later. False when
   /// the write failed twice.

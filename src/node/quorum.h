@@ -1,6 +1,6 @@
 // May a node go on without those that have fallen silent? A host that is cut off sees the same as one whose neighbours
-// have all died; if it went on, there would be two worlds. So a node that has lost others goes on only with the majority
-// (docs/decisions/0012). Time is passed in.
+// have all died; if it went on, there would be two worlds. So a node that has lost others goes on only with the
+// majority (docs/decisions/0012). Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,8 @@ enum class Standing : std::uint8_t {
 
 /// What becomes of members that the majority goes on without.
 enum class Losses : std::uint8_t {
-  kForgotten,   ///< they are members no longer, so nodes may die one after the other
-  kComeBack,    ///< each region gets a node again: until then the majority is one of all regions
+  kForgotten,  ///< they are members no longer, so nodes may die one after the other
+  kComeBack,   ///< each region gets a node again: until then the majority is one of all regions
 };
 
 class Quorum {

@@ -34,10 +34,10 @@ dds::Guid guid_of(std::uint64_t process, std::uint32_t host) {
 struct HeardProcess {
   Time last{};
   bool lost = true;
-  bool is_stuck = false;            ///< lost here and not there: Fast DDS does not match such a pair again
-  Time whole_since{};               ///< the link to it
+  bool is_stuck = false;                    ///< lost here and not there: Fast DDS does not match such a pair again
+  Time whole_since{};                       ///< the link to it
   std::chrono::milliseconds until_found{};  ///< that long after the link is whole
-  core::Step step = -1;             ///< newest batch, of `generation`
+  core::Step step = -1;                     ///< newest batch, of `generation`
   core::Generation generation = 0;
 };
 
@@ -215,23 +215,30 @@ void OutageSim::act(Process& process) {
     if (const auto why = why_stand(process.nodes, own)) stand(process, *why);
   }
   switch (process.phase) {
-    case Phase::kRuns: compute(process); break;
+    case Phase::kRuns:
+      compute(process);
+      break;
     case Phase::kStands:
-    case Phase::kTakesOver: agree(process); break;
+    case Phase::kTakesOver:
+      agree(process);
+      break;
     case Phase::kGathers:
     case Phase::kConnects:
-    case Phase::kWaits: go_back(process); break;
-    case Phase::kEnded: return;
+    case Phase::kWaits:
+      go_back(process);
+      break;
+    case Phase::kEnded:
+      return;
   }
   if (process.phase == Phase::kEnded) return;
   const bool stands = process.phase == Phase::kStands || process.phase == Phase::kGathers ||
                       process.phase == Phase::kConnects || process.phase == Phase::kTakesOver;
   dds::Status& status = process.status;
-  status.state = process.phase == Phase::kRuns            ? NodeState::kRunning
-                 : process.phase == Phase::kWaits         ? NodeState::kWaiting
-                 : !process.knows_world                   ? NodeState::kSpare
-                 : stands && process.fence.is_cut_off()   ? NodeState::kCutOff
-                                                          : NodeState::kRecovering;
+  status.state = process.phase == Phase::kRuns          ? NodeState::kRunning
+                 : process.phase == Phase::kWaits       ? NodeState::kWaiting
+                 : !process.knows_world                 ? NodeState::kSpare
+                 : stands && process.fence.is_cut_off() ? NodeState::kCutOff
+                                                        : NodeState::kRecovering;
   status.generation = stands ? process.stands_in : process.current();
   status.step = process.step;
   status.parts.clear();
@@ -291,8 +298,8 @@ void OutageSim::agree(Process& process) {
   const bool may_go_on = !process.knows_world || process.fence.open(false, {}, now_);
   SeenNodes nodes = process.nodes;
   nodes[process.region].status = process.status;
-  if (!process.knows_world && (process.recovery.is_not_needed(nodes, now_) ||
-                               process.recovery.nobody_knows_the_world(nodes, now_))) {
+  if (!process.knows_world &&
+      (process.recovery.is_not_needed(nodes, now_) || process.recovery.nobody_knows_the_world(nodes, now_))) {
     tell(process, "ends: nobody needs it");
     process.phase = Phase::kEnded;
     return;
@@ -370,9 +377,8 @@ void OutageSim::go_back(Process& process) {
     return;
   }
   const auto waits = [&](const auto& entry) {
-    return entry.first == process.region ||
-           (!entry.second.lost && entry.second.status.state == NodeState::kWaiting &&
-            entry.second.status.generation == process.restoring);
+    return entry.first == process.region || (!entry.second.lost && entry.second.status.state == NodeState::kWaiting &&
+                                             entry.second.status.generation == process.restoring);
   };
   if (process.region == core::RegionId{0} && process.nodes.size() == hosts_) {
     process.is_started = process.is_started || std::ranges::all_of(process.nodes, waits);
@@ -451,8 +457,8 @@ core::Step OutageSim::newest_state() const {
 
 void OutageSim::tell(const Process& process, const std::string& what) {
   story_ += fmt::format("{:7.1f} s  region {} (process {}, host {}) state {}: {}\n",
-                        std::chrono::duration<double>(now_ - at(0)).count(), core::value_of(process.region),
-                        process.id, process.host, process.step, what);
+                        std::chrono::duration<double>(now_ - at(0)).count(), core::value_of(process.region), process.id,
+                        process.host, process.step, what);
 }
 
 }  // namespace aurasim::cli::test

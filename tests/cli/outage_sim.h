@@ -1,7 +1,7 @@
 // Nodes on hosts whose network breaks and heals, in virtual time: what each hears of the others, how it stands, and how
-// all go back. The decisions are those of the program (Fence, Recovery, why_stand, plan_restore, keepers_of, the roster);
-// the world is a counter, and what DDS does is a rule: a status arrives where the link is whole, a node is lost after its
-// lease, and is found again a moment after the link is whole.
+// all go back. The decisions are those of the program (Fence, Recovery, why_stand, plan_restore, keepers_of, the
+// roster); the world is a counter, and what DDS does is a rule: a status arrives where the link is whole, a node is
+// lost after its lease, and is found again a moment after the link is whole.
 #pragma once
 
 #include <chrono>
@@ -26,7 +26,7 @@ using Time = std::chrono::steady_clock::time_point;
 /// One direction between two hosts, or several, that do not work for a while.
 struct Outage {
   Time begin, end;
-  bool flaps = false;  ///< every other second they work
+  bool flaps = false;                                       ///< every other second they work
   std::set<std::pair<std::uint32_t, std::uint32_t>> links;  ///< from, to
 };
 

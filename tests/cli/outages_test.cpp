@@ -1,5 +1,6 @@
-// Networks that break and heal, in virtual time: afterwards there is one world, from a state that was kept, and never were
-// there two. The number of random schedules: AURASIM_OUTAGES (default 400); one of them again: AURASIM_OUTAGE_SEED.
+// Networks that break and heal, in virtual time: afterwards there is one world, from a state that was kept, and never
+// were there two. The number of random schedules: AURASIM_OUTAGES (default 400); one of them again:
+// AURASIM_OUTAGE_SEED.
 #include <cmath>
 #include <cstdlib>
 
@@ -130,12 +131,24 @@ void expect_one_world_after_random_outages(std::uint64_t seed) {
     const std::uint32_t host = below(hosts), other = (host + 1 + below(hosts - 1)) % hosts;
     Outage outage{at(begin_s), at(begin_s + length_s), below(8) == 0, {}};
     switch (below(6)) {
-      case 0: outage.links = all_of(hosts); break;
-      case 1: outage.links = between(hosts, below(1U << hosts)); break;
-      case 2: outage.links = between(hosts, 1U << host); break;
-      case 3: outage.links = deaf(hosts, host); break;
-      case 4: outage.links = mute(hosts, host); break;
-      default: outage.links = {{host, other}, {other, host}}; break;
+      case 0:
+        outage.links = all_of(hosts);
+        break;
+      case 1:
+        outage.links = between(hosts, below(1U << hosts));
+        break;
+      case 2:
+        outage.links = between(hosts, 1U << host);
+        break;
+      case 3:
+        outage.links = deaf(hosts, host);
+        break;
+      case 4:
+        outage.links = mute(hosts, host);
+        break;
+      default:
+        outage.links = {{host, other}, {other, host}};
+        break;
     }
     sim.plan(outage);
     healed_s = std::max(healed_s, begin_s + length_s);

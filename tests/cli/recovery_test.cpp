@@ -116,7 +116,8 @@ TEST_F(Standing, WhoWasLeftOutGivesWayOnceTheOthersCompute) {
   dds::RunCommand restore;
   restore.generation = 3;
   restore.at_step = 240;
-  for (std::uint64_t region = 0; region < 4; ++region) restore.members.push_back({region == 0 ? 7 : 100 + region, {}, true});
+  for (std::uint64_t region = 0; region < 4; ++region)
+    restore.members.push_back({region == 0 ? 7 : 100 + region, {}, true});
   EXPECT_EQ(meaning_of(restore, RegionId{0}, 100, 1, 4), RestoreMeaning::kLeftOut);
   EXPECT_EQ(meaning_of(restore, RegionId{0}, 100, 1, 3), RestoreMeaning::kReplaced);
   EXPECT_EQ(meaning_of(restore, RegionId{0}, 100, 3, 3), RestoreMeaning::kNothing);
