@@ -64,9 +64,19 @@ TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) { expect_survives(run_of_d
 
 TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) { expect_survives(run_of_demo(), {1, 3}); }
 
-/// Region 2 keeps the parts of region 1.
-TEST_F(Recovery, AlsoANodeAndItsKeeperThenFromTheFirstState) {
-  expect_survives(run_of_demo(), {1, 2}, "went back to state 0");
+/// Regions 2 and 3 keep the parts of region 1.
+TEST_F(Recovery, ANodeAndOneOfItsKeepersMayDieTogether) { expect_survives(run_of_demo(), {1, 2}); }
+
+TEST_F(Recovery, WhereANodeAndBothKeepersHaveDiedAPersonDecides) {
+  Process& run = run_of_demo();
+  expect_reaches(report_of("run"), 4, 120);
+  for (const int region : {1, 2, 3}) ASSERT_NO_FATAL_FAILURE(kill_node(run, region));
+  ASSERT_TRUE(says(run, "nobody keeps all parts of a state"));
+  EXPECT_EQ(times(run.err() + run.out(), "went back to state"), 0U);
+  Process& reset = start(Words{"send", "reset", launch_file("demo")} + kDeterministic + in_own_domain());
+  EXPECT_TRUE(says(run, "went back to state 0", 4));
+  expect_exit(reset, 0);
+  expect_undisturbed(run);
 }
 
 TEST_F(Recovery, AWorldThatNobodyKnowsAnyMoreEndsTheRunWithAWord) {
