@@ -108,8 +108,12 @@ FenceSettings NodeProcess::fence_settings() const {
   return settings;
 }
 
+/// Of a region whose node was never heard, too, since this process has joined DDS (meet_anew): it is lost.
 std::map<core::RegionId, node::PeerSign> NodeProcess::peer_signs() {
   std::map<core::RegionId, node::PeerSign> signs;
+  for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
+    if (core::RegionId{r} != options_.region) signs[core::RegionId{r}].lost = true;
+  }
   for (const auto& [region, seen] : control_.statuses()) {
     const bool left = seen.dead || seen.has_ended();
     if (region != options_.region) signs[region] = {seen.lost, left, seen.seen};

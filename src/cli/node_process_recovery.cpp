@@ -14,6 +14,7 @@
 #include "cli/saved_world.h"
 #include "cli/stop_signal.h"
 #include "config/launch_variants.h"
+#include "dds/link_mtu.h"
 
 namespace aurasim::cli {
 namespace {
@@ -85,7 +86,9 @@ bool NodeProcess::agree_on_restore() {
     }
     note_unheard(nodes);
     publish(what_recovery_waits_for(acts.vacant));
-    if (acts.meets_anew) meet_anew();
+    if (acts.meets_anew && dds::all_links_are_up(dds::interfaces_of_this_host(), participant_->settings().interfaces)) {
+      meet_anew();
+    }
     stand_in(acts.stand_ins);
     for (const core::RegionId region : acts.call_spares) call_spare(region);
     if (may_go_on && node_) lead_recovery();

@@ -44,10 +44,21 @@ std::vector<Interface> interfaces_of_this_host() {
     const bool is_up = (i->ifa_flags & IFF_UP) != 0;
     if (!is_up || i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
     interfaces.push_back(
-        {i->ifa_name, address_of(*i->ifa_addr), (i->ifa_flags & IFF_LOOPBACK) != 0, mtu_of(socket, i->ifa_name)});
+        {i->ifa_name, address_of(*i->ifa_addr), (i->ifa_flags & IFF_LOOPBACK) != 0, mtu_of(socket, i->ifa_name),
+         (i->ifa_flags & IFF_RUNNING) != 0});
   }
   if (socket >= 0) ::close(socket);
   return interfaces;
+}
+
+bool all_links_are_up(const std::vector<Interface>& interfaces, const std::vector<std::string>& white_list) {
+  const auto runs = [&](const std::string& address) {
+    const auto found = std::ranges::find(interfaces, address, &Interface::address);
+    return found != interfaces.end() && found->is_running;
+  };
+  if (!white_list.empty()) return std::ranges::all_of(white_list, runs);
+  return std::ranges::all_of(interfaces, &Interface::is_running) &&
+         std::ranges::any_of(interfaces, [](const Interface& i) { return !i.is_loopback; });
 }
 
 std::uint32_t largest_payload_B(const std::vector<Interface>& interfaces, const std::vector<std::string>& white_list) {

@@ -31,14 +31,15 @@ struct HeardProcess {
 };
 
 struct OutageSim::Process {
-  Process(std::uint64_t id_in, std::uint32_t host_in, core::RegionId region_in, std::uint32_t regions)
+  Process(std::uint64_t id_in, std::uint32_t host_in, core::RegionId region_in, std::uint32_t regions_in)
       : id(id_in),
         host(host_in),
         region(region_in),
+        regions(regions_in),
         writer(guid_of(id, host)),
-        roster({regions, 1, 1, region, writer, false}, speakers),
         fence({region, regions, true, false, true}, {[] { return false; }, [this] { return signs(); }}),
         recovery({region, regions, std::chrono::seconds(20), true, false, kCheckpointSteps}) {
+    roster.emplace(dds::RosterSettings{regions, 1, 1, region, writer, false}, speakers);
     status.region = region;
     status.process = id;
     status.run = status.agreement = 1;
@@ -46,6 +47,9 @@ struct OutageSim::Process {
 
   std::map<core::RegionId, node::PeerSign> signs() {
     std::map<core::RegionId, node::PeerSign> signs;
+    for (std::uint32_t r = 0; r < regions; ++r) {
+      if (core::RegionId{r} != region) signs[core::RegionId{r}].lost = true;
+    }
     for (const auto& [other, seen] : nodes) {
       if (other != region) signs[other] = {seen.lost, seen.dead || seen.has_ended(), seen.seen};
     }
@@ -56,9 +60,10 @@ struct OutageSim::Process {
   std::uint64_t id;
   std::uint32_t host;
   core::RegionId region;
+  std::uint32_t regions;
   dds::Guid writer;
   dds::Speakers speakers;
-  dds::NodeRoster roster;
+  std::optional<dds::NodeRoster> roster;
   Fence fence;
   Recovery recovery;
   Phase phase = Phase::kRuns;

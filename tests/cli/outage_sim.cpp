@@ -55,7 +55,7 @@ void OutageSim::deliver() {
       writer.lost = to->heard[from->id].lost;
       if (from != to) writers.push_back(writer);
     }
-    to->roster.look(writers);
+    to->roster->look(writers);
     to->nodes = nodes_of(*to);
   }
 }
@@ -82,7 +82,7 @@ void OutageSim::deliver(Process& from, Process& to) {
   heard.lost = false;
   heard.last = now_;
   const dds::Origin origin{from.writer, {}};
-  if (to.roster.problem_with(from.status, origin).empty()) to.roster.note(from.status, origin);
+  if (to.roster->problem_with(from.status, origin).empty()) to.roster->note(from.status, origin);
   if (from.phase == Phase::kRuns) {
     heard.step = from.step;
     heard.generation = from.generation;
@@ -111,7 +111,7 @@ OutageSim::Process* OutageSim::sender_of(const Process& process, core::RegionId 
 }
 
 SeenNodes OutageSim::nodes_of(Process& process) const {
-  SeenNodes nodes = process.roster.statuses();
+  SeenNodes nodes = process.roster->statuses();
   for (auto& [region, seen] : nodes) {
     const auto heard = process.heard.find(seen.status.process);
     if (heard != process.heard.end()) seen.seen = heard->second.last;
@@ -252,6 +252,7 @@ void OutageSim::agree(Process& process) {
 void OutageSim::meet_anew(Process& process) {
   tell(process, "meets the others anew");
   process.heard.clear();
+  process.roster.emplace(dds::RosterSettings{hosts_, 1, 1, process.region, process.writer, false}, process.speakers);
   for (const auto& other : processes_) {
     if (other.get() == &process) continue;
     if (!other->heard[process.id].lost && process.phase == Phase::kRuns) other->silent.insert(process.region);

@@ -38,6 +38,8 @@ class ImportTest(unittest.TestCase):
             project(aurasim CXX)
             add_library(aurasim_client_objects OBJECT main.cpp)
             add_library(aurasim_options INTERFACE)
+            function(aurasim_say_if_not_built)
+            endfunction()
             add_executable(aurasim main.cpp)
             add_subdirectory({SOURCES / "src" / "python"} python)
         """)

@@ -86,7 +86,7 @@ TEST_F(CommandLines, AWarningIsNoError) {
 TEST_F(CommandLines, KeysArePrintedBySections) {
   Process& tolerances = start({"schema", "tolerances"});
   expect_exit(tolerances, 0, 10s);
-  EXPECT_THAT(tolerances.out(), HasSubstr("above 0 to 10000 m/s; default 32"));
+  EXPECT_THAT(tolerances.out(), HasSubstr("0.001 to 10000 m/s; default 32"));
   EXPECT_THAT(tolerances.out(), Not(HasSubstr("step_hz")));
   expect_exit(start({"schema", "no such section"}), 2, 10s);
 }
