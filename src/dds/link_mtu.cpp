@@ -43,9 +43,8 @@ std::vector<Interface> interfaces_of_this_host() {
   for (const ::ifaddrs* i = first; i != nullptr; i = i->ifa_next) {
     const bool is_up = (i->ifa_flags & IFF_UP) != 0;
     if (!is_up || i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
-    interfaces.push_back(
-        {i->ifa_name, address_of(*i->ifa_addr), (i->ifa_flags & IFF_LOOPBACK) != 0, mtu_of(socket, i->ifa_name),
-         (i->ifa_flags & IFF_RUNNING) != 0});
+    interfaces.push_back({i->ifa_name, address_of(*i->ifa_addr), (i->ifa_flags & IFF_LOOPBACK) != 0,
+                          mtu_of(socket, i->ifa_name), (i->ifa_flags & IFF_RUNNING) != 0});
   }
   if (socket >= 0) ::close(socket);
   return interfaces;

@@ -1,4 +1,5 @@
-// One process of a simulated run whose network breaks (outage_sim.h), with the program's own roster, fence and recovery.
+// One process of a simulated run whose network breaks (outage_sim.h), with the program's own roster, fence and
+// recovery.
 #pragma once
 
 #include <map>
