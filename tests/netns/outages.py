@@ -35,7 +35,7 @@ NAME = os.environ.setdefault("AURASIM_LAB", f"auraout{os.getpid()}")
 
 
 def lab(*words):
-    subprocess.run([str(LAB), *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([str(LAB), *map(str, words)], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
 
 
 def address(host):
@@ -195,7 +195,7 @@ def compare(report, folder, settings):
     subprocess.run([AURASIM, "launch", LAUNCH, "--headless", "--steps", str(steps), "--report", central, *settings,
                     "--set", "regions.count=1", "--set", "time.pace=none", "--set", "dds.domain=187"], cwd=ROOT,
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    same = subprocess.run([AURASIM, "compare", central, report], capture_output=True, text=True)
+    same = subprocess.run([AURASIM, "compare", central, report], cwd=ROOT, capture_output=True, text=True)
     return "" if same.returncode == 0 else f"other bits: {same.stdout.strip()}. "
 
 
