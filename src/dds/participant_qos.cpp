@@ -123,6 +123,15 @@ void fit_to_links(DomainParticipantQos& qos) {
   }
 }
 
+/// Fast DDS numbers the participants of a process and never uses a number again: a process that has joined DDS often
+/// would listen above the ports at which peers look for it. From the lowest port on, it takes the first that is free.
+void listen_where_peers_look(DomainParticipantQos& qos, std::uint32_t domain) {
+  const auto& ports = qos.wire_protocol().port;
+  for (Locator_t& own : qos.wire_protocol().builtin.metatrafficUnicastLocatorList) {
+    if (own.port == 0) own.port = ports.getUnicastPort(domain, 0);
+  }
+}
+
 /// DDS-Security with the plugins that Fast DDS brings.
 void set_keys(DomainParticipantQos& qos, const security::KeyFiles& keys) {
   auto& properties = qos.properties().properties();
@@ -155,6 +164,7 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   } else if (settings.discovery == config::Discovery::kServer) {
     set_servers(qos, settings);
   }
+  listen_where_peers_look(qos, settings.domain);
   if (settings.keys) set_keys(qos, *settings.keys);
   return qos;
 }

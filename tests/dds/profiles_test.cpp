@@ -161,6 +161,15 @@ TEST(PeersFile, LetsTwoRegionsMeetWithoutMulticast) {
   EXPECT_NO_THROW(a.transport.wait_until_matched(testing::kDeadline));
 }
 
+/// A process that has joined DDS more often than peers try numbers of participants (32).
+TEST(PeersFile, IsFoundHoweverOftenItJoins) {
+  for (int i = 0; i < 40; ++i) Participant before(settings_for(own_domain(), "peers.xml"));
+  testing::Peer a(settings_for(own_domain(), "peers.xml"), 0, {1});
+  testing::Peer b(settings_for(own_domain(), "peers.xml"), 1, {0});
+  std::jthread other([&] { b.transport.wait_until_matched(testing::kDeadline); });
+  EXPECT_NO_THROW(a.transport.wait_until_matched(testing::kDeadline));
+}
+
 TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
   Settings loopback = settings_for(own_domain());
   Domain domain(loopback);
