@@ -1,5 +1,8 @@
 #include "dds/replica_bus.h"
 
+#include <algorithm>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,19 +39,52 @@ std::uint64_t ReplicaWriter::arrivals() const { return impl_->deltas.matches() +
 
 struct ReplicaReader::Impl {
   Impl(Participant& participant_in, const ObserverSettings& settings)
-      : participant(participant_in),
-        expected(expected_of(settings)),
-        wakeup(participant.domain().wakeup()),
-        deltas(participant.domain(), {TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, wakeup),
-        keys(participant.domain(), {TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, wakeup) {}
+      : participant(participant_in), expected(expected_of(settings)), wakeup(participant.domain().wakeup()) {
+    listen();
+  }
+
+  void listen() {
+    deltas.emplace(participant.domain(), EndpointSpec{TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, wakeup);
+    keys.emplace(participant.domain(), EndpointSpec{TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, wakeup);
+  }
+  void take_from(TypedReader<wire::Replica>& reader, std::vector<core::Replica>& replicas);
+  void listen_anew_to_who_became_a_node();
 
   Participant& participant;
   Expected expected;
   Wakeup& wakeup;
-  TypedReader<wire::Replica> deltas;
-  TypedReader<wire::Replica> keys;
+  std::optional<TypedReader<wire::Replica>> deltas;
+  std::optional<TypedReader<wire::Replica>> keys;
   std::uint64_t received = 0;
+  std::uint64_t refused_before = 0;  ///< by the readers before these
+  /// Refused because their process was not known as that region's node.
+  std::set<std::pair<core::RegionId, ProcessPrefix>> strangers;
 };
+
+/// Remembered of processes that are no nodes, however many send.
+constexpr std::size_t kMostStrangers = 64;
+
+void ReplicaReader::Impl::take_from(TypedReader<wire::Replica>& reader, std::vector<core::Replica>& replicas) {
+  const Speakers& speakers = participant.domain().speakers();
+  reader.take_each(expected, [&](core::Replica&& replica, const Origin& origin) {
+    const bool is_of_node = speakers.may_speak(origin.writer, replica.source);
+    if (is_of_node && speakers.is_at_home(origin.writer, replica.source)) return replicas.push_back(std::move(replica));
+    if (!is_of_node && strangers.size() < kMostStrangers) strangers.emplace(replica.source, origin.writer.guidPrefix);
+    reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(replica.source)));
+  });
+}
+
+/// The replicas of a process that takes a region over can be here before its status. What was refused until then is
+/// not sent again, and a node that stands has nothing new to tell. New readers get a key frame from every node.
+void ReplicaReader::Impl::listen_anew_to_who_became_a_node() {
+  const auto is_node = [&speakers = participant.domain().speakers()](const auto& stranger) {
+    return speakers.of(stranger.first) == stranger.second;
+  };
+  if (std::ranges::none_of(strangers, is_node)) return;
+  refused_before += deltas->refused().total() + keys->refused().total();
+  listen();
+  strangers.clear();
+}
 
 ReplicaReader::ReplicaReader(Participant& participant, const ObserverSettings& settings)
     : impl_(std::make_unique<Impl>(participant, settings)) {}
@@ -58,15 +94,8 @@ ReplicaReader::~ReplicaReader() = default;
 std::vector<core::Replica> ReplicaReader::take() {
   impl_->participant.progress();
   std::vector<core::Replica> replicas;
-  const Speakers& speakers = impl_->participant.domain().speakers();
-  for (TypedReader<wire::Replica>* reader : {&impl_->deltas, &impl_->keys}) {
-    reader->take_each(impl_->expected, [&](core::Replica&& replica, const Origin& origin) {
-      const bool may_say =
-          speakers.may_speak(origin.writer, replica.source) && speakers.is_at_home(origin.writer, replica.source);
-      if (may_say) return replicas.push_back(std::move(replica));
-      reader->refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(replica.source)));
-    });
-  }
+  for (auto* reader : {&impl_->deltas, &impl_->keys}) impl_->take_from(**reader, replicas);
+  impl_->listen_anew_to_who_became_a_node();
   impl_->received += replicas.size();
   return replicas;
 }
@@ -76,7 +105,9 @@ void ReplicaReader::wait(std::chrono::nanoseconds time_out) {
   impl_->wakeup.wait(time_out);
 }
 
-std::uint64_t ReplicaReader::refused() const { return impl_->deltas.refused().total() + impl_->keys.refused().total(); }
+std::uint64_t ReplicaReader::refused() const {
+  return impl_->refused_before + impl_->deltas->refused().total() + impl_->keys->refused().total();
+}
 
 std::uint64_t ReplicaReader::received() const { return impl_->received; }
 

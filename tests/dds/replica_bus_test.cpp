@@ -54,6 +54,23 @@ TEST(ReplicaBus, ALateObserverGetsTheLastKeyFrameAndWhatIsToldFromThenOn) {
   EXPECT_EQ(observer.replicas[1].bodies.size(), 2U);
 }
 
+TEST(ReplicaBus, WhoTakesARegionOverBeforeItsStatusIsHeardIsHeardFromItsLastKeyFrameOn) {
+  Participant old_node(settings_for(own_domain())), new_node(settings_for(own_domain()));
+  ReplicaWriter writer(new_node, RegionId{1});
+  Observer observer(own_domain());
+  Speakers& speakers = observer.participant.domain().speakers();
+  speakers.set(RegionId{1}, old_node.domain().participant().guid().guidPrefix);
+  ASSERT_TRUE(holds_in_time([&] { return writer.arrivals() == 2; }));
+  core::Replica key = replica_of(3);
+  key.key_frame = true;
+  writer.send(key);
+  ASSERT_TRUE(holds_in_time([&] { return observer.reader.take().empty() && speakers.refused() == 1; }));
+  speakers.set(RegionId{1}, new_node.domain().participant().guid().guidPrefix);
+  ASSERT_TRUE(observer.take(1));
+  EXPECT_TRUE(observer.replicas[0].key_frame);
+  EXPECT_EQ(observer.reader.received(), 1U);
+}
+
 TEST(ReplicaBus, AnObserverThatDoesNotTakeHoldsNobodyUp) {
   Participant participant(settings_for(own_domain()));
   ReplicaWriter writer(participant, RegionId{1});

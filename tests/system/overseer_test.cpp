@@ -232,7 +232,8 @@ TEST_F(Overseers, APageLivesThroughADeathAndItsWordStillCounts) {
     return all_stand(status) && page.world.stamp == status.at("step").get<double>() &&
            page.world.by_id().size() >= sum_of(status, "bodies");
   };
-  EXPECT_TRUE(page.wait_until(stands, kGenerous)) << page.latest["status"];
+  EXPECT_TRUE(page.wait_until(stands, kGenerous))
+      << page.latest["status"] << page.world.by_id().size() << " bodies, stamp " << page.world.stamp;
   EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
   end_run();
 }
