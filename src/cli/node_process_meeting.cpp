@@ -16,7 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::nanoseconds kLongestWayOnOneHost = 30s;
 constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
 
 std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
@@ -205,10 +204,11 @@ void NodeProcess::connect_anew(dds::TransportSettings settings, const std::funct
   enter(NodeEvent::kStarted);
 }
 
-/// Nodes that have died while all wait for each other. Somebody may start them again; a launcher ends the run.
+/// Nodes that have died while all wait for each other. Somebody may start them again; a launcher ends the run. A node
+/// that has ended a short run is none of them, though its word that the run begins is still on its way here.
 void NodeProcess::name_the_dead() {
   for (const auto& [region, seen] : control_.statuses()) {
-    if (seen.is_live()) {
+    if (seen.is_live() || seen.status.state == dds::NodeState::kFinished) {
       missed_.erase(region);
     } else if (missed_.insert(region).second) {
       spdlog::warn("the node of region {} (process {}) {} before the run has begun", core::value_of(region),
@@ -226,13 +226,13 @@ dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunComman
   return command;
 }
 
-/// Hosts whose clocks are wrong are named; the run does not depend on them. On one host a clock that looks late belongs
-/// to statuses that were long on their way, since many processes start at once.
+/// Hosts whose clocks are wrong are named; the run does not depend on them. On one host no clock is late: it looks late
+/// when statuses were long on their way, since many processes start at once.
 void NodeProcess::compare_clocks() {
-  const std::chrono::nanoseconds late =
-      participant_->stays_on_this_host() ? kLongestWayOnOneHost : node::kClockTolerance;
+  const bool is_one_host = participant_->stays_on_this_host();
   for (const auto& [region, seen] : control_.statuses()) {
-    if (seen.clock_ahead < node::kClockTolerance && seen.clock_ahead > -late) continue;
+    const bool is_late = !is_one_host && seen.clock_ahead <= -node::kClockTolerance;
+    if (!is_late && seen.clock_ahead < node::kClockTolerance) continue;
     spdlog::warn("the wall clock of region {}'s host is {} this one's: steps are counted from when the start came",
                  core::value_of(region), ahead_or_behind(seen.clock_ahead));
   }
