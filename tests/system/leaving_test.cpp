@@ -14,7 +14,7 @@ class StartedByHand : public SystemTest {
 
   Words about_run(const Words& more = {}) const {
     return Words{launch_file("demo"), "--steps", std::to_string(kSteps), "--report", (folder() / "run").string()} +
-           set({"time.sync=deterministic", "survival.checkpoint=0.5", "survival.patience=1"}) + in_own_domain() + more;
+           set({"time.sync=deterministic", "survival.checkpoint=0.5", "survival.patience=5"}) + in_own_domain() + more;
   }
 
   void start_nodes(const Words& more = {}) {
