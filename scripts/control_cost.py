@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What it costs to steer 1,000 bodies: balls that roll about over four regions, left alone and with a torque on each of
-them, 60 times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/control_cost.md."""
+them, 60 times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/results.md#control_cost."""
 import argparse
 import json
 import pathlib
@@ -13,37 +13,41 @@ import time
 
 import numpy as np
 
+from page_sections import put_section
 from report_parts import machine_line, measured_line, table
 
-TEXT = """# What steering costs: measured
+TEXT = """## What steering costs
 
 {measured}
 
 Written by `scripts/control_cost.sh`; do not edit. {machine}.
 
-{bodies} balls that roll about in a pen over four regions of one host, `deterministic`, {seconds} s paced by the clock: *left
-alone*; beside a client that only looks on ([`World.connect`](client.md)); *told*: with a torque on each ball, said anew 60 times a
-second by that client, of {weak:g} N m, too weak to change where anybody goes, so that what is simulated is the same; *pushed*: likewise
-with {strong:g} N m, by which the balls gather speed, meet more often and change their hosts; and *replayed*: what was recorded of
-*pushed* ([`control.replay`](client.md)), the same motion without the client. {repeats} times each by turns; medians of the runs, of the
-nodes' frames while the client was there.
+{bodies} balls roll about in a pen over four regions of one host, `deterministic`, for {seconds} s paced by the clock. Each kind of
+run was made {repeats} times, by turns. The table has medians of the runs; frames are those of the nodes while the client was there.
+
+- *left alone*: no client.
+- *looked at*: a client only observes ([`World.connect`](client.md)).
+- *told*: the client sets a torque of {weak:g} N m on each ball, anew 60 times a second. That is too weak to change where a ball
+  goes, so the simulated motion is the same.
+- *pushed*: the same with {strong:g} N m. The balls gather speed, meet more often and change their hosts.
+- *replayed*: the record of *pushed* is replayed ([`control.replay`](client.md)): the same motion without the client.
 
 {costs}
 Slowest frames (p99): told against the client alone {told}; pushed against replayed {pushed}. Four nodes, an agent and a client
-share the processors here, and nodes begin their frames at the same moment: where they wait for each other, frames are slow. Nodes
-that replay a record have read it first, begin late, and catch up. So the same world in one region, of which the node has a processor
-for itself:
+share the processors here, and all nodes begin their frames at the same moment. A frame is slow where one waits for another.
+Nodes that replay a record read it first, begin late, and catch up. The next table therefore has the same world in one region,
+whose node has a processor for itself:
 
 {alone}
 Here {alone_p50} at p50 and {alone_p99} at p99. Setpoints that came late: {late} of
 {heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state for {bodies} of them, to each node, in
 {messages} messages.
 
-## How soon it acts
+### How soon it acts
 
-Beside the demo on four nodes, paced by the clock: a Python program sees each state (`World.observe`) and answers it with a force on
-each of {answered} bodies for the state that is so many later. Every node counts what comes when it has computed that state. K, by
-which neighbours have to know of it for their auras, is {lookahead} in the demo.
+A Python program observes each state of the demo on four nodes, paced by the clock (`World.observe`). It answers each with a force
+on each of {answered} bodies, for a state that is so many states later. Each node counts as late what arrives after it has computed
+that state. The lookahead K is {lookahead} in the demo; neighbours have to know of a force K states ahead, for their auras.
 
 {delays}"""
 
@@ -197,7 +201,7 @@ def write(options):
                        delays=table(["states later", "states answered", "heard by nodes", "late"], rows_of_delays).strip() + "\n",
                        alone=alone, alone_p50=more("told", "looked at", "p50", "one"),
                        alone_p99=more("told", "looked at", "p99", "one"), told=more("told", "looked at"), pushed=more("pushed", "replayed"))
-    pathlib.Path("docs/control_cost.md").write_text(text)
+    put_section(pathlib.Path("docs/results.md"), "control_cost", text)
 
 
 def main():

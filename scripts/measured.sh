@@ -14,20 +14,20 @@ declare -A measures=(
     src/experiment/measured_run.* src/experiment/case.h scripts/accuracy.sh"
   [docs/correctness.md]="$simulation $in_one_process src/experiment :!src/experiment/stability :!src/experiment/scale :!src/experiment/speed
     :!src/experiment/pareto.cpp scripts/correctness.sh"
-  [docs/correctness_over_dds.md]="$simulation src/dds idl qos src/experiment :!src/experiment/stability
+  [docs/results.md#correctness_over_dds]="$simulation src/dds idl qos src/experiment :!src/experiment/stability
     :!src/experiment/scale :!src/experiment/speed :!src/experiment/pareto.cpp scripts/correctness_over_dds.sh"
-  [docs/same_bits.md]="$uncounted src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
+  [docs/results.md#same_bits]="$uncounted src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
   [docs/scalability.md]="$simulation src/dds idl src/experiment/scale src/experiment/measured_run.* src/experiment/wire_post.*
     launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
-  [docs/saved_worlds.md]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/saved_world.cpp idl qos
+  [docs/results.md#saved_worlds]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/saved_world.cpp idl qos
     launch_configs src/experiment/scenes tests/bench/save_bench.cpp scripts/saved_worlds.sh scripts/scene_regions.sh"
-  [docs/recovery.md]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/checkpoints.* src/cli/restore_plan.*
+  [docs/results.md#recovery]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/checkpoints.* src/cli/restore_plan.*
     src/cli/launcher.cpp idl qos launch_configs scripts/recovery.py scripts/recovery_cost.py"
-  [docs/security_cost.md]="$uncounted src/config src/dds src/security src/cli/node_process* src/cli/launcher.cpp idl qos
+  [docs/results.md#security_cost]="$uncounted src/config src/dds src/security src/cli/node_process* src/cli/launcher.cpp idl qos
     launch_configs scripts/security_cost.py"
-  [docs/control_cost.md]="$uncounted src/dds src/client src/cli/agent src/cli/node_process* idl qos tests/bench/control_client.cpp
+  [docs/results.md#control_cost]="$uncounted src/dds src/client src/cli/agent src/cli/node_process* idl qos tests/bench/control_client.cpp
     scripts/control_cost.py"
-  [docs/page_traffic.md]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h tests/web/traffic.mjs
+  [docs/results.md#page_traffic]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h tests/web/traffic.mjs
     scripts/page_traffic.py"
   # Of core, what physics computes with; the compiler and its flags are in the line itself.
   [docs/speed.md]="src/core/body_state.h src/core/scene.* src/core/joint.h src/core/limits.h src/physics src/experiment/speed src/config/presets.h tests/bench/peers

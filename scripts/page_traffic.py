@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What a page is sent of many bodies that all move: a run with an overseer, and a page that says what its camera sees.
-Writes DIR/pages.jsonl and docs/page_traffic.md."""
+Writes DIR/pages.jsonl and docs/results.md#page_traffic."""
 import argparse
 import json
 import pathlib
@@ -9,17 +9,18 @@ import subprocess
 import tempfile
 import time
 
+from page_sections import put_section
 from report_parts import machine_line, measured_line, table
 
-TEXT = """# What a page is sent: measured
+TEXT = """## What a page is sent
 
 {measured}
 
 Written by `scripts/page_traffic.sh`; do not edit. {machine}.
 
-{bodies} balls that roll over a plane of {side:.0f} m x {side:.0f} m, on two nodes, shown 20 times a second. A page says what its
-camera sees ([viewer.md](viewer.md)), and is sent what may be seen of it; from far away less often what would not move by a pixel.
-A picture of 1280 x 800 pixels; all that comes over TCP.
+{bodies} balls roll over a plane of {side:.0f} m x {side:.0f} m, on two nodes. The viewer shows them 20 times a second, in a picture of
+1280 x 800 pixels. A page says what its camera sees ([viewer.md](viewer.md)), and is sent only bodies that the picture may
+show. Bodies far away that would move by less than a pixel are sent less often. Counted is all that comes over TCP.
 
 {pages}"""
 
@@ -88,7 +89,7 @@ def write(options):
                   [[row["kind"], f"{row['kB_s']:.0f}", f"{100 * row['kB_s'] / rows[0]['kB_s']:.1f}%", row["frames_s"]] for row in rows])
     text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=f"{options.bodies:,}",
                        side=options.spacing * options.bodies**0.5, pages=pages.strip() + "\n")
-    pathlib.Path("docs/page_traffic.md").write_text(text)
+    put_section(pathlib.Path("docs/results.md"), "page_traffic", text)
 
 
 def main():

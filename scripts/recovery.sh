@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Kills nodes of real runs at random, 100 times one and 20 times two at once, and compares every state with that of the run
 # that nobody disturbed; restarts all nodes one after the other; measures what keeping parts costs a healthy run. Writes
-# docs/recovery.md. About 35 minutes on 2 cores, where nothing else runs, those of the long run, and half an hour for a day
-# in virtual time; goes on where it was stopped.
+# docs/results.md#recovery. About 35 minutes on 2 cores, where nothing else runs, those of the long run, and half an hour
+# for a day in virtual time; goes on where it was stopped.
 #   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--soak MINUTES=60] [--hours N=24] [--domain N=73]
 #                       [--out DIR=build/recovery]
 set -euo pipefail
@@ -24,7 +24,7 @@ done
 
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/recovery.md "$out" double
+begin_measuring docs/results.md#recovery "$out" double
 failures=0
 /usr/bin/python3 scripts/recovery.py --deaths "$deaths" --pairs "$pairs" --domain "$domain" --out "$out" || failures=1
 [[ -s $out/rolling.jsonl ]] || /usr/bin/python3 scripts/recovery_rolling.py --domain "$domain" --out "$out" || failures=1
@@ -36,5 +36,5 @@ failures=0
   mv "$out/endurance.part" "$out/endurance.jsonl"
 }
 /usr/bin/python3 scripts/write_recovery.py "$out"
-echo "written: docs/recovery.md" >&2
+echo "written: docs/results.md#recovery" >&2
 exit "$failures"

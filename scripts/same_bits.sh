@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Runs shipped scenes in deterministic mode over real DDS processes on 1, 2, 4 and 9 nodes, twice, on a good network and
 # on a bad one (16 ms delay, 5 ms jitter, 10% loss on every datagram), and compares the state hash of every step with
-# the run on one node. Prints a table in Markdown; exit 1 if anything differs. With no SCENE also writes docs/same_bits.md
-# (the part of a network that is not asked for stays as it was). Takes about two hours for everything, a good hour with
-# --repetitions 1; goes on where it was stopped.
+# the run on one node. Prints a table in Markdown; exit 1 if anything differs. With no SCENE also writes
+# docs/results.md#same_bits (the part of a network that is not asked for stays as it was). Takes about two hours for
+# everything, a good hour with --repetitions 1; goes on where it was stopped.
 #   scripts/same_bits.sh [--steps N=1800] [--repetitions N=1] [--network good|bad|both] [--domain N=70]
 #                        [--out DIR=build/same_bits] [SCENE ...]
 set -euo pipefail
@@ -25,7 +25,7 @@ done
 aurasim=build/release/aurasim
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/same_bits.md "$out" double aurasim_bench physics_tests_single physics_tests_double
+begin_measuring docs/results.md#same_bits "$out" double aurasim_bench physics_tests_single physics_tests_double
 reports=$(mktemp -d)
 trap 'rm -rf "$reports"' EXIT
 
@@ -100,6 +100,6 @@ if [[ $# -eq 0 ]]; then
       >/dev/null
   done
   /usr/bin/python3 scripts/write_same_bits.py "$out" --steps "$steps"
-  echo "written: docs/same_bits.md" >&2
+  echo "written: docs/results.md#same_bits" >&2
 fi
 exit $((failures > 0))

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Saves every shipped scene in mid-run on 4 nodes over DDS, goes on from the file on 1, 2, 4 and 9, and compares the state
 # hash of every later step with that of the run that was never stopped. Then the same in virtual time for random worlds, and
-# what it costs to keep one. Prints a table in Markdown, and with no SCENE writes docs/saved_worlds.md. About 20 minutes on
-# 2 cores; goes on where it was stopped.
+# what it costs to keep one. Prints a table in Markdown, and with no SCENE writes docs/results.md#saved_worlds. About 20
+# minutes on 2 cores; goes on where it was stopped.
 #   scripts/saved_worlds.sh [--steps N=600] [--seeds N=200] [--domain N=72] [--out DIR=build/saved_worlds] [SCENE ...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -24,7 +24,7 @@ aurasim=build/release/aurasim
 source scripts/measured.sh
 # shellcheck source=scripts/scene_regions.sh
 source scripts/scene_regions.sh
-begin_measuring docs/saved_worlds.md "$out" double aurasim_bench
+begin_measuring docs/results.md#saved_worlds "$out" double aurasim_bench
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -77,6 +77,6 @@ if [[ $# -eq 0 ]]; then
   done
   build/release/aurasim_bench --benchmark_filter='_world/' --benchmark_format=json 2>/dev/null >"$out/bench.json"
   /usr/bin/python3 scripts/write_saved_worlds.py "$out" --steps "$steps"
-  echo "written: docs/saved_worlds.md" >&2
+  echo "written: docs/results.md#saved_worlds" >&2
 fi
 exit $((failures > 0))

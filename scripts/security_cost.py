@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns, and open beside an
-overseer that is left alone, with idle processors and busy ones, or attacked. Writes DIR/runs.jsonl and docs/security_cost.md."""
+overseer that is left alone, with idle processors and busy ones, or attacked. Writes DIR/runs.jsonl and
+docs/results.md#security_cost."""
 import argparse
 import contextlib
 import ctypes
@@ -19,28 +20,36 @@ import tempfile
 import time
 
 from recovery import REGIONS, Case, hashes
+from page_sections import put_section
 from report_parts import machine_line, measured_line, table
 
-TEXT = """# What keys cost: measured
+TEXT = """## What keys cost
 
 {measured}
 
 Written by `scripts/security_cost.sh`; do not edit. {machine}.
 
-The demo on four nodes of one host, `deterministic`, {steps} states paced by the clock, open and with `launch --secure` (keys
-are made first, every participant is authenticated, discovery and data are encrypted; [security.md](security.md)), {repeats}
-times each by turns; medians. *One state*: a run of a single state, from the command to its end. *CPU*: of the launcher and all
-nodes. *Frame*, *sending* and *waiting* for neighbours: of each node and state. *Back*: a node is killed (`kill -9`); from then
-until all have gone back and compute, with the launcher's new process, and with a spare that was there before.
+The demo on four nodes of one host, `deterministic`, {steps} states paced by the clock, runs open and with `launch --secure`,
+{repeats} times each by turns; the table has medians. With `--secure` keys are made first, every participant is authenticated,
+and discovery and data are encrypted ([security.md](security.md)).
+
+- *One state*: a run of a single state, from the command to its end.
+- *CPU*: of the launcher and all nodes.
+- *Frame*, *sending* and *waiting* (for neighbours): of each node and state.
+- *Back*: from the moment a node is killed (`kill -9`) until all have gone back and compute, with the launcher's new process,
+  and with a spare that was there before.
 
 {costs}
 
-The same open run beside `aurasim overseer`. *Left alone*: nobody asks it for anything. *Attacked*: `tests/web/attack.mjs` does
-all at once to it that it has to stand: 500 connections that drip, floods of requests, messages, pings and of what is none,
-frames of 100 MB. The attack has what the others leave of the processors, as if it came from another host; the overseer runs
-beside the nodes. *Left alone, busy*: nobody attacks, but two processes compute without end, one scheduled as the thread that
-serves the overseer's pages (nice 10, slices of 0.1 ms), one as the attack. What the nodes lose there they lose to processors
-that do something else as well, hyperthreads among them; what an attack costs is what it adds to that.
+The next table is of the same open run, with `aurasim overseer` beside the nodes.
+
+- *Left alone*: nobody asks the overseer for anything.
+- *Left alone, busy*: nobody attacks, but two processes compute without end. One is scheduled like the thread that serves the
+  overseer's pages (nice 10, slices of 0.1 ms), the other like the attack. What the nodes lose here is due to processors that
+  do something else as well, hyperthreads among them.
+- *Attacked*: `tests/web/attack.mjs` does at once all that the overseer has to withstand: 500 connections that drip, floods of
+  requests, messages, pings and malformed input, frames of 100 MB. The attack gets what the others leave of the processors, as if
+  it came from another host. The cost of an attack is what it adds to *left alone, busy*.
 
 {attacked}
 {verdict}
@@ -208,7 +217,7 @@ def write(options):
                f"{sum(row['bodies_lost'] for row in rows)}; runs that did not end well: {sum(row['exit'] != 0 for row in rows)}.")
     text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), steps=options.steps,
                        repeats=options.repeats, costs=costs, attacked=attacked, verdict=verdict)
-    pathlib.Path("docs/security_cost.md").write_text(text)
+    put_section(pathlib.Path("docs/results.md"), "security_cost", text)
     return equal
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Which pages of docs/ have figures that are older than what they measure? A measured page says near its top
 #   Measured: commit COMMIT; build COMPILER, BUILD TYPE; precision PRECISION.
-# once, or once for each of its parts; scripts/measured.sh has the list of pages, and of what each depends on. Lists the
-# pages that are stale, with the commits since then; exit 1 if there are any.
+# once, or once for each of its parts. Sections of a page that have scripts of their own count as pages: PAGE#SECTION.
+# scripts/measured.sh has the list of both, and of what each depends on. Lists those that are stale, with the commits
+# since then; exit 1 if there are any.
 #   scripts/stale_pages.sh [-q]      -q: only the names of the pages
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -24,10 +25,28 @@ say() { # PAGE WHY [COMMITS]
   fi
 }
 
+# PAGE or PAGE#SECTION: what it says now.
+text_of_page() {
+  local file=${1%%#*} section=${1#*#}
+  [[ -e $file ]] || return 0
+  if [[ $1 == *#* ]]; then
+    sed -n "/^<a id=\"$section\"><\/a>\$/,/^<!-- end of $section -->\$/p" "$file"
+  else
+    cat "$file"
+  fi
+}
+
+# The pages, and the sections with marks (scripts/page_sections.py), that say with what they were measured.
+measured_pages() {
+  awk 'FNR == 1 || /^<!-- end of / { section = "" }
+       /^<a id="[^"]+"><\/a>$/ { split($0, parts, "\""); section = "#" parts[2] }
+       /^Measured: commit/ { print FILENAME section }' docs/*.md
+}
+
 judge() {
   local page=$1 commits commit since
   [[ -n ${measures[$page]:-} ]] || { say "$page" "is measured, but scripts/measured.sh does not say from what"; return; }
-  mapfile -t commits < <(sed -nE 's/^Measured: commit ([^;]+);.*/\1/p' "$page" 2>/dev/null)
+  mapfile -t commits < <(text_of_page "$page" | sed -nE 's/^Measured: commit ([^;]+);.*/\1/p')
   [[ ${#commits[@]} -gt 0 ]] || { say "$page" "does not say what it was measured with"; return; }
   for commit in "${commits[@]}"; do
     if [[ $commit == *"with changes" || $commit == unknown ]]; then
@@ -40,6 +59,6 @@ judge() {
   done
 }
 
-mapfile -t pages < <({ printf '%s\n' "${!measures[@]}"; grep -ls '^Measured: commit' docs/*.md || true; } | LC_ALL=C sort -u)
+mapfile -t pages < <({ printf '%s\n' "${!measures[@]}"; measured_pages; } | LC_ALL=C sort -u)
 for page in "${pages[@]}"; do judge "$page"; done
 exit $stale

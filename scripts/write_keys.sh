@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes what the program says of its keys into docs/: the second half of scenes.md, and the JSON schemas for editors.
+# Writes what the program says of its keys into docs/: keys.md below its head, and the JSON schemas for editors.
 # To be run after a change of keys; a test fails until it was.
 #   scripts/write_keys.sh [PROGRAM=build/release/aurasim]
 set -euo pipefail
@@ -9,7 +9,7 @@ program=${1:-build/release/aurasim}
 "$program" schema --json launch >docs/aurasim-launch.schema.json
 "$program" schema --json scene >docs/aurasim-scene.schema.json
 
-page=docs/scenes.md
+page=docs/keys.md
 written=$(mktemp)
 trap 'rm -f "$written"' EXIT
 {

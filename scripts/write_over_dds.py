@@ -1,16 +1,17 @@
 #!/usr/bin/python3
-"""Writes docs/correctness_over_dds.md from the results of the collision and loss experiments over DDS.
+"""Writes docs/results.md#correctness_over_dds from the results of the collision and loss experiments over DDS.
 
     scripts/write_over_dds.py COLLISION_DIR LOSS_DIR [--out DIR]
 """
+from page_sections import put_section
 from report_parts import measured_line, table
 from write_correctness import SERIES, pairs_table, read_results, targets_table
 
-INTRODUCTION = """# Do bodies collide across borders as they do in one world? Over DDS, in real time
+INTRODUCTION = """## Collisions over DDS, in real time
 
 {measured}
 
-Written by `scripts/correctness_over_dds.sh`; do not edit. A part of the experiments of `correctness.md` ({repeats} pairs
+Written by `scripts/correctness_over_dds.sh`; do not edit. A part of the experiments of [correctness.md](correctness.md) ({repeats} pairs
 for each of 4 values of every series), with real nodes that stay up between trials: each has a thread and a DDS
 participant of its own, and talks over UDP on loopback.
 
@@ -52,12 +53,12 @@ def loss_table(summary):
 def main():
     arguments, collision, loss = read_results(__doc__)
     text = INTRODUCTION.format(measured=measured_line(arguments.collision.parent), repeats=collision["repeats"])
-    text += "## What has to hold, and what was found\n\n" + targets_table(collision)
+    text += "### What has to hold, and what was found\n\n" + targets_table(collision)
     text += "Packet loss:\n\n" + targets_table(loss)
-    text += "## By series\n\n" + series_table(collision)
-    text += "## By aura and sync\n\n" + pairs_table(collision)
-    text += "## Packet loss\n\n" + loss_table(loss)
-    (arguments.out / "correctness_over_dds.md").write_text(text.rstrip() + "\n")
+    text += "### By series\n\n" + series_table(collision)
+    text += "### By aura and sync\n\n" + pairs_table(collision)
+    text += "### Packet loss\n\n" + loss_table(loss)
+    put_section(arguments.out / "results.md", "correctness_over_dds", text)
 
 
 if __name__ == "__main__":

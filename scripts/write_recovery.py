@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes docs/recovery.md from what scripts/recovery.sh has left.
+"""Writes docs/results.md#recovery from what scripts/recovery.sh has left.
 
     scripts/write_recovery.py DIR [--out docs]
 """
@@ -8,9 +8,10 @@ import json
 import pathlib
 import statistics
 
+from page_sections import put_section
 from report_parts import machine_line, measured_line, table
 
-TEXT = """# Nodes that die: measured
+TEXT = """## Recovery: nodes that die
 
 {measured}
 
@@ -24,7 +25,7 @@ kept its parts died within a moment; what clients had ordered before is not know
 
 {sums}
 {misses}
-{rolling}{soak}{endurance}## What it costs a healthy run
+{rolling}{soak}{endurance}### What it costs a healthy run
 
 {rounds} runs of each kind by turns, without anybody dying: `survival.on_death: go_on`, where no parts are kept, against `recover`
 with a part every second. Medians; frames of all nodes.
@@ -72,7 +73,7 @@ def rolling_text(runs):
         rows.append([run["steps"], len(run["drains"]), sum(drain["ok"] for drain in run["drains"]),
                      f"{max(stood, default=float('nan')):.2f}", f"{run['real_time_factor'] or 0:.3f}",
                      "yes" if run["equal"] else "NO", run["bodies_lost"], run["bodies_duplicated"]])
-    return ("## A rolling restart\n\n`send drain` of one region after the other (`scripts/recovery_rolling.py`): its node leaves when "
+    return ("### A rolling restart\n\n`send drain` of one region after the other (`scripts/recovery_rolling.py`): its node leaves when "
             "the launcher's new process is there. *Stood*: the longest time that the others stood for it.\n\n"
             + table(["states", "drains", "done", "stood, s", "real-time factor", "hashes as undisturbed", "bodies lost", "twice"],
                     rows))
@@ -91,7 +92,7 @@ def soak_text(runs):
                      "yes" if run["equal"] else "NO", run["bodies_lost"], run["bodies_duplicated"],
                      ", ".join(f"{at(share)[2] / 1024:.0f}" for share in (0.1, 0.5, 1.0)),
                      ", ".join(f"{at(share)[3] / 1024:.0f}" for share in (0.1, 0.5, 1.0))])
-    return ("## A long run\n\nNodes are killed, drained and saved every 2 to 12 s (`scripts/recovery_rolling.py --soak MINUTES`); "
+    return ("### A long run\n\nNodes are killed, drained and saved every 2 to 12 s (`scripts/recovery_rolling.py --soak MINUTES`); "
             "memory after a tenth, half and all of the time, of the largest node and of the launcher."
             + "".join(f" At commit {run['commit']}." for run in runs if "commit" in run) + "\n\n"
             + table(["minutes", "states", "kills", "drains", "saves", "hashes as undisturbed", "bodies lost", "twice",
@@ -104,7 +105,7 @@ def endurance_text(lines):
         return ""
     last = lines[-1]
     sizes = [line["resident_kB"] / 1024 for line in lines[1:]]
-    return (f"## {last['hours']:.0f} hours in virtual time\n\n`aurasim experiment endurance tower` has compared each of "
+    return (f"### {last['hours']:.0f} hours in virtual time\n\n`aurasim experiment endurance tower` has compared each of "
             f"{last['compared']:,} states with that of one node, beside {last['deaths']:,} deaths, {last['loads']:,} loads of "
             f"saved worlds and {last['orders']:,} orders: {last['failure'] or 'none differs'}. {last['computed']:,} states were "
             f"computed; memory {min(sizes):.0f} to {max(sizes):.0f} MiB after the first hour.\n\n")
@@ -147,7 +148,7 @@ def main():
                        misses=miss_lines(runs), rounds=len(costs) // 4,
                        costs=table(["scene", "without: frame p50, ms", "p99", "with: p50", "p99", "p99 with to without",
                                     "sent to neighbours, kB/s", "to keepers, kB/s"], cost_rows(costs)))
-    (options.out / "recovery.md").write_text(text)
+    put_section(options.out / "results.md", "recovery", text)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes docs/same_bits.md from what scripts/same_bits.sh has left.
+"""Writes docs/results.md#same_bits from what scripts/same_bits.sh has left.
 
     scripts/write_same_bits.py DIR [--steps N] [--out docs]
 
@@ -10,9 +10,10 @@ import json
 import pathlib
 import re
 
+from page_sections import put_section, section_of
 from report_parts import machine_line, measured_line, table
 
-INTRODUCTION = """# The same bits on any number of nodes: measured
+INTRODUCTION = """## The same bits on any number of nodes
 
 Written by `scripts/same_bits.sh`; do not edit. Each part says with which commit and build it was measured. Real processes
 over DDS on one host, `deterministic`, `time.pace=none`. Each row is a run of {steps:,} steps whose state hash is compared
@@ -24,7 +25,7 @@ NETWORKS = {
     "bad": ("On a bad network", "Every datagram that a node sends is delayed by 16 ms, give or take 5 ms, and 10% of them "
             "are dropped.\n\n"),
 }
-ALSO = """## Also in CI
+ALSO = """### Also in CI
 
 Every scene in virtual time, three cuts each, over a network that loses and copies 5%
 (`tests/cluster/shipped_scenes_test.cpp`); runs with orders of clients (`tests/cluster/orders_test.cpp`); 1,000 seeds of
@@ -35,7 +36,7 @@ thrown bodies (`ctest -L long`).
 
 def part_of(page, heading):
     """What the page says under a heading now, or nothing."""
-    found = re.search(rf"^## {re.escape(heading)}\n\n(.*?)(?=^## |\Z)", page, re.DOTALL | re.MULTILINE)
+    found = re.search(rf"^### {re.escape(heading)}\n\n(.*?)(?=^### |\Z)", page, re.DOTALL | re.MULTILINE)
     return found.group(1) if found else "Not measured.\n\n"
 
 
@@ -52,11 +53,11 @@ def network_part(directory, page, network, steps):
     heading, text = NETWORKS[network]
     file = directory / f"{network}-{steps}.md"
     if not file.exists():
-        return f"## {heading}\n\n" + part_of(page, heading)
+        return f"### {heading}\n\n" + part_of(page, heading)
     rows = rows_of(file)
     equal = sum(1 for r in rows if r[-1].startswith("equal"))
     redos = sum(int(r[-2]) for r in rows if r[-2].isdigit())
-    return (f"## {heading}\n\n{measured_line(directory)}\n\n{text}{equal} of {len(rows)} equal; "
+    return (f"### {heading}\n\n{measured_line(directory)}\n\n{text}{equal} of {len(rows)} equal; "
             f"{redos} redos in {steps * len(rows):,} steps.\n\n"
             + table(["scene", "nodes", "network", "repetition", "hand-offs", "redos", "against one node"], rows))
 
@@ -68,7 +69,7 @@ def cost_part(directory):
         return f"{runs[name]['cpu_time']:.3g} {runs[name]['time_unit']}"
 
     plain = next(b for name, b in runs.items() if "plain_bullet" in name)
-    return "## What it costs\n\n" + measured_line(directory) + f"""
+    return "### What it costs\n\n" + measured_line(directory) + f"""
 
 CPU time, from `build/release/aurasim_bench --benchmark_filter='hand_off/|plain_bullet'`, one run:
 
@@ -87,7 +88,7 @@ def far_out_part(directory):
         suites = json.loads((directory / f"far_out_{precision}.json").read_text())["testsuites"]
         test = next(t for s in suites for t in s["testsuite"] if "drift_at_origin_m" in t)
         rows.append([precision] + [f"{1e3 * float(test[k]):.3f} mm" for k in ("drift_at_origin_m", "drift_far_out_m")])
-    return ("## Far out\n\n" + measured_line(directory) + "\n\nLargest drift of a stack of 5 in a minute, from "
+    return ("### Far out\n\n" + measured_line(directory) + "\n\nLargest drift of a stack of 5 in a minute, from "
             + "`physics_tests_single` and `physics_tests_double --gtest_filter='LocalOrigin.*'`:\n\n"
             + table(["precision", "at the origin", "at 100 km, `physics.origin: region`"], rows)
             + "Without it single precision keeps positions to 7.8 mm there: a body at 0.5 m/s does not move at all.\n")
@@ -99,13 +100,13 @@ def main():
     parser.add_argument("--steps", type=int, default=1800)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs")
     arguments = parser.parse_args()
-    path = arguments.out / "same_bits.md"
-    page = path.read_text() if path.exists() else ""
+    path = arguments.out / "results.md"
+    page = section_of(path, "same_bits")
     text = INTRODUCTION.format(machine=machine_line(), steps=arguments.steps)
     for network in NETWORKS:
         text += network_part(arguments.directory, page, network, arguments.steps)
     text += ALSO + cost_part(arguments.directory) + far_out_part(arguments.directory)
-    path.write_text(text.rstrip() + "\n")
+    put_section(path, "same_bits", text)
 
 
 if __name__ == "__main__":

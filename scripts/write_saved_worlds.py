@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes docs/saved_worlds.md from what scripts/saved_worlds.sh has left.
+"""Writes docs/results.md#saved_worlds from what scripts/saved_worlds.sh has left.
 
     scripts/write_saved_worlds.py DIR [--steps N] [--out docs]
 """
@@ -7,32 +7,33 @@ import argparse
 import json
 import pathlib
 
+from page_sections import put_section
 from report_parts import machine_line, measured_line, table
 
-TEXT = """# Saved worlds: measured
+TEXT = """## Saved worlds
 
 {measured}
 
 Written by `scripts/saved_worlds.sh`; do not edit. {machine}.
 
-## Every shipped scene
+### Every shipped scene
 
 Saved in mid-run by 4 nodes over DDS on one host (`deterministic`, {steps} steps), and gone on from by 1, 2, 4 and 9: is the hash of
 every later state that of the run that was never stopped? *Under way*: bodies that had left one node and not reached the
 other. *Bytes*: of the one file. {equal} of {runs} runs equal.
 
-{scenes}## Random worlds
+{scenes}### Random worlds
 
 In virtual time, saved in state 170 on their own regions and gone on from on 1, 2, 4 and 9 nodes, each through the bytes of
 a file; every state from there on has to have the bits of the run that went on, and that those of one node.
 
-{seeds}## Nodes that die
+{seeds}### Nodes that die
 
 The same worlds, and three times in each run a node dies, in virtual time: it loses all that it had in memory. All go back to
 the newest state (every 60) of which everybody's part is kept elsewhere, with the orders that the others know, and compute
 on from there. Every state has to have the bits of one node that nothing happened to.
 
-{deaths}## What it costs
+{deaths}### What it costs
 
 CPU time, `build/release/aurasim_bench --benchmark_filter=_world/`; boxes in loose piles of five. A step pays for *capture*; the
 file is made by a thread beside the run. *Put back*: into an empty world.
@@ -83,7 +84,7 @@ def main():
            for what in ("seeds", "deaths")},
         costs=table(["bodies", "contact points", "capture, ms", "encode, ms", "decode, ms", "put back, ms", "bytes"],
                     cost_rows(arguments.directory)))
-    (arguments.out / "saved_worlds.md").write_text(text.rstrip() + "\n")
+    put_section(arguments.out / "results.md", "saved_worlds", text)
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ void add_schema(CLI::App& program, Action& action) {
       program.add_subcommand("schema", "every key of launch and scene files: unit, range, default, meaning");
   const auto arguments = std::make_shared<SchemaArguments>();
   command->add_option("SECTION", arguments->section, "only sections with this in their title, e.g. time, injector");
-  auto* markdown = command->add_flag("--markdown", arguments->markdown, "as docs/scenes.md has them");
+  auto* markdown = command->add_flag("--markdown", arguments->markdown, "as docs/keys.md has them");
   command->add_option("--json", arguments->json, "as a JSON schema for editors: of launch files, or of scene files")
       ->check(CLI::IsMember({"launch", "scene"}))
       ->excludes(markdown);

@@ -1,5 +1,5 @@
 // A scene file, as a whole: its keys are in the tables of scene_file.cpp and of the readers beside it, and on the page
-// of all keys (docs/scenes.md).
+// of all keys (docs/keys.md).
 //
 // Bodies without an id get the lowest free ones, in the order of the file, generators after `bodies`; the ids of
 // injected bodies follow, injector by injector.

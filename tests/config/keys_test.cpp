@@ -340,7 +340,7 @@ std::string text_of_doc(const std::string& name) {
 }
 
 TEST(KeysOnPaper, ThePageSaysWhatTheTablesSay) {
-  const bool is_there = text_of_doc("scenes.md").find("-->\n" + keys_as_markdown() + "<!--") != std::string::npos;
+  const bool is_there = text_of_doc("keys.md").find("-->\n" + keys_as_markdown() + "<!--") != std::string::npos;
   EXPECT_TRUE(is_there) << "after a change of keys: scripts/write_keys.sh";
 }
 

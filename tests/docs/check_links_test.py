@@ -59,6 +59,10 @@ class CheckLinks(unittest.TestCase):
                                               "`src/core/` `hosts.xml`\n"), [])
         self.assertEqual(len(complaints(README_md="`core/aurora.h` `src/kore/` `aurora.h` `core/aurora` `qos/*.yaml`\n")), 5)
 
+    def test_the_changelog_may_name_files_that_are_gone(self):
+        self.assertEqual(complaints(CHANGELOG_md="`docs/gone.md`\n"), [])
+        self.assertEqual(len(complaints(CHANGELOG_md="[a](docs/gone.md)\n")), 1)
+
     def test_other_code_is_let_be(self):
         self.assertEqual(complaints(README_md="`time.sync` `region/2` `/api/shapes` `build/release/aurasim` `a/b` "
                                               "`out/summary.json` `steps.csv` `frame.p50`\n"), [])

@@ -22,9 +22,16 @@ commit_to() { # FILE
   echo "$RANDOM" >>"$1"
   commit_all "change $1"
 }
-stamp() { # PAGE [COMMIT]
-  printf '# A page\n\nMeasured: commit %s; build GNU 12.2.0, Release; precision double.\n' \
-    "${2:-$(git rev-parse --short=12 HEAD)}" >"$1"
+stamp() { # PAGE or PAGE#SECTION [COMMIT]
+  local line page=${1%%#*} section=${1#*#}
+  line="Measured: commit ${2:-$(git rev-parse --short=12 HEAD)}; build GNU 12.2.0, Release; precision double."
+  if [[ $1 == *#* ]]; then
+    touch "$page"
+    sed -i "/^<a id=\"$section\">/,/^<!-- end of $section -->/d" "$page"
+    printf '<a id="%s"></a>\n\n%s\n<!-- end of %s -->\n' "$section" "$line" "$section" >>"$page"
+  else
+    printf '# A page\n\n%s\n' "$line" >"$page"
+  fi
 }
 stamp_all() {
   local page
@@ -51,7 +58,13 @@ commit_to README.md
 expect "WhatIsNotMeasuredMakesNoPageStale"
 
 commit_to src/cli/node_process.cpp
-expect "AFileThatFivePagesMeasureMakesThoseStale" docs/control_cost.md docs/recovery.md docs/same_bits.md docs/saved_worlds.md docs/security_cost.md
+of_processes=(docs/results.md#{control_cost,recovery,same_bits,saved_worlds,security_cost})
+expect "AFileThatFiveSectionsMeasureMakesThoseStale" "${of_processes[@]}"
+stamp docs/results.md#control_cost
+expect "ASectionThatIsMeasuredAgainLeavesTheOthersStale" "${of_processes[@]:1}"
+stamp docs/results.md#control_cost 0123456789ab
+expect "ACommitOfAnotherSectionIsNotTakenForItsOwn" "${of_processes[@]}"
+git checkout --quiet docs
 
 commit_to src/core/aura.cpp
 of_simulation=()
@@ -73,6 +86,9 @@ stamp docs/accuracy.md
 stamp docs/unlisted.md
 expect "AMeasuredPageThatIsNotListedIsNamed" docs/unlisted.md
 rm docs/unlisted.md
+stamp docs/results.md#unlisted
+expect "AMeasuredSectionThatIsNotListedIsNamed" docs/results.md#unlisted
+git checkout --quiet docs/results.md
 
 { stamp docs/accuracy.md && commit_to src/core/aura.cpp && stamp_all; } >/dev/null
 printf 'Measured: commit %s; build x, Release; precision double.\n' "$(git rev-parse HEAD~2)" >>docs/accuracy.md

@@ -44,7 +44,7 @@ class Drives : public ::testing::TestWithParam<Solver> {
     return scene.bodies.back();
   }
 
-  /// docs/limits.md.
+  /// docs/design.md, "Limits".
   bool loses_sliders() const {
     return GetParam() == Solver::kDantzig && RegionWorld::precision() == std::string_view("single");
   }
