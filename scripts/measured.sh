@@ -82,7 +82,7 @@ measured_line() {
 begin_measuring() {
   local page=$1 out=$2 precision=$3 now before commit
   shift 3
-  scripts/build.sh release aurasim aurasim-single "$@" >&2
+  scripts/build.sh release aurasim "$@" >&2
   now=$(measured_line "$page" "$precision")
   mkdir -p "$out"
   if [[ -s $out/measured.txt ]]; then

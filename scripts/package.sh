@@ -41,7 +41,7 @@ install_packages() {
 [[ -z $page ]] || scripts/build_web.sh || fail "the viewer has no page; --without-page makes packages all the same"
 
 # As the demo is built: several files at a time.
-cmake --preset demo -B build/package -D AURASIM_SINGLE=ON
+cmake --preset demo -B build/package
 cmake --build build/package --parallel "$(nproc)"
 rm -f build/package/*.deb
 (cd build/package && cpack -G DEB)

@@ -31,7 +31,7 @@ def rows_of(file):
         return list(csv.DictReader(rows))
 
 
-def plot_front(folder, precision, rows):
+def plot_front(folder, rows):
     figure, axes = plt.subplots(figsize=(8, 5.5))
     alone = [r for r in rows if r["nodes"] == "1" and r["sync"] == "deterministic" and r["lookahead"] == "1"
              and r["aura"] == "swept"]
@@ -46,13 +46,13 @@ def plot_front(folder, precision, rows):
             axes.annotate(r["preset"], (float(r["cpu_us_per_step"]), float(r["error"])), xytext=(6, 6),
                           textcoords="offset points", weight="bold")
     axes.set(xscale="log", yscale="log", xlabel="CPU time per step, all cases (us)",
-             ylabel="geometric mean of the errors", title=f"Error against CPU time, {precision} precision, one node")
+             ylabel="geometric mean of the errors", title="Error against CPU time, one node")
     axes.legend(fontsize=8)
     axes.grid(alpha=0.3, which="both")
-    save(figure, folder, f"pareto_{precision}")
+    save(figure, folder, "pareto")
 
 
-def plot_convergence(folder, precision, rows):
+def plot_convergence(folder, rows):
     figure, axes = plt.subplots(figsize=(8, 5.5))
     lines = defaultdict(list)
     for r in rows:
@@ -61,10 +61,10 @@ def plot_convergence(folder, precision, rows):
     for (case, measured), points in lines.items():
         axes.plot(*zip(*sorted(points)), marker="o", ms=4, label=f"{case}: {measured}")
     axes.set(xscale="log", yscale="log", xlabel="step (ms)", ylabel="error (m, rad or 1)",
-             title=f"Error against step, {precision} precision, Bullet's settings")
+             title="Error against step, Bullet's settings")
     axes.legend(fontsize=6)
     axes.grid(alpha=0.3, which="both")
-    save(figure, folder, f"convergence_{precision}")
+    save(figure, folder, "convergence")
 
 
 def main():
@@ -74,9 +74,8 @@ def main():
     arguments = parser.parse_args()
     folder = arguments.out or arguments.directory / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    for precision in ("double", "single"):
-        plot_front(folder, precision, rows_of(arguments.directory / f"pareto-{precision}" / "pareto.csv"))
-        plot_convergence(folder, precision, rows_of(arguments.directory / f"stability-{precision}" / "stability.csv"))
+    plot_front(folder, rows_of(arguments.directory / "pareto" / "pareto.csv"))
+    plot_convergence(folder, rows_of(arguments.directory / "stability" / "stability.csv"))
 
 
 if __name__ == "__main__":

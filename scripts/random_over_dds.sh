@@ -19,7 +19,7 @@ while [[ $# -gt 0 ]]; do
 done
 
 aurasim=build/release/aurasim
-scripts/build.sh release aurasim aurasim-single >&2
+scripts/build.sh release aurasim >&2
 "$aurasim" experiment scenes --seeds "$seeds" --steps 1 --keep --out "$out/worlds" >&2
 
 # A world that physics breaks ends with an exit code of its own, and has a report all the same.

@@ -25,7 +25,7 @@ done
 aurasim=build/release/aurasim
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/results.md#same_bits "$out" double aurasim_bench physics_tests_single physics_tests_double
+begin_measuring docs/results.md#same_bits "$out" double aurasim_bench
 reports=$(mktemp -d)
 trap 'rm -rf "$reports"' EXIT
 
@@ -95,10 +95,6 @@ done
 if [[ $# -eq 0 ]]; then
   build/release/aurasim_bench --benchmark_filter='hand_off/|plain_bullet' --benchmark_format=json \
     2>/dev/null >"$out/bench.json"
-  for precision in double single; do
-    "build/release/physics_tests_$precision" --gtest_filter='LocalOrigin.*' --gtest_output="json:$out/far_out_$precision.json" \
-      >/dev/null
-  done
   /usr/bin/python3 scripts/write_same_bits.py "$out" --steps "$steps"
   echo "written: docs/results.md#same_bits" >&2
 fi

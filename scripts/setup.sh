@@ -11,7 +11,7 @@ packages=(
   # Fast DDS (its package brings Asio, OpenSSL, TinyXML2 and foonathan memory) and its IDL compiler, a Java program
   # whose package does not ask for Java
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
-  # physics in both precisions, mathematics
+  # physics, mathematics
   libbullet-dev libbullet-extras-dev libeigen3-dev
   # launch and scene files, meshes (assimp's CMake files name zlib, its package does not), command line, log, reports,
   # saved worlds

@@ -82,18 +82,6 @@ CPU time, from `build/release/aurasim_bench --benchmark_filter='hand_off/|plain_
          f"{plain['ours_over_plain']:.2f} times"]])
 
 
-def far_out_part(directory):
-    rows = []
-    for precision in ("double", "single"):
-        suites = json.loads((directory / f"far_out_{precision}.json").read_text())["testsuites"]
-        test = next(t for s in suites for t in s["testsuite"] if "drift_at_origin_m" in t)
-        rows.append([precision] + [f"{1e3 * float(test[k]):.3f} mm" for k in ("drift_at_origin_m", "drift_far_out_m")])
-    return ("### Far out\n\n" + measured_line(directory) + "\n\nLargest drift of a stack of 5 in a minute, from "
-            + "`physics_tests_single` and `physics_tests_double --gtest_filter='LocalOrigin.*'`:\n\n"
-            + table(["precision", "at the origin", "at 100 km, `physics.origin: region`"], rows)
-            + "Without it single precision keeps positions to 7.8 mm there: a body at 0.5 m/s does not move at all.\n")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=pathlib.Path)
@@ -105,7 +93,7 @@ def main():
     text = INTRODUCTION.format(machine=machine_line(), steps=arguments.steps)
     for network in NETWORKS:
         text += network_part(arguments.directory, page, network, arguments.steps)
-    text += ALSO + cost_part(arguments.directory) + far_out_part(arguments.directory)
+    text += ALSO + cost_part(arguments.directory)
     put_section(path, "same_bits", text)
 
 

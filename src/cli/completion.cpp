@@ -81,10 +81,10 @@ _aurasim() {{
   esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
-complete -o default -F _aurasim aurasim aurasim-single
+complete -o default -F _aurasim aurasim
 )";
 
-constexpr const char* kZsh = R"(#compdef aurasim aurasim-single
+constexpr const char* kZsh = R"(#compdef aurasim
 # Completion of aurasim for zsh, made by `aurasim completion zsh`.
 _aurasim() {{
   local command=aurasim word

@@ -41,7 +41,6 @@ void print_info(const cut::SavedWorld& world) {
                                        {"launch", id.launch},
                                        {"scene", id.scene},
                                        {"physics", id.physics},
-                                       {"precision", id.precision},
                                        {"program", id.program},
                                        {"world", fmt::format("{:016x}", id.world)},
                                        {"part", world.part},

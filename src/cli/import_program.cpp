@@ -14,7 +14,7 @@
 #include "import/read_model.h"
 #include "import/scene_writer.h"
 #include "import/sdf_writer.h"
-#include "overseer/convex_hull.h"
+#include "physics/hull_triangles.h"
 
 namespace aurasim::cli {
 namespace {
@@ -123,7 +123,7 @@ int run_export(const ExportArguments& given) {
   std::vector<std::string> names;
   for (const config::SceneSource& source : launch.body_sources) names.push_back(source.name);
   const std::string file = given.out.empty() ? launch.scene.name + ".sdf" : given.out;
-  const importing::SdfText world = importing::sdf_text(launch.scene, names, file, overseer::hull_triangles);
+  const importing::SdfText world = importing::sdf_text(launch.scene, names, file, physics::hull_triangles);
   if (is_too_little(world.lost, given.strict)) return static_cast<int>(ExitCode::kBadConfig);
   write_texts(given.out, world.xml, world.meshes);
   return 0;

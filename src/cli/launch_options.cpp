@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/launch_setup.h"
+#include "cli/other_role.h"
 
 namespace aurasim::cli {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 /// What nodes and spares are told alike.
 std::vector<std::string> command_line(const char* command, const config::Launch& launch, const LaunchOptions& options,
                                       std::uint64_t run) {
-  std::vector<std::string> words = {executable_for(launch.physics.precision).string(),
+  std::vector<std::string> words = {program_at("/proc/self/exe").string(),
                                     command,
                                     options.files.file,
                                     "--run",

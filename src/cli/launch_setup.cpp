@@ -7,7 +7,6 @@
 
 #include "core/horizon.h"
 #include "core/make_aura.h"
-#include "node/local_origin.h"
 #include "node/setpoint_record.h"
 #include "physics/solver_names.h"
 
@@ -78,9 +77,6 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
   setup.control = launch.control_rules();
   if (!launch.control.replay.empty()) setup.recorded = node::read_setpoints(launch.control.replay);
-  if (launch.physics.origin == config::Origin::kRegion) {
-    setup.physics.p_WO = node::local_origin(launch.scene, launch.regions, region);
-  }
   return setup;
 }
 
@@ -99,12 +95,6 @@ std::filesystem::path program_beside(const std::string& name, const std::string&
   std::filesystem::path program = self.parent_path() / name;
   if (!std::filesystem::exists(program)) throw std::runtime_error(program.string() + " is missing. " + remedy);
   return program;
-}
-
-std::filesystem::path executable_for(const std::string& precision) {
-  return program_beside(precision == "single" ? "aurasim-single" : "aurasim",
-                        "`scripts/setup.sh && scripts/build.sh release aurasim-single` builds it; "
-                        "scripts/demo.sh builds double precision only");
 }
 
 }  // namespace aurasim::cli

@@ -27,7 +27,4 @@ dds::WorldMap world_map(const config::Launch& launch);
 /// there.
 std::filesystem::path program_beside(const std::string& name, const std::string& remedy);
 
-/// The executable for a precision ("single" or "double"), beside the running one.
-std::filesystem::path executable_for(const std::string& precision);
-
 }  // namespace aurasim::cli

@@ -39,14 +39,6 @@ struct NodeArguments {
   bool or_spare = false;
 };
 
-/// The other precision is another program with the same arguments; does not return if that is the one wanted.
-void become_the_right_precision(const config::Launch& launch) {
-  if (launch.physics.precision == physics::RegionWorld::precision()) return;
-  std::vector<std::string> words = own_command_line();
-  words[0] = executable_for(launch.physics.precision).string();
-  become(std::move(words));
-}
-
 /// Does not return: the rest of the command line is that of the spare, or of the node.
 [[noreturn]] void become_node_or_spare(const config::Launch& launch, const NodeArguments& arguments) {
   leave_after([&] {
@@ -63,7 +55,6 @@ int run_node(const NodeArguments& arguments) {
     throw config::BadConfig({fmt::format("--region: found {}, allowed: 0 to {} ({} has {} regions)", arguments.region,
                                          launch.regions.size() - 1, arguments.files.file, launch.regions.size())});
   }
-  become_the_right_precision(launch);
   spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
   if (arguments.or_spare) {
     catch_stop_signals();

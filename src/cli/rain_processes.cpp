@@ -73,8 +73,8 @@ std::optional<std::vector<experiment::Window>> run_processes(const experiment::R
   const config::Launch launch = config::read_launch(launch_file, overrides);
   std::filesystem::create_directories(report);
   std::vector<std::string> words = {
-      executable_for(launch.physics.precision).string(), "launch",   launch_file.string(), "--headless", "--steps",
-      std::to_string(rain.steps(launch.step_s())),       "--report", report.string()};
+      program_at("/proc/self/exe").string(),       "launch",   launch_file.string(), "--headless", "--steps",
+      std::to_string(rain.steps(launch.step_s())), "--report", report.string()};
   for (const std::string& change : overrides) words.insert(words.end(), {"--set", change});
   if (!run_program(std::move(words))) return std::nullopt;
   return windows_of_report(report, launch.regions.size(), launch.step_s());

@@ -36,7 +36,6 @@ bool can_be_read(const cut::StoredWorld& world) {
 
 cut::Identity identity_of(const config::Launch& launch) {
   return {.program = version_and_commit(),
-          .precision = launch.physics.precision,
           .launch = launch.file.filename().string(),
           .scene = launch.scene.name,
           .physics = fmt::format("{}, {} substeps, {:g} steps/s", launch.physics.solver, launch.time.substeps,

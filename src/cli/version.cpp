@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "cli/commit.h"
-#include "physics/region_world.h"
 
 namespace aurasim::cli {
 
@@ -12,8 +11,7 @@ std::string commit() { return AURASIM_COMMIT; }
 std::string version_and_commit() { return fmt::format("aurasim {} ({})", AURASIM_VERSION, commit()); }
 
 std::string version_text() {
-  return fmt::format("aurasim {} (commit {}, {}, {} precision, GCC {})", AURASIM_VERSION, commit(), AURASIM_BUILD_TYPE,
-                     physics::RegionWorld::precision(), __VERSION__);
+  return fmt::format("aurasim {} (commit {}, {}, GCC {})", AURASIM_VERSION, commit(), AURASIM_BUILD_TYPE, __VERSION__);
 }
 
 }  // namespace aurasim::cli

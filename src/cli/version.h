@@ -11,7 +11,7 @@ std::string commit();
 /// "aurasim VERSION (COMMIT)".
 std::string version_and_commit();
 
-/// Version, commit, build type, precision, compiler, in one line.
+/// Version, commit, build type, compiler, in one line.
 std::string version_text();
 
 }  // namespace aurasim::cli

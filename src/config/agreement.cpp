@@ -206,13 +206,11 @@ void add_physics(const Launch& launch, Digest& d) {
   d.add(launch.time.step_hz);
   d.bytes(static_cast<std::uint64_t>(launch.time.substeps));
   d.add(launch.tolerances.speed_m_s);
-  d.add(std::string_view(launch.physics.precision));
   d.add(std::string_view(launch.physics.solver));
   d.bytes(static_cast<std::uint64_t>(launch.physics.iterations));
   d.bytes(static_cast<std::uint64_t>(launch.physics.friction_directions));
   d.add(launch.physics.contact_erp);
   d.bytes(launch.physics.is_continuous());
-  d.bytes(static_cast<std::uint64_t>(launch.physics.origin));
 }
 
 /// What else all nodes agree on.

@@ -19,7 +19,6 @@
 namespace aurasim::config {
 
 enum class Pace { kWall, kNone };
-enum class Origin { kWorld, kRegion };
 /// kAuto: where the run is to have the bits of one node.
 enum class Redo { kAuto, kOn, kOff };
 enum class OnDeath { kRecover, kGoOn, kStop };
@@ -49,15 +48,12 @@ struct Physics {
   bool looks_once() const { return solver == "soft_step"; }
   bool is_continuous() const { return continuous.value_or(looks_once()); }
 
-  std::string precision = "double";  ///< or "single"
   std::string solver = "soft_step";
   int iterations = 10;
   int friction_directions = 1;     ///< rows of friction at each contact point, 1 or 2
   double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that stays
   std::optional<bool> continuous;  ///< fast bodies stop at what is in their way; none: where contacts are found once
   std::optional<int> threads = 1;  ///< of a node's physics; none: as many as the host has for it
-  /// Where Bullet's coordinates begin: kWorld keeps equal bits on any number of nodes, kRegion accuracy far out.
-  Origin origin = Origin::kWorld;
 };
 
 /// What is made worse of the network; what is not given is as the DDS profiles say.

@@ -96,8 +96,6 @@ const KeysOf<Physics>& physics_keys() {
           optional("preset", choice<int>({{kPresets[0].name, 0}, {kPresets[1].name, 1}, {kPresets[2].name, 2}}),
                    kPresetsText)
               .otherwise("none: the defaults of this page"),
-          optional("precision", &Physics::precision, words({"double", "single"}),
-                   "of Bullet's numbers; single is another program, aurasim-single, which is started for it"),
           optional("solver", &Physics::solver, words({"sequential_impulse", "nncg", "dantzig", "soft_step"}),
                    "of contacts and joints: projected Gauss-Seidel, nonsmooth conjugate gradient, or direct (slow in "
                    "piles, knows no rolling friction); soft_step looks once a step for what touches, solves in the "
@@ -114,9 +112,6 @@ const KeysOf<Physics>& physics_keys() {
           optional("threads", &Physics::threads, integer(1, 64).or_word("auto"),
                    "of each node's soft_step; their number changes no bit. auto: the host's cores, shared among the "
                    "nodes that launch starts there"),
-          optional("origin", &Physics::origin, choice<Origin>({{"world", Origin::kWorld}, {"region", Origin::kRegion}}),
-                   "where Bullet's coordinates begin. world: equal bits on any number of nodes; region: in the middle "
-                   "of each region, which is accurate far out"),
       });
   return keys;
 }

@@ -112,7 +112,6 @@ std::string decompressed(std::string_view bytes, std::size_t enough = kMostBytes
 json header_of(const SavedWorld& world) {
   const Identity& id = world.identity;
   return {{"program", id.program},
-          {"precision", id.precision},
           {"launch", id.launch},
           {"scene", id.scene},
           {"physics", id.physics},
@@ -144,7 +143,6 @@ SavedWorld from_header(std::string_view text) {
     const json header = json::parse(text);
     Identity& id = world.identity;
     header.at("program").get_to(id.program);
-    header.at("precision").get_to(id.precision);
     header.at("launch").get_to(id.launch);
     header.at("scene").get_to(id.scene);
     header.at("physics").get_to(id.physics);

@@ -55,13 +55,10 @@ std::string text_of(const fs::path& file) {
 }
 
 /// Of one world?
-bool same(const Identity& a, const Identity& b) {
-  return a.world == b.world && a.precision == b.precision && a.program == b.program;
-}
+bool same(const Identity& a, const Identity& b) { return a.world == b.world && a.program == b.program; }
 
 std::string words(const Identity& identity) {
-  return fmt::format("{} (scene {}; {}, {} precision)", identity.launch, identity.scene, identity.physics,
-                     identity.precision);
+  return fmt::format("{} (scene {}; {})", identity.launch, identity.scene, identity.physics);
 }
 
 }  // namespace
@@ -136,10 +133,6 @@ SavedWorld merge_cuts(const std::vector<fs::path>& files) {
 
 std::string check_identity(const fs::path& file, const Identity& found, const Identity& wanted, bool other_program) {
   const auto refuse = [&](const std::string& why) { throw BadCut(fmt::format("{}: {}", file.string(), why)); };
-  if (found.precision != wanted.precision) {
-    refuse(fmt::format("saved in {} precision, and this is {}: physics.precision has to be {}", found.precision,
-                       wanted.precision, found.precision));
-  }
   if (found.world != wanted.world) {
     refuse(
         fmt::format("the world of {}, and this is {}: it fits the launch and scene files, with the overrides, that it "

@@ -16,7 +16,6 @@ namespace aurasim::cut {
 /// What a world was computed with. Where something differs, going on has other bits, or makes no sense.
 struct Identity {
   std::string program;      ///< version and commit
-  std::string precision;    ///< "single" or "double"
   std::string launch;       ///< name of the launch file, for people
   std::string scene;        ///< its name, for people
   std::string physics;      ///< solver, substeps and steps a second, for people

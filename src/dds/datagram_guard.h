@@ -33,7 +33,7 @@ struct GuardLimits {
 /// Thread-safe.
 class DatagramGuard {
  public:
-  using Time = TokenBucket::Time;  ///< of any clock that does not go back
+  using Time = core::TokenBucket::Time;  ///< of any clock that does not go back
 
   explicit DatagramGuard(const GuardLimits& limits = {})
       : rates_(limits.rates), peers_(limits.peers), repeats_(limits.repeats) {}

@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Fast DDS forgets a silent participant after its lease; this book never before it.
-constexpr TokenBucket::Time kLonger = 10s;
+constexpr core::TokenBucket::Time kLonger = 10s;
 /// Unfinished ones of one writer.
 constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;

@@ -33,12 +33,12 @@ struct PeerLimits {
   std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
   std::size_t unfinished_B = std::size_t{192} << 20, unfinished_of_a_participant_B = std::size_t{96} << 20;
   /// A sample to which nothing is added for so long makes room: what is lost of it is not sent again.
-  TokenBucket::Time until_given_up = std::chrono::seconds(2);
+  core::TokenBucket::Time until_given_up = std::chrono::seconds(2);
 };
 
 class PeerBook {
  public:
-  using Time = TokenBucket::Time;
+  using Time = core::TokenBucket::Time;
 
   explicit PeerBook(const PeerLimits& limits) : limits_(limits) {}
 

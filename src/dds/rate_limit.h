@@ -1,10 +1,11 @@
 // How much of one kind a process may send. A bucket of tokens for each; time is passed in.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <map>
+
+#include "core/token_bucket.h"
 
 namespace aurasim::dds {
 
@@ -20,35 +21,24 @@ class RateLimit {
   bool allows(const Source& source, Time now) {
     if (buckets_.size() >= kMostSources && !buckets_.contains(source)) forget_the_quiet(now);
     if (buckets_.size() >= kMostSources && !buckets_.contains(source)) return false;
-    Bucket& bucket = buckets_.try_emplace(source, Bucket{at_once_, now}).first->second;
-    bucket.tokens = tokens_of(bucket, now);
-    bucket.filled = now;
-    if (bucket.tokens < 1) return false;
-    bucket.tokens -= 1;
-    return true;
+    return buckets_.try_emplace(source, per_second_, at_once_, now.time_since_epoch())
+        .first->second.take(1, now.time_since_epoch());
   }
 
   /// Each source that is known may send so many more, up to as many as at once.
   void allow_more(double messages) {
-    for (auto& [source, bucket] : buckets_) bucket.tokens = std::min(at_once_, bucket.tokens + messages);
+    for (auto& [source, bucket] : buckets_) bucket.add(messages);
   }
 
  private:
   static constexpr std::size_t kMostSources = 1024;
 
-  struct Bucket {
-    double tokens = 0;
-    Time filled;
-  };
-  double tokens_of(const Bucket& bucket, Time now) const {
-    return std::min(at_once_, bucket.tokens + per_second_ * std::chrono::duration<double>(now - bucket.filled).count());
-  }
   void forget_the_quiet(Time now) {
-    std::erase_if(buckets_, [&](const auto& entry) { return tokens_of(entry.second, now) >= at_once_; });
+    std::erase_if(buckets_, [&](const auto& entry) { return entry.second.is_full(now.time_since_epoch()); });
   }
 
   double per_second_, at_once_;
-  std::map<Source, Bucket> buckets_;
+  std::map<Source, core::TokenBucket> buckets_;
 };
 
 }  // namespace aurasim::dds

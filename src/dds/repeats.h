@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/token_bucket.h"
 #include "dds/datagram_findings.h"
 #include "dds/recent.h"
-#include "dds/token_bucket.h"
 
 namespace aurasim::dds {
 
@@ -25,12 +25,12 @@ struct RepeatLimits {
   double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< of all together; discovery is not counted
   double smallest_sample_B = 8192;                         ///< what any costs
   /// Who listens to what nodes say to each other has so long to become known as one.
-  TokenBucket::Time until_known = std::chrono::seconds(10);
+  core::TokenBucket::Time until_known = std::chrono::seconds(10);
 };
 
 class Repeats {
  public:
-  using Time = TokenBucket::Time;
+  using Time = core::TokenBucket::Time;
   using Prefixes = std::unordered_set<GuidPrefix, PrefixHash>;
 
   explicit Repeats(const RepeatLimits& limits)
@@ -61,7 +61,7 @@ class Repeats {
 
  private:
   struct Asker {
-    TokenBucket bytes;
+    core::TokenBucket bytes;
     Time since{0};  ///< that it was first heard of what nodes say to each other; 0: it has not been
     bool is_said = false, is_said_of_nodes = false;
   };
@@ -80,7 +80,7 @@ class Repeats {
   std::unordered_set<std::uint32_t> of_nodes_;
   std::unordered_map<std::uint32_t, Sent> sent_;
   Recent<GuidPrefix, Asker, PrefixHash> askers_;
-  TokenBucket all_;
+  core::TokenBucket all_;
   std::vector<std::pair<GuidPrefix, Answer>> news_;
 };
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/token_bucket.h"
 #include "dds/recent.h"
-#include "dds/token_bucket.h"
 
 namespace aurasim::dds {
 
@@ -28,7 +28,7 @@ struct RateLimits {
 
 class SourceLimits {
  public:
-  using Time = TokenBucket::Time;
+  using Time = core::TokenBucket::Time;
 
   explicit SourceLimits(const RateLimits& limits) : limits_(limits) {}
 
@@ -46,10 +46,10 @@ class SourceLimits {
 
  private:
   struct Socket {
-    TokenBucket datagrams, bytes;
+    core::TokenBucket datagrams, bytes;
   };
   struct Address {
-    TokenBucket datagrams, jumps, gaps;
+    core::TokenBucket datagrams, jumps, gaps;
   };
 
   Address& address_of(std::uint32_t address, Time now);

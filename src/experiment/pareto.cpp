@@ -132,13 +132,13 @@ std::string_view aura_name(core::AuraKind aura) { return aura == core::AuraKind:
 void write_csv(const std::vector<ParetoPoint>& points, const std::filesystem::path& file) {
   std::ofstream out(file);
   if (!out) throw std::runtime_error("cannot write " + file.string());
-  out << "solver,iterations,substeps,friction_directions,precision,nodes,sync,lookahead,aura,preset";
+  out << "solver,iterations,substeps,friction_directions,nodes,sync,lookahead,aura,preset";
   for (const ParetoError& error : pareto_errors()) out << "," << error.name;
   out << ",error,cpu_us_per_step,same_bits,on_front\n";
   for (const ParetoPoint& p : points) {
-    out << fmt::format("{},{},{},{},{},{},{},{},{},{}", physics::name_of(p.rules.solver), p.rules.iterations,
-                       p.rules.substeps, p.rules.friction_directions, physics::RegionWorld::precision(), p.nodes,
-                       name_of(p.rules.sync), p.rules.lookahead, aura_name(p.rules.aura), p.preset);
+    out << fmt::format("{},{},{},{},{},{},{},{},{}", physics::name_of(p.rules.solver), p.rules.iterations,
+                       p.rules.substeps, p.rules.friction_directions, p.nodes, name_of(p.rules.sync), p.rules.lookahead,
+                       aura_name(p.rules.aura), p.preset);
     for (const double error : p.errors) out << fmt::format(",{:.6g}", error);
     out << fmt::format(",{:.6g},{:.2f},{},{}\n", p.error, p.cpu_us_per_step, p.same_bits ? 1 : 0, p.on_front ? 1 : 0);
   }
@@ -192,7 +192,6 @@ std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const P
   const std::vector<Target> targets = {
       {"deterministic points whose bits differ from those of one node", other_bits, 0}};
   nlohmann::json summary;
-  summary["precision"] = physics::RegionWorld::precision();
   summary["simulated_s"] = plan.simulated_s;
   summary["points"] = points.size();
   summary["targets"] = json_of(targets);

@@ -14,10 +14,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/token_bucket.h"
 #include "overseer/give_way.h"
 #include "overseer/http_rules.h"
 #include "overseer/page_socket.h"
-#include "overseer/rate_limit.h"
 #include "overseer/web_headers.h"
 #include "overseer/web_hub.h"
 #include "overseer/web_stream.h"
@@ -222,7 +222,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   }
 
   void read_next() {
-    const Clock::duration wait = requests_.take(Clock::now());
+    const Clock::duration wait = requests_.charge(Clock::now().time_since_epoch());
     socket_of(stream_).expires_after(wait + kIdleLimit);
     if (wait <= Clock::duration::zero()) return read_header();
     pause_.expires_after(wait);
@@ -268,7 +268,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   WebHub& hub_;
   boost::asio::any_io_executor worker_;
   boost::asio::steady_timer pause_;
-  RateLimit requests_{kRequests, kRequests_per_s};
+  core::TokenBucket requests_{kRequests_per_s, kRequests};
   Standing standing_ = Standing::kStranger;
   Place upload_;
   boost::beast::flat_buffer buffer_{64 * 1024};

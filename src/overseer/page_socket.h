@@ -10,7 +10,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
-#include "overseer/rate_limit.h"
+#include "core/token_bucket.h"
 #include "overseer/web_hub.h"
 #include "overseer/web_stream.h"
 
@@ -59,7 +59,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     socket_.read_message_max(kLongestMessage);
     socket_.auto_fragment(false);
     socket_.control_callback([this](websocket::frame_type, boost::beast::string_view) {
-      if (pings_.take(Clock::now()) > Clock::duration::zero()) refuse();
+      if (pings_.charge(Clock::now().time_since_epoch()) > Clock::duration::zero()) refuse();
     });
     socket_.async_accept(upgrade, [self = this->shared_from_this()](Error error) {
       if (error) return;
@@ -106,7 +106,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
 
   /// At once, or when it is its turn again.
   void read_on() {
-    const Clock::duration wait = messages_.take(Clock::now());
+    const Clock::duration wait = messages_.charge(Clock::now().time_since_epoch());
     if (wait <= Clock::duration::zero()) return read();
     reading_.expires_after(wait);
     reading_.async_wait([self = this->shared_from_this()](Error) { self->read(); });
@@ -152,8 +152,8 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
   Message in_flight_;
   boost::asio::steady_timer spacing_;
   boost::asio::steady_timer reading_;
-  RateLimit messages_{kMessages, kMessages_per_s};
-  RateLimit pings_{kPings, kPings_per_s};
+  core::TokenBucket messages_{kMessages_per_s, kMessages};
+  core::TokenBucket pings_{kPings_per_s, kPings};
   bool waiting_ = false;
   bool sending_ = false;
   bool ended_ = false;

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "overseer/convex_hull.h"
+#include "physics/hull_triangles.h"
 
 namespace aurasim::overseer {
 namespace {
@@ -39,7 +39,7 @@ struct ToJson {
   Json operator()(const core::Cylinder& s) const {
     return {{"kind", "cylinder"}, {"radius", s.radius}, {"height", s.height}};
   }
-  Json operator()(const core::ConvexHull& s) const { return mesh_to_json(s.points, hull_triangles(s.points)); }
+  Json operator()(const core::ConvexHull& s) const { return mesh_to_json(s.points, physics::hull_triangles(s.points)); }
   Json operator()(const core::TriangleMesh& s) const { return mesh_to_json(s.points, s.triangles); }
   Json operator()(const core::Plane& s) const {
     return {{"kind", "plane"}, {"normal", to_json(s.normal)}, {"offset", s.offset}};

@@ -43,8 +43,8 @@ bool WebAccess::is_meant(std::string_view host, std::string_view local_address) 
 std::variant<Standing, Refusal> WebAccess::standing_of(const std::string& address, const Credentials& credentials,
                                                        Clock::time_point now) {
   if (!credentials.authorization.empty()) {
-    RateLimit& guesses = guesses_of(address, now);
-    if (guesses.is_spent(now)) return Refusal{429, "too many wrong tokens: try again in a minute"};
+    core::TokenBucket& guesses = guesses_of(address, now);
+    if (guesses.is_spent(now.time_since_epoch())) return Refusal{429, "too many wrong tokens: try again in a minute"};
     const std::string_view token = bearer_token(credentials.authorization);
     const bool is_operators = !token_.empty() && equal_in_constant_time(token, token_);
     const bool is_viewers = !view_token_.empty() && equal_in_constant_time(token, view_token_);
@@ -52,8 +52,9 @@ std::variant<Standing, Refusal> WebAccess::standing_of(const std::string& addres
     if (is_viewers) return Standing::kViewer;
     if (!is_open()) {
       ++wrong_tokens_;
-      guesses.take(now);
-      if (guesses.is_spent(now)) spdlog::warn("the viewer has got {} wrong tokens from {}", kGuesses, address);
+      guesses.charge(now.time_since_epoch());
+      if (guesses.is_spent(now.time_since_epoch()))
+        spdlog::warn("the viewer has got {} wrong tokens from {}", kGuesses, address);
       return Refusal{401, "the token is missing or wrong"};
     }
   }
@@ -71,12 +72,12 @@ std::string WebAccess::cookie(Standing standing) const {
 }
 
 /// Those who have not guessed for long are forgotten; where there are too many, any other is.
-RateLimit& WebAccess::guesses_of(const std::string& address, Clock::time_point now) {
+core::TokenBucket& WebAccess::guesses_of(const std::string& address, Clock::time_point now) {
   if (guesses_.size() >= kMostGuessers && !guesses_.contains(address)) {
-    std::erase_if(guesses_, [now](const auto& entry) { return entry.second.is_unused(now); });
+    std::erase_if(guesses_, [now](const auto& entry) { return entry.second.is_full(now.time_since_epoch()); });
     if (guesses_.size() >= kMostGuessers) guesses_.erase(guesses_.begin());
   }
-  return guesses_.try_emplace(address, kGuesses, kGuesses_per_s).first->second;
+  return guesses_.try_emplace(address, kGuesses_per_s, kGuesses).first->second;
 }
 
 }  // namespace aurasim::overseer

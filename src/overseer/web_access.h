@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "overseer/rate_limit.h"
+#include "core/token_bucket.h"
 #include "overseer/web_settings.h"
 
 namespace aurasim::overseer {
@@ -59,14 +59,14 @@ class WebAccess {
  private:
   bool is_open() const { return token_.empty() && view_token_.empty(); }
   bool is_meant(std::string_view host, std::string_view local_address) const;
-  RateLimit& guesses_of(const std::string& address, Clock::time_point now);
+  core::TokenBucket& guesses_of(const std::string& address, Clock::time_point now);
 
   bool has_tls_;
   std::vector<std::string> names_;
   std::string token_, view_token_;
   std::string cookie_name_;
   std::string session_, view_session_;  ///< what the cookies hold
-  std::map<std::string, RateLimit> guesses_;
+  std::map<std::string, core::TokenBucket> guesses_;
   std::atomic<std::uint64_t> wrong_tokens_ = 0;
 };
 

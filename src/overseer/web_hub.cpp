@@ -103,11 +103,8 @@ void WebHub::take_command(PageConnection& page, CommandMessage& message) {
 }
 
 bool WebHub::may_cast_a_ray(PageConnection& page) {
-  const auto now = RateLimit::Clock::now();
-  if (page.rays.is_spent(now) || rays_.is_spent(now)) return false;
-  page.rays.take(now);
-  rays_.take(now);
-  return true;
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return !page.rays.is_spent(now) && rays_.take(1, now) && page.rays.take(1, now);
 }
 
 bool WebHub::enqueue(PageRequest request) {

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/token_bucket.h"
 #include "overseer/client_outbox.h"
 #include "overseer/page_files.h"
-#include "overseer/rate_limit.h"
 #include "overseer/shape_store.h"
 #include "overseer/web_access.h"
 #include "overseer/web_callers.h"
@@ -37,7 +37,7 @@ class PageConnection {
   ClientId id{};
   Standing standing = Standing::kStranger;
   ClientOutbox outbox;
-  RateLimit rays{20, 10};
+  core::TokenBucket rays{10, 20};
   Show show;
   std::optional<core::BodyId> watched;
 };
@@ -148,7 +148,7 @@ class WebHub {
   WebAccess access_;
   PageFiles files_;
   WebCallers callers_{kMostCallers, kMostCallersOfOne};
-  RateLimit rays_{100, 50};  ///< of all pages: nodes answer them
+  core::TokenBucket rays_{50, 100};  ///< of all pages: nodes answer them
   SlotTable table_;
   std::array<SharedText, kNotices> notices_;
   std::string metrics_;

@@ -12,7 +12,7 @@ bool before(const HostedBody& a, const HostedBody& b) { return a.id < b.id; }
 
 }  // namespace
 
-core::BodyRecord HostedBody::record(const LocalFrame& frame) const {
+core::BodyRecord HostedBody::record() const {
   core::BodyRecord record;
   record.id = id;
   record.epoch = epoch;
@@ -20,21 +20,21 @@ core::BodyRecord HostedBody::record(const LocalFrame& frame) const {
   record.birth = birth;
   record.activation_state = rigid->getActivationState();
   record.deactivation_time = rigid->getDeactivationTime();
-  record.p_WB = frame.to_world(rigid->getWorldTransform().getOrigin());
+  record.p_WB = from_bullet(rigid->getWorldTransform().getOrigin());
   record.R_WB = from_bullet(rigid->getWorldTransform().getBasis());
   record.v_WB = from_bullet(rigid->getLinearVelocity());
   record.w_WB = from_bullet(rigid->getAngularVelocity());
   return record;
 }
 
-core::BodyState HostedBody::state(const LocalFrame& frame) const {
+core::BodyState HostedBody::state() const {
   core::BodyState state;
   state.id = id;
   state.epoch = epoch;
   state.prototype = prototype;
   state.awake = rigid->isActive();
   state.birth = birth;
-  state.pose.p_WB = frame.to_world(rigid->getWorldTransform().getOrigin());
+  state.pose.p_WB = from_bullet(rigid->getWorldTransform().getOrigin());
   state.pose.q_WB = core::Quat(from_bullet(rigid->getWorldTransform().getBasis()));
   state.v_WB = from_bullet(rigid->getLinearVelocity());
   state.w_WB = from_bullet(rigid->getAngularVelocity());

@@ -11,8 +11,6 @@
 
 namespace aurasim::physics {
 
-class LocalFrame;
-
 struct HostedBody {
   core::BodyId id{};
   core::Epoch epoch = 0;
@@ -21,8 +19,8 @@ struct HostedBody {
   bool born = false;                   ///< is in Bullet's world
   std::unique_ptr<btRigidBody> rigid;  ///< its user index is the place in the table
 
-  core::BodyRecord record(const LocalFrame& frame) const;
-  core::BodyState state(const LocalFrame& frame) const;
+  core::BodyRecord record() const;
+  core::BodyState state() const;
 };
 
 /// Statics have negative user indices.

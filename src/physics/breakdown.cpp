@@ -24,8 +24,8 @@ std::string text_of(const core::Vec3& v) {
 }  // namespace
 
 /// Written so that NaN is out of bounds.
-bool has_broken_down(const btRigidBody& body, const LocalFrame& frame) {
-  const core::Vec3 p_WB = frame.to_world(body.getWorldTransform().getOrigin());
+bool has_broken_down(const btRigidBody& body) {
+  const core::Vec3 p_WB = from_bullet(body.getWorldTransform().getOrigin());
   const bool is_sound = p_WB.cwiseAbs().sum() <= kFarthestBody_m &&
                         body.getLinearVelocity().length2() <= btScalar(kFastestBody_m_s * kFastestBody_m_s) &&
                         body.getAngularVelocity().length2() <= btScalar(kFastestSpin_rad_s * kFastestSpin_rad_s) &&
@@ -33,8 +33,8 @@ bool has_broken_down(const btRigidBody& body, const LocalFrame& frame) {
   return !is_sound;
 }
 
-std::string fault_of(const btRigidBody& body, const LocalFrame& frame) {
-  const core::Vec3 p_WB = frame.to_world(body.getWorldTransform().getOrigin());
+std::string fault_of(const btRigidBody& body) {
+  const core::Vec3 p_WB = from_bullet(body.getWorldTransform().getOrigin());
   const core::Vec3 v_WB = from_bullet(body.getLinearVelocity());
   const core::Vec3 w_WB = from_bullet(body.getAngularVelocity());
   const bool is_finite = p_WB.allFinite() && v_WB.allFinite() && w_WB.allFinite() &&

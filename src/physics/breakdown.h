@@ -7,12 +7,10 @@ class btRigidBody;
 
 namespace aurasim::physics {
 
-class LocalFrame;
-
 /// Cheap: asked of every body in every state.
-bool has_broken_down(const btRigidBody& body, const LocalFrame& frame);
+bool has_broken_down(const btRigidBody& body);
 
 /// What is wrong with a body that has broken down, and its state.
-std::string fault_of(const btRigidBody& body, const LocalFrame& frame);
+std::string fault_of(const btRigidBody& body);
 
 }  // namespace aurasim::physics

@@ -1,5 +1,4 @@
-// Between Eigen, which the rest of the program speaks, and Bullet. In the single precision build numbers are rounded
-// on the way in; the way out is exact.
+// Between Eigen, which the rest of the program uses, and Bullet. Both compute in double: nothing is rounded.
 #pragma once
 
 #include <LinearMath/btTransform.h>
@@ -24,22 +23,6 @@ inline btTransform to_bullet(const core::Pose& pose) {
 }
 
 inline core::Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// Between the world frame and Bullet's, whose axes are parallel and whose origin is elsewhere (Settings::p_WO).
-class LocalFrame {
- public:
-  explicit LocalFrame(const core::Vec3& p_WO) : p_WO_(p_WO), p_OW_(core::Vec3::Zero() - p_WO) {}
-
-  btVector3 to_local(const core::Vec3& p_W) const { return to_bullet(core::Vec3(p_W - p_WO_)); }
-  btTransform to_local(const core::Pose& X_W) const {
-    return to_bullet(core::Pose{core::Vec3(X_W.p_WB - p_WO_), X_W.q_WB});
-  }
-  core::Vec3 to_world(const btVector3& p_O) const { return from_bullet(p_O) - p_OW_; }
-
- private:
-  core::Vec3 p_WO_;
-  core::Vec3 p_OW_;  ///< subtracted, and never -0: so -0 stays -0 where the origins are the same
-};
 
 inline core::Mat3 from_bullet(const btMatrix3x3& m) {
   core::Mat3 result;

@@ -16,8 +16,6 @@
 namespace aurasim::physics {
 namespace {
 
-constexpr int kPositionOnB = 6;
-constexpr int kPositionOnA = 9;
 constexpr int kIndexInA = 39;
 constexpr int kIndexInB = 40;
 
@@ -73,20 +71,16 @@ void append(btCollisionAlgorithm* algorithm, const btCollisionObject& object0, P
 
 }  // namespace
 
-void write_point(const btManifoldPoint& point, const LocalFrame& frame, double* row) {
+void write_point(const btManifoldPoint& point, double* row) {
   double* column = row;
   for_each_field(point, [&column](auto value) { *column++ = static_cast<double>(value); });
   assert(column == row + core::kContactPointDoubles);
-  Eigen::Map<core::Vec3>(row + kPositionOnB) = frame.to_world(point.m_positionWorldOnB);
-  Eigen::Map<core::Vec3>(row + kPositionOnA) = frame.to_world(point.m_positionWorldOnA);
 }
 
-btManifoldPoint read_point(const double* row, const LocalFrame& frame) {
+btManifoldPoint read_point(const double* row) {
   btManifoldPoint point(btVector3(0, 0, 0), btVector3(0, 0, 0), btVector3(0, 0, 0), 0);
   const double* column = row;
   for_each_field(point, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*column++); });
-  point.m_positionWorldOnB = frame.to_local(Eigen::Map<const core::Vec3>(row + kPositionOnB));
-  point.m_positionWorldOnA = frame.to_local(Eigen::Map<const core::Vec3>(row + kPositionOnA));
   return point;
 }
 
@@ -101,7 +95,7 @@ Parts parts_of(const double* row, bool compound0, bool compound1) {
   return {compound0 ? static_cast<int>(row[kIndexInA]) : -1, compound1 ? static_cast<int>(row[kIndexInB]) : -1};
 }
 
-void append_manifolds(std::vector<KeyedManifold> manifolds, const LocalFrame& frame, core::ClusterState& cluster) {
+void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster) {
   std::sort(manifolds.begin(), manifolds.end(), [](const KeyedManifold& a, const KeyedManifold& b) {
     if (std::tie(a.object0, a.object1) != std::tie(b.object0, b.object1)) {
       return std::tie(a.object0, a.object1) < std::tie(b.object0, b.object1);
@@ -119,7 +113,7 @@ void append_manifolds(std::vector<KeyedManifold> manifolds, const LocalFrame& fr
         {object0, object1, static_cast<std::uint32_t>(first_point), static_cast<std::uint32_t>(point_count)});
     cluster.points.resize((first_point + point_count) * core::kContactPointDoubles);
     for (std::size_t i = 0; i < point_count; ++i) {
-      write_point(manifold->getContactPoint(static_cast<int>(i)), frame,
+      write_point(manifold->getContactPoint(static_cast<int>(i)),
                   &cluster.points[(first_point + i) * core::kContactPointDoubles]);
     }
   }

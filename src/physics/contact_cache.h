@@ -30,15 +30,13 @@ struct btBroadphasePair;
 
 namespace aurasim::physics {
 
-class LocalFrame;
-
 /// Columns of a row.
 inline constexpr std::size_t kLocalPointA = 0;
 inline constexpr std::size_t kLocalPointB = 3;
 
 /// `row` has core::kContactPointDoubles numbers.
-void write_point(const btManifoldPoint& point, const LocalFrame& frame, double* row);
-btManifoldPoint read_point(const double* row, const LocalFrame& frame);
+void write_point(const btManifoldPoint& point, double* row);
+btManifoldPoint read_point(const double* row);
 
 /// Which children of two compounds a manifold is about; -1 where a body is no compound.
 struct Parts {
@@ -70,6 +68,6 @@ struct KeyedManifold {
 };
 
 /// Puts the manifolds into the cluster, in the order of objects and parts.
-void append_manifolds(std::vector<KeyedManifold> manifolds, const LocalFrame& frame, core::ClusterState& cluster);
+void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster);
 
 }  // namespace aurasim::physics

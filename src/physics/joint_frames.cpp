@@ -18,9 +18,9 @@ const core::InitialBody& body_of(const core::JointSpec& joint, core::BodyId id, 
 
 }  // namespace
 
-core::JointFrame frames_of(const core::JointSpec& joint, const core::Scene& scene, const Vec3& p_WO) {
+core::JointFrame frames_of(const core::JointSpec& joint, const core::Scene& scene) {
   if (joint.b == joint.a) throw std::invalid_argument("joint \"" + joint.name + "\" binds a body to itself");
-  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{p_WO, Quat::Identity()};
+  const Pose X_WB = joint.b ? body_of(joint, *joint.b, scene).pose : Pose{Vec3::Zero(), Quat::Identity()};
   return core::frame_of(joint, body_of(joint, joint.a, scene).pose, X_WB);
 }
 

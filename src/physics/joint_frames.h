@@ -9,8 +9,8 @@ namespace aurasim::physics {
 /// The impulses of motors and those that break joints are those of so long a time.
 inline constexpr double kImpulseTime_s = 1.0 / 240;
 
-/// Without b, in Bullet's frame. `p_WO`: where Bullet's coordinates begin. Throws std::invalid_argument if the scene
-/// has no such bodies, or one body twice.
-core::JointFrame frames_of(const core::JointSpec& joint, const core::Scene& scene, const core::Vec3& p_WO);
+/// Where the joint is in a's frame and in b's; without b, in the world's frame. Throws std::invalid_argument if the
+/// scene does not have the joint's bodies, or if both are one body.
+core::JointFrame frames_of(const core::JointSpec& joint, const core::Scene& scene);
 
 }  // namespace aurasim::physics

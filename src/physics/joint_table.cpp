@@ -69,7 +69,7 @@ JointTable::JointTable(const core::Scene& scene, const Settings& settings)
   entries_.resize(scene.joints.size());
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const core::JointSpec& joint = scene.joints[i];
-    entries_[i].axes = axes_of(joint, frames_of(joint, scene, settings.p_WO), substep_s_);
+    entries_[i].axes = axes_of(joint, frames_of(joint, scene), substep_s_);
     joints_of_[joint.a].push_back(core::JointId{i});
     if (joint.b) joints_of_[*joint.b].push_back(core::JointId{i});
   }

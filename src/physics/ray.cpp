@@ -6,14 +6,14 @@
 namespace aurasim::physics {
 
 RayHit Simulation::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {
-  const btVector3 from = frame_.to_local(from_W);
-  const btVector3 to = frame_.to_local(to_W);
+  const btVector3 from = to_bullet(from_W);
+  const btVector3 to = to_bullet(to_W);
   btCollisionWorld::ClosestRayResultCallback nearest(from, to);
   world_.cast(from, to, nearest);
   RayHit hit;
   if (!nearest.hasHit()) return hit;
   hit.object = ref_of(*nearest.m_collisionObject);
-  hit.p_W = frame_.to_world(nearest.m_hitPointWorld);
+  hit.p_W = from_bullet(nearest.m_hitPointWorld);
   hit.normal_W = from_bullet(nearest.m_hitNormalWorld);
   hit.distance_m = (hit.p_W - from_W).norm();
   return hit;

@@ -35,8 +35,6 @@ RegionWorld::~RegionWorld() = default;
 RegionWorld::RegionWorld(RegionWorld&&) noexcept = default;
 RegionWorld& RegionWorld::operator=(RegionWorld&&) noexcept = default;
 
-const char* RegionWorld::precision() { return sizeof(btScalar) == sizeof(double) ? "double" : "single"; }
-
 core::Step RegionWorld::step_number() const { return impl_->simulation.step_number(); }
 
 void RegionWorld::add(std::span<const core::BodyRecord> bodies) { impl_->simulation.add(bodies); }

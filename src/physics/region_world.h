@@ -31,9 +31,6 @@ class RegionWorld {
   RegionWorld(RegionWorld&&) noexcept;
   RegionWorld& operator=(RegionWorld&&) noexcept;
 
-  /// "single" or "double".
-  static const char* precision();
-
   /// The state that the bodies are in; 0 at first.
   core::Step step_number() const;
 

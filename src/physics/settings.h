@@ -32,11 +32,6 @@ struct Settings {
   /// Continuous collision detection: a body that moves farther in a substep than it is thick stops at what is in its
   /// way. It loses the rest of the substep, not its speed.
   bool continuous = false;
-  /// Where Bullet's coordinates begin, in the world frame. Positions outside this library are world coordinates all the
-  /// same. With coordinates that are multiples of a power of two the conversion is exact both ways as long as world
-  /// coordinates of a body need no more than the 53 bits of a double: in single precision, 100 km out, for local
-  /// coordinates above 0.2 mm. Worlds with different origins do not give equal bits.
-  core::Vec3 p_WO = core::Vec3::Zero();
   /// So far ahead others act upon what they are told of a body: for that long a force may take it off its path.
   double foresight_s = 0.2;
   /// An impulse or a velocity of a client that would make a body faster is not obeyed.

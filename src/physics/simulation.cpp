@@ -48,7 +48,6 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
                        const Timeline& timeline)
     : scene_(&scene),
       settings_(settings),
-      frame_(settings.p_WO),
       shapes_(std::move(shapes)),
       timeline_(timeline),
       joints_(scene, settings),
@@ -83,7 +82,7 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
                               scene_->materials.at(prototype.material));
-  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), frame_.to_local(record.p_WB));
+  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB));
 
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
   body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
@@ -147,11 +146,6 @@ core::ObjectRef Simulation::ref_of(const btCollisionObject& object) const {
   return core::ref_of(table_[static_cast<std::size_t>(index)].id);
 }
 
-/// How far a static's frame is from where the scene says, in its own axes: never a body's.
-btVector3 Simulation::slid(core::ObjectRef ref) const {
-  return ref < 0 ? to_bullet(slid_[static_cast<std::size_t>(-1 - ref)]) : btVector3(0, 0, 0);
-}
-
 /// Two compounds may have manifolds in both orders, so records are grouped by pair first.
 void Simulation::restore_contacts(const core::ClusterState& cluster) {
   std::vector<std::uint32_t> order(cluster.manifolds.size());
@@ -186,10 +180,7 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
     });
     if (made == of_pair_.end()) continue;
     for (std::uint32_t i = 0; i < record.point_count; ++i, row += core::kContactPointDoubles) {
-      btManifoldPoint point = read_point(row, frame_);
-      point.m_localPointA -= slid(record.object0);
-      point.m_localPointB -= slid(record.object1);
-      made->manifold->addManifoldPoint(point);
+      made->manifold->addManifoldPoint(read_point(row));
     }
     world_.first_contacts().know(*made->manifold);
   }
@@ -230,7 +221,7 @@ void Simulation::collect_collisions() {
     if (!std::isfinite(found.penetration_m + found.relative_speed_m_s)) continue;  // of what is breaking down
     const auto [a, b] = std::minmax(found.body0, found.body1);
     collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
-                           found.penetration_m, found.relative_speed_m_s, frame_.to_world(found.p_O)});
+                           found.penetration_m, found.relative_speed_m_s, from_bullet(found.p_O)});
   }
   const auto pair_of = [](const Collision& c) { return std::tie(c.a, c.b); };
   std::stable_sort(collisions_.begin(), collisions_.end(),
@@ -255,7 +246,7 @@ const core::Snapshot& Simulation::snapshot() {
     const bool something_comes = !coming_statics.empty() || !timeline_.coming(step_).empty();
     const std::vector<double> pushes = coming_pushes();
     for (const HostedBody& body : table_.bodies()) {
-      core::BodyState& state = snapshot_.bodies.emplace_back(body.state(frame_));
+      core::BodyState& state = snapshot_.bodies.emplace_back(body.state());
       if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
       if (!pushes.empty()) state.coming_kick_m_s += pushes[snapshot_.bodies.size() - 1];
       state.coming_kick_m_s += coming_shove(body, shoves);
@@ -298,7 +289,7 @@ std::span<const core::BodyRecord> Simulation::records() {
   if (!records_are_fresh_) {
     records_.clear();
     for (const HostedBody& body : table_.bodies()) {
-      if (body.born) records_.push_back(body.record(frame_));
+      if (body.born) records_.push_back(body.record());
     }
     records_are_fresh_ = true;
   }

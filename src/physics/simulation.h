@@ -103,8 +103,6 @@ class Simulation {
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
   core::ObjectRef ref_of(const btCollisionObject& object) const;
-  btVector3 slid(core::ObjectRef ref) const;
-  void put_back_slid(core::ClusterState& cluster) const;
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   std::vector<std::uint32_t> membership(std::span<const std::span<const core::BodyId>> clusters) const;
@@ -116,7 +114,6 @@ class Simulation {
 
   const core::Scene* scene_;
   Settings settings_;
-  LocalFrame frame_;
   std::shared_ptr<const ShapeSet> shapes_;
   const Timeline& timeline_;
   std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
@@ -127,7 +124,6 @@ class Simulation {
     bool goes = false;  ///< or has gone: else it has a belt alone
   };
   std::vector<MovingStatic> moving_statics_;  ///< ascending index
-  std::vector<core::Vec3> slid_;              ///< as Scene::statics; not zero for planes far out only
   BodyTable table_;
   JointTable joints_;
   DynamicsWorld world_;

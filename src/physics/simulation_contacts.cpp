@@ -13,7 +13,7 @@ void Simulation::collect_contact_impulses() {
     const auto ref = [this](int index) -> core::ObjectRef {
       return is_static(index) ? index : core::ref_of(table_[static_cast<std::size_t>(index)].id);
     };
-    core::ContactImpulse contact{ref(objects.first), ref(objects.second), frame_.to_world(sum.p / scalar(sum.impulse)),
+    core::ContactImpulse contact{ref(objects.first), ref(objects.second), from_bullet(sum.p / scalar(sum.impulse)),
                                  from_bullet(sum.normal).stableNormalized(), sum.impulse};
     if (contact.b >= 0) {  // bodies have places in the order of their ids, and the higher place is first
       std::swap(contact.a, contact.b);

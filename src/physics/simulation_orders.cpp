@@ -15,9 +15,9 @@
 namespace aurasim::physics {
 namespace {
 
-btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body, const LocalFrame& frame) {
+btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body) {
   if (!impulse.p_W) return {0, 0, 0};
-  return frame.to_local(*impulse.p_W) - body.getCenterOfMassPosition();
+  return to_bullet(*impulse.p_W) - body.getCenterOfMassPosition();
 }
 
 /// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
@@ -37,12 +37,12 @@ Motion motion_of(const btRigidBody& body) {
   return {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())};
 }
 
-Motion motion_after(const core::Action& action, const btRigidBody& body, const LocalFrame& frame) {
+Motion motion_after(const core::Action& action, const btRigidBody& body) {
   Motion motion = motion_of(body);
   if (const auto* impulse = std::get_if<core::Impulse>(&action)) {
     const btVector3 J = to_bullet(impulse->J_W);
     motion.v_WB += from_bullet(J * body.getInvMass());
-    motion.w_WB += from_bullet(body.getInvInertiaTensorWorld() * arm_of(*impulse, body, frame).cross(J));
+    motion.w_WB += from_bullet(body.getInvInertiaTensorWorld() * arm_of(*impulse, body).cross(J));
   } else if (const auto* velocity = std::get_if<core::SetVelocity>(&action)) {
     motion.v_WB = velocity->v_WB;
     motion.w_WB = velocity->w_WB.value_or(motion.w_WB);
@@ -82,7 +82,7 @@ void Simulation::apply_orders(core::Step n) {
     if (std::holds_alternative<core::RemoveBody>(order.action)) {
       take_out({step_ + 1, body->id, {}});
     } else if (body->born) {
-      const Motion after = motion_after(order.action, *body->rigid, frame_);
+      const Motion after = motion_after(order.action, *body->rigid);
       if (std::string why = problem_with(after, motion_of(*body->rigid), settings_); !why.empty()) {
         declined_.push_back({order.request, std::move(why)});
         continue;
@@ -96,7 +96,7 @@ void Simulation::apply_orders(core::Step n) {
 void Simulation::kick(btRigidBody& body, const core::Order& order) {
   awaken(body);
   if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
-    body.applyImpulse(to_bullet(impulse->J_W), arm_of(*impulse, body, frame_));
+    body.applyImpulse(to_bullet(impulse->J_W), arm_of(*impulse, body));
   } else if (const auto* velocity = std::get_if<core::SetVelocity>(&order.action)) {
     body.setLinearVelocity(to_bullet(velocity->v_WB));
     if (velocity->w_WB) body.setAngularVelocity(to_bullet(*velocity->w_WB));
@@ -108,8 +108,8 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
 void Simulation::take_out_what_broke() {
   std::vector<Removal> broken;
   for (const HostedBody& body : table_.bodies()) {
-    if (body.born && has_broken_down(*body.rigid, frame_)) {
-      broken.push_back({step_, body.id, fault_of(*body.rigid, frame_)});
+    if (body.born && has_broken_down(*body.rigid)) {
+      broken.push_back({step_, body.id, fault_of(*body.rigid)});
     }
   }
   for (const Removal& removal : broken) take_out(removal);
@@ -144,7 +144,7 @@ double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint
     const btRigidBody& rigid = *body.rigid;
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);
-      const btVector3 spin = rigid.getInvInertiaTensorWorld() * arm_of(*impulse, rigid, frame_).cross(J);
+      const btVector3 spin = rigid.getInvInertiaTensorWorld() * arm_of(*impulse, rigid).cross(J);
       // More than that is not obeyed, unless the body is too fast already.
       kick += std::min(static_cast<double>(J.length() * rigid.getInvMass()), 2 * settings_.top_speed_m_s) +
               radius * std::min(static_cast<double>(spin.length()), 2 * fastest_spin(settings_));

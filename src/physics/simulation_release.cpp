@@ -18,20 +18,6 @@ constexpr std::uint32_t kStays = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-/// Points on statics are in the statics' frames, and those differ between worlds with different origins.
-void Simulation::put_back_slid(core::ClusterState& cluster) const {
-  const auto put_back = [&](core::ObjectRef ref, double* local) {
-    if (ref < 0) Eigen::Map<core::Vec3>(local) += slid_[static_cast<std::size_t>(-1 - ref)];
-  };
-  for (const core::ManifoldRecord& manifold : cluster.manifolds) {
-    for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
-      double* const row = &cluster.points[(manifold.first_point + i) * core::kContactPointDoubles];
-      put_back(manifold.object0, row + kLocalPointA);
-      put_back(manifold.object1, row + kLocalPointB);
-    }
-  }
-}
-
 /// For each place in the table the cluster that its body is in, or kStays.
 std::vector<std::uint32_t> Simulation::membership(std::span<const std::span<const core::BodyId>> clusters) const {
   std::vector<std::uint32_t> cluster_at(table_.size(), kStays);
@@ -54,7 +40,7 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
   Copies copies;
   copies.clusters.resize(count);
   for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (cluster_at[i] != kStays) copies.clusters[cluster_at[i]].bodies.push_back(table_[i].record(frame_));
+    if (cluster_at[i] != kStays) copies.clusters[cluster_at[i]].bodies.push_back(table_[i].record());
   }
   std::vector<std::vector<KeyedManifold>> manifolds(count);
   for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
@@ -73,8 +59,7 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
   for (std::size_t i = 0; i < count; ++i) {
     core::ClusterState& cluster = copies.clusters[i];
     core::Progress::mark();
-    append_manifolds(std::move(manifolds[i]), frame_, cluster);
-    if (!settings_.p_WO.isZero()) put_back_slid(cluster);
+    append_manifolds(std::move(manifolds[i]), cluster);
     copies.across += joints_.append_to(cluster);
   }
   return copies;

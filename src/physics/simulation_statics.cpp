@@ -12,14 +12,6 @@
 namespace aurasim::physics {
 namespace {
 
-/// Where a static is put. A plane may slide along itself: far out, its origin would cost digits for nothing.
-core::Pose placed(const core::StaticBody& body, const core::Shape& shape, const core::Vec3& p_WO) {
-  const auto* const plane = std::get_if<core::Plane>(&shape);
-  if (plane == nullptr || p_WO.isZero()) return body.pose;
-  const core::Vec3 normal_W = body.pose.q_WB.normalized() * plane->normal.normalized();
-  return {core::Vec3(p_WO + normal_W * normal_W.dot(body.pose.p_WB - p_WO)), body.pose.q_WB};
-}
-
 /// So much faster than what pushes it a body that bounces gets at most.
 constexpr double kBounced = 2;
 
@@ -29,10 +21,8 @@ constexpr double kBounced = 2;
 void Simulation::make_statics() {
   for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
     const core::StaticBody& body = scene_->statics[i];
-    const core::Pose X_WS = placed(body, scene_->shapes.at(body.shape).shape, settings_.p_WO);
-    slid_.push_back(body.pose.q_WB.normalized().conjugate() * (X_WS.p_WB - body.pose.p_WB));
     auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
-    info.m_startWorldTransform = frame_.to_local(X_WS);
+    info.m_startWorldTransform = to_bullet(body.pose);
     statics_.push_back(std::make_unique<btRigidBody>(info));
     statics_.back()->setUserIndex(-1 - static_cast<int>(i));
     use_part_surfaces(*statics_.back());
@@ -101,7 +91,7 @@ void Simulation::place_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
     if (!moving.goes) continue;
-    const btTransform pose = frame_.to_local(pose_of_static(moving.index, step_));
+    const btTransform pose = to_bullet(pose_of_static(moving.index, step_));
     statics_[moving.index]->setWorldTransform(pose);
     if (static_is_in_[moving.index]) world_.bound(*statics_[moving.index], pose);
   }
@@ -117,7 +107,7 @@ void Simulation::start_moving_statics() {
     btRigidBody& rigid = *statics_[moving.index];
     const core::Pose X_WS = pose_of_static(moving.index, step_ + 1);
     const core::Twist twist = core::twist_between(pose_of_static(moving.index, step_), X_WS, settings_.step_s);
-    const btTransform after = frame_.to_local(X_WS);
+    const btTransform after = to_bullet(X_WS);
     rigid.setLinearVelocity(to_bullet(twist.v_W));
     rigid.setAngularVelocity(to_bullet(twist.w_W));
     moving.belt->v_W = rigid.getWorldTransform().getBasis() * to_bullet(body.belt_S);
@@ -141,7 +131,7 @@ std::vector<Simulation::Shove> Simulation::coming_shoves() const {
     core::Pose before = pose_of_static(moving.index, step_);
     for (core::Step n = step_ + 1; n <= last; ++n) {
       const core::Pose after = pose_of_static(moving.index, n);
-      shove.where.add(bounds_of(shape, frame_.to_local(after)));
+      shove.where.add(bounds_of(shape, to_bullet(after)));
       const core::Twist twist = core::twist_between(before, after, settings_.step_s);
       const double arm = twist.w_W.isZero() ? 0 : core::bounding_radius(scene_->shapes[body.shape].shape);
       shove.speed_m_s = std::max(shove.speed_m_s, twist.v_W.norm() + twist.w_W.norm() * arm);

@@ -18,7 +18,6 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.tolerances.frame_s, 0.015);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kSwept);
   EXPECT_EQ(launch.aura.uncertainty, 0.5);
-  EXPECT_EQ(launch.physics.precision, "double");
   EXPECT_EQ(launch.physics.solver, "soft_step");
   EXPECT_EQ(launch.physics.iterations, 10);
   EXPECT_EQ(launch.dds.domain, 0);
@@ -119,7 +118,7 @@ regions: {layout: grid, rows: 1, columns: 3, cell: [50, 60], neighbour_distance:
 time: {step_hz: 120, substeps: 2, sync: deterministic, lookahead: 3, pace: none}
 tolerances: {speed: 20, latency: 0.001, frame: 0.005}
 aura: {radius: tight, uncertainty: 1}
-physics: {precision: single, solver: dantzig, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
+physics: {solver: dantzig, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
 dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"],
       security: keys}
 observe: {tick_hz: 30}
@@ -134,7 +133,6 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.tolerances.speed_m_s, 20);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kTight);
   EXPECT_EQ(launch.aura.uncertainty, 1);
-  EXPECT_EQ(launch.physics.precision, "single");
   EXPECT_EQ(launch.physics.solver, "dantzig");
   EXPECT_EQ(launch.physics.iterations, 30);
   EXPECT_EQ(launch.physics.friction_directions, 2);

@@ -156,12 +156,6 @@ TEST_F(Scenes, ABadNetworkChangesNothing) {
   EXPECT_FALSE(outcome.first_difference);
 }
 
-TEST_F(Scenes, AWorldThatSaysAnotherPrecisionIsRefused) {
-  World world = random_world(1);
-  world.launch["physics"]["precision"] = "single";
-  EXPECT_THROW(outcome_of(world, rules(10)), std::runtime_error);
-}
-
 /// A check that can fail: with no auras bodies meet on two nodes.
 TEST_F(Scenes, WithoutAurasAWorldDiffersAndShrinksToOneThatStillDoes) {
   TrialRules blind = rules(100);

@@ -3,7 +3,7 @@
 
 #include "import/imported.h"
 #include "import/sdf_writer.h"
-#include "overseer/convex_hull.h"
+#include "physics/hull_triangles.h"
 
 namespace aurasim::importing {
 namespace {
@@ -15,7 +15,7 @@ class ThereAndBack : public ::testing::TestWithParam<std::string> {
     for (const Link& link : model_of(GetParam()).links) {
       if (!link.is_static) names.push_back(link.name);
     }
-    written_ = sdf_text(scene_, names, "world.sdf", overseer::hull_triangles);
+    written_ = sdf_text(scene_, names, "world.sdf", physics::hull_triangles);
     for (const auto& [file, obj] : written_.meshes) workspace_.write(file.string(), obj);
     back_ = scene_of(read_model(workspace_.write("world.sdf", written_.xml), {}));
   }
@@ -78,8 +78,7 @@ TEST(Export, WhatSdfCannotSayIsNamed) {
   gate.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
   gate.belt_S = {1, 0, 0};
   gate.path = {{{1, {}}}, false, true};
-  const SdfText text =
-      sdf_text(scene, std::vector<std::string>(scene.bodies.size()), "x.sdf", overseer::hull_triangles);
+  const SdfText text = sdf_text(scene, std::vector<std::string>(scene.bodies.size()), "x.sdf", physics::hull_triangles);
   std::vector<std::string> elements;
   for (const Finding& finding : text.lost) elements.push_back(finding.element);
   EXPECT_THAT(elements, ::testing::UnorderedElementsAre("joint 'hip_z'", "joint 'strut'", "joint 'puck_x'",

@@ -5,7 +5,7 @@
 #include "import/imported.h"
 #include "import/sdf_writer.h"
 #include "import/stand_ins.h"
-#include "overseer/convex_hull.h"
+#include "physics/hull_triangles.h"
 
 namespace aurasim::importing {
 namespace {
@@ -158,7 +158,7 @@ TEST(Scene, EachShapeOfABodyHasItsOwnSurface) {
   EXPECT_NEAR(scene.materials[parts[1].material.value()].friction, 1.2, 1e-12);
   EXPECT_FALSE(parts[2].material.has_value()) << "as the body's";
 
-  const SdfText written = sdf_text(scene, {"leg"}, "leg.sdf", overseer::hull_triangles);
+  const SdfText written = sdf_text(scene, {"leg"}, "leg.sdf", physics::hull_triangles);
   const Model back = read_model(workspace.write("leg.sdf", written.xml), {});
   std::vector<double> frictions;
   for (const Collision& collision : back.links.at(0).collisions) frictions.push_back(collision.surface.friction);

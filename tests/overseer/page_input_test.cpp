@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "overseer/convex_hull.h"
+#include "physics/hull_triangles.h"
 
 namespace aurasim::overseer {
 namespace {
@@ -143,31 +143,33 @@ TEST(ConvexHull, OfABoxHasTwelveTrianglesThatFaceOutwards) {
   std::vector<core::Vec3> points;
   for (int i = 0; i < 8; ++i) points.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
   points.emplace_back(0.5, 0.5, 0.5);
-  const auto triangles = hull_triangles(points);
+  const auto triangles = physics::hull_triangles(points);
   EXPECT_EQ(triangles.size(), 12U);
   double volume = 0;
   for (const auto& t : triangles) volume += points[t[0]].dot(points[t[1]].cross(points[t[2]])) / 6;
   EXPECT_NEAR(volume, 1, 1e-12);
 }
 
+/// Bullet rounds the points to a grid of 0.2 mm, for a sphere of 1 m, before it looks for the hull. A thin triangle leans
+/// by more than that.
 TEST(ConvexHull, OfManyPointsOnASphereHoldsThemAll) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   std::vector<core::Vec3> points;
   for (int i = 0; i < 200; ++i)
     points.push_back(core::Vec3(normal(random), normal(random), normal(random)).normalized());
-  const auto triangles = hull_triangles(points);
+  const auto triangles = physics::hull_triangles(points);
   EXPECT_EQ(triangles.size(), 2 * points.size() - 4) << "Euler";
   for (const auto& t : triangles) {
-    const core::Vec3 normal_of = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
-    for (const core::Vec3& p : points) EXPECT_LT(normal_of.dot(p - points[t[0]]), 1e-9);
+    const core::Vec3 normal_of = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).normalized();
+    for (const core::Vec3& p : points) EXPECT_LT(normal_of.dot(p - points[t[0]]), 1e-2);
   }
 }
 
 TEST(ConvexHull, OfPointsInAPlaneIsNone) {
-  EXPECT_TRUE(hull_triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}).empty());
-  EXPECT_TRUE(hull_triangles({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).empty());
-  EXPECT_TRUE(hull_triangles({}).empty());
+  EXPECT_TRUE(physics::hull_triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}).empty());
+  EXPECT_TRUE(physics::hull_triangles({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).empty());
+  EXPECT_TRUE(physics::hull_triangles({}).empty());
 }
 
 }  // namespace

@@ -95,12 +95,11 @@ done
 stage "used"
 said=$(offline aurasim --version)
 echo "$said"
-grep -qE "^aurasim [0-9.]+ \(commit [0-9a-f]{7,}(-dirty)?, Release, double precision" <<<"$said" || fail "--version"
-grep -q "single precision" <<<"$(offline aurasim-single --version)" || fail "aurasim-single --version"
+grep -qE "^aurasim [0-9.]+ \(commit [0-9a-f]{7,}(-dirty)?, Release, GCC" <<<"$said" || fail "--version"
 offline aurasim check demo
 offline man aurasim | grep "one world of rigid bodies" >/dev/null || fail "man aurasim"
 # shellcheck disable=SC2016
-[[ $(offline bash -c '. /usr/share/bash-completion/bash_completion; for p in aurasim aurasim-single; do __load_completion $p
+[[ $(offline bash -c '. /usr/share/bash-completion/bash_completion; for p in aurasim; do __load_completion $p
   COMP_WORDS=($p lau) COMP_CWORD=1; _aurasim; echo -n "${COMPREPLY[*]} "; done') == "launch launch " ]] || fail "completion"
 # As the units run it: not as root, in the folder that systemd would make.
 online install -d -o aurasim -g aurasim /var/lib/aurasim

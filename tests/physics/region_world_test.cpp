@@ -22,10 +22,6 @@ class World : public ::testing::Test {
   RegionWorld world{scene, Settings{}};
 };
 
-TEST_F(World, IsOfThePrecisionOfItsLibrary) {
-  EXPECT_STREQ(RegionWorld::precision(), sizeof(btScalar) == 8 ? "double" : "single");
-}
-
 TEST_F(World, HasNoBodiesAtFirst) {
   EXPECT_EQ(world.step_number(), 0);
   EXPECT_EQ(world.body_count(), 0u);

@@ -62,7 +62,7 @@ TEST(SoftStep, WhatTouchesNothingFallsOnAParabola) {
   world.add(std::vector{body(1, 0, p, v)});
   run(world, 120);
   const core::Vec3 expected = p + 2 * v + 0.5 * 2 * 2 * scene.gravity;
-  const double exact = RegionWorld::precision() == std::string("double") ? 1e-9 : 1e-3;
+  const double exact = 1e-9;
   EXPECT_LT((world.records()[0].p_WB - expected).norm(), exact);
   EXPECT_LT((world.records()[0].v_WB - (v + 2 * scene.gravity)).norm(), exact);
 }

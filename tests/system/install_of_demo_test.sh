@@ -13,7 +13,7 @@ fail() {
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # As the preset `demo`, of whose targets demo.sh builds only the program: here it is a copy of the one that is tested.
-cmake -S "$source" -B "$work/demo" -G Ninja -D CMAKE_BUILD_TYPE=Release -D AURASIM_TESTS=OFF -D AURASIM_SINGLE=ON \
+cmake -S "$source" -B "$work/demo" -G Ninja -D CMAKE_BUILD_TYPE=Release -D AURASIM_TESTS=OFF \
   -D CMAKE_UNITY_BUILD=ON >"$work/configured" 2>&1 || fail "$(cat "$work/configured")"
 cp "$build/aurasim" "$work/demo/aurasim"
 mkdir -p "$work/demo/src/cli/shown"
@@ -21,10 +21,10 @@ cp "$build"/src/cli/shown/* "$work/demo/src/cli/shown/"
 
 cmake --install "$work/demo" --prefix "$work/usr" >"$work/said" 2>&1 || fail "$(cat "$work/said")"
 [[ -x $work/usr/bin/aurasim ]] || fail "the program is not installed"
-for what in "the C++ client library" "the program in single precision"; do
+for what in "the C++ client library"; do
   grep -q "Left out: $what, which has not been built here" "$work/said" || fail "says nothing of $what: $(cat "$work/said")"
 done
-for absent in bin/aurasim-single bin/aurasim-import include/aurasim lib/cmake/aurasim lib/python3; do
+for absent in bin/aurasim-import include/aurasim lib/cmake/aurasim lib/python3; do
   [[ ! -e $work/usr/$absent ]] || fail "$absent is installed, without what it needs"
 done
 ! compgen -G "$work/usr/lib/libaurasim_client*" >/dev/null || fail "a library that is not built"

@@ -20,7 +20,7 @@ inside() {
   local said
   said=$(aurasim --version)
   echo "$said"
-  grep -q "precision, GCC" <<<"$said" || fail "that is no version"
+  grep -q ", GCC" <<<"$said" || fail "that is no version"
   aurasim check far_out >/dev/null
   aurasim launch two_spheres --headless --steps 60 --report report --set dds.domain="$domain"
   [[ -s report/summary.json ]] || fail "there is no report"

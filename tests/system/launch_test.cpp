@@ -118,21 +118,5 @@ TEST_F(Launch, DemoHandsBodiesOver) {
   }
 }
 
-TEST_F(Launch, SinglePrecisionRuns) {
-  Process& run = launch("run", launch_file("demo"), Words{"--duration", "4"} + set({"physics.precision=single"}));
-  const auto all_nodes_are_single = [&] {
-    const std::vector<pid_t> nodes = children_of(run.pid());
-    return nodes.size() == 4 && std::all_of(nodes.begin(), nodes.end(), [](pid_t node) {
-             const Words words = command_line_of(node);
-             return !words.empty() && words[0].ends_with("aurasim-single");
-           });
-  };
-  EXPECT_TRUE(wait_until(all_nodes_are_single, kGenerous));
-  expect_exit(run, 0);
-  expect_no_broken_promise_to_bodies(report_of("run"));
-  EXPECT_GT(report_of("run").count("migrations"), 20);
-  EXPECT_EQ(report_of("run").count("steps"), 240);
-}
-
 }  // namespace
 }  // namespace aurasim::system_test

@@ -260,7 +260,6 @@ TEST_F(SavedWorlds, OfAnotherWorldAreRefusedBeforeAnythingIsStarted) {
   };
   EXPECT_THAT(load_by("tower", {}), ::testing::HasSubstr("scene corner_stacks"));
   EXPECT_THAT(load_by("demo", {"physics.preset=fast"}), ::testing::HasSubstr("8 substeps"));
-  EXPECT_THAT(load_by("demo", {"physics.precision=single"}), ::testing::HasSubstr("double"));
   std::string bytes = read_text(file());
   bytes.resize(bytes.size() / 2);
   write("saves/world.cut", bytes);

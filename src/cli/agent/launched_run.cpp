@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/launch_setup.h"
+#include "cli/other_role.h"
 #include "cli/spawn.h"
 #include "client/last_words.h"
 
@@ -24,7 +24,7 @@ void nap() {
 }  // namespace
 
 LaunchedRun::LaunchedRun(const std::vector<std::string>& words) {
-  std::vector<std::string> all = {executable_for("double").string(), "launch"};
+  std::vector<std::string> all = {program_at("/proc/self/exe").string(), "launch"};
   all.insert(all.end(), words.begin(), words.end());
   pid_ = spawn(std::move(all));
 }

@@ -56,8 +56,7 @@ double way_m(const Dials& dials) { return 3 * dials.promised_m_s * dials.lookahe
 
 Json launch_of(const Dials& dials, const Json& regions, Chance& chance) {
   constexpr std::array kIterations = {4, 10, 10, 20};
-  Json physics = {{"precision", physics::RegionWorld::precision()},
-                  {"solver", dials.solver},
+  Json physics = {{"solver", dials.solver},
                   {"iterations", kIterations[chance.below(kIterations.size())]},
                   {"friction_directions", 1 + chance.below(2)}};
   if (chance.below(3) == 0) physics["erp"] = rounded(chance.between(0.05, 0.6));

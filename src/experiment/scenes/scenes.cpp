@@ -88,7 +88,6 @@ const char* network_of(const TrialRules& rules) {
 
 std::string shown_rules(const ScenesPlan& plan) {
   nlohmann::json rules = {{"experiment", "scenes"},
-                          {"precision", physics::RegionWorld::precision()},
                           {"steps", plan.rules.steps},
                           {"sync", name_of(plan.rules.sync)},
                           {"network", network_of(plan.rules)},

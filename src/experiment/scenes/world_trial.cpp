@@ -153,10 +153,6 @@ std::optional<WorldOutcome> run_world(const std::filesystem::path& directory, co
   std::vector<std::string> overrides = {std::string("time.sync=").append(name_of(rules.sync))};
   overrides.insert(overrides.end(), rules.overrides.begin(), rules.overrides.end());
   const config::Launch launch = config::read_launch(directory / kLaunchFile, overrides);
-  if (launch.physics.precision != physics::RegionWorld::precision()) {
-    throw std::runtime_error(fmt::format("{} says precision {}, and this program computes in {}", launch.file.string(),
-                                         launch.physics.precision, physics::RegionWorld::precision()));
-  }
   const Interference interference = read_interference(directory / kInterferenceFile, launch.scene);
   // Bullet's Dantzig solver keeps its error flag in a variable of the process: two at a time spoil each other.
   static std::mutex dantzig_mutex;

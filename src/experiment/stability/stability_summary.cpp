@@ -24,17 +24,15 @@ std::ofstream open_file(const std::filesystem::path& file) {
 void write_csv(const std::vector<StabilityRow>& rows, const std::filesystem::path& file) {
   std::ofstream out = open_file(file);
   out << "case,measured,unit,reference,seed,simulated_s,step_hz,substeps,iterations,friction_directions,preset,"
-         "precision,error_one_node,"
-         "error_two_nodes,same_bits,first_difference_step,hand_offs,cpu_us_per_step\n";
+         "error_one_node,error_two_nodes,same_bits,first_difference_step,hand_offs,cpu_us_per_step\n";
   for (const StabilityRow& row : rows) {
     for (std::size_t i = 0; i < row.what.metrics.size(); ++i) {
       const Metric& metric = row.what.metrics[i];
-      out << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{},{},{},{:.2f}\n", row.what.name,
+      out << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{},{},{},{:.2f}\n", row.what.name,
                          quoted(metric.measured), metric.unit, quoted(row.what.reference), row.what.seed,
                          row.what.duration_s, row.rules.step_hz, row.rules.substeps, row.rules.iterations,
-                         row.rules.friction_directions, row.preset, physics::RegionWorld::precision(),
-                         row.one.errors[i], row.two.errors[i], row.same_bits() ? 1 : 0, row.first_difference(),
-                         row.two.hand_offs, row.one.cpu_us_per_step);
+                         row.rules.friction_directions, row.preset, row.one.errors[i], row.two.errors[i],
+                         row.same_bits() ? 1 : 0, row.first_difference(), row.two.hand_offs, row.one.cpu_us_per_step);
     }
   }
 }
@@ -62,18 +60,17 @@ void require(std::vector<Target>& targets, const std::vector<StabilityRow>& rows
 }
 
 std::vector<Target> targets_of(const std::vector<StabilityRow>& rows) {
-  const bool is_double = std::string(physics::RegionWorld::precision()) == "double";
   const auto other_bits = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !row.same_bits(); });
   std::vector<Target> targets = {
       {"runs whose bits on two nodes differ from those on one", static_cast<double>(other_bits), 0}};
   require(targets, rows, {"dzhanibekov", 0, 1e-3, 60});
   require(targets, rows, {"dzhanibekov", 1, 1e-2, 60});
   require(targets, rows, {"bouncing_ball_1", 0, 0.01, 240});
-  require(targets, rows, {"rolling_plate_no_erp", 0, is_double ? 1e-27 : 1e-9, 0, "exact"});
+  require(targets, rows, {"rolling_plate_no_erp", 0, 1e-27, 0, "exact"});
   require(targets, rows, {"bullet_ccd_on", 0, 0, 60});
   for (const char* name : {"free_fall", "projectile"}) {
     for (const char* preset : {"fast", "balanced"}) {
-      require(targets, rows, {name, 0, is_double ? 1e-9 : 1e-3, 0, preset});
+      require(targets, rows, {name, 0, 1e-9, 0, preset});
     }
   }
   for (const char* name : {"stack_20", "card_house", "pyramid", "mass_ratio_100", "stack_20_may_sleep",
@@ -90,7 +87,6 @@ std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const
   write_csv(rows, directory / "stability.csv");
   const std::vector<Target> targets = targets_of(rows);
   nlohmann::json summary;
-  summary["precision"] = physics::RegionWorld::precision();
   summary["runs"] = rows.size();
   summary["targets"] = json_of(targets);
   open_file(directory / "summary.json") << summary.dump(2) << "\n";

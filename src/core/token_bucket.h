@@ -1,0 +1,50 @@
+// How much somebody may still do: fills at a rate up to a burst. Pure: time is passed in.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+namespace aurasim::core {
+
+class TokenBucket {
+ public:
+  using Time = std::chrono::nanoseconds;  ///< of any clock that does not go back
+
+  /// Full at first. `per_s`: tokens a second.
+  TokenBucket(double per_s, double burst, Time now = {}) : per_s_(per_s), burst_(burst), level_(burst), filled_(now) {}
+
+  /// False, and nothing is taken, when less than `amount` is there.
+  bool take(double amount, Time now) {
+    fill(now);
+    if (level_ < amount) return false;
+    level_ -= amount;
+    return true;
+  }
+
+  /// Takes one token even when none is there. Returns how long to wait until it would have been there; zero: it was.
+  Time charge(Time now) {
+    fill(now);
+    level_ -= 1;
+    if (level_ >= 0) return {};
+    return std::chrono::duration_cast<Time>(std::chrono::duration<double>(-level_ / per_s_));
+  }
+
+  void add(double amount) { level_ = std::min(burst_, level_ + amount); }
+
+  bool is_spent(Time now) const { return level_at(now) < 1; }
+  bool is_full(Time now) const { return level_at(now) >= burst_; }
+
+ private:
+  double level_at(Time now) const {
+    return std::min(burst_, level_ + per_s_ * std::chrono::duration<double>(now - filled_).count());
+  }
+  void fill(Time now) {
+    level_ = level_at(now);
+    filled_ = now;
+  }
+
+  double per_s_, burst_, level_;
+  Time filled_;
+};
+
+}  // namespace aurasim::core
