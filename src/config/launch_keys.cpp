@@ -98,10 +98,9 @@ const KeysOf<Physics>& physics_keys() {
               .otherwise("none: the defaults of this page"),
           optional("precision", &Physics::precision, words({"double", "single"}),
                    "of Bullet's numbers; single is another program, aurasim-single, which is started for it"),
-          optional("solver", &Physics::solver, words({"sequential_impulse", "nncg", "dantzig", "soft_step"}),
-                   "of contacts and joints: projected Gauss-Seidel, nonsmooth conjugate gradient, or direct (slow in "
-                   "piles, knows no rolling friction); soft_step looks once a step for what touches, solves in the "
-                   "substeps, and knows no iterations, friction_directions and erp"),
+          optional("solver", &Physics::solver, words({"sequential_impulse", "soft_step"}),
+                   "of contacts and joints: sequential_impulse is projected Gauss-Seidel; soft_step looks once a step "
+                   "for what touches, solves in the substeps, and knows no iterations, friction_directions and erp"),
           optional("iterations", &Physics::iterations, integer(1, 1000), "of the solver in each substep"),
           optional("friction_directions", &Physics::friction_directions, integer(1, 2),
                    "rows of friction at each contact point; with 1, piles creep and a card house falls"),

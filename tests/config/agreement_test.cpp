@@ -75,7 +75,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
       "physics.precision=single",
       "physics.iterations=11",
       "physics.origin=region",
-      "physics.solver=nncg",
+      "physics.solver=sequential_impulse",
       "physics.friction_directions=2",
       "physics.erp=0.1",
       "physics.continuous=false",

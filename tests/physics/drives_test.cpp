@@ -44,11 +44,6 @@ class Drives : public ::testing::TestWithParam<Solver> {
     return scene.bodies.back();
   }
 
-  /// docs/limits.md.
-  bool loses_sliders() const {
-    return GetParam() == Solver::kDantzig && RegionWorld::precision() == std::string_view("single");
-  }
-
   void run_seconds(double seconds) {
     if (!world) {
       Settings settings;
@@ -121,7 +116,6 @@ TEST_P(Drives, LetGoOfAJointHasItsMotorAgain) {
 }
 
 TEST_P(Drives, AnEffortAlonePushesSteadily) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   core::SliderJoint slider;
   slider.drive = JointDrive{.effort = 4};
   place_cart(slider);
@@ -147,7 +141,6 @@ TEST_P(Drives, DampingSlowsAsItShould) {
 }
 
 TEST_P(Drives, FrictionSlowsEvenlyAndThenHolds) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   core::SliderJoint slider;
   slider.resistance.friction = 2;
   slider.drive = JointDrive{.effort = 1};
@@ -221,7 +214,6 @@ TEST_P(Drives, LimitsMayLieBeyondATurnOrOnOneSideOnly) {
 }
 
 TEST_P(Drives, ASlidersLimitsMayLieOnOneSideOnly) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   const double inf = std::numeric_limits<double>::infinity();
   core::SliderJoint slider{JointLimits{-0.5, inf}};
   slider.drive = JointDrive{.effort = 3};
@@ -261,7 +253,6 @@ class Gripper : public Drives {
 };
 
 TEST_P(Gripper, AFollowerIsWhereItsLeaderSaysAllTheWay) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   double fastest = 0;
   for (int i = 0; i < 120; ++i) {
     run_seconds(1.0 / 60);
@@ -275,7 +266,6 @@ TEST_P(Gripper, AFollowerIsWhereItsLeaderSaysAllTheWay) {
 }
 
 TEST_P(Gripper, WhoeverDrivesAFollowerLetsItGoItsOwnWayUntilHeLetsGo) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   run_seconds(0.5);
   const JointDrive own{.position = -0.3, .stiffness = 4e4, .damping = 400};
   world->controls().recall({1, 1, 0, 31, {}, {{core::JointId{2}, own}}});
@@ -287,7 +277,6 @@ TEST_P(Gripper, WhoeverDrivesAFollowerLetsItGoItsOwnWayUntilHeLetsGo) {
 }
 
 TEST_P(Gripper, AFollowerRestsOnceItsLeaderHasBrokenOff) {
-  if (loses_sliders()) GTEST_SKIP() << "Dantzig in single precision";
   scene.joints[1].break_impulse = 1;
   run_seconds(0.5);
   EXPECT_NEAR(second(), 0.25 + kRatio * first(), 0.01);
@@ -300,9 +289,7 @@ TEST_P(Gripper, AFollowerRestsOnceItsLeaderHasBrokenOff) {
   EXPECT_NEAR(second(), before + 0.4 * speed, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Gripper,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig,
-                                           Solver::kSoftStep));
+INSTANTIATE_TEST_SUITE_P(Solvers, Gripper, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 TEST_P(Drives, ABodyWithMomentsOfItsOwnTurnsByThem) {
   // Euler's equations: I w' = (I w) x w, here about the principal axes, by small steps.
@@ -328,9 +315,7 @@ TEST_P(Drives, ABodyThatDoesNotCollideFallsThroughTheGround) {
   EXPECT_TRUE(world->snapshot().contacts.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Drives,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig,
-                                           Solver::kSoftStep));
+INSTANTIATE_TEST_SUITE_P(Solvers, Drives, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 }  // namespace
 }  // namespace aurasim::physics::testing
