@@ -13,6 +13,10 @@ constexpr std::array kGone = {
     Gone{"physics.solver", "dantzig",
          "this solver was removed, because its time grew with the cube of a pile's contacts. Choose soft_step (the "
          "default), or sequential_impulse with preset: exact"},
+    Gone{
+        "survival.on_death", "go_on",
+        "a run does not go on without the bodies of a dead node any more. Choose recover (the default: another process "
+        "takes its region over, and no body is lost), or stop (the run ends)"},
 };
 
 const Gone* find(std::string_view path, std::string_view value) {

@@ -22,7 +22,7 @@ enum class Pace { kWall, kNone };
 enum class Origin { kWorld, kRegion };
 /// kAuto: where the run is to have the bits of one node.
 enum class Redo { kAuto, kOn, kOff };
-enum class OnDeath { kRecover, kGoOn, kStop };
+enum class OnDeath { kRecover, kStop };
 
 struct Time {
   double step_hz = 60;

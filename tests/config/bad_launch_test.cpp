@@ -159,6 +159,16 @@ const std::vector<BadCase> kBadLaunches = {
      {"launch.yaml:3:23: physics.iterations: found \"0\", allowed: an integer from 1 to 1000",
       "launch.yaml:3:34: physics.solver: found \"dantzig\", which is gone: this solver was removed, because its time "
       "grew with the cube of a pile's contacts. Choose soft_step (the default), or sequential_impulse"}},
+    {"GoingOnWithoutTheDeadIsGone",
+     kTwo + "survival: {checkpoint: 2, on_death: go_on}\n",
+     {"launch.yaml:3:37: survival.on_death: found \"go_on\", which is gone: a run does not go on without the bodies of "
+      "a "
+      "dead node any more. Choose recover (the default: another process takes its region over, and no body is lost), "
+      "or "
+      "stop"}},
+    {"UnknownOnDeath",
+     kTwo + "survival: {on_death: panic}\n",
+     {"launch.yaml:3:22: survival.on_death: found \"panic\", allowed: recover, stop"}},
     {"DomainOutOfRange",
      kTwo + "dds: {domain: 233}\n",
      {"launch.yaml:3:15: dds.domain: found \"233\", allowed: an integer from 0 to 232"}},
