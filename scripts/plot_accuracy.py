@@ -19,8 +19,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 from report_parts import save  # noqa: E402
 
 MARKERS = {("sequential_impulse", "1"): ("o", "tab:blue"), ("sequential_impulse", "2"): ("o", "tab:green"),
-           ("nncg", "1"): ("s", "tab:orange"), ("nncg", "2"): ("s", "tab:red"),
-           ("dantzig", "1"): ("^", "tab:purple"), ("dantzig", "2"): ("^", "tab:brown")}
+           ("soft_step", "1"): ("s", "tab:orange")}
 CONVERGING = ["free_fall", "projectile", "spring", "spinning_disc", "sliding_box", "incline", "bouncing_ball_0.5",
               "wedge", "double_pendulum"]
 LEAST = 1e-16  # what is 0 has to be somewhere on a logarithmic axis

@@ -27,7 +27,7 @@ def main():
     with (pathlib.Path(options.out) / "cost.jsonl").open("w") as file:
         for scene in options.scenes.split(","):
             for repeat in range(options.repeats):
-                for rule in ("go_on", "recover"):
+                for rule in ("stop", "recover"):
                     with tempfile.TemporaryDirectory() as folder:
                         subprocess.run(
                             [options.program, "launch", f"launch_configs/{scene}.yaml", "--headless", "--steps",

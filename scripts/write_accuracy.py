@@ -203,9 +203,7 @@ sum over the cases. The front, and the presets:
 
 """
     text += front_table(rows)
-    text += """Dantzig is direct, and knows no iterations; its time grows with the cube of the contacts of a pile. NNCG is the
-better one where joints act alone (Newton's cradle), but throws a card house apart, as Bullet's own does: no solver for
-piles with friction. The soft step knows neither iterations nor directions of friction.
+    text += """The soft step knows neither iterations nor directions of friction.
 
 ### The presets (`physics.preset`)
 

@@ -27,7 +27,7 @@ kept its parts died within a moment; what clients had ordered before is not know
 {misses}
 {rolling}{soak}{endurance}### What it costs a healthy run
 
-{rounds} runs of each kind by turns, without anybody dying: `survival.on_death: go_on`, where no parts are kept, against `recover`
+{rounds} runs of each kind by turns, without anybody dying: `survival.on_death: stop`, where no parts are kept, against `recover`
 with a part every second. Medians; frames of all nodes.
 
 {costs}"""
@@ -116,7 +116,7 @@ def cost_rows(rows):
     for scene in sorted({row["scene"] for row in rows}):
         cells = [scene]
         medians = {}
-        for rule in ("go_on", "recover"):
+        for rule in ("stop", "recover"):
             of_rule = [row for row in rows if row["scene"] == scene and row["rule"] == rule]
             medians[rule] = {key: statistics.median(row[key] for row in of_rule) for key in ("p50", "p99")}
             cells += [f"{medians[rule]['p50']:.2f}", f"{medians[rule]['p99']:.2f}"]
@@ -124,7 +124,7 @@ def cost_rows(rows):
                 seconds = of_rule[0]["seconds"]
                 sent = statistics.median(row["aura_bytes"] for row in of_rule) / seconds / 1e3
                 kept = statistics.median(row["bytes"] for row in of_rule) / seconds / 1e3
-        cells += [f"{100 * (medians['recover']['p99'] / medians['go_on']['p99'] - 1):+.0f}%", f"{sent:.1f}", f"{kept:.1f}"]
+        cells += [f"{100 * (medians['recover']['p99'] / medians['stop']['p99'] - 1):+.0f}%", f"{sent:.1f}", f"{kept:.1f}"]
         result.append(cells)
     return result
 

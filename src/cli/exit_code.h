@@ -11,9 +11,10 @@ enum class ExitCode : int {
   kFenced = 4,     ///< the others hold this node for dead, or may (fence.h)
   kBroken = 5,     ///< physics broke down for a body, which was taken out; the rest went on
   kNotSaved = 6,   ///< the run has come to its end, but none of the worlds that it was to save (--save-every) is whole
+  kBrokenOff = 7,  ///< another region's node has died, and the run ends: nobody takes it over, or on_death is stop
 };
 
-/// Of a node's process: neither a run that has come to its end, nor one that was refused before it began.
+/// Of a node's process: neither a run that has ended, nor one that was refused before it began.
 inline bool is_death(int code) {
   switch (static_cast<ExitCode>(code)) {
     case ExitCode::kOk:
@@ -21,6 +22,7 @@ inline bool is_death(int code) {
     case ExitCode::kRefused:
     case ExitCode::kBroken:
     case ExitCode::kNotSaved:
+    case ExitCode::kBrokenOff:
       return false;
     case ExitCode::kFailed:
     case ExitCode::kFenced:

@@ -2,9 +2,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace aurasim::cli {
 namespace {
 
@@ -12,51 +9,22 @@ using namespace std::chrono_literals;
 
 constexpr auto kLookEvery = 50ms;
 
-node::Quorum quorum_of(const FenceSettings& settings) {
-  return {settings.region, settings.regions, settings.recovers ? node::Losses::kComeBack : node::Losses::kForgotten};
-}
-
 }  // namespace
 
-Fence::Fence(const FenceSettings& settings, Senses senses)
-    : settings_(settings), senses_(std::move(senses)), quorum_(quorum_of(settings)) {}
+Fence::Fence(const FenceSettings& settings, Peers peers)
+    : settings_(settings), peers_(std::move(peers)), quorum_(settings.region, settings.regions) {}
 
-void Fence::begin_anew(bool recovers) {
-  settings_.recovers = recovers;
-  quorum_ = quorum_of(settings_);
+void Fence::begin_anew() {
+  quorum_ = {settings_.region, settings_.regions};
   standing_ = node::Standing::kGoOn;
   watches_closely_ = false;
   dead_ = 0;
 }
 
-bool Fence::open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now) {
+bool Fence::open(const std::vector<core::RegionId>& dead, Clock::time_point now) {
   if (closed() || settings_.regions == 1) return !closed();
-  reason_ = why_stop(held_for_dead, dead, now);
-  if (closed()) return false;
-  return standing_ == node::Standing::kGoOn || settings_.never_waits;
-}
-
-std::string Fence::why_stop(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now) {
-  const std::uint32_t self = core::value_of(settings_.region);
-  if (held_for_dead) {
-    return fmt::format("a neighbour holds region {} for dead; its bodies have other hosts", self);
-  }
-  // A host that stands still as a whole holds all nodes up alike: then nobody is lost.
-  if (!dead.empty() && !settings_.recovers && senses_.was_held_up()) {
-    return fmt::format(
-        "region {} was held up for longer than its participant's lease, and has lost neighbours since: they have given "
-        "it up",
-        self);
-  }
   if (settings_.can_be_cut) look(dead, now);
-  // With `recovers` nobody takes this region over but with the majority, so this node may wait for the others for ever.
-  if (!is_cut_off() || settings_.recovers) return {};
-  std::vector<std::uint32_t> silent;
-  for (const core::RegionId lost : quorum_.lost()) silent.push_back(core::value_of(lost));
-  return fmt::format(
-      "region {} hears nothing from regions [{}], half of the run or more: they may have died, or this host is cut off "
-      "and they go on without it",
-      self, fmt::join(silent, ", "));
+  return standing_ == node::Standing::kGoOn || settings_.never_waits;
 }
 
 /// A neighbour's death lets the node compute at once, so a new one is looked at before that. While the node stands
@@ -66,8 +34,8 @@ void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now)
   if (now < next_look_ && dead.size() == dead_ && !watches_closely_) return;
   next_look_ = now + kLookEvery;
   dead_ = dead.size();
-  std::map<core::RegionId, node::PeerSign> signs = senses_.peers();
-  if (!watches_closely_ || !settings_.recovers) {
+  std::map<core::RegionId, node::PeerSign> signs = peers_();
+  if (!watches_closely_) {
     for (const core::RegionId region : dead) signs[region].lost = true;
   }
   standing_ = quorum_.judge(signs, now);

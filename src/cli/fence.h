@@ -1,6 +1,5 @@
-// When a node has to stop because the rest of the run may go on without it: the others hold it for dead, it was held up
-// for so long that they may, or it has lost touch with the majority. Two hosts of one body are worse than none. Time is
-// passed in.
+// When a node has to stand or to stop because the rest of the run may go on without it: it has lost touch with the
+// majority, or another process has its region. Two hosts of one body are worse than none. Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -19,25 +18,20 @@ struct FenceSettings {
   std::uint32_t regions = 1;  ///< of the run
   bool can_be_cut = false;    ///< the others may be on other hosts
   bool never_waits = false;   ///< free_running
-  /// Nobody goes on without a node unless another process has taken its region over: who is cut off stands, and waits.
-  bool recovers = false;
 };
 
 class Fence {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Asked only when there is something to find out.
-  struct Senses {
-    std::function<bool()> was_held_up;                                ///< for longer than its participant's lease
-    std::function<std::map<core::RegionId, node::PeerSign>()> peers;  ///< all regions but this one
-  };
+  /// All regions but this one. Asked only when there is something to find out.
+  using Peers = std::function<std::map<core::RegionId, node::PeerSign>()>;
 
-  Fence(const FenceSettings& settings, Senses senses);
+  Fence(const FenceSettings& settings, Peers peers);
 
-  /// True while the node may compute its next state. `held_for_dead`: by a neighbour. `dead`: neighbours that it holds
-  /// for dead itself. Cheap while there are none.
-  bool open(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
+  /// True while the node may compute its next state. `dead`: neighbours that it holds for dead. Cheap while there are
+  /// none. A node that is cut off may wait for the others for ever: nobody takes its region over but with the majority.
+  bool open(const std::vector<core::RegionId>& dead, Clock::time_point now);
   /// Hears too few of the others to know what they do.
   bool is_cut_off() const { return standing_ == node::Standing::kCutOff; }
   /// For good: the node has to stop.
@@ -45,19 +39,18 @@ class Fence {
   /// `reason`: for people.
   void close(std::string reason) { reason_ = std::move(reason); }
   /// The node stands, because somebody has died: what was judged before that does not count any more, and every call
-  /// judges anew. With `recovers` the statuses alone say from then on who is lost.
+  /// judges anew. From then on the statuses alone say who is lost.
   void watch_closely() { watches_closely_ = true; }
-  /// All regions have nodes again. With `recovers` or without, from now on.
-  void begin_anew(bool recovers);
+  /// All regions have nodes again.
+  void begin_anew();
   /// Why it is closed, for people.
   const std::string& reason() const { return reason_; }
 
  private:
-  std::string why_stop(bool held_for_dead, const std::vector<core::RegionId>& dead, Clock::time_point now);
   void look(const std::vector<core::RegionId>& dead, Clock::time_point now);
 
   FenceSettings settings_;
-  Senses senses_;
+  Peers peers_;
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
   bool watches_closely_ = false;

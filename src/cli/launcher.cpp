@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
@@ -239,10 +240,19 @@ void Launcher::note_exit(Child& child, int status) {
     spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
                   has_begun_ ? "" : " before the run had begun: the others are ended");
     tell_lost(child);
-    must_not_go_on_ = launch_.survival.on_death == config::OnDeath::kStop;
+    if (has_begun_ && launch_.survival.on_death == config::OnDeath::kStop) break_off("survival.on_death is stop");
   }
+  must_not_go_on_ = must_not_go_on_ || child.exit_code == static_cast<int>(ExitCode::kBrokenOff);
   // Without all of them the run cannot start: the others need not wait for their time-out.
   cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
+}
+
+/// The other nodes say so, too, but not of what is saved on this host for all.
+void Launcher::break_off(const std::string& why) {
+  must_not_go_on_ = true;
+  spdlog::error("the run ends: {}. {}", why,
+                say_newest_saved(folders_of_run(launch_, options_.save, run_),
+                                 {launch_.world_identity(), {run_}, launch_command(launch_)}));
 }
 
 /// The others wait for somebody who takes its region over.
@@ -267,9 +277,9 @@ void Launcher::replace(Child& child) {
   child.deaths = at_the_same_place ? child.deaths + 1 : 1;
   child.died_at = step;
   if (child.deaths > kMostDeaths) {
-    spdlog::error("the node of region {} has died {} times in a row near state {}: the others go on without it in {} s",
-                  core::value_of(child.region), child.deaths, child.died_at, launch_.survival.patience_s);
-    return;
+    return break_off(
+        fmt::format("the node of region {} has died {} times in a row near state {}, and is not started again",
+                    core::value_of(child.region), child.deaths, child.died_at));
   }
   child.pid = successor_of(child);
   child.running = true;

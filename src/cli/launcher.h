@@ -63,6 +63,7 @@ class Launcher {
   bool can_be_replaced(const Child& child) const;
   bool somebody_knows_the_world();
   void replace(Child& child);
+  void break_off(const std::string& why);
   pid_t successor_of(const Child& child);
   bool all_go_on();
   void keep_spares();
@@ -99,7 +100,7 @@ class Launcher {
   bool has_begun_ = false;                 ///< a node has shown that all have met
   bool cannot_begin_ = false;              ///< a node is missing, and the others would wait for it
   bool stopping_ = false;
-  bool must_not_go_on_ = false;  ///< a node has died, and the launch file says stop
+  bool must_not_go_on_ = false;  ///< a node has died, and nobody takes its region over
   bool is_seen_ = true;          ///< the table has a reader
   ViewerProcess viewer_;
 };

@@ -17,7 +17,7 @@ void Launcher::end_hung_nodes() {
   const auto now = Clock::now();
   life_.look(now);
   for (const pid_t process : heartbeats_.take()) life_.note(process, now);
-  const bool others_wait = launch_.survival.on_death == config::OnDeath::kRecover && children_.size() > 1;
+  const bool others_wait = children_.size() > 1;
   if (!others_wait || !has_begun_) return;
   for (Child& child : children_) {
     if (!child.running || child.hung == child.pid) continue;

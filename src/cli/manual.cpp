@@ -68,7 +68,16 @@ a file or the command line is wrong
 refused: a neighbour did not come in time, or a run that does not agree with this one is in the same DDS domain
 .TP
 4
-the others hold this node for dead, or may: it has lost touch with the majority
+another process has taken this node's region over while it was cut off or held up
+.TP
+5
+physics broke down for a body, which was taken out and named, and the rest went on
+.TP
+6
+the run came to its end, but none of the worlds that \-\-save\-every was to save is whole
+.TP
+7
+of a node: the run has ended, because another region's node has died and nobody takes it over
 )";
 
 }  // namespace

@@ -20,12 +20,12 @@ constexpr std::array<Row, kNodePhases> kTable = {{
     /* waiting    */ {no,          no,          P::kRunning, no,         no,          no,           no,          no,          P::kDone,      no,       P::kRefused, P::kFenced, P::kRecovering, P::kSpare},
     /* running    */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
     /* paused     */ {no,          no,          no,          P::kPaused, P::kRunning, P::kChanging, no,          P::kRunning, P::kLingering, no,       no,          P::kFenced, P::kRecovering, no},
-    /* changing   */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, no,         P::kRecovering, P::kSpare},
+    /* changing   */ {no,          no,          no,          no,         no,          P::kChanging, P::kWaiting, no,          no,            no,       P::kRefused, P::kFenced, P::kRecovering, P::kSpare},
     /* lingering  */ {no,          no,          no,          no,         no,          no,           no,          no,          no,            P::kDone, no,          no,         P::kRecovering, no},
     /* done       */ {},
     /* refused    */ {},
     /* fenced     */ {},
-    /* recovering */ {no,          no,          no,          no,         P::kRunning, no,           P::kWaiting, no,          P::kLingering, no,       P::kRefused, P::kFenced, P::kRecovering, no},
+    /* recovering */ {no,          no,          no,          no,         no,          no,           P::kWaiting, no,          P::kLingering, no,       P::kRefused, P::kFenced, P::kRecovering, no},
     /* spare      */ {no,          no,          no,          no,         no,          no,           P::kWaiting, no,          P::kDone,      no,       P::kRefused, P::kFenced, no,             P::kSpare},
 }};
 // clang-format on

@@ -19,7 +19,7 @@ enum class NodePhase : std::uint8_t {
   kLingering,   ///< has computed its last state; the others may still need what it has published
   kDone,        ///< has ended well
   kRefused,     ///< could not begin, or not go on: another run is here, or somebody is missing
-  kFenced,      ///< the others may go on without it (fence.h)
+  kFenced,      ///< the others may go on without it (fence.h), or the run ends because another node has died
   kRecovering,  ///< a node has died: stands until all go back to a state that is kept
   kSpare,       ///< has no world yet: waits to take a region over
 };
@@ -37,7 +37,7 @@ enum class NodeEvent : std::uint8_t {
   kLast,     ///< the last state has been computed, or somebody asks the process to stop
   kSettled,  ///< nobody needs anything of it any more
   kRefusal,
-  kFence,
+  kFence,  ///< into kFenced
   kDeath,  ///< a node of the run has died
   kJoins,  ///< a run that has lost a node
 };

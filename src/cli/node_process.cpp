@@ -55,7 +55,7 @@ dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& 
   dds::Settings settings =
       with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region));
   const bool is_watched = options.has_launcher && options.heartbeat >= 0;
-  settings.believes_silence = !is_watched || launch.survival.on_death != config::OnDeath::kRecover;
+  settings.believes_silence = !is_watched;
   settings.show_life = [heartbeat = Heartbeat(options.heartbeat)] { heartbeat.beat(); };
   return settings;
 }
@@ -82,8 +82,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       participant_(std::make_unique<dds::Participant>(settings_of_node(launch, options))),
       control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                                static_cast<std::uint32_t>(launch.regions.size())}),
-      fence_(fence_settings(),
-             {[this] { return participant_->outlived_its_lease(); }, [this] { return peer_signs(); }}),
+      fence_(fence_settings(), [this] { return peer_signs(); }),
       saves_({options.saves, {}}, options.region, launch.regions.size(), options.save_keep),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
       recovery_(recovery_settings(launch, options, !participant_->stays_on_this_host())) {
@@ -104,7 +103,6 @@ FenceSettings NodeProcess::fence_settings() const {
   settings.regions = static_cast<std::uint32_t>(launch_.regions.size());
   settings.can_be_cut = !participant_->stays_on_this_host();
   settings.never_waits = launch_.time.sync == core::SyncMode::kFreeRunning;
-  settings.recovers = recovers();
   return settings;
 }
 
@@ -121,10 +119,7 @@ std::map<core::RegionId, node::PeerSign> NodeProcess::peer_signs() {
   return signs;
 }
 
-bool NodeProcess::fence_is_open() {
-  const core::Protocol& protocol = node_->protocol();
-  return fence_.open(protocol.fenced(), protocol.intake().dead_regions(), Clock::now());
-}
+bool NodeProcess::fence_is_open() { return fence_.open(node_->protocol().intake().dead_regions(), Clock::now()); }
 
 ExitCode NodeProcess::run() {
   try {
@@ -170,6 +165,7 @@ ExitCode NodeProcess::take_over() {
   checkpoints_.emplace(*participant_, options_.region);
   recover("takes the region over");
   if (fence_.closed()) return refuse(fence_.reason());
+  if (!node_ && !broken_off_.empty()) return end_without_world();
   return node_ ? run_steps() : not_begun();
 }
 
@@ -214,11 +210,6 @@ std::unique_ptr<node::Node> NodeProcess::make_node() {
 
 void NodeProcess::begin_generation(core::Generation generation, const dds::RunCommand& begin) {
   core::Inbox mail = node_ ? std::move(node_->mail()) : core::Inbox{};
-  if (node_) {  // who is dead stays dead: nobody will hear of it once more
-    for (const core::RegionId dead : node_->protocol().intake().dead_regions()) {
-      mail.peers.push_back({dead, core::PeerChange::kLost});
-    }
-  }
   generation_ = status_.era = generation;
   checkpoints_->begin_era(generation);
   node_ = make_node();
@@ -269,9 +260,15 @@ ExitCode NodeProcess::run_steps() {
   for (;;) {
     try {
       run_until_end();
-      return leaves_now() || (leaves_by_ && can_leave_to_others()) ? leave_to_successor() : end();
+      const bool leaves = leaves_now() || (leaves_by_ && can_leave_to_others());
+      return leaves && broken_off_.empty() ? leave_to_successor() : end();
     } catch (const SomebodyDied& died) {
-      recover(died.what());
+      if (recovers()) {
+        recover(died.what());
+      } else {
+        break_off(died.what());
+      }
+      if (!node_ && !broken_off_.empty()) return end_without_world();
     }
   }
 }
@@ -348,10 +345,7 @@ core::Step NodeProcess::farthest_paused_step() {
 }
 
 void NodeProcess::compute_step() {
-  // Who has died otherwise is waited for.
-  const auto is_gone = [this](const auto& entry) {
-    return entry.second.lost && (!recovers() || entry.second.has_ended());
-  };
+  const auto is_gone = [](const auto& entry) { return entry.second.lost && entry.second.has_ended(); };
   if (std::ranges::any_of(control_.statuses(), is_gone)) node_->give_up_redo();
   const auto begin = Clock::now();
   keep_the_end();

@@ -153,13 +153,16 @@ class NodeProcess {
   RecoveryView recovery_view(const SeenNodes& nodes, bool may_go_on) const;
   SeenNodes nodes_and_self();
   std::string what_recovery_waits_for(const std::vector<core::RegionId>& vacant);
-  void go_on_without(const std::vector<core::RegionId>& vacant);
+  void give_up(const std::vector<core::RegionId>& vacant);
+  void break_off(const std::string& why);
+  ExitCode end_without_world();
   bool call_spare(core::RegionId region);
   void stand_in(const std::vector<core::RegionId>& regions);
   void hear_of_drain(const dds::RunCommand& drain);
   void lead_recovery();
   bool may_begin_again(core::Generation era);
   void hear_of_restore(const dds::RunCommand& restore);
+  void hear_of_end(const dds::RunCommand& end);
   void give_way(core::Step step);
   void throw_away_after(core::Step step);
   void repeat_commands(const dds::RunCommand& restore);
@@ -274,7 +277,7 @@ class NodeProcess {
   std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: not later than this
   std::set<std::uint64_t> leaving_;                                 ///< processes that drain
   std::optional<core::Step> successor_since_;                       ///< state in which that one was first seen
-  bool goes_on_ = false;            ///< without those who have died: nobody has taken their regions over
+  std::string broken_off_;          ///< why the run ends before its time: another region's node has died
   bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
   core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
   std::chrono::steady_clock::time_point recovering_since_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cli/node_process.h"
 
 namespace aurasim::cli {
@@ -28,6 +30,7 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   }
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
   if (command.kind == Kind::kTake) return;  // to spares
+  if (command.kind == Kind::kEnd) return hear_of_end(command);
   switch (world_meant(command.generation, known_worlds())) {
     case WorldMeant::kPresent:
       if (node_ && can_be_meant(command)) obey(command);
@@ -41,6 +44,13 @@ void NodeProcess::execute(const dds::RunCommand& command) {
     case WorldMeant::kOver:
       break;
   }
+}
+
+/// Another node has given up waiting for whoever takes a region over. Only who waits for it, too, ends with it.
+void NodeProcess::hear_of_end(const dds::RunCommand& end) {
+  const bool waits = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
+  if (!waits || !can_be_meant(end)) return;
+  break_off(fmt::format("the node of region {} has died, and nobody takes it over", core::value_of(end.region)));
 }
 
 Worlds NodeProcess::known_worlds() const {
@@ -60,6 +70,7 @@ void NodeProcess::obey(const dds::RunCommand& command) {
     case Kind::kRestore:
     case Kind::kDrain:
     case Kind::kTake:
+    case Kind::kEnd:
       break;
     case Kind::kPause:
       hold_in(command.at_step);

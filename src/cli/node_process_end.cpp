@@ -23,7 +23,8 @@ constexpr auto kPatienceWithReaders = 1s;   // some may have left without a word
 
 bool NodeProcess::finished() {
   if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
-  return stop_requested() || stops_standing_ || (stop_at_ && has_reached(*stop_at_)) || fence_.closed();
+  return stop_requested() || stops_standing_ || (stop_at_ && has_reached(*stop_at_)) || fence_.closed() ||
+         !broken_off_.empty();
 }
 
 /// The state is there, and nothing can come to question it.
@@ -41,28 +42,38 @@ void NodeProcess::keep_the_end() {
 
 ExitCode NodeProcess::end() {
   const double factor = real_time_factor();
-  const bool fenced = fence_.closed();
+  const bool fenced = fence_.closed(), comes_to_its_end = !fenced && broken_off_.empty();
   if (fenced) spdlog::error("{}", fence_.reason());
-  if (fenced || phase_ != NodePhase::kLingering) enter(fenced ? NodeEvent::kFence : NodeEvent::kLast);
-  publish(fence_.reason());
+  if (!comes_to_its_end || phase_ != NodePhase::kLingering) {
+    enter(comes_to_its_end ? NodeEvent::kLast : NodeEvent::kFence);
+  }
+  publish(fenced ? fence_.reason() : broken_off_);
   observers_->while_paused(*node_);
   // Whoever leaves from now on has finished, too: that is no death.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
-  if (!fenced) linger();
-  const core::Step last = stop_at_ && !fenced && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
+  if (comes_to_its_end) linger();
+  const core::Step last = stop_at_ && comes_to_its_end && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
   record(node_->finish(last));
-  if (recorder_ && !fenced && !node_->settled()) recorder_->write_settling(node_->settle());
+  if (recorder_ && comes_to_its_end && !node_->settled()) recorder_->write_settling(node_->settle());
   const dds::TransportCounters& sent = transport_->counters();
   const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
   if (recorder_) {
-    recorder_->finish(*node_, {factor, fenced ? "fenced" : "finished", dead, bytes, checkpoints_->sent_bytes(),
-                               checkpoints_->left_out()});
+    const char* const outcome = fenced ? "fenced" : comes_to_its_end ? "finished" : "broken off";
+    recorder_->finish(*node_, {factor, outcome, dead, bytes, checkpoints_->sent_bytes(), checkpoints_->left_out()});
   }
   conclude_saves();
   if (fenced) return ExitCode::kFenced;
+  if (!comes_to_its_end) return ExitCode::kBrokenOff;
   enter(NodeEvent::kSettled);
   if (broken_bodies_ > 0) return ExitCode::kBroken;
   return saves_.regular_ones_failed() ? ExitCode::kNotSaved : ExitCode::kOk;
+}
+
+/// Of a process that has no world to bring to an end.
+ExitCode NodeProcess::end_without_world() {
+  enter(NodeEvent::kFence);
+  publish(broken_off_);
+  return ExitCode::kBrokenOff;
 }
 
 /// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each
@@ -84,7 +95,7 @@ void NodeProcess::linger() {
   while (!(node_->ready_to_settle() && all_have_left() && has_all_of_the_last_states()) &&
          (Clock::now() < begin + kLinger || others_run())) {
     execute_commands();
-    if (!all_have_left() && !stops_standing_) look_for_deaths();
+    if (recovers() && !all_have_left() && !stops_standing_) look_for_deaths();
     publish();
     control_.wait(10ms);
   }

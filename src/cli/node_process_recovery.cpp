@@ -11,6 +11,7 @@
 #include "cli/launch_setup.h"
 #include "cli/node_process.h"
 #include "cli/restore_plan.h"
+#include "cli/run_steering.h"
 #include "cli/saved_world.h"
 #include "cli/stop_signal.h"
 #include "config/launch_variants.h"
@@ -34,7 +35,7 @@ void NodeProcess::recover(const std::string& why) {
   spdlog::warn("region {} stands at state {}: {}", core::value_of(options_.region),
                node_ ? node_->current_step() : first_step(), why);
   begin_to_recover();
-  while (!stop_requested() && !fence_.closed()) {
+  while (!stop_requested() && !fence_.closed() && broken_off_.empty()) {
     enter(node_ ? NodeEvent::kDeath : NodeEvent::kJoins);
     stands_in_ = std::max(generation_, restoring_);
     is_going_back_ = false;
@@ -64,9 +65,10 @@ void NodeProcess::begin_to_recover() {
   frame_times_.clear();
 }
 
-/// False when the run ends, or goes on without those who have died.
+/// False when the run ends, or this node has to leave it.
 bool NodeProcess::agree_on_restore() {
   while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
+    if (!broken_off_.empty()) return false;
     if (stop_requested() || (stops_standing_ && Clock::now() > recovering_since_ + kShortStand)) return false;
     leave_if_asked();
     if (leaves_by_ && Clock::now() > *leaves_by_) return false;
@@ -81,7 +83,7 @@ bool NodeProcess::agree_on_restore() {
       return false;
     }
     if (acts.gives_up) {
-      go_on_without(acts.vacant);
+      give_up(acts.vacant);
       return false;
     }
     note_unheard(nodes);
@@ -163,20 +165,22 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
   return "waits until all others stand";
 }
 
-void NodeProcess::go_on_without(const std::vector<core::RegionId>& vacant) {
+/// Nobody has come for these regions, however often that was tried. All nodes end with the same reason.
+void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
+  for (const core::RegionId region : vacant) {
+    control_.send(about_process(dds::RunCommandKind::kEnd, options_.run, region, 0));
+  }
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
-  notice_ =
-      fmt::format("nobody has taken over regions [{}] in {} s", fmt::join(regions, ", "), launch_.survival.patience_s);
-  if (life_ != life_of_node_) {  // in a recovery that was broken off we have let go of all endpoints
-    return fence_.close(notice_ + ": the run cannot go on");
-  }
-  goes_on_ = true;
-  restoring_ = 0;
-  fence_.begin_anew(false);
-  notice_ += ": the run goes on without their bodies";
-  spdlog::error("region {}: {}", core::value_of(options_.region), notice_);
-  enter(NodeEvent::kGoesOn);
+  break_off(fmt::format("the node of regions [{}] has died, and nobody takes them over", fmt::join(regions, ", ")));
+}
+
+/// The run ends here, before its time.
+void NodeProcess::break_off(const std::string& why) {
+  if (!broken_off_.empty()) return;
+  broken_off_ = why;
+  spdlog::error("region {}: the run ends in state {}: {}. {}", core::value_of(options_.region),
+                node_ ? node_->current_step() : first_step(), why, say_newest_saved(save_folders(), saved_by()));
 }
 
 /// The lowest region that knows the world says to what state all go back, once somebody is there for each region.
@@ -304,6 +308,7 @@ void NodeProcess::take_map_of(const dds::RunCommand& restore) {
 void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
   if (stop_requested()) throw SomebodyDied("told to stop");
   if (fence_.closed()) throw SomebodyDied(fence_.reason());
+  if (!broken_off_.empty()) throw SomebodyDied(broken_off_);
   if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));
   execute_commands();
   look_for_deaths();
@@ -379,7 +384,7 @@ void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::Wor
   record_after(from_first ? std::nullopt : std::optional(restore.at_step));
   pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
   status_.rate = restore.rate;
-  fence_.begin_anew(true);
+  fence_.begin_anew();
   checkpoints_->go_back(restore.era, restore.at_step, parts);
   status_.era = restore.era;
   reset_.reset();

@@ -23,12 +23,12 @@ constexpr auto kPatienceWithSuccessor = 20s;
 }  // namespace
 
 bool NodeProcess::recovers() const {
-  return launch_.survival.on_death == config::OnDeath::kRecover && launch_.regions.size() > 1 && !goes_on_;
+  return launch_.survival.on_death == config::OnDeath::kRecover && launch_.regions.size() > 1;
 }
 
 /// Why this node must not compute its next state (why_stand).
 std::optional<std::string> NodeProcess::death() {
-  if (!recovers()) return std::nullopt;
+  if (launch_.regions.size() == 1) return std::nullopt;
   OwnWorld own;
   own.region = options_.region;
   own.current = std::max(generation_, restoring_);

@@ -76,7 +76,7 @@ Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, con
   statics_ = std::max(statics_, node.scene().statics.size());
   const bool changes_the_run = core::changes_the_run(command.ask);
   if (closed_) return refusal("the run is being changed; ask again in a moment");
-  if (changes_the_run && !run.complete) return refusal("a node has died: the run can only go on as it is");
+  if (changes_the_run && !run.complete) return refusal("a node has died: ask again once its region has a node");
   const core::ClientShape* const own_shape = shape_in(command.ask);
   const CommandContext context{launch_, node.scene(), node.current_step(), run.bodies,
                                own_shape != nullptr ? shape_of(*own_shape, meshes, node.scene()) : std::nullopt};

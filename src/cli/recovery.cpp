@@ -71,7 +71,10 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
       return fmt::format("region {} is silent, or has said what cannot be", number);
     }
     if (seen.lost && !seen.has_ended()) return fmt::format("the node of region {} has died", number);
-    if (!seen.lost && state == NodeState::kFailed) return fmt::format("the node of region {} has given up", number);
+    if (!seen.lost && state == NodeState::kFailed) {
+      const std::string& why = seen.status.text;
+      return fmt::format("the node of region {} has given up{}{}", number, why.empty() ? "" : ": ", why);
+    }
     // Whoever was there has left: its successor waits. (After a recovery, others are heard late to have begun.)
     if (!own.is_going_back && !seen.lost && state == NodeState::kSpare && !is_member()) {
       return fmt::format("the node of region {} has left", number);

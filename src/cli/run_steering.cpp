@@ -94,8 +94,7 @@ std::set<std::uint32_t> RunSteering::dead_regions() {
 dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   if (const auto dead = dead_regions(); kind == Kind::kReset && !dead.empty()) {
     throw SteeringRefused(fmt::format(
-        "reset: the bodies of dead regions [{}] would be missing from the new world; stop the run and launch it again",
-        fmt::join(dead, ", ")));
+        "reset: regions [{}] have no node now; ask again once somebody has taken them over", fmt::join(dead, ", ")));
   }
   dds::RunCommand command;
   command.kind = kind;
@@ -165,6 +164,7 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
     case Kind::kRestore:
     case Kind::kDrain:
     case Kind::kTake:
+    case Kind::kEnd:
       break;  // what nodes and launchers tell each other
   }
   return false;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "config/gone.h"
 #include "config/utf8.h"
 
 namespace aurasim::config {
@@ -88,7 +89,9 @@ std::string Field::found() const {
 }
 
 void Field::refuse(std::string_view allowed) const {
-  if (given()) {
+  if (const Gone* gone = is_text() ? gone_value(path_, node_->text) : nullptr) {
+    errors_->add(place_, path_, fmt::format("found {}, which is gone: {}", found(), gone->text));
+  } else if (given()) {
     errors_->add(place_, path_, fmt::format("found {}, allowed: {}", found(), allowed));
   } else if (required_) {
     errors_->add(place_, path_, fmt::format("missing, allowed: {}", allowed));
@@ -257,8 +260,11 @@ void Fields::close() const {
   report_copies(*map_.node(), map_.path(), map_.errors());
   for (const YamlNode& entry : map_.node()->children) {
     if (std::ranges::find(names, entry.key) != names.end()) continue;
-    map_.errors().add(entry.key_place, path_to(map_.path(), entry.key),
-                      fmt::format("unknown key, allowed: {}", listed(names)));
+    const std::string path = path_to(map_.path(), entry.key);
+    const Gone* gone = gone_key(path);
+    map_.errors().add(entry.key_place, path,
+                      gone ? fmt::format("this key is gone: {}", gone->text)
+                           : fmt::format("unknown key, allowed: {}", listed(names)));
   }
 }
 

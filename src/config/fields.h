@@ -61,7 +61,7 @@ class Field {
   /// The entries of a map whose keys are names, in the order of the file, without second entries of a name.
   std::vector<std::pair<std::string, Field>> entries() const;
 
-  /// "found ..., allowed: ..." (or "missing").
+  /// "found ..., allowed: ..." (or "missing"); of a value that is gone (gone.h) what became of it.
   void refuse(std::string_view allowed) const;
   /// Any other message.
   void complain(std::string_view message) const;

@@ -21,7 +21,7 @@ namespace aurasim::config {
 enum class Pace { kWall, kNone };
 /// kAuto: where the run is to have the bits of one node.
 enum class Redo { kAuto, kOn, kOff };
-enum class OnDeath { kRecover, kGoOn, kStop };
+enum class OnDeath { kRecover, kStop };
 
 struct Time {
   double step_hz = 60;

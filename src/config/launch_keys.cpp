@@ -96,10 +96,9 @@ const KeysOf<Physics>& physics_keys() {
           optional("preset", choice<int>({{kPresets[0].name, 0}, {kPresets[1].name, 1}, {kPresets[2].name, 2}}),
                    kPresetsText)
               .otherwise("none: the defaults of this page"),
-          optional("solver", &Physics::solver, words({"sequential_impulse", "nncg", "dantzig", "soft_step"}),
-                   "of contacts and joints: projected Gauss-Seidel, nonsmooth conjugate gradient, or direct (slow in "
-                   "piles, knows no rolling friction); soft_step looks once a step for what touches, solves in the "
-                   "substeps, and knows no iterations, friction_directions and erp"),
+          optional("solver", &Physics::solver, words({"sequential_impulse", "soft_step"}),
+                   "of contacts and joints: sequential_impulse is projected Gauss-Seidel; soft_step looks once a step "
+                   "for what touches, solves in the substeps, and knows no iterations, friction_directions and erp"),
           optional("iterations", &Physics::iterations, integer(1, 1000), "of the solver in each substep"),
           optional("friction_directions", &Physics::friction_directions, integer(1, 2),
                    "rows of friction at each contact point; with 1, piles creep and a card house falls"),
@@ -224,19 +223,17 @@ const KeysOf<Survival>& survival_keys() {
   static const KeysOf<Survival> keys(
       "survival", "What becomes of the run when one of its nodes dies.",
       {
-          optional(
-              "on_death", &Survival::on_death,
-              choice<OnDeath>({{"recover", OnDeath::kRecover}, {"go_on", OnDeath::kGoOn}, {"stop", OnDeath::kStop}}),
-              "recover: all stand until a process has taken the region over, go back to the newest state that is "
-              "kept of every region, and compute on from there: no body is lost, the bits are those of a run "
-              "without a death; go_on: the others go on at once without the region's bodies; stop: the run ends"),
+          optional("on_death", &Survival::on_death,
+                   choice<OnDeath>({{"recover", OnDeath::kRecover}, {"stop", OnDeath::kStop}}),
+                   "recover: all stand until a process has taken the region over, go back to the newest state that is "
+                   "kept of every region, and compute on from there: no body is lost, the bits are those of a run "
+                   "without a death; where nobody takes the region over, the run ends. stop: the run ends"),
           optional("checkpoint", &Survival::checkpoint_s, number(Range::from_to(0.001, 1e6), "s"),
                    "simulated time from one state that can be gone back to until the next: longer costs less, and has "
                    "more to be computed again"),
           optional("patience", &Survival::patience_s, number(Range::from_to(0, 1e6), "s"),
                    "so long the others wait for a spare, or for the launcher; then the host of the next region starts "
-                   "a process "
-                   "that takes the region over, and where that does not help either, they go on without its bodies"),
+                   "a process that takes the region over. Where that does not help either, the run ends"),
           optional("disk", &Survival::disk, text("a folder, or off"),
                    "each node also writes its part of the states that can be gone back to into a folder of its run "
                    "beneath this one, relative to this file, and keeps the newest: `launch --resume` goes on from "

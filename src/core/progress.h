@@ -20,22 +20,8 @@ class Progress {
   }
   static std::uint64_t marks() { return marks_.load(std::memory_order_relaxed); }
 
-  /// Lives while a library computes that cannot be looked into. Its time must be bounded by what it was given.
-  class Unseen {
-   public:
-    Unseen() { unseen_.fetch_add(1, std::memory_order_relaxed); }
-    ~Unseen() {
-      mark();
-      unseen_.fetch_sub(1, std::memory_order_relaxed);
-    }
-    Unseen(const Unseen&) = delete;
-    Unseen& operator=(const Unseen&) = delete;
-  };
-  static bool is_unseen() { return unseen_.load(std::memory_order_relaxed) > 0; }
-
  private:
   inline static std::atomic<std::uint64_t> marks_{0};
-  inline static std::atomic<int> unseen_{0};
 };
 
 }  // namespace aurasim::core

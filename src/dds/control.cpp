@@ -27,7 +27,7 @@ const char* name_of(NodeState state) {
 
 const char* name_of(RunCommandKind kind) {
   static constexpr std::array kNames = {"start", "pause", "resume",  "step",  "reset", "stop",
-                                        "rate",  "lost",  "restore", "drain", "take"};
+                                        "rate",  "lost",  "restore", "drain", "take",  "end"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
@@ -48,7 +48,8 @@ struct HeardCommand {
 
 /// Late joiners are told what was said long before, by nodes that have been replaced since.
 bool is_old_news(const RunCommand& command, const Origin& origin) {
-  const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore;
+  const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore ||
+                           command.kind == RunCommandKind::kEnd;
   return is_of_nodes && origin.clock_ahead < -kLongAgo;
 }
 
@@ -175,6 +176,8 @@ std::string ControlBus::Impl::problem_with(const RunCommand& asked, const Origin
       return is_node ? "" : "only a node of the run sets its rate";
     case RunCommandKind::kRestore:
       return is_node && is_of_its_region ? "" : "only the node of a region says where all go back to";
+    case RunCommandKind::kEnd:
+      return is_node ? "" : "only a node of the run says that nobody takes a region over";
     default:
       return {};
   }

@@ -150,7 +150,7 @@ MaybeError check(const wire::NodeStatus& in, const Expected& expected) {
 }
 
 MaybeError check_command(const wire::RunControl& in) {
-  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kTake)) {
+  if (in.kind() > static_cast<std::uint8_t>(RunCommandKind::kEnd)) {
     return WireError::kEnum;
   }
   const std::size_t members = in.member_process().size();

@@ -135,7 +135,8 @@ enum class RunCommandKind : std::uint8_t {
   kLost,
   kRestore,
   kDrain,
-  kTake
+  kTake,
+  kEnd
 };
 const char* name_of(RunCommandKind kind);
 
@@ -151,7 +152,7 @@ struct RunCommand {
   std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume and kStep: of the first one
   double rate = 1;  ///< kRate: from `at_step` on, which is due at `epoch_ns`, simulated seconds per second
   /// kLost: whose node has died; kDrain: whose node is to give its region to another process; kTake: what a spare is to
-  /// take over.
+  /// take over; kEnd: the run ends, because nobody takes this region over.
   core::RegionId region{};
   std::uint64_t process = 0;  ///< likewise: that node's, or the spare's
   core::Generation era = 0;   ///< kRestore: `generation` begins with state `at_step` of this era, due at `epoch_ns`

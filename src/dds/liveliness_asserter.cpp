@@ -68,7 +68,7 @@ void LivelinessAsserter::note_stall(std::int64_t stall_ns) {
 
 void LivelinessAsserter::look_at_computation() {
   const std::uint64_t marks = core::Progress::marks();
-  if (marks != marks_ || core::Progress::is_unseen()) progress();
+  if (marks != marks_) progress();
   marks_ = marks;
 }
 

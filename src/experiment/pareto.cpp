@@ -22,9 +22,7 @@ struct PlannedRun {
   int nodes = 1;
 };
 
-bool knows_iterations(physics::Solver solver) {
-  return solver != physics::Solver::kDantzig && solver != physics::Solver::kSoftStep;
-}
+bool knows_iterations(physics::Solver solver) { return solver != physics::Solver::kSoftStep; }
 bool knows_directions(physics::Solver solver) { return solver != physics::Solver::kSoftStep; }
 
 bool same_physics(const RunRules& a, const RunRules& b) {

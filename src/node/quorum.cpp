@@ -4,7 +4,7 @@
 
 namespace aurasim::node {
 
-Quorum::Quorum(core::RegionId self, std::uint32_t regions, Losses losses) : self_(self), losses_(losses) {
+Quorum::Quorum(core::RegionId self, std::uint32_t regions) : self_(self) {
   for (std::uint32_t r = 0; r < regions; ++r) members_.insert(core::RegionId{r});
 }
 
@@ -24,13 +24,7 @@ Standing Quorum::judge(const std::map<core::RegionId, PeerSign>& signs, std::chr
     if (members_.contains(region) && !sign.lost && sign.heard > lost_since_) here.insert(region);
   }
   const bool half_with_lowest = 2 * here.size() == members_.size() && here.contains(*members_.begin());
-  if (2 * here.size() > members_.size() || half_with_lowest) {
-    if (losses_ == Losses::kForgotten) {
-      for (const core::RegionId region : lost_) members_.erase(region);
-      lost_.clear();
-    }
-    return Standing::kGoOn;
-  }
+  if (2 * here.size() > members_.size() || half_with_lowest) return Standing::kGoOn;
   return here.size() + lost_.size() == members_.size() ? Standing::kCutOff : Standing::kWait;
 }
 

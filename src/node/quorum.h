@@ -25,28 +25,22 @@ enum class Standing : std::uint8_t {
   kCutOff,  ///< not the majority: this node has to stop
 };
 
-/// What becomes of members that the majority goes on without.
-enum class Losses : std::uint8_t {
-  kForgotten,  ///< they are members no longer, so nodes may die one after the other
-  kComeBack,   ///< each region gets a node again: until then the majority is one of all regions
-};
-
 class Quorum {
  public:
-  /// Regions 0 to `regions` - 1 are members, until they leave or are forgotten.
-  Quorum(core::RegionId self, std::uint32_t regions, Losses losses = Losses::kForgotten);
+  /// Regions 0 to `regions` - 1 are members until they leave. One that is lost stays a member: its region gets a node
+  /// again, and until then the majority is one of all.
+  Quorum(core::RegionId self, std::uint32_t regions);
 
   /// Half of the members are enough for those among whom is the lowest member. A region without a sign counts as not
   /// heard of. `now` never goes back.
   Standing judge(const std::map<core::RegionId, PeerSign>& signs, std::chrono::steady_clock::time_point now);
 
   const std::set<core::RegionId>& members() const { return members_; }
-  /// Members that are lost and not forgotten.
+  /// Members that are lost now.
   const std::set<core::RegionId>& lost() const { return lost_; }
 
  private:
   core::RegionId self_;
-  Losses losses_;
   std::set<core::RegionId> members_;
   std::set<core::RegionId> lost_;
   std::chrono::steady_clock::time_point lost_since_;  ///< when the latest of them was lost

@@ -351,7 +351,8 @@ void reserve_summary(const std::filesystem::path& folder) {
 std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions) {
   std::vector<core::RegionId> without;
   for (std::size_t r = 0; r < regions; ++r) {
-    if (last_word_of(folder, r).value("outcome", "") != "finished") {
+    const std::string outcome = last_word_of(folder, r).value("outcome", "");
+    if (outcome != "finished" && outcome != "broken off") {
       without.push_back(core::RegionId{static_cast<std::uint32_t>(r)});
     }
   }

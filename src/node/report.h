@@ -50,7 +50,8 @@ void clear_report(const std::filesystem::path& folder);
 /// Has any node written anything there?
 bool has_records(const std::filesystem::path& folder);
 
-/// Regions 0 to `regions` - 1 whose records in `folder` do not say that they came to the run's end.
+/// Regions 0 to `regions` - 1 whose records in `folder` do not say that they came to the run's end, or to where it
+/// broke off.
 std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions);
 
 /// Keeps room for the summary, so that it can be written when the disk has become full. Throws std::runtime_error.

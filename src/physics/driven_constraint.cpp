@@ -122,8 +122,4 @@ void let_give(btSolverConstraint& row) {
   row.m_cfm = mass / (mass + give);
 }
 
-btScalar give_of(const btSolverConstraint& row) {
-  return row.m_cfm > 0 && row.m_jacDiagABInv > 0 ? row.m_cfm / row.m_jacDiagABInv : btScalar(0);
-}
-
 }  // namespace aurasim::physics

@@ -20,10 +20,8 @@ void write_own_rows(const JointAxes& joint, double substep_s, const btRigidBody&
                     btTypedConstraint::btConstraintInfo2& info);
 
 /// Bullet has no rows that give: one that should, by `give` (ImplicitPull), comes from getInfo2() with -give as its
-/// cfm. This makes the row that all of Bullet's solvers then solve rightly.
+/// cfm. This makes the row that Bullet's solver then solves rightly.
 void let_give(btSolverConstraint& row);
-/// What to add to the diagonal of the matrix of a direct solver for that row, 1/kg or 1/(kg m^2); 0 of any other.
-btScalar give_of(const btSolverConstraint& row);
 
 template <class Joint>
 class Driven final : public Joint {

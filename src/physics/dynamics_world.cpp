@@ -55,7 +55,7 @@ void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
 
 struct DynamicsWorld::Bullet {
   explicit Bullet(const Settings& settings)
-      : solver(make_solver(settings.solver)),
+      : solver(make_solver()),
         world((settings.looks_once() ? make_soft_world : make_stepper)(
             {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses, moving_statics},
             settings)),

@@ -8,8 +8,6 @@ namespace aurasim::physics {
 
 enum class Solver {
   kSequentialImpulse,  ///< projected Gauss-Seidel
-  kNncg,               ///< nonsmooth nonlinear conjugate gradient
-  kDantzig,            ///< direct; its time grows with the cube of a pile's contacts, it knows no rolling friction
   kSoftStep,           ///< what touches is found once a step; soft contacts in substeps (soft/step.h)
 };
 

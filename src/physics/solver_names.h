@@ -11,11 +11,8 @@
 
 namespace aurasim::physics {
 
-inline constexpr std::array<std::pair<Solver, std::string_view>, 4> kSolverNames = {
-    {{Solver::kSequentialImpulse, "sequential_impulse"},
-     {Solver::kNncg, "nncg"},
-     {Solver::kDantzig, "dantzig"},
-     {Solver::kSoftStep, "soft_step"}}};
+inline constexpr std::array<std::pair<Solver, std::string_view>, 2> kSolverNames = {
+    {{Solver::kSequentialImpulse, "sequential_impulse"}, {Solver::kSoftStep, "soft_step"}}};
 
 inline std::string_view name_of(Solver solver) { return kSolverNames[static_cast<std::size_t>(solver)].second; }
 

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 
-#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
-#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
-#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
 #include "core/progress.h"
 #include "physics/driven_constraint.h"
@@ -50,16 +47,14 @@ void let_bounce(btSolverConstraint& row, const btSolverBody& a, const btSolverBo
   row.m_rhsPenetration = 0;
 }
 
-template <class BulletSolver>
-class Refined : public BulletSolver {
- public:
-  using BulletSolver::BulletSolver;
+using BulletSolver = btSequentialImpulseConstraintSolver;
 
+class RefinedSolver final : public BulletSolver {
  protected:
   void convertJoints(btTypedConstraint** joints, int count, const btContactSolverInfo& info) override {
     BulletSolver::convertJoints(joints, count, info);
-    for (int i = 0; i < this->m_tmpSolverNonContactConstraintPool.size(); ++i) {
-      let_give(this->m_tmpSolverNonContactConstraintPool[i]);
+    for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
+      let_give(m_tmpSolverNonContactConstraintPool[i]);
     }
   }
 
@@ -72,10 +67,9 @@ class Refined : public BulletSolver {
       BulletSolver::convertContacts(manifolds + i, std::min(kAtOnce, count - i), info);
       core::Progress::mark();
     }
-    for (int i = 0; i < this->m_tmpSolverContactConstraintPool.size(); ++i) {
-      btSolverConstraint& row = this->m_tmpSolverContactConstraintPool[i];
-      let_bounce(row, this->m_tmpSolverBodyPool[row.m_solverBodyIdA], this->m_tmpSolverBodyPool[row.m_solverBodyIdB],
-                 info);
+    for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
+      btSolverConstraint& row = m_tmpSolverContactConstraintPool[i];
+      let_bounce(row, m_tmpSolverBodyPool[row.m_solverBodyIdA], m_tmpSolverBodyPool[row.m_solverBodyIdB], info);
     }
     friction_anchors_.pull_back(rows(), info);
   }
@@ -114,52 +108,14 @@ class Refined : public BulletSolver {
 
  private:
   ContactRows rows() {
-    return {this->m_tmpSolverContactConstraintPool, this->m_tmpSolverContactFrictionConstraintPool,
-            this->m_tmpSolverBodyPool};
+    return {m_tmpSolverContactConstraintPool, m_tmpSolverContactFrictionConstraintPool, m_tmpSolverBodyPool};
   }
 
   FrictionAnchors friction_anchors_;
 };
 
-/// A base, so that it outlives the solver that points at it.
-struct Dantzig {
-  btDantzigSolver dantzig;
-};
-class DantzigSolver final : private Dantzig, public Refined<btMLCPSolver> {
- public:
-  BT_DECLARE_ALIGNED_ALLOCATOR();
-  DantzigSolver() : Refined(&dantzig) {}
-
- protected:
-  /// The matrix and its factors: one call, with the cube of the rows.
-  bool solveMLCP(const btContactSolverInfo& info) override {
-    const core::Progress::Unseen unseen;
-    return Refined::solveMLCP(info);
-  }
-
-  void createMLCPFast(const btContactSolverInfo& info) override {
-    const core::Progress::Unseen unseen;
-    Refined::createMLCPFast(info);
-    for (int i = 0; i < m_allConstraintPtrArray.size(); ++i) {
-      const btScalar give = give_of(*m_allConstraintPtrArray[i]);
-      if (give > 0) m_A.setElem(i, i, m_A(i, i) + give);
-    }
-  }
-};
-
 }  // namespace
 
-std::unique_ptr<btConstraintSolver> make_solver(Solver kind) {
-  switch (kind) {
-    case Solver::kNncg:
-      return std::make_unique<Refined<btNNCGConstraintSolver>>();
-    case Solver::kDantzig:
-      return std::make_unique<DantzigSolver>();
-    case Solver::kSoftStep:  // needs none
-    case Solver::kSequentialImpulse:
-      break;
-  }
-  return std::make_unique<Refined<btSequentialImpulseConstraintSolver>>();
-}
+std::unique_ptr<btConstraintSolver> make_solver() { return std::make_unique<RefinedSolver>(); }
 
 }  // namespace aurasim::physics

@@ -1,4 +1,4 @@
-// Bullet's constraint solvers, with two changes: a contact that bounces neither gains nor loses energy by it, and one
+// Bullet's constraint solver, with two changes: a contact that bounces neither gains nor loses energy by it, and one
 // that sticks does not creep (friction_anchors.h).
 //
 // Bullet gives a contact that bounces the sum of three speeds: that of the bounce, that which pushes overlapping bodies
@@ -11,13 +11,11 @@
 
 #include <memory>
 
-#include "physics/settings.h"
-
 class btConstraintSolver;
 
 namespace aurasim::physics {
 
-/// None of them remembers anything from one island to the next.
-std::unique_ptr<btConstraintSolver> make_solver(Solver kind);
+/// Remembers nothing from one island to the next.
+std::unique_ptr<btConstraintSolver> make_solver();
 
 }  // namespace aurasim::physics

@@ -60,8 +60,8 @@ TEST_F(CommandLimits, AStaticIsSentWhereItCanGo) {
   expect_refusal(core::SendStatic{core::StaticId{2}, there, 2}, "there is no static 2");
   expect_refusal(core::SendStatic{core::StaticId{0}, {{1e9, 0, 0}, core::Quat::Identity()}, 2}, "too far out");
   expect_refusal(core::SendStatic{core::StaticId{0}, there, -1}, "allowed: 0 to");
-  launch_.physics.solver = "nncg";
-  expect_refusal(core::SendStatic{core::StaticId{0}, there, 2}, "nncg knows no statics that move");
+  launch_.physics.solver = "sequential_impulse";
+  expect_refusal(core::SendStatic{core::StaticId{0}, there, 2}, "sequential_impulse knows no statics that move");
 }
 
 TEST_F(CommandLimits, ASpinIsAtMostAQuarterTurnInASubstep) {

@@ -1,4 +1,4 @@
-// When a node has to stop: held for dead, held up, or not of the majority. Virtual time.
+// When a node has to stand: it is not of the majority. Virtual time.
 #include "cli/fence.h"
 
 #include <gmock/gmock.h>
@@ -14,16 +14,14 @@ using namespace std::chrono_literals;
 class Fenced : public ::testing::Test {
  protected:
   Fence fence_of(std::uint32_t region, std::uint32_t regions, bool can_be_cut = true, bool never_waits = false) {
-    return Fence({RegionId{region}, regions, can_be_cut, never_waits},
-                 {[this] { return held_up_; }, [this] { return peers_; }});
+    return Fence({RegionId{region}, regions, can_be_cut, never_waits}, [this] { return peers_; });
   }
-  bool open(Fence& fence, bool held_for_dead = false) { return fence.open(held_for_dead, dead_, now_); }
+  bool open(Fence& fence) { return fence.open(dead_, now_); }
   void hear(std::uint32_t region) { peers_[RegionId{region}] = {false, false, now_}; }
   void lose(std::uint32_t region) { peers_[RegionId{region}].lost = true; }
   void leave(std::uint32_t region) { peers_[RegionId{region}].left = true; }
   void pass(std::chrono::milliseconds time) { now_ += time; }
 
-  bool held_up_ = false;
   std::map<RegionId, node::PeerSign> peers_;
   std::vector<RegionId> dead_;
   Fence::Clock::time_point now_{1h};
@@ -37,44 +35,38 @@ TEST_F(Fenced, AWholeRunGoesOn) {
   EXPECT_FALSE(fence.closed());
 }
 
-TEST_F(Fenced, WhomANeighbourHoldsForDeadStopsForGood) {
-  Fence fence = fence_of(0, 3);
-  EXPECT_FALSE(open(fence, true));
-  EXPECT_THAT(fence.reason(), HasSubstr("holds region 0 for dead"));
-  EXPECT_FALSE(open(fence, false)) << "it stays closed";
-}
-
-TEST_F(Fenced, WhoWasHeldUpStopsOnlyIfItHasLostNeighbours) {
-  Fence fence = fence_of(0, 3, false);
-  held_up_ = true;
-  EXPECT_TRUE(open(fence)) << "the host stood still with all its nodes";
-  dead_ = {RegionId{1}};
-  EXPECT_FALSE(open(fence));
-  EXPECT_THAT(fence.reason(), HasSubstr("held up for longer"));
-}
-
-TEST_F(Fenced, OnOneHostASilentNeighbourIsDeadAndTheRestGoesOn) {
+TEST_F(Fenced, OnOneHostNobodyIsCutOff) {
   Fence fence = fence_of(0, 2, false);
   lose(1);
   dead_ = {RegionId{1}};
   EXPECT_TRUE(open(fence));
 }
 
-TEST_F(Fenced, TheMinorityWaitsAndThenStops) {
+TEST_F(Fenced, WhoIsClosedStaysClosed) {
+  Fence fence = fence_of(0, 3);
+  EXPECT_TRUE(open(fence));
+  fence.close("another process has taken over region 0");
+  EXPECT_FALSE(open(fence));
+  EXPECT_TRUE(fence.closed());
+  EXPECT_THAT(fence.reason(), HasSubstr("region 0"));
+}
+
+TEST_F(Fenced, TheMinorityWaitsAndIsThenCutOff) {
   Fence fence = fence_of(2, 3);
   lose(0);
   hear(1);
   dead_ = {RegionId{0}};
   EXPECT_FALSE(open(fence)) << "has region 1 been heard since?";
-  EXPECT_FALSE(fence.closed());
+  EXPECT_FALSE(fence.is_cut_off());
   lose(1);
   pass(60ms);
   EXPECT_FALSE(open(fence));
-  EXPECT_THAT(fence.reason(), HasSubstr("regions [0, 1]"));
+  EXPECT_TRUE(fence.is_cut_off());
+  EXPECT_FALSE(fence.closed());
 }
 
-TEST_F(Fenced, WhereTheDeadComeBackTheMinorityStandsUntilTheOthersAreHeardAgain) {
-  Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
+TEST_F(Fenced, TheMinorityStandsUntilTheOthersAreHeardAgain) {
+  Fence fence = fence_of(2, 3);
   lose(0);
   lose(1);
   dead_ = {RegionId{0}, RegionId{1}};
@@ -102,8 +94,8 @@ TEST_F(Fenced, WhatWasJudgedBeforeADeathDoesNotCountAfterIt) {
   EXPECT_FALSE(open(fence));
 }
 
-TEST_F(Fenced, WhereTheDeadComeBackTheMinorityNeverGivesItsWorldUp) {
-  Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
+TEST_F(Fenced, TheMinorityNeverGivesItsWorldUp) {
+  Fence fence = fence_of(2, 3);
   lose(0);
   lose(1);
   dead_ = {RegionId{0}, RegionId{1}};
@@ -115,7 +107,7 @@ TEST_F(Fenced, WhereTheDeadComeBackTheMinorityNeverGivesItsWorldUp) {
 
 // The stream of a neighbour begins anew only after the recovery, so its end says nothing about the neighbour by then.
 TEST_F(Fenced, WhoStandsBelievesTheStatusesAndNotTheStreamsThatHaveEnded) {
-  Fence fence({RegionId{2}, 3, true, false, true}, {[] { return false; }, [this] { return peers_; }});
+  Fence fence = fence_of(2, 3);
   lose(0);
   lose(1);
   dead_ = {RegionId{0}, RegionId{1}};
@@ -155,7 +147,7 @@ TEST_F(Fenced, WhoHasLeftIsNotMissed) {
 
 TEST_F(Fenced, ANodeThatIsAloneIsNeverFenced) {
   Fence fence = fence_of(0, 1);
-  EXPECT_TRUE(open(fence, true));
+  EXPECT_TRUE(open(fence));
 }
 
 }  // namespace

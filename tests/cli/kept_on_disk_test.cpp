@@ -67,7 +67,7 @@ TEST_F(KeptOnDisk, IsInTheFolderOfSavesIfThatIsGiven) {
   launch_.survival.disk = "off";
   EXPECT_FALSE(kept_folder(launch_, save_));
   launch_.survival.disk = "";
-  launch_.survival.on_death = config::OnDeath::kGoOn;
+  launch_.survival.on_death = config::OnDeath::kStop;
   EXPECT_FALSE(kept_folder(launch_, save_)) << "nobody keeps states to go back to";
 }
 

@@ -55,15 +55,15 @@ TEST(NodePhases, ADeathLetsAllStandAndBeginAgainWhateverTheyDid) {
       << "one more has died before they began";
   EXPECT_EQ(after({E::kFree, E::kMet, E::kStarted, E::kChanges, E::kDeath}), P::kRecovering);
   EXPECT_EQ(after({E::kFree, E::kMet, E::kStarted, E::kLast, E::kDeath}), P::kRecovering) << "not all had ended";
-  EXPECT_EQ(after({E::kFree, E::kMet, E::kStarted, E::kDeath, E::kGoesOn}), P::kRunning) << "without the dead";
+  EXPECT_FALSE(next_phase(P::kRecovering, E::kGoesOn)) << "nobody goes on without the dead";
   EXPECT_EQ(after({E::kJoins, E::kJoins, E::kStands, E::kStarted}), P::kRunning) << "who takes its region over";
 }
 
-TEST(NodePhases, AFenceClosesOnlyBehindWhoHasARegionOfARun) {
+TEST(NodePhases, OnlyWhoHasARegionOfARunIsFenced) {
   for (std::size_t i = 0; i < kNodePhases; ++i) {
     const auto phase = static_cast<P>(i);
     const bool runs = phase == P::kRunning || phase == P::kPaused || phase == P::kRecovering || phase == P::kSpare ||
-                      phase == P::kWaiting;
+                      phase == P::kWaiting || phase == P::kChanging;
     EXPECT_EQ(next_phase(phase, E::kFence).has_value(), runs) << name_of(phase);
   }
 }

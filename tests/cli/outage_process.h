@@ -38,7 +38,7 @@ struct OutageSim::Process {
         region(region_in),
         regions(regions_in),
         writer(guid_of(id, host)),
-        fence({region, regions, true, false, true}, {[] { return false; }, [this] { return signs(); }}),
+        fence({region, regions, true, false}, [this] { return signs(); }),
         recovery({region, regions, std::chrono::seconds(20), true, false, kCheckpointSteps}) {
     roster.emplace(dds::RosterSettings{regions, 1, 1, region, writer, false}, speakers);
     status.region = region;

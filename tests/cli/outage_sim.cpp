@@ -182,7 +182,7 @@ void OutageSim::act(Process& process) {
 
 void OutageSim::compute(Process& process) {
   process.recovery.note_kept(process.nodes, 0);
-  if (!process.fence.open(false, {process.silent.begin(), process.silent.end()}, now_)) return;
+  if (!process.fence.open({process.silent.begin(), process.silent.end()}, now_)) return;
   for (std::uint32_t r = 0; r < hosts_; ++r) {
     const Process* const other = sender_of(process, core::RegionId{r});
     if (core::RegionId{r} == process.region) continue;
@@ -228,7 +228,7 @@ void OutageSim::agree(Process& process) {
     process.deadline = now_ + kPatienceWithParts;
     return;
   }
-  const bool may_go_on = !process.knows_world || process.fence.open(false, {}, now_);
+  const bool may_go_on = !process.knows_world || process.fence.open({}, now_);
   SeenNodes nodes = process.nodes;
   nodes[process.region].status = process.status;
   if (!process.knows_world &&
@@ -331,7 +331,7 @@ void OutageSim::begin(Process& process) {
   process.step = restore.at_step;
   process.silent.clear();
   process.unsent.clear();
-  process.fence.begin_anew(true);
+  process.fence.begin_anew();
   for (auto& [region, steps] : process.parts) steps.erase(steps.upper_bound(process.step), steps.end());
   for (std::uint32_t r = 0; r < hosts_; ++r) {
     if (restore.count == 0) process.parts[core::RegionId{r}].insert(process.step);

@@ -76,6 +76,46 @@ TEST_F(Standing, TheNextRegionsHostStandsInAfterAWhile) {
   EXPECT_THAT(look(third, 3).stand_ins, IsEmpty()) << "it has just begun";
 }
 
+TEST_F(Standing, WhoHasGivenUpSaysWhyToThoseWhoStandForIt) {
+  OwnWorld own;
+  own.region = RegionId{0};
+  hear(1, NodeState::kFailed);
+  nodes_[RegionId{1}].status.text = "the node of region 2 has died";
+  EXPECT_EQ(why_stand(nodes_, own), "the node of region 1 has given up: the node of region 2 has died");
+  nodes_[RegionId{1}].status.text.clear();
+  EXPECT_EQ(why_stand(nodes_, own), "the node of region 1 has given up");
+}
+
+/// Its host starts three processes for the region, one after the other. All of them die where the node has died.
+TEST_F(Standing, WhoHasStoodInThreeTimesInVainGivesUp) {
+  for (const std::uint32_t region : {0U, 1U, 3U}) hear(region);
+  for (const std::uint32_t region : {0U, 1U, 3U}) does_not_hear(region, {RegionId{2}});
+  Recovery recovery = recovery_of(3);
+  look(recovery, 3);
+  for (int i = 0; i < 3; ++i) {
+    now_ += 21s;
+    const RecoveryActs acts = look(recovery, 3);
+    EXPECT_THAT(acts.stand_ins, ElementsAre(RegionId{2}));
+    EXPECT_FALSE(acts.gives_up);
+  }
+  now_ += 21s;
+  const RecoveryActs acts = look(recovery, 3);
+  EXPECT_TRUE(acts.gives_up);
+  EXPECT_THAT(acts.stand_ins, IsEmpty());
+  EXPECT_THAT(acts.vacant, ElementsAre(RegionId{2})) << "the message names it";
+}
+
+TEST_F(Standing, BelowALauncherThatStartsNobodyTheNodesGiveUpAfterTheirPatience) {
+  for (const std::uint32_t region : {0U, 1U, 3U}) hear(region);
+  for (const std::uint32_t region : {0U, 1U, 3U}) does_not_hear(region, {RegionId{2}});
+  Recovery recovery = recovery_of(0, true);
+  look(recovery, 0);
+  now_ += 19s;
+  EXPECT_FALSE(look(recovery, 0).gives_up);
+  now_ += 2s;
+  EXPECT_TRUE(look(recovery, 0).gives_up);
+}
+
 TEST_F(Standing, NobodyStandsInForOthersWithoutTheMajority) {
   Recovery recovery = recovery_of(0);
   hear(0);

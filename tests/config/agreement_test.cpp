@@ -73,7 +73,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
       "aura.radius=tight",
       "aura.uncertainty=0.4",
       "physics.iterations=11",
-      "physics.solver=nncg",
+      "physics.solver=sequential_impulse",
       "physics.friction_directions=2",
       "physics.erp=0.1",
       "physics.continuous=false",

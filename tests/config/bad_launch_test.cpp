@@ -147,8 +147,27 @@ const std::vector<BadCase> kBadLaunches = {
      {"launch.yaml:3:23: physics.iterations: found \"0\", allowed: an integer from 1 to 1000"}},
     {"UnknownSolverAndPreset",
      kTwo + "physics: {solver: magic, preset: best}\n",
-     {"launch.yaml:3:19: physics.solver: found \"magic\", allowed: sequential_impulse, nncg, dantzig, soft_step",
+     {"launch.yaml:3:19: physics.solver: found \"magic\", allowed: sequential_impulse, soft_step",
       "launch.yaml:3:34: physics.preset: found \"best\", allowed: fast, balanced, exact"}},
+    {"SolverNncgIsGone",
+     kTwo + "physics: {solver: nncg}\n",
+     {"launch.yaml:3:19: physics.solver: found \"nncg\", which is gone: this solver was removed, because piles with "
+      "friction fell apart with it. Choose soft_step (the default), or sequential_impulse"}},
+    {"SolverDantzigIsGone",
+     kTwo + "physics: {iterations: 0, solver: dantzig}\n",
+     {"launch.yaml:3:23: physics.iterations: found \"0\", allowed: an integer from 1 to 1000",
+      "launch.yaml:3:34: physics.solver: found \"dantzig\", which is gone: this solver was removed, because its time "
+      "grew with the cube of a pile's contacts. Choose soft_step (the default), or sequential_impulse"}},
+    {"GoingOnWithoutTheDeadIsGone",
+     kTwo + "survival: {checkpoint: 2, on_death: go_on}\n",
+     {"launch.yaml:3:37: survival.on_death: found \"go_on\", which is gone: a run does not go on without the bodies of "
+      "a "
+      "dead node any more. Choose recover (the default: another process takes its region over, and no body is lost), "
+      "or "
+      "stop"}},
+    {"UnknownOnDeath",
+     kTwo + "survival: {on_death: panic}\n",
+     {"launch.yaml:3:22: survival.on_death: found \"panic\", allowed: recover, stop"}},
     {"DomainOutOfRange",
      kTwo + "dds: {domain: 233}\n",
      {"launch.yaml:3:15: dds.domain: found \"233\", allowed: an integer from 0 to 232"}},
@@ -241,6 +260,12 @@ TEST(BadLaunchFile, AllErrorsAreCollectedInTheOrderOfTheFile) {
                  "launch.yaml:3:45: regions.width: found \"-1\"", "scene.yaml:1:10: gravity: found \"9.81\"",
                  "scene.yaml:2:28: prototypes.ball.shape: found \"ball\", allowed: a shape of this scene: nothing",
                  "scene.yaml:2:40: prototypes.ball.mass: found \"-1\", allowed: a number from 1e-06 to 1000000000"});
+}
+
+TEST(BadLaunchFile, AnOverrideWithAValueThatIsGoneIsToldWhatBecameOfIt) {
+  const Workspace workspace;
+  expect_errors(workspace.launch_errors(kTwo, {"physics.solver=nncg"}),
+                {"--set physics.solver=nncg: physics.solver: found \"nncg\", which is gone: this solver was removed"});
 }
 
 TEST(BadLaunchFile, AThousandErrorsAreCutAndCounted) {

@@ -89,7 +89,7 @@ TEST(LaunchFile, WhatIsAutoFollowsFromTheSolver) {
   EXPECT_TRUE(workspace.launch(start).physics.is_continuous());
   EXPECT_TRUE(workspace.launch(start + "physics: {continuous: auto}\n").physics.is_continuous());
   EXPECT_FALSE(workspace.launch(start + "physics: {continuous: false}\n").physics.is_continuous());
-  EXPECT_FALSE(workspace.launch(start + "physics: {solver: nncg}\n").physics.is_continuous());
+  EXPECT_FALSE(workspace.launch(start + "physics: {solver: sequential_impulse}\n").physics.is_continuous());
   EXPECT_EQ(workspace.launch(start).physics.threads, 1);
   EXPECT_EQ(workspace.launch(start + "physics: {threads: auto}\n").physics.threads, std::nullopt);
 }
@@ -103,10 +103,10 @@ TEST(LaunchFile, APresetSetsThePhysicsAndWhatStandsBesideItGoesBefore) {
   EXPECT_EQ(exact.physics.friction_directions, preset_named("exact").friction_directions);
   EXPECT_EQ(exact.time.substeps, preset_named("exact").substeps);
   const Launch changed =
-      workspace.launch(start + "time: {substeps: 3}\nphysics: {iterations: 7, preset: exact, solver: nncg}\n");
+      workspace.launch(start + "time: {substeps: 3}\nphysics: {iterations: 7, preset: exact, solver: soft_step}\n");
   EXPECT_EQ(changed.time.substeps, 3);
   EXPECT_EQ(changed.physics.iterations, 7);
-  EXPECT_EQ(changed.physics.solver, "nncg");
+  EXPECT_EQ(changed.physics.solver, "soft_step");
 }
 
 TEST(LaunchFile, EveryKeyIsRead) {
@@ -118,7 +118,7 @@ regions: {layout: grid, rows: 1, columns: 3, cell: [50, 60], neighbour_distance:
 time: {step_hz: 120, substeps: 2, sync: deterministic, lookahead: 3, pace: none}
 tolerances: {speed: 20, latency: 0.001, frame: 0.005}
 aura: {radius: tight, uncertainty: 1}
-physics: {solver: dantzig, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
+physics: {solver: sequential_impulse, iterations: 30, friction_directions: 2, erp: 0.1, continuous: true}
 dds: {domain: 7, profiles: qos.xml, discovery: peers, interfaces: [10.0.0.1, 127.0.0.1], peers: ["10.0.0.2:7400"],
       security: keys}
 observe: {tick_hz: 30}
@@ -133,7 +133,7 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.tolerances.speed_m_s, 20);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kTight);
   EXPECT_EQ(launch.aura.uncertainty, 1);
-  EXPECT_EQ(launch.physics.solver, "dantzig");
+  EXPECT_EQ(launch.physics.solver, "sequential_impulse");
   EXPECT_EQ(launch.physics.iterations, 30);
   EXPECT_EQ(launch.physics.friction_directions, 2);
   EXPECT_EQ(launch.physics.contact_erp, 0.1);

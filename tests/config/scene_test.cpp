@@ -63,10 +63,10 @@ TEST(SceneFile, WhatMovesNeedsASolverThatKnowsIt) {
   const std::string text = "statics: [{name: belt, shape: {box: {size: [1, 1, 1]}}, belt: [0, 2, 0]}]\n";
   EXPECT_NO_THROW(workspace.scene(text));
   try {
-    workspace.scene(text, {"physics.solver=dantzig"});
+    workspace.scene(text, {"physics.solver=sequential_impulse"});
     FAIL();
   } catch (const BadConfig& bad) {
-    EXPECT_THAT(bad.what(), testing::HasSubstr("the solver dantzig and the static \"belt\", which moves"));
+    EXPECT_THAT(bad.what(), testing::HasSubstr("the solver sequential_impulse and the static \"belt\", which moves"));
   }
 }
 

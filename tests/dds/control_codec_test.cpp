@@ -170,7 +170,7 @@ TEST(CommandCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto&) {}), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(0); }), "accepted");
   EXPECT_EQ(after([](auto& w) { w.map_version(78); }), "map_version");
-  EXPECT_EQ(after([](auto& w) { w.kind(11); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.kind(12); }), "enum");
   for (const double rate : {0.0, 1e-300, 0.009, 10.1, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     const auto ask = [rate](auto& w) {
       w.kind(6);

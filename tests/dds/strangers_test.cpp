@@ -181,7 +181,7 @@ TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
   RunCommand command;
   command.run = 11;
   using Kind = RunCommandKind;
-  for (const Kind kind : {Kind::kStart, Kind::kRate, Kind::kRestore, Kind::kPause}) {
+  for (const Kind kind : {Kind::kStart, Kind::kRate, Kind::kRestore, Kind::kEnd, Kind::kPause}) {
     command.kind = kind;
     command.request = draw_id();
     runs->send(command, std::uint64_t{7});
@@ -196,7 +196,7 @@ TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
     zero_bus_.take_commands();
     return zero_.participant.refused_of_strangers();
   };
-  EXPECT_TRUE(holds_in_time([&] { return refused() == 3U; })) << refused();
+  EXPECT_TRUE(holds_in_time([&] { return refused() == 4U; })) << refused();
 }
 
 /// A drain gives a region a second process, which waits for the first to leave.

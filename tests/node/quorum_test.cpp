@@ -63,7 +63,7 @@ TEST_F(QuorumTest, TheMajorityGoesOnOnceItHasBeenHeardAgain) {
   EXPECT_EQ(judge(), Standing::kWait);
   hear({1});
   EXPECT_EQ(judge(), Standing::kGoOn);
-  EXPECT_FALSE(quorum_->members().contains(RegionId{3}));
+  EXPECT_TRUE(quorum_->members().contains(RegionId{3})) << "its region gets a node again";
 }
 
 TEST_F(QuorumTest, WhoeverHasLostTheMajorityIsCutOff) {
@@ -113,24 +113,10 @@ TEST_F(QuorumTest, OfTwoRegionsTheLowerGoesOn) {
   EXPECT_EQ(judge(), Standing::kCutOff);
 }
 
-TEST_F(QuorumTest, OneAfterTheOtherTheyMayAllDieButOne) {
-  make(0, 4);
-  for (const std::uint32_t region : {3U, 2U}) {
-    lose(region);
-    judge();
-    hear({1});
-    EXPECT_EQ(judge(), Standing::kGoOn) << region;
-  }
-  lose(1);
-  EXPECT_EQ(judge(), Standing::kGoOn);
-}
-
-// Regions 3, 2 and 1 lose touch one after the other. If each loss were forgotten, region 0 would go on alone, while the
+// Regions 3, 2 and 1 lose touch one after the other. If losses were forgotten, region 0 would go on alone, while the
 // other three, who hear each other again, are the majority.
-TEST_F(QuorumTest, WhereTheLostComeBackTheMajorityIsOneOfAllRegions) {
-  quorum_.emplace(RegionId{0}, 4, Losses::kComeBack);
-  hear({1, 2, 3});
-  ASSERT_EQ(judge(), Standing::kGoOn);
+TEST_F(QuorumTest, TheMajorityIsOneOfAllRegions) {
+  make(0, 4);
   lose(3);
   judge();
   hear({1, 2});

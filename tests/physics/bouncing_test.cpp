@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "physics/scenes.h"
-#include "physics/solver_names.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -20,11 +19,10 @@ core::Scene scene_of_bouncing(const core::Shape& shape, double restitution) {
   return scene;
 }
 
-Settings settings_of(int step_hz, Solver solver = Solver::kSequentialImpulse) {
+Settings settings_of(int step_hz) {
   Settings settings;
   settings.step_s = 1.0 / step_hz;
   settings.substeps = 1;
-  settings.solver = solver;
   return settings;
 }
 
@@ -34,12 +32,10 @@ double energy(const core::BodyRecord& body, double step_s) {
   return 0.5 * v * v + kGravity * body.p_WB.z();
 }
 
-class Bouncing : public ::testing::TestWithParam<Solver> {};
-
-TEST_P(Bouncing, ABallWithRestitutionOneKeepsItsEnergyFor20Seconds) {
+TEST(BouncingBodies, ABallWithRestitutionOneKeepsItsEnergyFor20Seconds) {
   const core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 1);
   for (const int step_hz : {60, 240, 1000}) {
-    RegionWorld world(scene, settings_of(step_hz, GetParam()));
+    RegionWorld world(scene, settings_of(step_hz));
     world.add(std::vector{body(1, 0, {0, 0, 1.5})});
     const double step_s = 1.0 / step_hz;
     const double before = energy(world.records().front(), step_s) - kGravity * 0.5;
@@ -52,10 +48,6 @@ TEST_P(Bouncing, ABallWithRestitutionOneKeepsItsEnergyFor20Seconds) {
     EXPECT_LT(largest, 0.01) << step_hz << " Hz";
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Solvers, Bouncing,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig),
-                         [](const auto& param) { return std::string(name_of(param.param)); });
 
 TEST(BouncingBodies, EachBounceReachesTheSquareOfItsRestitution) {
   const core::Scene scene = scene_of_bouncing(core::Sphere{0.5}, 0.5);

@@ -289,9 +289,7 @@ TEST_P(Gripper, AFollowerRestsOnceItsLeaderHasBrokenOff) {
   EXPECT_NEAR(second(), before + 0.4 * speed, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Gripper,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig,
-                                           Solver::kSoftStep));
+INSTANTIATE_TEST_SUITE_P(Solvers, Gripper, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 TEST_P(Drives, ABodyWithMomentsOfItsOwnTurnsByThem) {
   // Euler's equations: I w' = (I w) x w, here about the principal axes, by small steps.
@@ -317,9 +315,7 @@ TEST_P(Drives, ABodyThatDoesNotCollideFallsThroughTheGround) {
   EXPECT_TRUE(world->snapshot().contacts.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Drives,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kDantzig,
-                                           Solver::kSoftStep));
+INSTANTIATE_TEST_SUITE_P(Solvers, Drives, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 }  // namespace
 }  // namespace aurasim::physics::testing

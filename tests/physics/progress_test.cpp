@@ -101,19 +101,7 @@ TEST_P(Heap, NoLargePartOfAStepIsWithoutAMark) {
   EXPECT_LT(watcher.longest_s(), 0.2 * watcher.all_s());
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Heap,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kSoftStep));
-
-TEST(Progress, ADirectSolverIsNotLookedInto) {
-  EXPECT_FALSE(core::Progress::is_unseen());
-  {
-    const core::Progress::Unseen unseen;
-    EXPECT_TRUE(core::Progress::is_unseen());
-  }
-  EXPECT_FALSE(core::Progress::is_unseen());
-  EXPECT_GT(marks_of_a_heap(Solver::kDantzig, 2), 0U);
-  EXPECT_FALSE(core::Progress::is_unseen());
-}
+INSTANTIATE_TEST_SUITE_P(Solvers, Heap, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep));
 
 }  // namespace
 }  // namespace aurasim::physics::testing

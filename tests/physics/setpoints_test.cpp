@@ -170,12 +170,9 @@ TEST_P(Pushed, ThePathIsTheSameInWorldsThatHandItOver) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Pushed,
-                         ::testing::Values(Solver::kSequentialImpulse, Solver::kNncg, Solver::kSoftStep),
+INSTANTIATE_TEST_SUITE_P(Solvers, Pushed, ::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep),
                          [](const auto& param) {
-                           return std::string(param.param == Solver::kSoftStep ? "SoftStep"
-                                              : param.param == Solver::kNncg   ? "Nncg"
-                                                                               : "SequentialImpulse");
+                           return std::string(param.param == Solver::kSoftStep ? "SoftStep" : "SequentialImpulse");
                          });
 
 }  // namespace

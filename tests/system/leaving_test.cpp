@@ -55,6 +55,20 @@ class StartedByHand : public SystemTest {
     EXPECT_EQ(report.state_hash(), report_of("central").state_hash());
   }
 
+  /// All but `gone` say why they end, and leave records in which no body is lost.
+  void expect_all_but_one_break_off(int gone) {
+    for (int region = 0; region < kRegions; ++region) {
+      if (region == gone) continue;
+      expect_exit(node(region), 7);
+      EXPECT_THAT(node(region).err() + node(region).out(),
+                  ::testing::HasSubstr("region " + std::to_string(region) + ": the run ends in state"));
+    }
+    expect_nobody_left(kGenerous);
+    start(Words{"report", launch_file("demo"), (folder() / "run").string()} + in_own_domain()).wait(kGenerous);
+    expect_all_bodies_accounted_for(report_of("run"));
+    EXPECT_EQ(report_of("run").entry("dead_regions").size(), 1U);
+  }
+
   std::vector<Process*> nodes_;
 };
 
@@ -83,6 +97,21 @@ TEST_F(StartedByHand, OrToASpareThatWaits) {
   expect_exit(spare, 0);
   EXPECT_THAT(spare.out() + spare.err(), ::testing::HasSubstr("takes over region 0"));
   expect_undisturbed(0);
+}
+
+/// `--has-launcher` promises somebody who starts another process. Here nobody does.
+TEST_F(StartedByHand, WhereNobodyTakesADeadOnesRegionOverAllEndByName) {
+  start_nodes({"--has-launcher"});
+  node(1).signal(SIGKILL);
+  expect_all_but_one_break_off(1);
+  EXPECT_TRUE(says("has died, and nobody takes"));
+}
+
+TEST_F(StartedByHand, WhereTheRunIsToStopAllEndByNameWithTheFirstDeath) {
+  start_nodes(set({"survival.on_death=stop"}));
+  node(1).signal(SIGKILL);
+  expect_all_but_one_break_off(1);
+  EXPECT_TRUE(says("the node of region 1 has died"));
 }
 
 TEST_F(StartedByHand, WhenAllAreAskedToLeaveTheRunEnds) {

@@ -181,33 +181,18 @@ TEST_F(Overseers, AReplaySpeaksHttpsWithFilesThatCanBeUsed) {
   EXPECT_THAT(without_certificate.err(), HasSubstr("nowhere.pem"));
 }
 
-TEST_F(Overseers, WhatADeadNodeHostedIsGoneAndTheRestIsThere) {
-  const Words goes_on = set({"survival.on_death=go_on"});
-  ASSERT_NO_FATAL_FAILURE(start_run(goes_on));
-  Process& overseer = start_overseer(goes_on);
+TEST_F(Overseers, SayWhenARunHasEndedBecauseANodeDied) {
+  const Words stops = set({"survival.on_death=stop"});
+  ASSERT_NO_FATAL_FAILURE(start_run(stops));
+  Process& overseer = start_overseer(stops);
   Page page(port_of(overseer));
-  const auto of_the_dead = [&] {
-    std::size_t count = 0;
-    for (const auto& [id, body] : page.world.by_id()) count += body.host == 2;
-    return count;
-  };
   ASSERT_TRUE(sees_the_run(page));
-  ASSERT_TRUE(page.wait_until([&] { return page.world.by_id().size() >= 96 && of_the_dead() > 0; }));
-  pid_t node = 0;
-  for (const pid_t child : children_of(run_->pid())) {
-    const Words words = command_line_of(child);
-    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
-      if (words[i] == "--region" && words[i + 1] == "2") node = child;
-    }
-  }
-  ASSERT_GT(node, 0);
-  ::kill(node, SIGKILL);
-  EXPECT_TRUE(page.wait_until([&] { return of_the_dead() == 0; }, kGenerous));
-  EXPECT_GT(page.world.bodies.size(), 20U);
+  ASSERT_NO_FATAL_FAILURE(kill_node(*run_, 2));
+  expect_exit(*run_, 1);
   const auto is_lost = [&] { return page.latest["status"].at("nodes")[2].at("lost") == true; };
   EXPECT_TRUE(page.wait_until(is_lost, kGenerous));  // the status comes by itself
-  EXPECT_EQ(page.latest["status"].at("state"), "running");
-  end_run(1);
+  EXPECT_TRUE(page.wait_until([&] { return page.latest["status"].at("state") == "lost"; }, kGenerous))
+      << page.latest["status"];
 }
 
 TEST_F(Overseers, APageLivesThroughADeathAndItsWordStillCounts) {

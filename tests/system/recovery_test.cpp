@@ -89,6 +89,22 @@ TEST_F(Recovery, AWorldThatNobodyKnowsAnyMoreEndsTheRunWithAWord) {
   EXPECT_THAT(run.err(), ::testing::HasSubstr("nobody knows the world any more"));
 }
 
+/// As with a fault of the program that comes again in the same state.
+TEST_F(Recovery, ARegionWhoseNodeDiesAgainAndAgainEndsTheRunByName) {
+  Process& run = launch("run", launch_file("demo"), set({"time.sync=deterministic", "survival.checkpoint=1000"}));
+  expect_reaches(report_of("run"), 4, 60);
+  for (std::size_t deaths = 1; deaths <= 4; ++deaths) {
+    ASSERT_TRUE(wait_until([&] { return node_of(run, 2) > 0; }, kGenerous)) << "it has begun";
+    ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+    if (deaths == 4) break;
+    ASSERT_TRUE(says(run, "the node of region 2 is started again", deaths));
+  }
+  expect_exit(run, 1);
+  EXPECT_THAT(run.err(),
+              ::testing::HasSubstr("the run ends: the node of region 2 has died 4 times in a row near state"));
+  EXPECT_THAT(run.err(), ::testing::HasSubstr("No whole world of this run is saved on this host."));
+}
+
 /// As when the nodes of a run that was started by hand have died one after the other.
 TEST_F(Recovery, ThoseWhoCameToTakeOverDoNotWaitForEachOtherForEver) {
   std::vector<Process*> nodes;

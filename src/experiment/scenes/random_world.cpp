@@ -17,6 +17,7 @@ using core::Vec3;
 
 constexpr std::size_t kMostBodies = 70;
 constexpr const char* kUsualSolver = "soft_step";
+constexpr const char* kOtherSolver = "sequential_impulse";
 constexpr std::uint64_t kProgramsOf = 0x9E3779B97F4A7C15;  ///< sets their chances apart from the rest
 
 /// What the rest of a world hangs on.
@@ -28,15 +29,13 @@ struct Dials {
   double speed_m_s = 32;     ///< that bodies may start with; in some worlds more than is promised
   double half_m = 0.2;       ///< of a usual body
   const char* solver = kUsualSolver;
-  bool mechanisms = true;
 };
 
 Dials random_dials(Chance& chance) {
   constexpr std::array kRates = {60.0, 60.0, 60.0, 60.0, 50.0, 120.0};
   constexpr std::array kSpeeds = {10.0, 16.0, 20.0, 32.0};
-  constexpr const char* kSequential = "sequential_impulse";
   constexpr std::array kSolvers = {kUsualSolver, kUsualSolver, kUsualSolver, kUsualSolver,
-                                   kSequential,  kSequential,  "nncg",       "dantzig"};
+                                   kOtherSolver, kOtherSolver, kOtherSolver, kOtherSolver};
   Dials dials;
   dials.step_hz = kRates[chance.below(kRates.size())];
   dials.lookahead = 1 + static_cast<int>(chance.below(3));
@@ -45,9 +44,6 @@ Dials random_dials(Chance& chance) {
   dials.speed_m_s = dials.promised_m_s * (chance.below(8) == 0 ? 1.6 : 0.9);
   dials.half_m = chance.between(0.1, 0.4);
   dials.solver = kSolvers[chance.below(kSolvers.size())];
-  // The others' joints explode now and then, and a world that physics breaks says little about the nodes.
-  const bool is_sturdy = dials.solver == kUsualSolver || dials.solver == kSequential;
-  dials.mechanisms = is_sturdy || chance.below(4) == 0;
   return dials;
 }
 
@@ -176,12 +172,10 @@ Json random_injector(const Makings& makings, const RandomLayout& layout, double 
             {"size", json_vec3({wide, wide, 0.5})}}}};
 }
 
-void add_bodies(const Makings& makings, bool mechanisms, const RandomLayout& layout, Json& scene, Chance& chance) {
+void add_bodies(const Makings& makings, const RandomLayout& layout, Json& scene, Chance& chance) {
   Builder builder(makings, layout, scene, chance);
   for (std::uint32_t left = 2 + chance.below(3); left > 0; --left) builder.put(random_heap(makings, chance), true);
-  for (std::uint32_t left = 1 + chance.below(4); left > 0; --left) {
-    builder.put(mechanisms ? random_mechanism(makings, chance) : random_heap(makings, chance), true);
-  }
+  for (std::uint32_t left = 1 + chance.below(4); left > 0; --left) builder.put(random_mechanism(makings, chance), true);
   for (std::uint32_t left = 4 + chance.below(24); left > 0 && builder.bodies() < kMostBodies; --left) {
     builder.put(thrown_body(makings, chance), false);
   }
@@ -240,7 +234,7 @@ World random_world(std::uint64_t seed) {
   world.scene["gravity"] = {0, 0, -kGravity[chance.below(kGravity.size())]};
   add_kinds(kinds, world.scene, chance);
   add_ground(layout, world.scene, world.meshes, chance);
-  add_bodies({kinds, dials.speed_m_s, region_m}, dials.mechanisms, layout, world.scene, chance);
+  add_bodies({kinds, dials.speed_m_s, region_m}, layout, world.scene, chance);
   world.launch = launch_of(dials, layout.regions, chance);
   world.interference = random_interference(kinds, layout, world.scene, dials.speed_m_s, chance);
   // Chances of their own: without statics that move and programs, each seed is the world that it has always been.

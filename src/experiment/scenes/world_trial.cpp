@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <random>
 #include <stdexcept>
 
@@ -154,10 +153,6 @@ std::optional<WorldOutcome> run_world(const std::filesystem::path& directory, co
   overrides.insert(overrides.end(), rules.overrides.begin(), rules.overrides.end());
   const config::Launch launch = config::read_launch(directory / kLaunchFile, overrides);
   const Interference interference = read_interference(directory / kInterferenceFile, launch.scene);
-  // Bullet's Dantzig solver keeps its error flag in a variable of the process: two at a time spoil each other.
-  static std::mutex dantzig_mutex;
-  std::unique_lock<std::mutex> only_one;
-  if (launch.physics.solver == "dantzig") only_one = std::unique_lock(dantzig_mutex);
   WorldOutcome outcome;
   outcome.regions = launch.regions.size();
   try {

@@ -1,0 +1,20 @@
+// Keys and values of launch and scene files that earlier versions read and this one does not. The error for one of them
+// says what became of it and what to choose instead, beside file:line:column.
+#pragma once
+
+#include <string_view>
+
+namespace aurasim::config {
+
+struct Gone {
+  std::string_view path;        ///< of the key, as errors name it: "physics.solver"
+  std::string_view value = {};  ///< the one value that is gone; empty: the key is gone with all its values
+  std::string_view text;        ///< what became of it, and what to choose instead
+};
+
+/// Null: the key was never there, or still is.
+const Gone* gone_key(std::string_view path);
+/// Null: the key never had this value, or still has it.
+const Gone* gone_value(std::string_view path, std::string_view value);
+
+}  // namespace aurasim::config
