@@ -6,7 +6,7 @@
 #   --out       results (build/speed); an interrupted run goes on where it stopped
 #   --repeats   runs of each, by turns, of which the page has the medians (5)
 #   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
-#   --settings  of our step, as `aurasim experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
+#   --settings  of our step, as `aurasim-lab experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
 #   --quick     small scenes, one run of each; the page goes to DIR instead of docs
 # Nothing else should run meanwhile. About two hours on 2 cores; minutes with --quick, most for building the engines.
 set -euo pipefail
@@ -33,7 +33,7 @@ if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 page=$out; fi
 source scripts/measured.sh
 read -r load _ </proc/loadavg
 [[ ${#quick[@]} -gt 0 || ${load%.*} -eq 0 ]] || echo "peers.sh: something else runs here (load $load)" >&2
-begin_measuring docs/speed.md "$out" "double and single"
+begin_measuring docs/speed.md "$out" "double, of others also single" aurasim-lab
 
 avx2=OFF
 ! grep -qw avx2 /proc/cpuinfo || avx2=ON
@@ -73,7 +73,7 @@ built() { # PROGRAM: is it there, and not from an earlier FOLDER?
 } >"$out/engines.txt"
 sed -n 's/^\(.*\) left-out$/peers.sh: \1 is not there, and left out/p' "$out/engines.txt" >&2
 
-build/release/aurasim experiment speed --out "$out" --cases "$cases" --repeats 0 "${quick[@]}"
+build/release/aurasim-lab experiment speed --out "$out" --cases "$cases" --repeats 0 "${quick[@]}"
 
 # SCENE ENGINE PRECISION THREADS: is one more run of it wanted in this turn?
 wanted() {
@@ -82,13 +82,12 @@ wanted() {
     $1 "," $2 "," $3 "," $4 == of { ++runs; if ($7 > 1000 * once) turn = 1 }
     END { exit !(runs < turn) }' "$out/runs.csv"
 }
-ours() { # SCENE PROGRAM PRECISION THREADS
+ours() { # SCENE THREADS
   local name
   for name in ${settings//,/ }; do
-    [[ $4 == 1 || $name =~ ^(fast|balanced|12_substeps)$ ]] || continue # the others know no threads
-    [[ $3 == double || $name == balanced ]] || continue
-    wanted "$1" "aurasim-$name" "$3" "$4" || continue
-    "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$4" "${quick[@]}" \
+    [[ $2 == 1 || $name =~ ^(fast|balanced|12_substeps)$ ]] || continue # the others know no threads
+    wanted "$1" "aurasim-$name" double "$2" || continue
+    build/release/aurasim-lab experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$2" "${quick[@]}" \
       >/dev/null 2>&1
   done
 }
@@ -100,8 +99,7 @@ peer() { # SCENE PROGRAM ENGINE PRECISION THREADS
 for ((turn = 1; turn <= repeats; ++turn)); do
   for scene in ${cases//,/ }; do
     echo "turn $turn of $repeats: $scene"
-    for threads in 1 2; do ours "$scene" aurasim double "$threads"; done
-    ours "$scene" aurasim-single single 1
+    for threads in 1 2; do ours "$scene" "$threads"; done
     for precision in double single; do peer "$scene" "bullet_$precision" bullet "$precision" 1; done
     for threads in 1 2; do
       for engine in jolt box3d; do peer "$scene" "$engine" "$engine" single "$threads"; done
@@ -109,6 +107,6 @@ for ((turn = 1; turn <= repeats; ++turn)); do
   done
 done
 
-build/release/aurasim experiment speed-errors --out "$out"
+build/release/aurasim-lab experiment speed-errors --out "$out"
 /usr/bin/python3 scripts/write_speed.py "$out" --out "$page"
 echo "written: $page/speed.md"

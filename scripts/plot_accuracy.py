@@ -3,7 +3,7 @@
 
     scripts/plot_accuracy.py DIR [--out DIR/figures]
 
-DIR holds stability-double, stability-single, pareto-double and pareto-single, as scripts/accuracy.sh leaves them.
+DIR holds stability-double and pareto-double, as scripts/accuracy.sh leaves them.
 Writes PNG and SVG.
 """
 import argparse
@@ -74,9 +74,8 @@ def main():
     arguments = parser.parse_args()
     folder = arguments.out or arguments.directory / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    for precision in ("double", "single"):
-        plot_front(folder, precision, rows_of(arguments.directory / f"pareto-{precision}" / "pareto.csv"))
-        plot_convergence(folder, precision, rows_of(arguments.directory / f"stability-{precision}" / "stability.csv"))
+    plot_front(folder, "double", rows_of(arguments.directory / "pareto-double" / "pareto.csv"))
+    plot_convergence(folder, "double", rows_of(arguments.directory / "stability-double" / "stability.csv"))
 
 
 if __name__ == "__main__":

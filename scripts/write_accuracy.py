@@ -3,7 +3,7 @@
 
     scripts/write_accuracy.py DIR [--out docs]
 
-DIR holds stability-double, stability-single, pareto-double and pareto-single, as scripts/accuracy.sh leaves them.
+DIR holds stability-double and pareto-double, as scripts/accuracy.sh leaves them.
 """
 import argparse
 import json
@@ -17,7 +17,7 @@ from report_parts import machine_line, measured_line, table
 STEPS = ("60", "120", "240", "1000")
 GRAVITY = 9.81  # m/s^2
 PRESETS = ("fast", "balanced", "exact")
-FIGURES = ["pareto_double", "convergence_double", "pareto_single", "convergence_single"]
+FIGURES = ["pareto_double", "convergence_double"]
 
 INTRODUCTION = """# How exact, and what each digit costs
 
@@ -103,22 +103,17 @@ def standing_table(rows):
                    number(r["error_two_nodes"]), number(r["cpu_us_per_step"])] for r in rows if is_standing(r)])
 
 
-def cost_table(double, single):
-    header = ["case", "double, Bullet's"] + [f"double, {p}" for p in PRESETS] + ["single, Bullet's"] + [
-        f"single, {p}" for p in PRESETS]
+def cost_table(rows):
     out = []
-    both = [metrics_of([r for r in rows if r["step_hz"] == "60" and not is_standing(r)]) for rows in (double, single)]
+    metrics = metrics_of([r for r in rows if r["step_hz"] == "60" and not is_standing(r)])
     seen = set()
-    for case, measured in both[0]:
+    for case, measured in metrics:
         if case in seen:
             continue
         seen.add(case)
-        row = [case]
-        for metrics in both:
-            cost = {r["preset"]: number(r["cpu_us_per_step"]) for r in metrics.get((case, measured), [])}
-            row += [cost.get(p, "") for p in ("",) + PRESETS]
-        out.append(row)
-    return table(header, out)
+        cost = {r["preset"]: number(r["cpu_us_per_step"]) for r in metrics[case, measured]}
+        out.append([case] + [cost.get(p, "") for p in ("",) + PRESETS])
+    return table(["case", "Bullet's", *PRESETS], out)
 
 
 def references_table(rows):
@@ -200,15 +195,14 @@ def nodes_table(rows):
 
 def pareto_part(directory):
     double = rows_of(directory / "pareto-double" / "pareto.csv")
-    single = rows_of(directory / "pareto-single" / "pareto.csv")
     text = """## Error against CPU time
 
 Every solver, iterations, substeps and directions of friction, at 60 steps per second: stack of 10, 1:100 on 5, Newton's
 cradle, chain of 50, card house. Error: geometric mean of their errors (nothing below 1e-6 counts as better); CPU time:
-sum over the cases. The front, and the presets, in double precision:
+sum over the cases. The front, and the presets:
 
 """
-    text += front_table(double) + "In single precision:\n\n" + front_table(single)
+    text += front_table(double)
     text += """Dantzig is direct, and knows no iterations; its time grows with the cube of the contacts of a pile. NNCG is the
 better one where joints act alone (Newton's cradle), but throws a card house apart, as Bullet's own does: no solver for
 piles with friction. The soft step knows neither iterations nor directions of friction.
@@ -216,7 +210,7 @@ piles with friction. The soft step knows neither iterations nor directions of fr
 ### The presets (`physics.preset`)
 
 `balanced` is the default: the soft step with 8 substeps. It stands where what is usual stands (the four piles, for a
-minute, in both precisions), is exact in flight, better than sequential impulse of 20 iterations x 4 substeps in joints
+minute), is exact in flight, better than sequential impulse of 20 iterations x 4 substeps in joints
 and slides, and takes a tenth of its time and less in large piles ([decision 0020](decisions/0020-the-soft-step.md) has
 both side by side, also what has become worse). `fast`: 4 substeps, where joints give more. `exact`: sequential impulse
 with as many iterations as a rolling plate needs to be exact in the last digits, for piles that may not sink and for
@@ -238,22 +232,20 @@ def main():
     arguments = parser.parse_args()
     directory = arguments.directory
     double = rows_of(directory / "stability-double" / "stability.csv")
-    single = rows_of(directory / "stability-single" / "stability.csv")
-    names = ("stability-double", "stability-single", "pareto-double", "pareto-single")
+    names = ("stability-double", "pareto-double")
     summaries = [json.loads((directory / name / "summary.json").read_text()) for name in names]
 
     text = INTRODUCTION.format(machine=machine_line(), measured=measured_line(directory))
     text += "## What has to hold, and what was found\n\n" + targets_table(summaries)
-    text += "## Hard cases, double precision\n\nThe error on two nodes is that on one wherever it says *same bits*.\n\n"
+    text += "## Hard cases\n\nThe error on two nodes is that on one wherever it says *same bits*.\n\n"
     text += errors_table(double)
     text += poor_part(double)
-    text += "## Hard cases, single precision\n\n" + errors_table(single)
     text += """## Standing for a minute, preset `balanced`
 
 `_may_sleep`: bodies fall asleep as in any scene that does not forbid it.
 
-""" + "Double:\n\n" + standing_table(double) + "Single:\n\n" + standing_table(single)
-    text += "## CPU time per step, one node, microseconds, 60 steps per second\n\n" + cost_table(double, single)
+""" + standing_table(double)
+    text += "## CPU time per step, one node, microseconds, 60 steps per second\n\n" + cost_table(double)
     text += pareto_part(directory)
     text += "## References\n\n" + references_table(double)
     pictures = arguments.out / "accuracy"

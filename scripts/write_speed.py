@@ -46,11 +46,11 @@ INTRODUCTION = """# How fast a step is, beside other engines
 
 Written by `scripts/peers.sh`; do not edit. {machine}. {engines}
 
-The same bodies for all: our side writes each scene as a text (`src/experiment/speed/scene_text.h`), from which ours and
+The same bodies for all: our side writes each scene as a text (`src/lab/speed/scene_text.h`), from which ours and
 the driver of each engine (`tests/bench/peers`) make their worlds. Steps of 1/60 s. *CPU ms*: CPU time of the whole
 process in a step, the median of the runs; *at the end*: in the last 5 s, or the last quarter of a shorter scene, when
 piles are what they will be. *Runs* were taken by turns; what takes minutes is run once. Ours is one `RegionWorld`, as a
-node has it, without node and protocol. Errors are told by one program (`aurasim experiment speed-errors`) from four
+node has it, without node and protocol. Errors are told by one program (`aurasim-lab experiment speed-errors`) from four
 states of the latest run, by the shapes as the scene has them: *overlap*, *gap* and *in the ground* are the worst of the
 four, the others are of the last.
 
