@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 out=${1:-build/accuracy}
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/accuracy.md "$out" double
+begin_measuring docs/accuracy.md "$out" double aurasim-lab
 
 stability=()
 pareto=()
@@ -20,8 +20,8 @@ fi
 
 rm -f "$out"/{stability,pareto}/summary.json
 met=0 # 1: done, but not every requirement is met
-build/release/aurasim experiment stability --out "$out/stability" "${stability[@]}" || met=$?
-build/release/aurasim experiment pareto --out "$out/pareto" "${pareto[@]}" || met=$((met > $? ? met : $?))
+build/release/aurasim-lab experiment stability --out "$out/stability" "${stability[@]}" || met=$?
+build/release/aurasim-lab experiment pareto --out "$out/pareto" "${pareto[@]}" || met=$((met > $? ? met : $?))
 [[ $met -le 1 && -s $out/stability/summary.json && -s $out/pareto/summary.json ]] || exit 2
 /usr/bin/python3 scripts/plot_accuracy.py "$out"
 /usr/bin/python3 scripts/write_accuracy.py "$out"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Includes go one way:
-#   core, security <- physics, transport, config <- dds, node <- cut, overseer, experiment <- cli
+#   core, security <- physics, transport, config <- dds, node <- cut, overseer <- cli <- lab
 #   core, physics, config <- import <- cli
 #   client (what programs of others are linked with: knows none of the others) <- python, cli
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
@@ -25,11 +25,12 @@ awk '
     allow("cut", "core security dds cut")
     below = "core security physics transport config dds node cut"
     allow("overseer", below " overseer")
-    allow("experiment", below " experiment")
     allow("import", "core physics config import")
     allow("client", "client")
     allow("python", "python")
-    allow("cli", below " overseer experiment import client cli")
+    allow("cli", below " overseer import client cli")
+    # The laboratory is a program of its own: no folder of the product knows it.
+    allow("lab", below " cli lab")
 
     wrap("physics", "BulletCollision BulletDynamics LinearMath bullet")
     wrap("dds", "fastdds fastrtps fastcdr")

@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
 # The speed of our step beside that of other engines, on the same bodies in one run, and docs/speed.md.
-#   scripts/peers.sh --engines FOLDER [--out DIR] [--repeats N] [--cases A,B] [--settings A,B] [--once S] [--quick]
-# FOLDER/jolt and FOLDER/box3d: sources of github.com/jrouwe/JoltPhysics and github.com/erincatto/box3d. What is not
-# there is left out, and so is Bullet without Debian's libbullet-dev.
+#   scripts/peers.sh [--out DIR] [--repeats N] [--cases A,B] [--settings A,B] [--once S] [--quick]
+# It builds no other engine. It links those of Jolt, box3d and Bullet that are installed, says which were found, and
+# leaves the others out. CMAKE_PREFIX_PATH in the environment names folders in which engines are installed.
 #   --out       results (build/speed); an interrupted run goes on where it stopped
 #   --repeats   runs of each, by turns, of which the page has the medians (5)
 #   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
-#   --settings  of our step, as `aurasim experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
+#   --settings  of our step, as `aurasim-lab experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
 #   --quick     small scenes, one run of each; the page goes to DIR instead of docs
-# Nothing else should run meanwhile. About two hours on 2 cores; minutes with --quick, most for building the engines.
+# Nothing else should run meanwhile. About two hours on 2 cores; a minute or two with --quick.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-engines="" out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas,sleepers once=120
+out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas,sleepers once=120
 settings=fast,balanced,sequential_impulse page=docs quick=()
 usage() { sed -n '2,/^set -/{/^#/s/^# \{0,1\}//p}' "scripts/peers.sh" >&2; exit 2; }
 while (($#)); do
   case $1 in
     --quick) quick=(--quick) ;;
-    --engines | --out | --repeats | --cases | --settings | --once)
+    --out | --repeats | --cases | --settings | --once)
       (($# > 1)) || usage
       declare "${1#--}=$2"
       shift
@@ -27,53 +27,32 @@ while (($#)); do
   esac
   shift
 done
-[[ -n $engines ]] || usage
 if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 page=$out; fi
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
 read -r load _ </proc/loadavg
 [[ ${#quick[@]} -gt 0 || ${load%.*} -eq 0 ]] || echo "peers.sh: something else runs here (load $load)" >&2
-begin_measuring docs/speed.md "$out" "double and single"
+begin_measuring docs/speed.md "$out" "double, of others also single" aurasim-lab
 
-avx2=OFF
-! grep -qw avx2 /proc/cpuinfo || avx2=ON
-cmake -S tests/bench/peers -B build/peers -G Ninja -DPEERS_ENGINES="$(realpath -m "$engines")" -DPEERS_AVX2=$avx2 >/dev/null 2>&1
-cmake --build build/peers -- -k 0 >"$out/peers_build.log" 2>&1 ||
-  echo "peers.sh: not every engine could be built, see $out/peers_build.log" >&2
+rm -rf build/peers/bin
+cmake -S tests/bench/peers -B build/peers -G Ninja >"$out/peers_build.log" 2>&1 ||
+  { echo "peers.sh: cmake has failed, see $out/peers_build.log" >&2; exit 1; }
+cmake --build build/peers -- -k 0 >>"$out/peers_build.log" 2>&1 ||
+  echo "peers.sh: an engine that is installed cannot be linked, see $out/peers_build.log" >&2
+built() { [[ -x build/peers/bin/$1 ]]; } # PROGRAM
 
-# ENGINE: its commit, from a checkout, or from FOLDER/ENGINE.commit where there is no git.
-commit_of() {
-  if [[ -s $engines/$1.commit ]]; then
-    cat "$engines/$1.commit"
-  elif [[ -e $engines/$1/.git ]]; then
-    git -C "$engines/$1" rev-parse --short=12 HEAD
-  else
-    echo unknown
-  fi
-}
-built() { # PROGRAM: is it there, and not from an earlier FOLDER?
-  [[ -x build/peers/bin/$1 && ($1 == bullet_* || -d $engines/$1) ]]
-}
-# Which engines there are, and with what they were built: the page says it.
+# Which engines there are: the page says it.
 {
-  echo "avx2 $avx2"
   [[ ${#quick[@]} == 0 ]] || echo "small scenes"
-  for engine in jolt box3d; do
-    if built $engine; then
-      echo "$engine commit $(commit_of $engine)"
-    else
-      echo "$engine left-out"
-    fi
-  done
-  if built bullet_double; then
-    echo "bullet version $(pkg-config --modversion bullet 2>/dev/null || echo unknown)"
-  else
-    echo "bullet left-out"
-  fi
+  while read -r engine found; do
+    if [[ $found != left-out && -z $(compgen -G "build/peers/bin/$engine*") ]]; then found=not-linked; fi
+    echo "$engine $found"
+  done <build/peers/engines.txt
 } >"$out/engines.txt"
-sed -n 's/^\(.*\) left-out$/peers.sh: \1 is not there, and left out/p' "$out/engines.txt" >&2
+sed -nE 's/^(.*) version (.*)/peers.sh: found \1, version \2/p; s/^(.*) left-out$/peers.sh: \1 is not installed, and left out/p
+  s/^(.*) not-linked$/peers.sh: \1 is installed, but cannot be linked, and is left out/p' "$out/engines.txt" >&2
 
-build/release/aurasim experiment speed --out "$out" --cases "$cases" --repeats 0 "${quick[@]}"
+build/release/aurasim-lab experiment speed --out "$out" --cases "$cases" --repeats 0 "${quick[@]}"
 
 # SCENE ENGINE PRECISION THREADS: is one more run of it wanted in this turn?
 wanted() {
@@ -82,13 +61,12 @@ wanted() {
     $1 "," $2 "," $3 "," $4 == of { ++runs; if ($7 > 1000 * once) turn = 1 }
     END { exit !(runs < turn) }' "$out/runs.csv"
 }
-ours() { # SCENE PROGRAM PRECISION THREADS
+ours() { # SCENE THREADS
   local name
   for name in ${settings//,/ }; do
-    [[ $4 == 1 || $name =~ ^(fast|balanced|12_substeps)$ ]] || continue # the others know no threads
-    [[ $3 == double || $name == balanced ]] || continue
-    wanted "$1" "aurasim-$name" "$3" "$4" || continue
-    "build/release/$2" experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$4" "${quick[@]}" \
+    [[ $2 == 1 || $name =~ ^(fast|balanced|12_substeps)$ ]] || continue # the others know no threads
+    wanted "$1" "aurasim-$name" double "$2" || continue
+    build/release/aurasim-lab experiment speed --out "$out" --cases "$1" --settings "$name" --threads "$2" "${quick[@]}" \
       >/dev/null 2>&1
   done
 }
@@ -100,8 +78,7 @@ peer() { # SCENE PROGRAM ENGINE PRECISION THREADS
 for ((turn = 1; turn <= repeats; ++turn)); do
   for scene in ${cases//,/ }; do
     echo "turn $turn of $repeats: $scene"
-    for threads in 1 2; do ours "$scene" aurasim double "$threads"; done
-    ours "$scene" aurasim-single single 1
+    for threads in 1 2; do ours "$scene" "$threads"; done
     for precision in double single; do peer "$scene" "bullet_$precision" bullet "$precision" 1; done
     for threads in 1 2; do
       for engine in jolt box3d; do peer "$scene" "$engine" "$engine" single "$threads"; done
@@ -109,6 +86,6 @@ for ((turn = 1; turn <= repeats; ++turn)); do
   done
 done
 
-build/release/aurasim experiment speed-errors --out "$out"
+build/release/aurasim-lab experiment speed-errors --out "$out"
 /usr/bin/python3 scripts/write_speed.py "$out" --out "$page"
 echo "written: $page/speed.md"

@@ -3,7 +3,7 @@
 
     scripts/plot_accuracy.py DIR [--out DIR/figures]
 
-DIR holds stability-double, stability-single, pareto-double and pareto-single, as scripts/accuracy.sh leaves them.
+DIR holds stability-double and pareto-double, as scripts/accuracy.sh leaves them.
 Writes PNG and SVG.
 """
 import argparse

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of the thesis's section 5.2 from what `aurasim experiment` wrote.
+"""The figures of the thesis's section 5.2 from what `aurasim-lab experiment` wrote.
 
     scripts/plot_collision.py DIR [--loss DIR] [--out DIR/figures]
 
@@ -194,8 +194,8 @@ def plot_moves(folder, moves):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("directory", type=pathlib.Path, help="of `aurasim experiment collision`")
-    parser.add_argument("--loss", type=pathlib.Path, help="of `aurasim experiment loss`")
+    parser.add_argument("directory", type=pathlib.Path, help="of `aurasim-lab experiment collision`")
+    parser.add_argument("--loss", type=pathlib.Path, help="of `aurasim-lab experiment loss`")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the figures (DIR/figures)")
     arguments = parser.parse_args()
     folder = arguments.out or arguments.directory / "figures"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of the thesis's section 5.1 from what `aurasim experiment scalability` wrote.
+"""The figures of the thesis's section 5.1 from what `aurasim-lab experiment scalability` wrote.
 
     scripts/plot_scalability.py DIR [--out DIR/figures]
 

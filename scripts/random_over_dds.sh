@@ -19,8 +19,8 @@ while [[ $# -gt 0 ]]; do
 done
 
 aurasim=build/release/aurasim
-scripts/build.sh release aurasim >&2
-"$aurasim" experiment scenes --seeds "$seeds" --steps 1 --keep --out "$out/worlds" >&2
+scripts/build.sh release aurasim aurasim-lab >&2
+build/release/aurasim-lab experiment scenes --seeds "$seeds" --steps 1 --keep --out "$out/worlds" >&2
 
 # A world that physics breaks ends with an exit code of its own, and has a report all the same.
 run() { # REPORT LAUNCH REGIONS

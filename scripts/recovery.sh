@@ -24,7 +24,7 @@ done
 
 # shellcheck source=scripts/measured.sh
 source scripts/measured.sh
-begin_measuring docs/results.md#recovery "$out" double
+begin_measuring docs/results.md#recovery "$out" double aurasim-lab
 failures=0
 /usr/bin/python3 scripts/recovery.py --deaths "$deaths" --pairs "$pairs" --domain "$domain" --out "$out" || failures=1
 [[ -s $out/rolling.jsonl ]] || /usr/bin/python3 scripts/recovery_rolling.py --domain "$domain" --out "$out" || failures=1
@@ -32,7 +32,7 @@ failures=0
 [[ $soak == 0 || -s $out/soak.jsonl ]] ||
   /usr/bin/python3 scripts/recovery_rolling.py --repeats 0 --soak "$soak" --domain "$domain" --out "$out" || failures=1
 [[ $hours == 0 || -s $out/endurance.jsonl ]] || {
-  build/release/aurasim experiment endurance tower --hours "$hours" >"$out/endurance.part" || failures=1
+  build/release/aurasim-lab experiment endurance tower --hours "$hours" >"$out/endurance.part" || failures=1
   mv "$out/endurance.part" "$out/endurance.jsonl"
 }
 /usr/bin/python3 scripts/write_recovery.py "$out"

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Runs the speed experiment's scenes in small on emulated processors (Debian's qemu-user) and on this one, and
-# compares the states: whichever instructions the program chooses, of ours or of the C library, the bits
-# are the same. Exit 1 if anything differs.
-#   scripts/same_bits_of_cpus.sh [--settings A,B]   as `aurasim experiment speed` has them (balanced,sequential_impulse)
+# compares the states: whichever instructions the program chooses, of ours or of the C library, the bits are the same.
+# Exit 1 if anything differs.
+#   scripts/same_bits_of_cpus.sh [--settings A,B]   as `aurasim-lab experiment speed` has them (balanced,sequential_impulse)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 settings=balanced,sequential_impulse
 if [[ ${1:-} == --settings && $# == 2 ]]; then settings=$2; elif (($#)); then sed -n '2,5p' "$0" >&2; exit 2; fi
 command -v qemu-x86_64 >/dev/null || { echo "same_bits_of_cpus.sh: needs Debian's qemu-user" >&2; exit 2; }
-scripts/build.sh release aurasim >&2
+scripts/build.sh release aurasim-lab >&2
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
@@ -17,7 +17,7 @@ trap 'rm -rf "$out"' EXIT
 states() {
   local folder=$1 log=$out/log
   shift
-  "$@" build/release/aurasim experiment speed --quick --settings "$settings" --out "$folder" >"$log" 2>&1 ||
+  "$@" build/release/aurasim-lab experiment speed --quick --settings "$settings" --out "$folder" >"$log" 2>&1 ||
     { cat "$log" >&2; return 1; }
 }
 

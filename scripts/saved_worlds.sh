@@ -24,7 +24,7 @@ aurasim=build/release/aurasim
 source scripts/measured.sh
 # shellcheck source=scripts/scene_regions.sh
 source scripts/scene_regions.sh
-begin_measuring docs/results.md#saved_worlds "$out" double aurasim_bench
+begin_measuring docs/results.md#saved_worlds "$out" double aurasim-lab aurasim_bench
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -70,9 +70,9 @@ for scene in "${scenes[@]}"; do row "$scene"; done
 
 if [[ $# -eq 0 ]]; then
   for network in good bad; do
-    "$aurasim" experiment scenes --seeds "1-$seeds" --save-at 170 --load-on 1,2,4,9 --network "$network" --no-shrink \
+    build/release/aurasim-lab experiment scenes --seeds "1-$seeds" --save-at 170 --load-on 1,2,4,9 --network "$network" --no-shrink \
       --out "$out/seeds_$network" >/dev/null || failures=$((failures + 1))
-    "$aurasim" experiment scenes --seeds "1-$seeds" --deaths 3 --network "$network" --no-shrink --out "$out/deaths_$network" \
+    build/release/aurasim-lab experiment scenes --seeds "1-$seeds" --deaths 3 --network "$network" --no-shrink --out "$out/deaths_$network" \
       >/dev/null || failures=$((failures + 1))
   done
   build/release/aurasim_bench --benchmark_filter='_world/' --benchmark_format=json 2>/dev/null >"$out/bench.json"

@@ -39,7 +39,7 @@ thesis, section 5.2: two bodies of different regions fly at each other and meet 
 ## How a trial is run
 
 - Protocol (`core::Protocol`), node (`node::Node`) and physics (Bullet) are those of a real run; clock and network are
-  virtual (`src/experiment/virtual_cluster.h`). Every trial has fresh nodes, and ends at the first contact.
+  virtual (`src/lab/virtual_cluster.h`). Every trial has fresh nodes, and ends at the first contact.
 - Each node's steps are due at the shared clock plus a phase of its own, uniform between 0 and one frame time. Frames
   last 90 to 100% of the frame time at random; a node that is behind does not pause. A step's messages leave at the end
   of its frame and arrive one latency later. A phase is not in the tolerances (nodes share one epoch), so in

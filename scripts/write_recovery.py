@@ -105,7 +105,7 @@ def endurance_text(lines):
         return ""
     last = lines[-1]
     sizes = [line["resident_kB"] / 1024 for line in lines[1:]]
-    return (f"### {last['hours']:.0f} hours in virtual time\n\n`aurasim experiment endurance tower` has compared each of "
+    return (f"### {last['hours']:.0f} hours in virtual time\n\n`aurasim-lab experiment endurance tower` has compared each of "
             f"{last['compared']:,} states with that of one node, beside {last['deaths']:,} deaths, {last['loads']:,} loads of "
             f"saved worlds and {last['orders']:,} orders: {last['failure'] or 'none differs'}. {last['computed']:,} states were "
             f"computed; memory {min(sizes):.0f} to {max(sizes):.0f} MiB after the first hour.\n\n")

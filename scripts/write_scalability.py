@@ -43,7 +43,7 @@ first 20 s and 3,200 bodies only.
   thread's CPU clock. So the numbers are *work*, not waiting, and more nodes than cores can be compared. A frame is
   physics, protocol (auras, clusters, hand-offs), transport, and the watch for late collisions, which is for the report.
 - **Transport**: messages are really encoded, serialised as CDR, deserialised, checked and decoded
-  (`src/experiment/wire_post.h`); sockets and RTPS are not in it.
+  (`src/lab/wire_post.h`); sockets and RTPS are not in it.
 - **Frame** of a run with several nodes: the slowest node in each step. *max*: of all steps. *p95*: the largest 95th
   percentile of any window of 5 s. *last*: mean of the last 5 s.
 - **In real time**: with so many bodies, and with fewer, the mean frame of every 5 s was within a step of 16.7 ms.

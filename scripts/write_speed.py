@@ -46,11 +46,11 @@ INTRODUCTION = """# How fast a step is, beside other engines
 
 Written by `scripts/peers.sh`; do not edit. {machine}. {engines}
 
-The same bodies for all: our side writes each scene as a text (`src/experiment/speed/scene_text.h`), from which ours and
+The same bodies for all: our side writes each scene as a text (`src/lab/speed/scene_text.h`), from which ours and
 the driver of each engine (`tests/bench/peers`) make their worlds. Steps of 1/60 s. *CPU ms*: CPU time of the whole
 process in a step, the median of the runs; *at the end*: in the last 5 s, or the last quarter of a shorter scene, when
 piles are what they will be. *Runs* were taken by turns; what takes minutes is run once. Ours is one `RegionWorld`, as a
-node has it, without node and protocol. Errors are told by one program (`aurasim experiment speed-errors`) from four
+node has it, without node and protocol. Errors are told by one program (`aurasim-lab experiment speed-errors`) from four
 states of the latest run, by the shapes as the scene has them: *overlap*, *gap* and *in the ground* are the worst of the
 four, the others are of the last.
 
@@ -62,8 +62,8 @@ SETTINGS = """## How each is set up, and why that is fair
 |---|---|
 | aurasim | `fast`, `balanced` (what a launch file has that says nothing): the soft step with 4 and 8 substeps, for 1 and 2 threads; `12_substeps`; `sequential_impulse`: Bullet's own solver, 10 iterations x 4 substeps; `one_substep`: 10 x 1, as Bullet and the thesis; `exact`: 50 x 8 ([accuracy.md](accuracy.md)). The soft step chooses SSE2, AVX2 or AVX-512 at run time; the rest is compiled for any x86-64 (SSE2) |
 | Bullet | Debian's, both precisions, as it comes: 10 iterations, one step of 1/60 s, friction in 1 direction. One thread, SSE2. Its hulls have its margin of 40 mm *outside*: they never come close enough to overlap. It takes capsules and hulls for their boxes where it computes inertia |
-| Jolt | as it comes: 1 collision step, 10 velocity and 2 position iterations, single precision{avx2}. Boxes thinner than its rounding of 50 mm are rounded by half of their thinnest side |
-| box3d | as it comes: 4 substeps, single precision{avx2}. The ground is the top of a box of 4 km, since it has no planes |
+| Jolt | as it comes: 1 collision step, 10 velocity and 2 position iterations, single precision. Boxes thinner than its rounding of 50 mm are rounded by half of their thinnest side |
+| box3d | as it comes: 4 substeps, single precision. The ground is the top of a box of 4 km, since it has no planes |
 
 Every engine has its own defaults, which are what its authors recommend, but where the scene says otherwise:
 
@@ -73,8 +73,8 @@ Every engine has its own defaults, which are what its authors recommend, but whe
 - Bodies sleep by each engine's own rules in the rain and among the sleepers, and nowhere else.
 - Hulls are symmetric, so that centre of mass and principal axes are the same however an engine finds them. The hips of
   the ragdolls are balls, where the shipped scene has springs. Joined bodies do not collide.
-- Ours, Jolt and box3d are built here, by one compiler with `-O3` (`Release`), Jolt with link-time optimisation as its own
-  build is. Bullet, also what we use of it, is Debian's build.
+- Ours is built by our compiler with `-O3` (`Release`). Bullet, also what we use of it, is Debian's build. Jolt and box3d
+  are linked as they are installed: whoever installed them has chosen compiler, optimisation and instructions.
 
 Bodies are put in before the clock is started, and states written after it is stopped.
 
@@ -171,11 +171,14 @@ def overview_table(scenes):
 def engines_line(text):
     """What scripts/peers.sh has noted of the engines, in a sentence."""
     names = {"jolt": "Jolt", "box3d": "box3d", "bullet": "Bullet"}
+    missing = {"left-out": "*left out, it is not installed*",
+               "not-linked": "*left out, it is installed, but cannot be linked*"}
     parts = []
     for line in text.splitlines():
         engine, *rest = line.split()
         if engine in names:
-            parts.append(f"{names[engine]}: {' '.join(rest).replace('left-out', '*left out, it was not there*')}")
+            found = missing.get(rest[0], " ".join(rest))
+            parts.append(f"{names[engine]}: {found}")
     return "; ".join(parts) + "."
 
 
@@ -196,7 +199,7 @@ def main():
             continue
         text += f"## {name}\n\n{what}\n\n" + one_thread_table(scenes[name], columns)
         text += threads_table(scenes[name], columns)
-    text += SETTINGS.format(avx2=", AVX2 and FMA" if "avx2 ON" in noted else ", SSE2")
+    text += SETTINGS
     (arguments.out / "speed.md").write_text(text.rstrip() + "\n")
 
 

@@ -13,15 +13,6 @@
 
 namespace aurasim::cli {
 
-void FileArguments::add_to(CLI::App& command) {
-  command.add_option("FILE", file, "launch file, or the name of one that comes with the program: demo, tower, ...")
-      ->required()
-      ->transform(config::launch_file_named);
-  command.add_option("--set", overrides, "change one key of the launch file: key.path=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-}
-
 void add_check(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("check", "validate a launch file and its scene");
   const auto files = std::make_shared<FileArguments>();

@@ -1,16 +1,13 @@
 // One function per command. Each adds itself to the program's command line; what it returns is the exit code.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
-namespace aurasim::cli {
+#include "cli/command_line.h"
 
-/// Set by the command that was chosen; run after parsing.
-using Action = std::function<int()>;
+namespace aurasim::cli {
 
 void add_agent(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
@@ -29,35 +26,12 @@ void add_replay(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
-void add_experiment(CLI::App& program, Action& action);
-void add_completion(CLI::App& program, Action& action);
-void add_manual(CLI::App& program, Action& action);
 void add_mesh_loader(CLI::App& program, Action& action);
-/// Below `experiment`.
-void add_stability(CLI::App& experiment, Action& action);
-void add_pareto(CLI::App& experiment, Action& action);
-void add_scalability(CLI::App& experiment, Action& action);
-void add_bandwidth(CLI::App& experiment, Action& action);
-void add_scenes(CLI::App& experiment, Action& action);
-void add_endurance(CLI::App& experiment, Action& action);
-void add_speed(CLI::App& experiment, Action& action);
-void add_speed_errors(CLI::App& experiment, Action& action);
-
-/// What an option that chooses a solver may say.
-std::vector<std::string> solver_names();
 
 /// Of a node, and of a spare that becomes one: whoever has started it sees to its region when it dies.
 struct LauncherArguments {
   bool is_there = false;
   int heartbeat = -1;  ///< heartbeat.h
-
-  void add_to(CLI::App& command);
-};
-
-/// The launch file and its overrides, as every command takes them.
-struct FileArguments {
-  std::string file;
-  std::vector<std::string> overrides;
 
   void add_to(CLI::App& command);
 };

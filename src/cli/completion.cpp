@@ -1,13 +1,13 @@
 #include "cli/completion.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/commands.h"
-#include "cli/program.h"
+#include "cli/command_line.h"
 
 namespace aurasim::cli {
 namespace {
@@ -22,7 +22,7 @@ void for_each_command(const CLI::App& app, const std::string& path, const Visit&
 /// The branches of a `case` that find out which command is being typed, and which values an option takes.
 std::string path_cases(const CLI::App& program) {
   std::string text;
-  for_each_command(program, "aurasim", [&](const CLI::App& app, const std::string& path) {
+  for_each_command(program, program.get_name(), [&](const CLI::App& app, const std::string& path) {
     for (const CLI::App* command : commands_of(app))
       text += fmt::format("      '{} {}') ;;\n", path, command->get_name());
   });
@@ -31,7 +31,7 @@ std::string path_cases(const CLI::App& program) {
 
 std::string value_cases(const CLI::App& program, const char* add) {
   std::string text;
-  for_each_command(program, "aurasim", [&](const CLI::App& app, const std::string& path) {
+  for_each_command(program, program.get_name(), [&](const CLI::App& app, const std::string& path) {
     for (const CLI::Option* option : options_of(app)) {
       const std::vector<std::string> choices = choices_of(*option);
       if (choices.empty() || option->get_positional()) continue;
@@ -65,9 +65,9 @@ std::string quoted(const std::string& text) {
   return out;
 }
 
-constexpr const char* kBash = R"(# Completion of aurasim for bash, made by `aurasim completion bash`.
-_aurasim() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} last=${{COMP_WORDS[COMP_CWORD-1]}} command=aurasim word words=
+constexpr const char* kBash = R"(# Completion of {program} for bash, made by `{program} completion bash`.
+{function}() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} last=${{COMP_WORDS[COMP_CWORD-1]}} command={program} word words=
   for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
     case "$command $word" in
 {paths}      *) continue ;;
@@ -81,13 +81,13 @@ _aurasim() {{
   esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
-complete -o default -F _aurasim aurasim
+complete -o default -F {function} {program}
 )";
 
-constexpr const char* kZsh = R"(#compdef aurasim
-# Completion of aurasim for zsh, made by `aurasim completion zsh`.
-_aurasim() {{
-  local command=aurasim word
+constexpr const char* kZsh = R"(#compdef {program}
+# Completion of {program} for zsh, made by `{program} completion zsh`.
+{function}() {{
+  local command={program} word
   local -a candidates
   for word in "${{(@)words[2,CURRENT-1]}}"; do
     case "$command $word" in
@@ -99,42 +99,55 @@ _aurasim() {{
 {values}  esac
   case "$command" in
 {words}  esac
-  _describe -o 'aurasim' candidates
+  _describe -o '{program}' candidates
   _files
 }}
-_aurasim "$@"
+{function} "$@"
 )";
+
+/// Of the shell. "_aurasim_lab" for aurasim-lab.
+std::string function_for(const CLI::App& program) {
+  std::string name = "_" + program.get_name();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+std::string filled_in(const char* script, const CLI::App& program, const char* add_values, const std::string& words) {
+  return fmt::format(fmt::runtime(script), fmt::arg("program", program.get_name()),
+                     fmt::arg("function", function_for(program)),
+                     fmt::arg("paths", path_cases(program)), fmt::arg("values", value_cases(program, add_values)),
+                     fmt::arg("words", words));
+}
 
 }  // namespace
 
 std::string bash_completion(const CLI::App& program) {
   std::string words;
-  for_each_command(program, "aurasim", [&](const CLI::App& app, const std::string& path) {
+  for_each_command(program, program.get_name(), [&](const CLI::App& app, const std::string& path) {
     std::vector<std::string> names;
     for (const auto& [word, about] : words_of(app)) names.push_back(word);
     words += fmt::format("        '{}') words='{}' ;;\n", path, fmt::join(names, " "));
   });
-  return fmt::format(kBash, fmt::arg("paths", path_cases(program)),
-                     fmt::arg("values", value_cases(program, "words='{}'")), fmt::arg("words", words));
+  return filled_in(kBash, program, "words='{}'", words);
 }
 
 std::string zsh_completion(const CLI::App& program) {
   std::string words;
-  for_each_command(program, "aurasim", [&](const CLI::App& app, const std::string& path) {
+  for_each_command(program, program.get_name(), [&](const CLI::App& app, const std::string& path) {
     words += fmt::format("    '{}') candidates=(\n", path);
     for (const auto& [word, about] : words_of(app))
       words += fmt::format("      '{}:{}'\n", quoted(word), quoted(about));
     words += "    ) ;;\n";
   });
-  return fmt::format(kZsh, fmt::arg("paths", path_cases(program)),
-                     fmt::arg("values", value_cases(program, "compadd -- {}; return")), fmt::arg("words", words));
+  return filled_in(kZsh, program, "compadd -- {}; return", words);
 }
 
 void add_completion(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("completion", "print what a shell completes aurasim's commands with");
+  const std::string name = program.get_name();
+  CLI::App* command = program.add_subcommand("completion", "print what a shell completes " + name + "'s commands with");
   const auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "whose")->required()->check(CLI::IsMember({"bash", "zsh"}));
-  command->footer("Example:\n  source <(aurasim completion bash)");
+  command->footer(fmt::format("Example:\n  source <({} completion bash)", name));
   command->callback([shell, &program, &action] {
     action = [shell, &program] {
       fmt::print("{}", *shell == "bash" ? bash_completion(program) : zsh_completion(program));

@@ -3,12 +3,15 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "cli/command_line.h"
 
 namespace aurasim::cli {
 
 /// A script that bash or zsh reads.
 std::string bash_completion(const CLI::App& program);
 std::string zsh_completion(const CLI::App& program);
+
+/// The command `completion`, which prints such a script.
+void add_completion(CLI::App& program, Action& action);
 
 }  // namespace aurasim::cli

@@ -1,11 +1,10 @@
 #include "cli/manual.h"
 
-#include <sstream>
+#include <cctype>
 
 #include <fmt/format.h>
 
-#include "cli/commands.h"
-#include "cli/program.h"
+#include "cli/command_line.h"
 
 namespace aurasim::cli {
 namespace {
@@ -82,25 +81,29 @@ of a node: the run has ended, because another region's node has died and nobody 
 
 }  // namespace
 
-std::string manual_page(const CLI::App& program) {
-  std::string text =
-      ".TH AURASIM 1\n.SH NAME\naurasim \\- one world of rigid bodies, simulated by any number of nodes\n";
-  text +=
-      ".SH SYNOPSIS\n\\fBaurasim\\fR COMMAND [OPTION ...]\n.SH DESCRIPTION\n"
-      "Each node owns one region of the world and runs Bullet for the bodies in it; nodes find each other and talk "
-      "over DDS, and hand bodies over before two of them can touch across a border.\n"
-      "A launch FILE is a path, or the name of one that comes with the program, such as demo.\n.SH COMMANDS\n";
-  for (const CLI::App* command : commands_of(program))
-    text += command_entries(*command, "aurasim " + command->get_name());
+std::string manual_page(const CLI::App& program, const std::string& about) {
+  const std::string name = program.get_name();
+  std::string upper = name, does = program.get_description();
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  if (!does.empty()) does[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(does[0])));
+  if (!does.empty() && does.back() == '.') does.pop_back();
+  std::string text = fmt::format(".TH {} 1\n.SH NAME\n{} \\- {}\n", plain(upper), plain(name), plain(does));
+  text += fmt::format(
+      ".SH SYNOPSIS\n\\fB{}\\fR COMMAND [OPTION ...]\n.SH DESCRIPTION\n{}\n"
+      "A launch FILE is a path, or the name of one that comes with the program, such as demo.\n.SH COMMANDS\n",
+      plain(name), plain(about));
+  for (const CLI::App* command : commands_of(program)) {
+    text += command_entries(*command, name + " " + command->get_name());
+  }
   return text + kEnd;
 }
 
-void add_manual(CLI::App& program, Action& action) {
+void add_manual(CLI::App& program, Action& action, const std::string& about) {
   CLI::App* command = program.add_subcommand("manual", "print the manual page, for man");
-  command->footer("Example:\n  aurasim manual | man -l -");
-  command->callback([&program, &action] {
-    action = [&program] {
-      fmt::print("{}", manual_page(program));
+  command->footer(fmt::format("Example:\n  {} manual | man -l -", program.get_name()));
+  command->callback([about, &program, &action] {
+    action = [about, &program] {
+      fmt::print("{}", manual_page(program, about));
       return 0;
     };
   });

@@ -3,11 +3,14 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "cli/command_line.h"
 
 namespace aurasim::cli {
 
-/// For `man`, in its macros.
-std::string manual_page(const CLI::App& program);
+/// For `man`, in its macros. `about`: sentences on what the program is, beside its one-line description.
+std::string manual_page(const CLI::App& program, const std::string& about);
+
+/// The command `manual`, which prints the page.
+void add_manual(CLI::App& program, Action& action, const std::string& about);
 
 }  // namespace aurasim::cli

@@ -1,5 +1,5 @@
-// Named choices between speed and accuracy: points on the front of `aurasim experiment pareto` (docs/accuracy.md says
-// how they were chosen).
+// Named choices between speed and accuracy: points on the front of `aurasim-lab experiment pareto` (docs/accuracy.md
+// says how they were chosen).
 #pragma once
 
 #include <array>

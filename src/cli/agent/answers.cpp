@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/saved_parts.h"
-#include "experiment/conditions.h"
+#include "core/sync_mode_names.h"
 
 namespace aurasim::cli::agent {
 namespace {
@@ -128,7 +128,7 @@ json info_json(const RunLink& run) {
           {"step_s", launch.step_s()},
           {"tick_hz", launch.observe.tick_hz},
           {"lookahead", launch.lookahead()},
-          {"sync", experiment::name_of(launch.time.sync)},
+          {"sync", core::name_of(launch.time.sync)},
           {"prototypes", std::move(prototypes)},
           {"joints", std::move(joints)},
           {"regions", std::move(regions)}};

@@ -38,7 +38,7 @@ inline double wall_ms() {
 }
 
 /// The last steps of a run, by when a pile has become what it will be: 5 s, or a quarter of a short run. The same in
-/// src/experiment/speed/speed.cpp.
+/// src/lab/speed/speed.cpp.
 inline long late_steps(const Scene& scene) { return std::min(std::lround(5 / scene.step_s), scene.steps / 4); }
 
 struct Times {

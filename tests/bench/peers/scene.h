@@ -1,4 +1,4 @@
-// What a scene's text says (src/experiment/speed/scene_text.h explains the words), for the drivers of other engines.
+// What a scene's text says (src/lab/speed/scene_text.h explains the words), for the drivers of other engines.
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,65 @@
+#include "lab/aura_radius.h"
+
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "core/make_aura.h"
+
+namespace aurasim::lab {
+namespace {
+
+constexpr double kUnitRadius_m = 1;
+
+class Spheres final : public core::ClearanceQuery {
+ public:
+  double bounding_radius(core::PrototypeId) const override { return kUnitRadius_m; }
+  double clearance(core::PrototypeId, const core::Pose& a, core::PrototypeId, const core::Pose& b,
+                   double) const override {
+    return (a.p_WB - b.p_WB).norm() - 2 * kUnitRadius_m;
+  }
+};
+
+core::Path flying(double x_m, double v_m_s, double age_steps) {
+  core::Path path;
+  path.radius_m = kUnitRadius_m;
+  path.pose.p_WB.x() = x_m;
+  path.v_WB.x() = v_m_s;
+  path.speed_m_s = std::abs(v_m_s);
+  path.age_steps = age_steps;
+  return path;
+}
+
+}  // namespace
+
+double head_on_reach_m(AuraChoice choice, const Conditions& conditions) {
+  const core::AuraRules rules = rules_for(choice, conditions);
+  const Spheres spheres;
+  const std::unique_ptr<const core::Aura> aura = core::make_aura(rules, spheres);
+  const double v = rules.top_speed_m_s;
+  double near_m = 0, far_m = 1000;
+  if (choice == AuraChoice::kNone) return 0;
+  while (far_m - near_m > 1e-6) {
+    const double gap_m = (near_m + far_m) / 2;
+    const bool meets = aura->meets(flying(gap_m + 2 * kUnitRadius_m, -v, rules.lookahead), flying(0, v, 0), 1);
+    (meets ? near_m : far_m) = gap_m;
+  }
+  return near_m;
+}
+
+void write_aura_radius(const std::filesystem::path& directory, int substeps) {
+  std::ofstream out(directory / "aura_radius.csv");
+  out << "factor,tolerance,lookahead,thesis_m,tight_m,swept_m\n";
+  const auto row = [&](Factor factor, double tolerance) {
+    const Conditions c = conditions_at({factor, tolerance, {}}, tolerance, substeps);
+    out << fmt::format("{},{},{},{:.4f},{:.4f},{:.4f}\n", name_of(factor), shown(factor, tolerance),
+                       lookahead(c.promised), aura_reach_m(AuraChoice::kThesis, c), aura_reach_m(AuraChoice::kTight, c),
+                       head_on_reach_m(AuraChoice::kSwept, c));
+  };
+  for (int v = 1; v <= 64; ++v) row(Factor::kSpeed, v);
+  for (int i = 1; i <= 160; ++i) row(Factor::kLatency, 0.0002 * i);
+  for (int i = 1; i <= 160; ++i) row(Factor::kFrame, 0.00025 * i);
+}
+
+}  // namespace aurasim::lab

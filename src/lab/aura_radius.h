@@ -1,0 +1,17 @@
+// How large auras are at equal tolerances: figures 5.21, 5.28 and 5.35 of the thesis, with ours beside them.
+#pragma once
+
+#include <filesystem>
+
+#include "lab/conditions.h"
+
+namespace aurasim::lab {
+
+/// Distance between the bounding spheres, where an aura K steps old says the other body to be, at which two bodies that
+/// fly at each other at top speed have to share a host. Metres.
+double head_on_reach_m(AuraChoice choice, const Conditions& conditions);
+
+/// aura_radius.csv: factor, tolerance (m/s or ms), lookahead and one column of metres per aura.
+void write_aura_radius(const std::filesystem::path& directory, int substeps);
+
+}  // namespace aurasim::lab

@@ -1,0 +1,26 @@
+// One function per command of the laboratory. Each adds itself to `aurasim-lab experiment`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+
+namespace aurasim::lab::commands {
+
+/// The command `experiment` itself, with all that are below it.
+void add_experiment(CLI::App& program, cli::Action& action);
+
+void add_stability(CLI::App& experiment, cli::Action& action);
+void add_pareto(CLI::App& experiment, cli::Action& action);
+void add_scalability(CLI::App& experiment, cli::Action& action);
+void add_bandwidth(CLI::App& experiment, cli::Action& action);
+void add_scenes(CLI::App& experiment, cli::Action& action);
+void add_endurance(CLI::App& experiment, cli::Action& action);
+void add_speed(CLI::App& experiment, cli::Action& action);
+void add_speed_errors(CLI::App& experiment, cli::Action& action);
+
+/// What an option that chooses a solver may say.
+std::vector<std::string> solver_names();
+
+}  // namespace aurasim::lab::commands

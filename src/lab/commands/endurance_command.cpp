@@ -1,0 +1,72 @@
+// `aurasim-lab experiment endurance`.
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/exit_code.h"
+#include "cli/launch_setup.h"
+#include "cli/stop_signal.h"
+#include "lab/commands/commands.h"
+#include "lab/scenes/endurance.h"
+
+namespace aurasim::lab::commands {
+namespace {
+
+void print_line(const lab::Endured& so_far, std::chrono::steady_clock::time_point begin) {
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const nlohmann::ordered_json row = {{"hours", so_far.hours},
+                                      {"state", so_far.state},
+                                      {"wall_s", wall_s},
+                                      {"resident_kB", so_far.resident_kB},
+                                      {"bodies", so_far.bodies},
+                                      {"deaths", so_far.deaths},
+                                      {"loads", so_far.loads},
+                                      {"orders", so_far.orders},
+                                      {"computed", so_far.computed},
+                                      {"compared", so_far.compared},
+                                      {"failure", so_far.failure}};
+  fmt::print("{}\n", row.dump());
+  std::fflush(stdout);
+}
+
+int run_endurance(const cli::FileArguments& files, lab::EndurancePlan plan) {
+  cli::FileArguments wanted = files;
+  wanted.overrides.emplace_back("time.sync=deterministic");
+  const config::Launch launch = config::read_launch(wanted.file, wanted.overrides);
+  plan.setup_of = [](const config::Launch& of, core::RegionId region) { return cli::node_setup(of, region, 0); };
+  cli::catch_stop_signals();
+  std::atomic<bool> stop = false;
+  const std::jthread watch([&stop](const std::stop_token& done) {
+    for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
+      if (cli::stop_requested()) stop = true;
+    }
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const lab::Endured end = lab::endure(
+      launch, plan, [begin](const lab::Endured& so_far) { print_line(so_far, begin); }, stop);
+  return static_cast<int>(end.failure.empty() ? cli::ExitCode::kOk : cli::ExitCode::kFailed);
+}
+
+}  // namespace
+
+void add_endurance(CLI::App& experiment, cli::Action& action) {
+  CLI::App* command = experiment.add_subcommand(
+      "endurance",
+      "hours of a run in virtual time in which nodes die and worlds are saved and loaded, state by state "
+      "beside one node; a line of JSON every so often");
+  const auto files = std::make_shared<cli::FileArguments>();
+  const auto plan = std::make_shared<lab::EndurancePlan>();
+  files->add_to(*command);
+  command->add_option("--hours", plan->hours, "simulated")->check(CLI::Range(1e-3, 1e6));
+  command->add_option("--every", plan->told_every_h, "a line each so many simulated hours")
+      ->check(CLI::Range(1e-3, 1e6));
+  command->add_option("--seed", plan->seed, "of all that happens");
+  command->footer("Example:\n  aurasim-lab experiment endurance tower --hours 24");
+  command->callback([files, plan, &action] { action = [files, plan] { return run_endurance(*files, *plan); }; });
+}
+
+}  // namespace aurasim::lab::commands

@@ -1,0 +1,12 @@
+// aurasim-lab: the laboratory. docs/laboratory.md has what to type.
+#include <memory>
+
+#include "lab/commands/program.h"
+
+using namespace aurasim;
+
+int main(int argc, char** argv) {
+  cli::Action action;
+  const std::unique_ptr<CLI::App> program = lab::commands::make_program(action);
+  return cli::run_program(*program, action, argc, argv);
+}

@@ -1,0 +1,136 @@
+#include "lab/measured_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <time.h>
+
+#include "lab/virtual_cluster.h"
+
+namespace aurasim::lab {
+namespace {
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
+  ClusterRules cluster;
+  cluster.aura.kind = rules.aura;
+  cluster.aura.step_s = 1.0 / rules.step_hz;
+  cluster.aura.substeps = rules.substeps;
+  cluster.aura.lookahead = rules.lookahead;
+  cluster.aura.uncertainty = c.uncertainty;
+  cluster.aura.gravity = c.scene.gravity;
+  cluster.sync = rules.sync;
+  cluster.physics.solver = rules.solver;
+  cluster.physics.solver_iterations = rules.iterations;
+  cluster.physics.friction_directions = rules.friction_directions;
+  cluster.physics.contact_erp = c.contact_erp;
+  cluster.physics.continuous = c.continuous.value_or(cluster.physics.looks_once());
+  cluster.hash_states = true;
+  return cluster;
+}
+
+/// Puts the nodes' parts of each state together and measures the whole ones, in order.
+class Meter {
+ public:
+  Meter(const Case& c, const RunRules& rules, core::Step steps)
+      : case_(c), step_s_(1.0 / rules.step_hz), substep_s_(step_s_ / rules.substeps), steps_(steps) {
+    sums_.assign(c.metrics.size(), 0);
+  }
+
+  void see(core::Step step, std::span<const core::BodyRecord> hosted, std::span<const core::BodyRecord> departed,
+           std::size_t nodes) {
+    if (step > steps_) return;
+    Parts& parts = waiting_[step];
+    parts.bodies.insert(parts.bodies.end(), hosted.begin(), hosted.end());
+    parts.bodies.insert(parts.bodies.end(), departed.begin(), departed.end());
+    if (++parts.nodes < nodes) return;
+    std::sort(parts.bodies.begin(), parts.bodies.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    if (parts.bodies.size() == case_.scene.bodies.size()) measure(step, parts.bodies);
+    waiting_.erase(step);
+  }
+
+  std::vector<double> errors() const {
+    std::vector<double> errors = sums_;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      if (case_.metrics[i].over == Over::kMean) errors[i] /= static_cast<double>(std::max(1, measured_));
+    }
+    return errors;
+  }
+
+ private:
+  struct Parts {
+    std::vector<core::BodyRecord> bodies;
+    std::size_t nodes = 0;
+  };
+
+  void measure(core::Step step, std::span<const core::BodyRecord> bodies) {
+    const Moment now{static_cast<double>(step) * step_s_, substep_s_, bodies};
+    ++measured_;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const Metric& metric = case_.metrics[i];
+      if (metric.over == Over::kLast && step < steps_) continue;
+      const double error = metric.error(now);
+      const bool worse = !(error <= sums_[i]);  // also what is no number
+      if (metric.over == Over::kMean) {
+        sums_[i] += error;
+      } else if (metric.over == Over::kLast || worse) {
+        sums_[i] = error;
+      }
+    }
+  }
+
+  const Case& case_;
+  double step_s_;
+  double substep_s_;
+  core::Step steps_;
+  int measured_ = 0;
+  std::vector<double> sums_;
+  std::map<core::Step, Parts> waiting_;
+};
+
+}  // namespace
+
+core::RegionMap one_node() { return core::RegionMap::columns(1, 1); }
+
+core::RegionMap columns_at(double border_x_m, int count) {
+  constexpr double kWide = 1000;
+  std::vector<core::Rectangle> boxes;
+  for (int i = 0; i < count; ++i) {
+    const double x0 = border_x_m + kWide * (i - count / 2);
+    boxes.push_back({x0, -kWide, x0 + kWide, kWide});
+  }
+  return core::RegionMap::boxes(boxes);
+}
+
+MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap& map) {
+  MeasuredRun run;
+  run.steps = static_cast<core::Step>(std::lround(c.duration_s * rules.step_hz));
+  run.hash.assign(static_cast<std::size_t>(run.steps) + 1, 0);
+  const core::Step more = 4 * rules.lookahead + 2;  // by then, whoever was under way has arrived
+  VirtualCluster cluster(c.scene, map, cluster_rules(c, rules));
+  Meter meter(c, rules, run.steps);
+  std::vector<double> cpu_s(cluster.size(), 0);
+  while (cluster.slowest() < run.steps + more) {
+    const double before = thread_cpu_s();
+    const VirtualCluster::Event event = cluster.next();
+    cpu_s[core::value_of(event.region)] += thread_cpu_s() - before;
+    for (const node::HashPart& part : event.report->hash) {
+      if (part.step <= run.steps) run.hash[static_cast<std::size_t>(part.step)] += part.sum;
+    }
+    run.hand_offs += event.report->departures.size();
+    meter.see(event.report->step, cluster.records(core::value_of(event.region)), event.report->departed,
+              cluster.size());
+  }
+  run.errors = meter.errors();
+  run.cpu_us_per_step = 1e6 * *std::max_element(cpu_s.begin(), cpu_s.end()) / static_cast<double>(run.steps + more);
+  run.violations = cluster.violations();
+  return run;
+}
+
+}  // namespace aurasim::lab

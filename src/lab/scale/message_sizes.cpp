@@ -1,0 +1,65 @@
+#include "lab/scale/message_sizes.h"
+
+#include "core/aura.h"
+#include "dds/wire_bytes.h"
+
+namespace aurasim::lab {
+namespace {
+
+constexpr std::size_t kMany = 1000;
+
+/// `count` awake bodies, as Projection describes them.
+core::AuraBatch batch_of(std::size_t count, core::AuraKind kind) {
+  core::AuraBatch batch;
+  batch.top_speed_m_s = 32;
+  for (std::size_t i = 0; i < count; ++i) {
+    core::AuraRecord& aura = batch.updates.emplace_back();
+    aura.id = core::BodyId{i};
+    aura.speed_m_s = 32;
+    aura.pose.p_WB = core::Vec3::Constant(0.1 * static_cast<double>(i));
+    if (kind != core::AuraKind::kSwept) continue;
+    aura.v_WB = aura.w_WB = core::Vec3::Constant(1.0 + static_cast<double>(i));
+    aura.speed_m_s = 0.01 * static_cast<double>(i);
+  }
+  return batch;
+}
+
+core::HandOff hand_off_of(std::size_t bodies, std::size_t contact_points) {
+  core::HandOff hand_off;
+  hand_off.cluster.bodies.resize(bodies);
+  if (contact_points > 0) hand_off.cluster.manifolds.push_back({0, -1, 0, static_cast<std::uint32_t>(contact_points)});
+  hand_off.cluster.points.assign(contact_points * core::kContactPointDoubles, 0.0);
+  return hand_off;
+}
+
+/// Of each of a thousand more: sequences are padded, so one alone says little.
+template <class SizeOf>
+double each(SizeOf&& size_of) {
+  return static_cast<double>(size_of(2 * kMany) - size_of(kMany)) / static_cast<double>(kMany);
+}
+
+}  // namespace
+
+nlohmann::json message_sizes() {
+  dds::WireBytes coder;
+  const auto updates = [&](core::AuraKind kind) {
+    return each([&](std::size_t n) { return coder.of(batch_of(n, kind)).size(); });
+  };
+  const auto deletes = [&](std::size_t n) {
+    core::AuraBatch batch;
+    batch.deletes.resize(n);
+    return coder.of(batch).size();
+  };
+  return {{"aura_batch", coder.of(core::AuraBatch{}).size()},
+          {"aura_update",
+           {{"swept", updates(core::AuraKind::kSwept)},
+            {"tight", updates(core::AuraKind::kTight)},
+            {"thesis", updates(core::AuraKind::kThesis)}}},
+          {"aura_delete", each(deletes)},
+          {"hand_off", coder.of(hand_off_of(0, 0)).size()},
+          {"hand_off_body", each([&](std::size_t n) { return coder.of(hand_off_of(n, 0)).size(); })},
+          {"hand_off_contact_point", each([&](std::size_t n) { return coder.of(hand_off_of(1, n)).size(); })},
+          {"ack", coder.of(core::HandOffAck{}, 0).size()}};
+}
+
+}  // namespace aurasim::lab

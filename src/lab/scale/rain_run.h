@@ -1,0 +1,27 @@
+// Runs one Rain: all its nodes in virtual time in this thread, each step's work measured as CPU time of the node.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lab/launch_rules.h"
+#include "lab/scale/rain.h"
+#include "lab/scale/window.h"
+
+namespace aurasim::lab {
+
+inline constexpr double kWindow_s = 5;  ///< as the thesis
+
+struct RainPlace {
+  std::filesystem::path launch_file;  ///< launch_configs/columns_rain.yaml, or one with injectors like its
+  SetupOf setup_of;
+};
+
+/// Nothing when `stop` became true. `stepped(share)` is called now and then, with the share of the run that is done.
+std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
+                                            const std::function<void(double)>& stepped, const std::atomic<bool>& stop);
+
+}  // namespace aurasim::lab

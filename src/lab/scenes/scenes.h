@@ -1,0 +1,33 @@
+// Random worlds by the hundred: each seed's world on its regions and on one node, and what came of it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "lab/campaign.h"
+#include "lab/scenes/world_trial.h"
+
+namespace aurasim::lab {
+
+struct ScenesPlan {
+  std::uint64_t first = 1, last = 200;  ///< seeds
+  TrialRules rules;
+  double shrink_s = 60;  ///< for each failing seed; 0: they stay as they are
+  bool keep = false;     ///< the files of those that do not fail, too
+};
+
+/// Runs the seeds that DIR/seeds.csv lacks, on `threads` threads, and appends a row as each ends. The worlds of those
+/// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk; all do with `keep`. Throws std::runtime_error when DIR
+/// holds seeds that were run by other rules. Returns false when `stop` became true before the end.
+bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
+                const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
+
+/// Sums over the plan's seeds that have been run, also as DIR/summary.json; `failed_seeds` names those that fail.
+nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::path& directory);
+
+}  // namespace aurasim::lab

@@ -1,0 +1,48 @@
+// The stability experiment: every hard case at several steps, on one node and on a border between two.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lab/measured_run.h"
+#include "lab/summary.h"
+
+namespace aurasim::lab {
+
+struct StabilityPlan {
+  std::vector<std::string> cases;  ///< none: every case
+  std::vector<int> step_hz = {60, 120, 240, 1000};
+  bool presets = true;     ///< each case also with every preset, at 60 steps per second
+  double longest_s = 1e9;  ///< cases are cut to this
+  double standing_s = 60;  ///< how long piles have to stand with the preset `balanced`; 0: left out
+};
+
+/// One case under one set of rules, on one and on two nodes.
+struct StabilityRow {
+  Case what;
+  RunRules rules;
+  MeasuredRun one;
+  MeasuredRun two;
+  std::string preset;        ///< or empty
+  bool is_standing = false;  ///< the long run in which piles have to stand
+
+  bool same_bits() const { return one.hash == two.hash; }
+  /// -1 if there is none.
+  core::Step first_difference() const;
+};
+
+StabilityRow run_stability(const Case& c, const RunRules& rules);
+
+/// The rules of a preset, at 60 steps per second.
+RunRules preset_rules(const std::string& preset);
+
+/// `done` is called before each run with the share done and the name of the next case; false from it ends the run.
+using StabilityProgress = std::function<bool(double share, const std::string& next)>;
+std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const StabilityProgress& progress);
+
+/// stability.csv and summary.json; returns what has to hold.
+std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory);
+
+}  // namespace aurasim::lab

@@ -1,0 +1,71 @@
+// summary.json: sums over collisions.csv, beside the thesis's numbers, and what must hold of them.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "lab/campaign.h"
+#include "lab/metrics.h"
+
+namespace aurasim::lab {
+
+/// One requirement: how many of what were found, and how many are allowed.
+struct Target {
+  std::string name;
+  double found = 0;
+  double allowed = 0;
+  bool at_least = false;  ///< `allowed` is a lower bound
+
+  bool met() const { return at_least ? found >= allowed : found <= allowed; }
+};
+
+/// Trials by kind of pairs, series, aura and sync mode, within and beyond the tolerance.
+class Tallies {
+ public:
+  void add(const Trial& trial);
+
+  struct Key {
+    PairKind pairs{};
+    std::string series;
+    Variant variant;
+    bool within = false;
+    double value = -1;  ///< only where single values matter (loss); -1: all
+  };
+  /// Sum over what `wanted(key)` picks.
+  template <class Wanted>
+  Tally sum(Wanted&& wanted) const {
+    Tally total;
+    for (const Entry& entry : entries_) {
+      if (wanted(entry.key)) total.add(entry.tally);
+    }
+    return total;
+  }
+
+  struct Entry {
+    Key key;
+    Tally tally;
+  };
+  /// In order of first appearance.
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+nlohmann::json json_of(const Tally& tally);
+nlohmann::json json_of(const std::vector<Target>& targets);
+
+/// docs/design.md, "What is counted", and the thesis's own numbers, as requirements. Only those that the campaign has
+/// trials for.
+std::vector<Target> collision_targets(const Tallies& tallies);
+std::vector<Target> loss_targets(const Tallies& tallies);
+
+/// Reads DIR/collisions.csv and writes DIR/summary.json; returns the targets.
+std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::path& directory);
+
+}  // namespace aurasim::lab

@@ -1,0 +1,161 @@
+#include "lab/virtual_cluster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <malloc.h>
+
+namespace aurasim::lab {
+namespace {
+
+std::vector<std::vector<core::RegionId>> listeners(const core::RegionMap& map, double distance_m) {
+  std::vector<std::vector<core::RegionId>> all;
+  for (std::uint32_t r = 0; r < map.size(); ++r) all.push_back(map.neighbours(core::RegionId{r}, distance_m));
+  return all;
+}
+
+/// Each cluster makes worlds, a few MB each, and drops them: what the C library gives back to the system, it has to ask
+/// for again, and the kernel to clear. Once for the process.
+bool keep_freed_memory() { return mallopt(M_MMAP_THRESHOLD, 1 << 28) != 0 && mallopt(M_TRIM_THRESHOLD, 1 << 28) != 0; }
+
+}  // namespace
+
+node::NodeSetup node_setup(const ClusterRules& rules) {
+  node::NodeSetup setup;
+  setup.protocol.sync = rules.sync;
+  setup.protocol.aura = rules.aura;
+  setup.protocol.aura.looks_once = rules.physics.looks_once();
+  setup.protocol.aura.sweeps = rules.physics.continuous;
+  setup.protocol.neighbour_distance_m = rules.neighbour_distance_m;
+  setup.protocol.shuffle_ranks_steps = rules.shuffle_ranks_steps;
+  setup.physics = rules.physics;
+  setup.control = rules.control;
+  setup.physics.step_s = rules.aura.step_s;
+  setup.physics.substeps = rules.aura.substeps;
+  setup.hash_states = rules.hash_states;
+  setup.clock = rules.clock;
+  return setup;
+}
+
+VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& map, const ClusterRules& rules,
+                               const core::WorldCut* world, node::Recorded recorded)
+    : rules_(rules),
+      map_(map),
+      network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
+      random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
+  [[maybe_unused]] static const bool kept = keep_freed_memory();
+  for (const BrokenLink& link : rules.broken_links) {
+    network_.faults().cut(link.a, link.b, link.from_s, link.until_s);
+  }
+  if (rules.bandwidth_B_s) post_.emplace(network_, map_.size(), *rules.bandwidth_B_s);
+  node::NodeSetup setup = node_setup(rules);
+  for (std::uint32_t r = 0; r < map_.size(); ++r) {
+    setup.protocol.self = core::RegionId{r};
+    Member& member = members_.emplace_back();
+    transport::Transport& mail = post_ ? post_->endpoint(core::RegionId{r}) : network_.endpoint(core::RegionId{r});
+    member.node = std::make_unique<node::Node>(setup, scene, map_, mail);
+    member.phase_s = r < rules.phase_s.size() ? rules.phase_s[r] : 0;
+  }
+  for (Member& member : members_) {
+    if (world != nullptr) {
+      member.node->start(*world, recorded);
+    } else {
+      member.node->start();
+    }
+  }
+}
+
+VirtualCluster::~VirtualCluster() = default;
+
+double VirtualCluster::chance() {
+  random_ = random_ * 6364136223846793005ull + 1442695040888963407ull;
+  return static_cast<double>(random_ >> 11) * 0x1p-53;
+}
+
+/// On the clock that all nodes share; whoever is behind it does not pause between frames.
+double VirtualCluster::due_s(const Member& member) const {
+  const auto next = static_cast<double>(member.node->current_step() + 1);
+  return std::max(next * rules_.aura.step_s + member.phase_s, member.free_s);
+}
+
+VirtualCluster::Event VirtualCluster::next() {
+  for (;;) {
+    double event_s = std::numeric_limits<double>::infinity();
+    Member* chosen = nullptr;
+    for (Member& member : members_) {
+      if (member.node->current_step() >= last_) continue;
+      const double at_s = member.waiting ? std::max(network_.next_arrival_s(), network_.now_s()) : due_s(member);
+      if (at_s >= event_s) continue;
+      event_s = at_s;
+      chosen = &member;
+    }
+    if (!chosen) throw std::logic_error("every node of the cluster waits for a message that nobody sends");
+    network_.advance_to(std::max(event_s, network_.now_s()));
+    if (chosen->waiting) {
+      for (Member& member : members_) member.waiting = false;
+      continue;
+    }
+    if (!chosen->node->ready()) {
+      chosen->waiting = true;
+      continue;
+    }
+    compute(*chosen, network_.now_s());
+    return {chosen->node->region(), report_};
+  }
+}
+
+void VirtualCluster::stand_in(core::Step state) {
+  last_ = state;
+  while (slowest() < state) next();
+  last_ = std::numeric_limits<core::Step>::max();
+  while (std::isfinite(network_.next_arrival_s())) {
+    network_.advance_to(std::max(network_.next_arrival_s(), network_.now_s()));
+    for (Member& member : members_) member.node->ready();
+  }
+}
+
+void VirtualCluster::compute(Member& member, double at_s) {
+  const double frame_s = rules_.shortest_frame_s + (rules_.longest_frame_s - rules_.shortest_frame_s) * chance();
+  network_.set_send_delay(frame_s);
+  report_ = &member.node->step();
+  member.lag_s = at_s - static_cast<double>(report_->step) * rules_.aura.step_s - member.phase_s;
+  member.node->protocol().report_frame(report_->step, frame_s);
+  member.free_s = at_s + frame_s;
+}
+
+core::Step VirtualCluster::confirmed() const {
+  core::Step confirmed = std::numeric_limits<core::Step>::max();
+  for (const Member& member : members_) confirmed = std::min(confirmed, member.node->confirmed_step());
+  return confirmed;
+}
+
+core::Step VirtualCluster::slowest() const {
+  core::Step slowest = std::numeric_limits<core::Step>::max();
+  for (const Member& member : members_) slowest = std::min(slowest, member.node->current_step());
+  return slowest;
+}
+
+double VirtualCluster::slow_down() const {
+  double most = 1;
+  for (const Member& member : members_) {
+    const auto steps = static_cast<double>(std::max<core::Step>(1, member.node->current_step()));
+    most = std::max(most, 1 + member.lag_s / (steps * rules_.aura.step_s));
+  }
+  return most;
+}
+
+std::uint64_t VirtualCluster::violations() const {
+  std::uint64_t sum = 0;
+  for (const Member& member : members_) sum += member.node->protocol().violations().total();
+  return sum;
+}
+
+std::uint64_t VirtualCluster::violations(core::ViolationKind kind) const {
+  std::uint64_t sum = 0;
+  for (const Member& member : members_) sum += member.node->protocol().violations().count(kind);
+  return sum;
+}
+
+}  // namespace aurasim::lab

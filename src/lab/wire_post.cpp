@@ -1,0 +1,146 @@
+#include "lab/wire_post.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "dds/wire_bytes.h"
+
+namespace aurasim::lab {
+namespace {
+
+/// No node is further than this behind the others: they wait for each other.
+constexpr core::Step kStatesKept = 200;
+
+template <class Map>
+void forget_before(Map& kept, std::uint32_t redo, core::Step step) {
+  std::erase_if(
+      kept, [&](const auto& entry) { return std::get<0>(entry.first) + 1 < redo || std::get<1>(entry.first) < step; });
+}
+
+template <class Message>
+Message required(dds::Decoded<Message> decoded) {
+  if (const auto* error = std::get_if<dds::WireError>(&decoded)) {
+    throw std::logic_error("a node refuses what another has sent: " + std::string(dds::name_of(*error)));
+  }
+  return std::move(std::get<Message>(decoded));
+}
+
+}  // namespace
+
+class WirePost::Endpoint : public transport::Transport {
+ public:
+  Endpoint(WirePost& post, core::RegionId region)
+      : post_(post), network_(post.network_.endpoint(region)), region_(region) {}
+
+  void take(core::Inbox& inbox) override {
+    const std::size_t auras = inbox.auras.size();
+    const std::size_t hand_offs = inbox.hand_offs.size();
+    network_.take(inbox);
+    for (std::size_t i = auras; i < inbox.auras.size(); ++i) {
+      const core::AuraBatch& envelope = inbox.auras[i];
+      const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
+      inbox.auras[i] = required(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp}), expected_));
+    }
+    for (std::size_t i = hand_offs; i < inbox.hand_offs.size(); ++i) {
+      const core::HandOff& envelope = inbox.hand_offs[i];
+      const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
+      const Bytes& bytes = kept.hand_offs.at({envelope.redo, envelope.stamp, envelope.destination, envelope.sequence});
+      inbox.hand_offs[i] = required(coder_.hand_off(bytes, expected_));
+    }
+  }
+
+  /// What travels in the network are envelopes; the bytes wait at the post. A step's messages leave together, when the
+  /// link has sent the last of them.
+  void send(const core::Outbox& outbox) override {
+    core::Outbox envelopes;
+    envelopes.listeners = outbox.listeners;
+    envelopes.expected = outbox.expected;
+    envelopes.acks = outbox.acks;
+    forget_old(outbox.aura);
+    std::size_t bytes = 0;
+    for (const core::HandOffAck& ack : outbox.acks) bytes += count(coder_.of(ack, outbox.aura.map_version).size(), 1);
+    for (const core::HandOff& hand_off : outbox.hand_offs) bytes += put_away(hand_off, envelopes);
+    bytes += put_away(outbox.aura, outbox.listeners.size(), envelopes);
+    transport::MemoryNetwork& network = post_.network_;
+    const double usual_delay_s = network.send_delay_s();
+    const double begin_s = std::max(free_s_, network.now_s() + usual_delay_s);
+    free_s_ = begin_s + static_cast<double>(bytes) / post_.bandwidth_B_s_;
+    network.set_send_delay(free_s_ - network.now_s());
+    network_.send(envelopes);
+    network.set_send_delay(usual_delay_s);
+  }
+
+  void wait_for_arrival(std::chrono::nanoseconds) override {}
+
+  const Traffic& traffic() const { return traffic_; }
+  double backlog_s() const { return std::max(0.0, free_s_ - post_.network_.now_s()); }
+
+ private:
+  /// Bytes that `copies` of a message put on the link.
+  std::size_t count(std::size_t bytes, std::size_t copies) {
+    traffic_.link_bytes += copies * bytes;
+    traffic_.datagrams += copies * ((bytes + kDatagramBytes - 1) / kDatagramBytes);
+    return copies * bytes;
+  }
+
+  Kept& kept() { return post_.kept_.at(core::value_of(region_)); }
+
+  void forget_old(const core::AuraBatch& now) {
+    forget_before(kept().auras, now.redo, now.stamp - kStatesKept);
+    forget_before(kept().hand_offs, now.redo, now.stamp - kStatesKept);
+  }
+
+  std::size_t put_away(const core::AuraBatch& batch, std::size_t copies, core::Outbox& envelopes) {
+    envelopes.aura.source = batch.source;
+    envelopes.aura.redo = batch.redo;
+    envelopes.aura.stamp = batch.stamp;
+    const Bytes& bytes = kept().auras[{batch.redo, batch.stamp}] = coder_.of(batch);
+    traffic_.aura_bytes += bytes.size();
+    traffic_.aura_updates += batch.updates.size();
+    return count(bytes.size(), copies);
+  }
+
+  std::size_t put_away(const core::HandOff& hand_off, core::Outbox& envelopes) {
+    core::HandOff& envelope = envelopes.hand_offs.emplace_back();
+    envelope.source = hand_off.source;
+    envelope.destination = hand_off.destination;
+    envelope.redo = hand_off.redo;
+    envelope.stamp = hand_off.stamp;
+    envelope.sequence = hand_off.sequence;
+    const HandOffKey key{hand_off.redo, hand_off.stamp, hand_off.destination, hand_off.sequence};
+    const Bytes& bytes = kept().hand_offs[key] = coder_.of(hand_off);
+    ++traffic_.hand_offs;
+    traffic_.handed_over += hand_off.cluster.bodies.size();
+    traffic_.hand_off_bytes += bytes.size();
+    return count(bytes.size(), 1);
+  }
+
+  WirePost& post_;
+  transport::Transport& network_;
+  core::RegionId region_;
+  dds::WireBytes coder_;
+  dds::Expected expected_;
+  Traffic traffic_;
+  double free_s_ = 0;  ///< when the link has sent what it was given
+};
+
+WirePost::WirePost(transport::MemoryNetwork& network, std::size_t regions, double bandwidth_B_s)
+    : network_(network), bandwidth_B_s_(bandwidth_B_s), kept_(regions) {
+  for (std::uint32_t r = 0; r < regions; ++r) {
+    endpoints_.push_back(std::make_unique<Endpoint>(*this, core::RegionId{r}));
+  }
+}
+
+WirePost::~WirePost() = default;
+
+transport::Transport& WirePost::endpoint(core::RegionId region) { return *endpoints_.at(core::value_of(region)); }
+
+const Traffic& WirePost::traffic(core::RegionId region) const {
+  return endpoints_.at(core::value_of(region))->traffic();
+}
+
+double WirePost::backlog_s(core::RegionId region) const { return endpoints_.at(core::value_of(region))->backlog_s(); }
+
+}  // namespace aurasim::lab

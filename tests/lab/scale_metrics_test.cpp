@@ -1,0 +1,135 @@
+// The arithmetic of the scalability experiment: windows, fits, returns, figures of a run.
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "lab/scale/fit.h"
+#include "lab/scale/message_sizes.h"
+#include "lab/scale/rain.h"
+#include "lab/scale/rain_summary.h"
+#include "lab/scale/round_trips.h"
+#include "lab/scale/window.h"
+
+namespace aurasim::lab {
+namespace {
+
+using core::BodyId;
+using core::RegionId;
+
+TEST(Fit, FindsTheLineThatThePointsLieOn) {
+  const std::vector<double> xs = {1, 2, 4, 8};
+  const std::vector<double> ys = {5, 7, 11, 19};
+  const Line line = fitted_line(xs, ys);
+  EXPECT_NEAR(line.slope, 2, 1e-12);
+  EXPECT_NEAR(line.intercept, 3, 1e-12);
+}
+
+TEST(Fit, GrowthIsTheSlopeOfTheLogarithm) {
+  std::vector<double> xs, ys;
+  for (int i = 0; i < 10; ++i) {
+    xs.push_back(1000.0 * i);
+    ys.push_back(2 * std::pow(10, 0.0002 * xs.back()));
+  }
+  EXPECT_NEAR(fitted_growth(xs, ys).slope, 0.0002, 1e-12);
+}
+
+TEST(Fit, OnePlaceHasNoSlope) {
+  const std::vector<double> xs = {3, 3};
+  const std::vector<double> ys = {1, 5};
+  EXPECT_EQ(fitted_line(xs, ys).slope, 0);
+  EXPECT_EQ(fitted_line(xs, ys).intercept, 3);
+}
+
+TEST(Fit, MedianOfAnEvenNumberIsBetweenTheMiddleTwo) {
+  EXPECT_EQ(median({5, 1, 2, 3}), 2.5);
+  EXPECT_EQ(median({5, 1, 2}), 2);
+}
+
+TEST(RoundTrips, CountsWhoComesBackInTime) {
+  RoundTrips trips(60);
+  const RegionId a{0}, b{1}, c{2};
+  EXPECT_FALSE(trips.add(BodyId{1}, a, b, 100));
+  EXPECT_TRUE(trips.add(BodyId{1}, b, a, 160)) << "back after 60 steps";
+  EXPECT_FALSE(trips.add(BodyId{1}, a, b, 221)) << "back again, but 61 steps later";
+  EXPECT_FALSE(trips.add(BodyId{1}, b, c, 222)) << "on its way";
+  EXPECT_FALSE(trips.add(BodyId{2}, b, a, 222)) << "another body";
+  EXPECT_EQ(trips.moves(), 5U);
+  EXPECT_EQ(trips.returns(), 1U);
+}
+
+StepLoad load(double physics_ms, std::size_t bodies) {
+  StepLoad load;
+  load.physics_ms = physics_ms;
+  load.protocol_ms = 1;
+  load.bodies = bodies;
+  load.departures = 2;
+  load.largest_cluster = bodies / 2;
+  return load;
+}
+
+/// Two nodes that take turns in being slow.
+WindowSums two_nodes() {
+  WindowSums sums(2, 10, 0.5);
+  for (core::Step step = 1; step <= 25; ++step) {
+    sums.add(0, step, load(step % 2 == 0 ? 9 : 3, 10));
+    sums.add(1, step, load(step % 2 == 0 ? 3 : 9, 20));
+  }
+  return sums;
+}
+
+TEST(Windows, TheSlowestNodeOfEachStepIsTheFrame) {
+  const std::vector<Window> windows = two_nodes().windows();
+  ASSERT_EQ(windows.size(), 6U) << "two whole windows of two nodes and their sum";
+  EXPECT_EQ(windows[0].region, 0);
+  EXPECT_DOUBLE_EQ(windows[0].frame_mean_ms, 7);
+  EXPECT_EQ(windows[2].region, -1);
+  EXPECT_DOUBLE_EQ(windows[2].frame_mean_ms, 10);
+  EXPECT_DOUBLE_EQ(windows[2].frame_max_ms, 10);
+  EXPECT_DOUBLE_EQ(windows[2].mean.physics_ms, 6);
+  EXPECT_EQ(windows[2].mean.bodies, 30U);
+  EXPECT_EQ(windows[2].mean.departures, 40U);
+  EXPECT_EQ(windows[2].mean.largest_cluster, 10U);
+  EXPECT_EQ(windows[5].begin_s, 5);
+}
+
+TEST(Windows, ComeBackFromTheirFile) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "aurasim_windows_test.csv";
+  const std::vector<Window> windows = two_nodes().windows();
+  write_windows(file, windows);
+  const std::vector<Window> read = read_windows(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(read.size(), windows.size());
+  EXPECT_EQ(read[2].region, -1);
+  EXPECT_DOUBLE_EQ(read[2].frame_mean_ms, 10);
+  EXPECT_DOUBLE_EQ(read[2].mean.protocol_ms, 1);
+  EXPECT_EQ(read[5].mean.departures, 40U);
+  EXPECT_EQ(read[5].begin_s, 5);
+}
+
+TEST(RainFigures, AddUpAndCompare) {
+  const RainFigures f = figures_of(two_nodes().windows(), 2);
+  EXPECT_DOUBLE_EQ(f.frame_max_ms, 10);
+  EXPECT_EQ(f.hand_offs, 80U);
+  EXPECT_DOUBLE_EQ(f.physics_ms, 12) << "of both nodes";
+  EXPECT_DOUBLE_EQ(f.overhead_share, 2.0 / 12);
+  EXPECT_DOUBLE_EQ(f.most_hosted_share, 2 * 20.0 / 30);
+}
+
+TEST(MessageSizes, AurasKeepToTheirBounds) {
+  const nlohmann::json sizes = message_sizes();
+  EXPECT_LE(sizes["aura_update"]["tight"], 40);
+  EXPECT_LE(sizes["aura_update"]["swept"], 80);
+  EXPECT_GT(sizes["aura_update"]["tight"], 8) << "an id alone";
+}
+
+TEST(Rain, EveryRunHasANameOfItsOwn) {
+  Rain a;
+  a.series = "columns";
+  Rain b = a;
+  b.uncertainty = 0.25;
+  EXPECT_NE(a.name(), b.name());
+}
+
+}  // namespace
+}  // namespace aurasim::lab
