@@ -114,9 +114,8 @@ std::string function_for(const CLI::App& program) {
 
 std::string filled_in(const char* script, const CLI::App& program, const char* add_values, const std::string& words) {
   return fmt::format(fmt::runtime(script), fmt::arg("program", program.get_name()),
-                     fmt::arg("function", function_for(program)),
-                     fmt::arg("paths", path_cases(program)), fmt::arg("values", value_cases(program, add_values)),
-                     fmt::arg("words", words));
+                     fmt::arg("function", function_for(program)), fmt::arg("paths", path_cases(program)),
+                     fmt::arg("values", value_cases(program, add_values)), fmt::arg("words", words));
 }
 
 }  // namespace

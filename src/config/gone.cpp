@@ -10,7 +10,8 @@ constexpr std::array kGone = {
     Gone{"physics.precision", "",
          "physics computes in double precision only, and aurasim-single was removed. Take this key out"},
     Gone{"physics.origin", "",
-         "Bullet's coordinates begin at the world's origin in every region, and in double precision that is accurate far "
+         "Bullet's coordinates begin at the world's origin in every region, and in double precision that is accurate "
+         "far "
          "out, too. Take this key out"},
     Gone{"physics.solver", "nncg",
          "this solver was removed, because piles with friction fell apart with it. Choose soft_step (the default), or "

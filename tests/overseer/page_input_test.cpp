@@ -150,8 +150,8 @@ TEST(ConvexHull, OfABoxHasTwelveTrianglesThatFaceOutwards) {
   EXPECT_NEAR(volume, 1, 1e-12);
 }
 
-/// Bullet rounds the points to a grid of 0.2 mm, for a sphere of 1 m, before it looks for the hull. A thin triangle leans
-/// by more than that.
+/// Bullet rounds the points to a grid of 0.2 mm, for a sphere of 1 m, before it looks for the hull. A thin triangle
+/// leans by more than that.
 TEST(ConvexHull, OfManyPointsOnASphereHoldsThemAll) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
