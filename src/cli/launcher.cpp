@@ -247,7 +247,7 @@ void Launcher::note_exit(Child& child, int status) {
   cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
 }
 
-/// The other nodes say so, too, but not of what is saved on this host for all.
+/// Ends the run before its time, and names the newest saved world on this host.
 void Launcher::break_off(const std::string& why) {
   must_not_go_on_ = true;
   spdlog::error("the run ends: {}. {}", why,

@@ -46,11 +46,12 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   }
 }
 
-/// Another node has given up waiting for whoever takes a region over. Only who waits for it, too, ends with it.
+/// Handles `end`: another node waits no longer for a process that takes a region over. Only a node that waits, too,
+/// ends.
 void NodeProcess::hear_of_end(const dds::RunCommand& end) {
   const bool waits = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
   if (!waits || !can_be_meant(end)) return;
-  break_off(fmt::format("the node of region {} has died, and nobody takes it over", core::value_of(end.region)));
+  break_off(fmt::format("nobody takes over region {}, whose node has died", core::value_of(end.region)));
 }
 
 Worlds NodeProcess::known_worlds() const {

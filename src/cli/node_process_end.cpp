@@ -69,7 +69,7 @@ ExitCode NodeProcess::end() {
   return saves_.regular_ones_failed() ? ExitCode::kNotSaved : ExitCode::kOk;
 }
 
-/// Of a process that has no world to bring to an end.
+/// Ends a process of a run that has broken off, which has no world yet.
 ExitCode NodeProcess::end_without_world() {
   enter(NodeEvent::kFence);
   publish(broken_off_);

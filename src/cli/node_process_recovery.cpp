@@ -172,10 +172,10 @@ void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
   }
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
-  break_off(fmt::format("the node of regions [{}] has died, and nobody takes them over", fmt::join(regions, ", ")));
+  break_off(fmt::format("nobody takes over regions [{}], whose nodes have died", fmt::join(regions, ", ")));
 }
 
-/// The run ends here, before its time.
+/// Ends the run on this node before its time, and names the newest saved world.
 void NodeProcess::break_off(const std::string& why) {
   if (!broken_off_.empty()) return;
   broken_off_ = why;

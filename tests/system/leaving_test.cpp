@@ -104,7 +104,7 @@ TEST_F(StartedByHand, WhereNobodyTakesADeadOnesRegionOverAllEndByName) {
   start_nodes({"--has-launcher"});
   node(1).signal(SIGKILL);
   expect_all_but_one_break_off(1);
-  EXPECT_TRUE(says("has died, and nobody takes"));
+  EXPECT_TRUE(says("nobody takes over regions [1], whose nodes have died"));
 }
 
 TEST_F(StartedByHand, WhereTheRunIsToStopAllEndByNameWithTheFirstDeath) {
