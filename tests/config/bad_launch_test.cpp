@@ -149,6 +149,10 @@ const std::vector<BadCase> kBadLaunches = {
      kTwo + "physics: {solver: magic, preset: best}\n",
      {"launch.yaml:3:19: physics.solver: found \"magic\", allowed: sequential_impulse, soft_step",
       "launch.yaml:3:34: physics.preset: found \"best\", allowed: fast, balanced, exact"}},
+    {"KeysThatAreGone",
+     kTwo + "physics: {precision: double, origin: world}\n",
+     {"launch.yaml:3:11: physics.precision: this key is gone: physics computes in double precision only",
+      "launch.yaml:3:30: physics.origin: this key is gone: Bullet's coordinates begin at the world's origin"}},
     {"SolverNncgIsGone",
      kTwo + "physics: {solver: nncg}\n",
      {"launch.yaml:3:19: physics.solver: found \"nncg\", which is gone: this solver was removed, because piles with "
