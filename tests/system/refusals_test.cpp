@@ -104,10 +104,8 @@ TEST_F(Refusals, RegionsThatTakeTurnsAreWarnedOf) {
   EXPECT_THAT(run.err(), HasSubstr(count + " regions on "));
 }
 
-TEST_F(Refusals, ACaseThatIsNotThereIsNotMet) {
-  expect_refused({"experiment", "stability", "--cases", "nosuch", "--out", (folder() / "out").string()}, 2,
-                 "card_house");
-  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+TEST_F(Refusals, ACommandOfTheLaboratoryIsNamedWithItsProgram) {
+  expect_refused({"experiment", "stability", "--cases", "tower"}, 2, "aurasim-lab experiment stability --cases tower");
 }
 
 TEST_F(Refusals, AReportIsNotWrittenWhereNothingWasRecorded) {
