@@ -101,7 +101,7 @@ TEST_F(Program, CompletionsAndManualNameEveryCommandAndOption) {
     }
   });
   EXPECT_THAT(bash,
-              AllOf(HasSubstr("'aurasim completion') words="), HasSubstr("complete -o default -F _aurasim aurasim ")));
+              AllOf(HasSubstr("'aurasim completion') words="), HasSubstr("complete -o default -F _aurasim aurasim\n")));
   EXPECT_THAT(man, HasSubstr("\\fB\\-\\-start\\-time\\-out\\fR"));
 }
 
