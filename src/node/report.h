@@ -41,8 +41,7 @@ struct Accounts {
   double real_time_factor = 0;
   std::vector<DeadRegion> dead;
   std::vector<IncompleteRegion> incomplete;
-  std::vector<std::string>
-      not_merged;  ///< merged files that did not fit on the disk; the regions' folders have the rows
+  std::vector<std::string> not_merged;  ///< merged files that did not fit on the disk
 };
 
 /// Removes what an earlier run has left in `folder` (region_* and the merged files). Leaves everything else alone.
