@@ -21,13 +21,13 @@ struct Delivery {
   std::string text;        ///< reason of a refusal, or what was done
   core::Step at_step = 0;
   std::optional<core::ObjectRef> object;  ///< the new body or static, or the object that a ray hit
-  // Of a ray:
+  // Only for a ray:
   bool is_ray = false;
   core::Vec3 p_W = core::Vec3::Zero();
   core::Vec3 normal_W = core::Vec3::Zero();
   double distance_m = 0;
   std::vector<core::RegionId> silent;  ///< regions that did not answer, so that a nearer hit is possible
-  // Of a saved world:
+  // Only for a saved world:
   bool is_save = false;
   std::vector<std::string> files;  ///< files of the parts, on their nodes' hosts
 };

@@ -140,7 +140,7 @@ void RunLink::meet(const Patience& patience) {
   const auto begin = Clock::now();
   const auto computes = [this] {
     const std::set<core::RegionId> live = live_regions();
-    // What has come is looked at now and then only: a region that is not there yet would count for none.
+    // The watch takes messages in at intervals only, so a region that it has not seen yet would not be counted.
     return steering_.is_complete() && watch_.nodes().size() >= launch_.regions.size() &&
            std::ranges::all_of(live,
                                [this](core::RegionId region) {
