@@ -8,7 +8,7 @@
 namespace aurasim::cli {
 namespace {
 
-/// What this process starts must not keep the client's socket open.
+/// Child processes must not keep the client's socket open.
 int take_socket() {
   const int socket = ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);

@@ -10,9 +10,10 @@ namespace {
 
 using Kind = dds::Checkpoint::Kind;
 
-/// Of a region. The nodes are a few states apart, and a keeper may have got only every other part.
+/// Number of states kept of each region. Nodes are a few states apart, and a keeper may have received only every other
+/// part.
 constexpr std::size_t kStates = 6;
-/// So many own parts later, others' of the state that all went back to are not needed any more.
+/// Number of own parts after which the other regions' parts of the state that all went back to are dropped.
 constexpr std::ptrdiff_t kOwnAfterwards = 3;
 
 }  // namespace
@@ -77,7 +78,7 @@ void Checkpoints::keep(core::RegionId region, core::Step step, std::string octet
   if (states.size() > kStates) states.erase(states.begin());
 }
 
-/// Where a link is too slow for all parts, some are left out.
+/// Sends this node's part to its keepers. If a link is too slow for all parts, some are left out.
 void Checkpoints::send_to_keepers(core::Step step) {
   const std::string& octets = kept_[region_][step];
   const std::size_t sent = bus_->send_to_keepers({region_, Kind::kToKeep, era_, step, octets});

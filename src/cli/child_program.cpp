@@ -20,14 +20,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kNiceness = 10;  // nodes on the same host come first
 
-// Sanitizers reserve more addresses than any limit.
+// Sanitizers reserve more address space than any limit allows.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
 
-/// One end of a pipe, closed with it.
+/// One end of a pipe. The destructor closes it.
 class PipeEnd {
  public:
   PipeEnd() = default;
@@ -50,7 +50,7 @@ struct Pipe {
   PipeEnd read, write;
   Pipe() {
     std::array<int, 2> ends{};
-    // Children that another thread starts at this moment must not hold it open.
+    // O_CLOEXEC, so that children started by other threads at this moment do not hold the pipe open.
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot open a pipe");
     read.open(ends[0]);
     write.open(ends[1]);
@@ -62,9 +62,9 @@ void limit(int what, std::size_t value) {
   ::setrlimit(what, &both);
 }
 
-/// Between fork and exec: only what is safe there while other threads hold locks.
+/// Runs between fork and exec. It may only call what is safe while other threads hold locks.
 [[noreturn]] void become(const ChildProgram& program, char* const* arguments, int input, int output) {
-  ::setpgid(0, 0);  // no Ctrl-C of ours
+  ::setpgid(0, 0);  // this terminal's Ctrl-C does not reach it
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::setpriority(PRIO_PROCESS, 0, kNiceness);
   limit(RLIMIT_CORE, 0);
@@ -76,7 +76,7 @@ void limit(int what, std::size_t value) {
   ::_exit(127);
 }
 
-/// Feeds and listens until the child closes its output. False: it did not in time, or said too much.
+/// Writes the input and reads the output until the child closes it. Fails if that takes too long or is too much.
 class Talk {
  public:
   Talk(Pipe& to_child, Pipe& from_child, std::string_view input, std::string& output)
@@ -89,7 +89,7 @@ class Talk {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
       if (left.count() <= 0 || output_.size() > most_output) return false;
       std::array<pollfd, 2> waits = {
-          {{from_child_.read.fd(), POLLIN, 0}, {to_child_.write.fd(), POLLOUT, 0}}};  // -1 is passed over
+          {{from_child_.read.fd(), POLLIN, 0}, {to_child_.write.fd(), POLLOUT, 0}}};  // poll ignores -1
       ::poll(waits.data(), waits.size(), static_cast<int>(left.count()) + 1);
       if (waits[1].revents != 0) feed();
       if (waits[0].revents != 0) listening = listen();
@@ -118,7 +118,7 @@ class Talk {
   std::string& output_;
 };
 
-/// A child that has closed its output may still not end.
+/// Exit status of the child. It may still run after it has closed its output, so the deadline holds here, too.
 int status_of(pid_t pid, Clock::time_point deadline) {
   int status = 0;
   while (::waitpid(pid, &status, WNOHANG) == 0) {
@@ -143,7 +143,7 @@ ChildResult run_child(const ChildProgram& program, std::string_view input) {
   to_child.read.close();
   from_child.write.close();
   ChildResult result;
-  // A child that ends before it has read everything must not end us.
+  // SIGPIPE is blocked, so that a child that ends before it has read everything does not end this process.
   sigset_t pipe_signal, before;
   sigemptyset(&pipe_signal);
   sigaddset(&pipe_signal, SIGPIPE);

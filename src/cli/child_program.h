@@ -1,4 +1,4 @@
-// A program that is run to its end: it is given bytes, and what it prints is taken.
+// Runs a program to its end with bytes as input, and collects its output.
 #pragma once
 
 #include <chrono>
@@ -19,12 +19,13 @@ struct ChildProgram {
 struct ChildResult {
   std::string output;
   int exit_code = 0;
-  int signal = 0;          ///< that ended it; 0: it has ended by itself
-  bool timed_out = false;  ///< and was ended
+  int signal = 0;          ///< signal that ended the child; 0: it has ended by itself
+  bool timed_out = false;  ///< the child was ended because its time was over
 };
 
-/// Waits until it has ended, at most as long as its limit. It runs below our priority and dumps no core. Throws
-/// std::runtime_error when no process can be started. Any thread.
+/// Runs the program and waits until it has ended, at most as long as its limit. The child has a lower priority than
+/// this process and dumps no core. Throws std::runtime_error when no process can be started. May be called from any
+/// thread.
 ChildResult run_child(const ChildProgram& program, std::string_view input);
 
 }  // namespace aurasim::cli

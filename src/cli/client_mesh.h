@@ -1,4 +1,4 @@
-// Meshes that a client brings from files of its own host.
+// Meshes that a client sends from files of its own host.
 #pragma once
 
 #include <stdexcept>
@@ -8,13 +8,13 @@
 
 namespace aurasim::cli {
 
-/// A mesh file that cannot be used; begins with its name.
+/// Thrown for a mesh file that cannot be used. The message begins with the file's name.
 class BadMesh : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Gives the mesh in `file` (OBJ, STL or glTF), or its convex parts, to the nodes. Throws BadMesh.
+/// Sends the mesh in `file` (OBJ, STL or glTF), or its convex parts, to the nodes, depending on `use`. Throws BadMesh.
 core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClient& client);
 
 }  // namespace aurasim::cli

@@ -1,4 +1,4 @@
-// What became of a run, in a line: by what its nodes have said of themselves, where nothing is recorded.
+// Outcome of a run in one line, from the nodes' statuses, for runs without records.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace aurasim::cli {
 
-/// With its end of line. `statuses`: the last ones. Regions whose nodes have not come to the end of the run are named,
-/// since it is not known what became of their bodies.
+/// The line with its end. `statuses`: the last status of each region. Regions whose nodes have not come to the end of
+/// the run are named, because the fate of their bodies is unknown.
 std::string closing_line(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t regions, bool has_begun,
                          double step_s);
 

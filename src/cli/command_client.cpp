@@ -12,13 +12,13 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatienceForAnswers = 15s;
-constexpr auto kPatienceForMeshes = 20s;  ///< the lead waits for 15 s until all nodes have one, and says who has not
-constexpr auto kPatienceAfterIt = 2s;     ///< once all nodes have computed its state: a host says so when it has obeyed
+constexpr auto kPatienceForMeshes = 20s;  ///< longer than the 15 s for which the lead waits
+constexpr auto kPatienceAfterIt = 2s;     ///< for the host's reply, once all have computed the state
 constexpr auto kPatienceForChanges = 20s;
-constexpr auto kPatienceForDisks = 20s;  ///< that a world is saved on
+constexpr auto kPatienceForDisks = 20s;  ///< time to write a saved world
 constexpr auto kAgain = 500ms;
-constexpr std::uint64_t kAnyMap = 0;   ///< there is one run in a domain, and its map may be changing just now
-constexpr auto kPatienceForRays = 2s;  ///< of a region that is busy; who has answered is not waited for
+constexpr std::uint64_t kAnyMap = 0;   ///< accept any map: a domain has one run, whose map may be changing just now
+constexpr auto kPatienceForRays = 2s;  ///< patience with a region that is busy
 
 bool needs_a_mesh(const core::Ask& ask) {
   const auto is_mesh = [](const core::ClientShape& shape) { return std::holds_alternative<core::MeshRef>(shape); };
@@ -86,7 +86,7 @@ void CommandClient::accept(const core::CommandReply& reply, UnderWay& under_way)
   delivery.object = reply.object;
   if (!delivery.is_save) return;
   under_way.stands = reply.text == core::kSavedAsItStands || paused_in() >= reply.at_step;
-  if (under_way.stands) {  // the others hear so from us
+  if (under_way.stands) {  // this client passes the state on to the other nodes
     under_way.command.at_step = reply.at_step;
     under_way.again = Clock::now();
   }
@@ -101,7 +101,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
     case core::Outcome::kDone:
       delivery.done = true;
       delivery.at_step = reply.at_step;
-      if (reply.object) delivery.object = reply.object;  // a host may be heard before the lead
+      if (reply.object) delivery.object = reply.object;  // the host's reply may come before the lead's
       delivery.text = fmt::format("done at step {}", reply.at_step);
       under_way.deadline = {};
       return;
@@ -111,7 +111,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
       under_way.deadline = {};
       return;
     case core::Outcome::kSeen:
-      if (delivery.is_save) accept(reply, under_way);  // whose part is saved has taken it: that word may be lost
+      if (delivery.is_save) accept(reply, under_way);  // a saved part implies acceptance, whose reply may be lost
       if (std::ranges::find(under_way.answered, reply.source) != under_way.answered.end()) return;  // told again
       under_way.answered.push_back(reply.source);
       delivery.at_step = std::max(delivery.at_step, reply.at_step);
@@ -125,7 +125,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
   }
 }
 
-/// The state in which all nodes stand; nothing: they do not.
+/// The state in which all live nodes are paused. Nothing if they are not.
 std::optional<core::Step> CommandClient::paused_in() {
   std::optional<core::Step> step;
   for (const dds::Status* node : live_nodes()) {
@@ -159,7 +159,7 @@ bool CommandClient::ray_has_ended(UnderWay& under_way) {
   return true;
 }
 
-/// In slow motion its state may be many seconds away.
+/// True if the command is accepted and its state is still to come, which may take many seconds in slow motion.
 bool CommandClient::is_on_its_way(const UnderWay& under_way) {
   return under_way.accepted && !under_way.changes_the_run && under_way.delivery.text.empty() &&
          std::ranges::any_of(live_nodes(), [&](const dds::Status* node) {
@@ -185,14 +185,14 @@ bool CommandClient::has_ended(UnderWay& under_way) {
     return true;
   }
   if (under_way.stands && !under_way.has_gone_on && has_gone_on_from(delivery.at_step)) {
-    under_way.has_gone_on = true;  // those that have not saved it never will
+    under_way.has_gone_on = true;  // nodes that have not saved their part by now never will
     under_way.deadline = std::min(under_way.deadline, Clock::now() + kPatienceAfterIt);
   }
   if (is_on_its_way(under_way)) under_way.deadline = std::max(under_way.deadline, Clock::now() + kPatienceAfterIt);
   if (Clock::now() < under_way.deadline) {
     const std::optional<core::Step> paused = paused_in();
-    if (!under_way.accepted || under_way.changes_the_run || !paused) return false;  // nodes also stand to change
-    if (delivery.is_save && (under_way.stands || *paused >= delivery.at_step)) return false;  // it is being written
+    if (!under_way.accepted || under_way.changes_the_run || !paused) return false;  // changes pause nodes, too
+    if (delivery.is_save && (under_way.stands || *paused >= delivery.at_step)) return false;  // being written
     delivery.done = !delivery.is_save;
     delivery.text = fmt::format("the run is paused; takes effect in step {}", delivery.at_step);
     return true;

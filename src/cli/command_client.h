@@ -1,5 +1,4 @@
-// Carries commands to a run and brings back what became of them: one outcome for each, whatever replies there were on
-// the way. Never waits.
+// Sends commands to a run and collects their outcomes: one for each command, however many replies come. Never blocks.
 #pragma once
 
 #include <chrono>
@@ -18,34 +17,34 @@ namespace aurasim::cli {
 struct Delivery {
   std::uint64_t request = 0;
   bool done = false;
-  bool timed_out = false;  ///< not done, and nobody has said why
-  std::string text;        ///< why not, or what was done
+  bool timed_out = false;  ///< not done, and no reply says why
+  std::string text;        ///< reason of a refusal, or what was done
   core::Step at_step = 0;
-  std::optional<core::ObjectRef> object;  ///< the new body or static; what the ray hit
-  // Of a ray:
+  std::optional<core::ObjectRef> object;  ///< the new body or static, or the object that a ray hit
+  // Only for a ray:
   bool is_ray = false;
   core::Vec3 p_W = core::Vec3::Zero();
   core::Vec3 normal_W = core::Vec3::Zero();
   double distance_m = 0;
-  std::vector<core::RegionId> silent;  ///< regions that did not answer: there may be something nearer
-  // Of a saved world:
+  std::vector<core::RegionId> silent;  ///< regions that did not answer, so that a nearer hit is possible
+  // Only for a saved world:
   bool is_save = false;
-  std::vector<std::string> files;  ///< the parts, on their nodes' hosts
+  std::vector<std::string> files;  ///< files of the parts, on their nodes' hosts
 };
 
 class CommandClient {
  public:
-  /// Both outlive it. `agreement`: of the run that is meant.
+  /// `participant` and `control` must outlive the client. `agreement`: the agreement of the run to be commanded.
   CommandClient(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement);
 
-  /// All nodes that are alive hear us, and we them.
+  /// True if this client's endpoints are matched with those of all live nodes, in both directions.
   bool all_listen();
-  /// Returns the request's id. Asks again until it has come to an end: a reply is lost if its writer had not yet found
-  /// us. Nodes obey each request once.
+  /// Sends a command and returns its request id. The command is repeated until its outcome is known, because a reply is
+  /// lost if its writer had not yet discovered this client. Nodes execute each request once.
   std::uint64_t send(core::Command command);
-  /// Gives a mesh to the nodes, unless all have it.
+  /// Publishes a mesh to the nodes, unless all have it.
   void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
-  /// What has come to an end since the last call.
+  /// Outcomes of the commands that have ended since the last call.
   std::vector<Delivery> take();
   void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
 
@@ -55,14 +54,14 @@ class CommandClient {
     Delivery delivery;
     bool accepted = false;
     bool changes_the_run = false;
-    bool stands = false;       ///< a world is saved in the state in which the run stands
-    bool has_gone_on = false;  ///< and some node has left that state since
-    bool has_time = false;     ///< its state was named: who asked does not wait for it
+    bool stands = false;       ///< a world is saved in the state in which the run is paused
+    bool has_gone_on = false;  ///< some node has left that state since
+    bool has_time = false;     ///< the command named its state: the client does not wait for it
     std::optional<core::BodyId> subject;
-    std::vector<core::RegionId> asked;  ///< by a ray; none: all
+    std::vector<core::RegionId> asked;  ///< regions that a ray asks; none: all
     std::vector<core::RegionId> answered;
     core::Command command;
-    Clock::time_point again;  ///< when it is sent next
+    Clock::time_point again;  ///< when the command is sent again
     Clock::time_point deadline;
   };
 

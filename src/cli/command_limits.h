@@ -1,5 +1,4 @@
-// Why a command cannot be done, in words for the person who asked. The numbers are those of core/limits.h and of the
-// run.
+// Why a command cannot be executed, as a message for the user. The numbers are those of core/limits.h and of the run.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +13,15 @@ namespace aurasim::cli {
 
 struct CommandContext {
   const config::Launch& launch;
-  const core::Scene& scene;  ///< as it has grown
+  const core::Scene& scene;  ///< with all additions
   core::Step now = 0;
   std::uint64_t bodies = 0;          ///< in the whole run
-  std::optional<core::Shape> shape;  ///< what the command's own shape comes to, if it has one
+  std::optional<core::Shape> shape;  ///< the command's own shape, if it has one
 };
 
-/// Empty: it can be done.
+/// Why the command cannot be executed. Empty if it can.
 std::string problem_with(const core::Command& command, const CommandContext& context);
-/// Rays are answered by all regions, without a context.
+/// As above, for rays. They need no context, because all regions answer them.
 std::string problem_with(const core::Ray& ray);
 
 }  // namespace aurasim::cli

@@ -1,5 +1,5 @@
-// What the command lines of all our programs have in common, whichever commands a program has: how a command is chosen
-// and run, the launch file as an argument, and what is said to words that make no sense.
+// Shared parts of the command lines of all our programs: how a command is chosen and run, the launch file as an
+// argument, and the error for an unknown word.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace aurasim::cli {
 
-/// Set by the command that was chosen; run after parsing.
+/// The command to run. The chosen subcommand sets it during parsing.
 using Action = std::function<int()>;
 
 /// The launch file and its overrides, as every command takes them.
@@ -29,7 +29,7 @@ void hide_empty_defaults(CLI::App& app);
 /// a mistyped one. Returns the exit code.
 int run_program(CLI::App& program, const Action& action, int argc, char** argv);
 
-/// Commands below `app`, options of it: those that are shown to people, in the order of --help.
+/// Commands below `app`, and its options, as shown to users in the order of --help.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 std::vector<const CLI::Option*> options_of(const CLI::App& app);
 /// Its long name, or its short one, as it is typed; FILE and the like for what has none.
@@ -37,8 +37,8 @@ std::string name_of(const CLI::Option& option);
 /// The words that it takes; empty when it takes others as well.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
-/// About the first word that is neither a command nor an option where it stands, with the nearest that is; nothing when
-/// there is no such word. `words`: without the program's own name.
+/// Message about the first word that is neither a command nor an option at its place, with the nearest valid word.
+/// Nothing if there is no such word. `words`: the command line without the program's name.
 std::optional<std::string> unknown_word(const CLI::App& program, const std::vector<std::string>& words);
 
 }  // namespace aurasim::cli

@@ -21,14 +21,14 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
 constexpr auto kLongestUntold = 2s;
-constexpr double kLongestShown_s = 0.5;     ///< older states nobody shows who looks on
-constexpr auto kStatusAge = 300ms;          ///< by then every node has said which meshes it has, since the command came
-constexpr std::size_t kMostInAState = 300;  ///< commands that become orders
+constexpr double kLongestShown_s = 0.5;     ///< no observer shows older states
+constexpr auto kStatusAge = 300ms;          ///< time after a command in which every node publishes which meshes it has
+constexpr std::size_t kMostInAState = 300;  ///< commands that become orders in one state, at most
 constexpr std::size_t kTextWeighs = 20;
-/// What a node keeps of clients' meshes.
+/// Limits of the clients' meshes that a node keeps.
 constexpr dds::MeshCacheLimits kMeshes{512, std::size_t{128} << 20U, 128, std::size_t{32} << 20U};
 
-/// Null: it defines no shape by a mesh.
+/// The mesh by which an order defines a shape. Null if it defines none.
 const core::MeshRef* mesh_defined_by(const core::Order& order) {
   const auto* const defined = std::get_if<core::DefineShape>(&order.action);
   return defined == nullptr ? nullptr : std::get_if<core::MeshRef>(&defined->shape);
@@ -77,9 +77,9 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
   tell_what_is_taken(node, run);
-  // Who leads from now on tells observers what a saved world has brought.
+  // A new lead publishes the additions of a saved world to observers.
   if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) send_additions();
-  dds::MeshCache& meshes = mesh_reader_.meshes();  // also those that nobody has asked for here: the lead wants to know
+  dds::MeshCache& meshes = mesh_reader_.meshes();  // takes in all meshes, for the lead's account of them
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
   for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});
   for (Asked& one : asked) {
@@ -90,7 +90,7 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
     } else if (comes_after_the_pause(one.command, node, run)) {
       save_as_it_stands(one.command, std::get<core::Save>(one.command.ask), node, run);
     } else if (!run.leads) {
-      endpoint_.forget(one.command.request);  // who leads next may have to obey it
+      endpoint_.forget(one.command.request);  // the next lead may have to execute it
     } else if (const auto* rate = std::get_if<core::SetRate>(&one.command.ask)) {
       take_rate(one.command, *rate, node);
     } else if (mesh != nullptr && !is_everywhere(mesh->hash, one, run)) {
@@ -117,7 +117,8 @@ void CommandServer::answer(const core::Command& command, const core::Ray& ray, c
   endpoint_.reply(std::move(seen));
 }
 
-/// Of the clocks alone: whoever drives the node has it done at once (wanted_rate).
+/// Takes a request for another rate. It concerns the clocks only, so no order is made: the process applies it at once
+/// (take_wanted_rate).
 void CommandServer::take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node) {
   const CommandContext context{launch_, node.scene(), node.current_step(), 0, std::nullopt};
   if (std::string why = problem_with(command, context); !why.empty()) return refuse(command.request, std::move(why));
@@ -125,12 +126,12 @@ void CommandServer::take_rate(const core::Command& command, const core::SetRate&
   reply_done(command.request, node.current_step());
 }
 
-/// Has every node that is alive got this mesh, by what it has said since the command came?
+/// True if every live node has published, since the command came, that it has this mesh.
 bool CommandServer::is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run) {
   return Clock::now() >= asked.since + kStatusAge && mesh_reader_.mesh(hash) != nullptr && run.lacking(hash).empty();
 }
 
-/// A mesh is on its way to all nodes; after some seconds it is not.
+/// Waits until a mesh has reached all nodes, and refuses the command after some seconds.
 void CommandServer::wait_for_mesh(Asked asked, const core::MeshRef& mesh, const RunView& run) {
   if (Clock::now() < asked.since + kPatienceForMesh) {
     waiting_for_mesh_.push_back(std::move(asked));
@@ -156,7 +157,7 @@ void CommandServer::refuse(std::uint64_t request, std::string why) {
   endpoint_.reply(std::move(reply));
 }
 
-/// A world that would be saved, or be certain to be right, only when the run goes on.
+/// True for a save in a pause whose state comes after the pause, or is not confirmed before the run goes on.
 bool CommandServer::comes_after_the_pause(const core::Command& command, const node::Node& node,
                                           const RunView& run) const {
   if (!run.holds_at || !std::holds_alternative<core::Save>(command.ask) || command.at_step > *run.holds_at) {
@@ -166,8 +167,9 @@ bool CommandServer::comes_after_the_pause(const core::Command& command, const no
   return std::max(command.at_step, node.protocol().earliest_effect()) + until_certain > *run.holds_at;
 }
 
-/// The lead says in which state, and who has asked tells that to the others, by asking again. Whoever does not stand
-/// yet hears of it once more later. In state 0 nobody has to be told: there is no other.
+/// Saves a world in a pause. The lead replies with the state, and the client repeats its request with that state for
+/// the other nodes. Nodes that are not paused yet receive a repetition later. In state 0 no state has to be named,
+/// because there is no other.
 void CommandServer::save_as_it_stands(const core::Command& command, const core::Save& ask, const node::Node& node,
                                       const RunView& run) {
   const core::Step now = node.current_step();
@@ -197,7 +199,7 @@ void CommandServer::load_instead(core::Command back, std::string file, node::Nod
   decide(back, node, run);
 }
 
-/// Before all nodes stop for it: can it be loaded?
+/// Why a saved world cannot be loaded; empty if it can. Checked before all nodes stop for it.
 std::string CommandServer::problem_with_world(const core::Ask& ask) const {
   const auto* const load = std::get_if<core::Load>(&ask);
   if (load == nullptr || problem_with_save_name(load->file) != nullptr) return {};
@@ -242,13 +244,13 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   const bool all_reply = std::holds_alternative<core::Save>(action);
   if (all_reply || core::changes_the_run(action)) not_kept_.push_back(command.request);
   if (core::changes_the_run(action)) change_at_ = issued.order->at_step;
-  if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // what hosts reply
+  if (core::body_of(action) || std::holds_alternative<core::Spawn>(action) || all_reply) return;  // hosts reply
   // A change of the run is done when the run goes on after it.
   due_[command.request] = {
       core::changes_the_run(action) ? std::numeric_limits<core::Step>::max() : issued.order->at_step, issued.object};
 }
 
-/// A lead that has died has ordered it, or this node before it started anew.
+/// Replies again to a request that is ordered already: by a lead that has died, or by this node before it started anew.
 void CommandServer::tell_again(const core::Order& order, const node::Node& node) {
   core::CommandReply reply;
   reply.request = order.request;
@@ -260,14 +262,15 @@ void CommandServer::tell_again(const core::Order& order, const node::Node& node)
   due_[order.request] = {std::max(order.at_step, node.current_step()), reply.object};
 }
 
-/// A world that stands makes nothing known; in slow motion that takes longer than anybody waits.
+/// Acknowledges orders that other nodes have by now. A paused world publishes no batches, and in slow motion they come
+/// too late for the client, so these are acknowledged early.
 void CommandServer::tell_what_is_taken(const node::Node& node, const RunView& run) {
   const bool stands = run.holds_at && node.current_step() >= *run.holds_at;
   std::erase_if(taken_, [&](Taken& one) {
     const bool is_time = stands || one.went_back || Clock::now() > one.since + kLongestUntold;
     if (!is_time && node.current_step() < one.known_at) return false;
     if (one.went_back && node.ordered(one.reply.request) == nullptr) {
-      endpoint_.forget(one.reply.request);  // whoever asks again is heard
+      endpoint_.forget(one.reply.request);  // a repeated request is served anew
     } else {
       endpoint_.reply(std::move(one.reply));
     }
@@ -288,7 +291,7 @@ std::optional<core::Shape> CommandServer::make_mesh(const core::MeshRef& ref) {
   return mesh == nullptr ? std::nullopt : std::optional(config::shape_for(*mesh, ref.use));
 }
 
-/// Publishes what the scene has got, when it has got something.
+/// Publishes the additions to the scene, if there are new ones.
 void CommandServer::publish_additions(const node::StepReport& report) {
   const std::size_t before = additions_.orders.size();
   for (const core::Order& order : report.orders) {
@@ -301,7 +304,7 @@ void CommandServer::publish_additions(const node::StepReport& report) {
   if (leads_) send_additions();
 }
 
-/// Who brought a mesh may be gone when somebody comes who wants to see it.
+/// Publishes the additions with their meshes. The client that sent a mesh may be gone when an observer needs it.
 void CommandServer::send_additions() {
   for (const core::Order& order : additions_.orders) {
     const core::MeshRef* const ref = mesh_defined_by(order);

@@ -1,5 +1,5 @@
-// Where a node takes commands of clients (core/command.h). Every node answers rays; one node, the lead, looks whether
-// the rest can be done and turns it into orders (core/order.h).
+// Receives the commands of clients on a node (core/command.h). Every node answers rays. The lead checks all other
+// commands and turns them into orders (core/order.h).
 #pragma once
 
 #include <chrono>
@@ -27,12 +27,12 @@ namespace aurasim::cli {
 struct RunView {
   bool leads = false;
   RunFacts facts;
-  std::optional<core::Step> holds_at;  ///< a pause: once this state is computed, no other is
-  /// Nodes that are alive and have not said that they have this mesh.
+  std::optional<core::Step> holds_at;  ///< the state in which the run pauses; nothing: no pause
+  /// Returns the regions whose live nodes have not published that they have this mesh.
   std::function<std::vector<core::RegionId>(std::uint64_t hash)> lacking;
 };
 
-/// A world that is to be saved in the state in which the run stands.
+/// A world to be saved in the state in which the run is paused.
 struct StandingSave {
   std::uint64_t request = 0;
   core::Step step = 0;
@@ -41,40 +41,42 @@ struct StandingSave {
 
 class CommandServer {
  public:
-  /// The launch is that of the run as it is now, also after it has changed.
-  /// `saves`: its node's folder of saved worlds.
+  /// `launch`: the run's present launch, also after changes; it must outlive the server. `saves`: the node's folder of
+  /// saved worlds.
   CommandServer(const config::Launch& launch, dds::Participant& participant, core::RegionId region,
                 std::filesystem::path saves);
 
-  /// The run has got another map; the scene stays as it has grown.
+  /// To be called when the run has got another map. The scene stays, with its additions.
   void change_map(core::Generation generation, core::Step step);
-  /// Serves what has come. Call it between steps.
+  /// Serves the commands that have come. To be called between steps.
   void serve(node::Node& node, const RunView& run);
-  /// Meshes of a saved world that the run goes on from.
+  /// Takes in the meshes of a saved world that the run goes on from.
   void bring(const std::vector<core::SavedMesh>& meshes);
-  /// Gives a part of the world the meshes that its orders name, as far as they are here.
+  /// Adds the meshes that the part's orders name, as far as this node has them.
   void add_meshes(core::WorldCut& part);
-  /// This region's part of a saved world is written, or is not.
+  /// Replies to clients that this region's part of a saved world is written, or why it is not.
   void reply_saved(const PartWriter::Written& written);
-  /// Replies to clients what has taken effect.
+  /// Replies to the clients whose requests have taken effect.
   void after_step(const node::StepReport& report);
-  /// A new generation: what was under way is not any longer.
+  /// Begins a new generation. Orders under way end with the old one, and pending changes of the run are reported as
+  /// done.
   void begin_generation(node::Node& node, core::Generation generation);
-  /// The run has gone back to an earlier state: what was ordered will be done again, but for orders about the run as a
-  /// whole, which are not kept; whoever still asks for those is heard anew.
+  /// To be called when the run has gone back to an earlier state. Its orders will be executed again, except orders
+  /// about the run as a whole, which are not kept. A client that repeats such a request is served anew.
   void go_back(node::Node& node, core::Generation generation);
 
-  /// Meshes that are here, by hash.
+  /// Hashes of the meshes that this node has.
   std::vector<std::uint64_t> meshes() { return mesh_reader_.meshes().hashes(); }
-  /// The rate that somebody has asked for since the last call; only on the lead.
+  /// The rate that a client has asked for since the last call. Only the lead gets one.
   std::optional<double> take_wanted_rate() { return std::exchange(wanted_rate_, std::nullopt); }
-  /// Asked for in a pause since the last call.
+  /// Saves that clients have asked for in a pause, since the last call.
   std::vector<StandingSave> take_standing_saves() { return std::exchange(standing_saves_, {}); }
-  /// On the lead: the state after which the run is to change as a whole.
+  /// The state after which the run is to change as a whole. Only the lead knows it.
   std::optional<core::Step> change_at() const { return change_at_; }
-  /// On the lead: somebody has asked to go back to an earlier state, whichever is kept.
+  /// A client's request to go back to an earlier state that is kept. Only the lead gets one.
   std::optional<core::Command> take_wanted_back() { return std::exchange(wanted_back_, std::nullopt); }
-  /// The answer to that: all go back to that state, or to the saved world of that name, or cannot.
+  /// Answers such a request: all nodes go back to state `step`. load_instead() loads the saved world `file`, and
+  /// refuse() replies why it cannot be done.
   void go_back_to(const core::Command& back, core::Step step);
   void load_instead(core::Command back, std::string file, node::Node& node, const RunView& run);
   void refuse(std::uint64_t request, std::string why);
@@ -115,17 +117,18 @@ class CommandServer {
   dds::MeshReader mesh_reader_;
   dds::Participant& participant_;
   dds::SceneAdditionsWriter additions_writer_;
-  std::optional<dds::MeshWriter> mesh_writer_;  ///< once there is something to tell
+  std::optional<dds::MeshWriter> mesh_writer_;  ///< made when the first mesh is published
   std::set<std::uint64_t> meshes_told_;
   dds::SceneAdditions additions_;
   bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;
   std::map<std::uint64_t, Due> due_;  ///< requests to report as done at their step
-  /// An order that nobody waits for to show: it is told to be taken once others know it, too, whoever dies then.
+  /// An order whose effect the client does not wait for. It is acknowledged once other nodes have it, so that it
+  /// survives the death of the lead.
   struct Taken {
     core::Step known_at = 0;
     std::chrono::steady_clock::time_point since;
-    bool went_back = false;  ///< others have died meanwhile
+    bool went_back = false;  ///< a node has died meanwhile, and the run has gone back
     core::CommandReply reply;
   };
   std::vector<Taken> taken_;
@@ -135,7 +138,7 @@ class CommandServer {
   std::optional<core::Step> change_at_;
   std::vector<StandingSave> standing_saves_;
   core::Step decided_at_ = -1;
-  std::size_t decided_ = 0;  ///< commands in that state
+  std::size_t decided_ = 0;  ///< commands turned into orders in state decided_at_, by weight
 };
 
 }  // namespace aurasim::cli

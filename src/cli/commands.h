@@ -1,4 +1,5 @@
-// One function per command. Each adds itself to the program's command line; what it returns is the exit code.
+// One function per command. Each adds its command to the program's command line. The command's action returns the exit
+// code.
 #pragma once
 
 #include <string>
@@ -28,7 +29,8 @@ void add_compare(CLI::App& program, Action& action);
 void add_send(CLI::App& program, Action& action);
 void add_mesh_loader(CLI::App& program, Action& action);
 
-/// Of a node, and of a spare that becomes one: whoever has started it sees to its region when it dies.
+/// Options of a node, and of a spare that becomes one, for processes with a launcher. A launcher finds a successor when
+/// the process dies.
 struct LauncherArguments {
   bool is_there = false;
   int heartbeat = -1;  ///< heartbeat.h
@@ -36,9 +38,9 @@ struct LauncherArguments {
   void add_to(CLI::App& command);
 };
 
-/// As whom it joins a run with keys.
+/// Option for the key with which a process joins a run with keys.
 struct KeyArguments {
-  std::string as;  ///< empty: the first key of the right role
+  std::string as;  ///< name of the key; empty: the first key of the right role
 
   void add_to(CLI::App& command);
 };

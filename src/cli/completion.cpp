@@ -105,7 +105,7 @@ constexpr const char* kZsh = R"(#compdef {program}
 {function} "$@"
 )";
 
-/// Of the shell. "_aurasim_lab" for aurasim-lab.
+/// Name of the shell function: "_aurasim_lab" for aurasim-lab.
 std::string function_for(const CLI::App& program) {
   std::string name = "_" + program.get_name();
   std::replace(name.begin(), name.end(), '-', '_');

@@ -7,7 +7,7 @@
 
 namespace aurasim::cli {
 
-/// A script that bash or zsh reads.
+/// Completion scripts for bash and zsh.
 std::string bash_completion(const CLI::App& program);
 std::string zsh_completion(const CLI::App& program);
 

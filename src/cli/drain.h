@@ -1,4 +1,4 @@
-// A region's node leaves, and another process takes the region over.
+// Makes a region's node leave, so that another process takes the region over.
 #pragma once
 
 #include "dds/control.h"
@@ -7,10 +7,11 @@ namespace aurasim::cli {
 
 class Drain {
  public:
-  /// Asks for it. Throws SteeringRefused if the region has no node that is alive. `control` outlives it.
+  /// Sends the drain command. Throws SteeringRefused if the region has no live node. `control` must outlive this
+  /// object.
   Drain(dds::ControlBus& control, core::RegionId region);
 
-  /// What the process says that computes the region now, once nobody waits any more; null: not yet.
+  /// Status of the process that has taken the region over, once the run goes on. Null before.
   const dds::Status* successor();
 
  private:

@@ -41,7 +41,7 @@ void print_sample(const nlohmann::ordered_json& sample, bool json) {
   std::fflush(stdout);
 }
 
-/// DDS takes a pattern that fits nothing for granted, and stays silent.
+/// Checks the partition, because DDS accepts a pattern that matches nothing and then delivers nothing.
 void check_partition(const EchoArguments& arguments, const config::Launch& launch) {
   const std::vector<std::string> partitions = dds::partitions_of_topic(arguments.topic, launch.regions.size());
   const auto fits = [&](const std::string& name) {
@@ -53,7 +53,7 @@ void check_partition(const EchoArguments& arguments, const config::Launch& launc
                    arguments.topic, partitions.front(), partitions.size() > 1 ? " to " + partitions.back() : "")});
 }
 
-/// DDS would only say that the reader cannot be created.
+/// Checks that the key permits the topic. DDS alone would only say that the reader cannot be created.
 void check_permission(const std::string& topic, const std::string& partition,
                       const std::optional<security::Member>& member) {
   if (!member) return;
@@ -63,7 +63,7 @@ void check_permission(const std::string& topic, const std::string& partition,
                                        member->name, name_of(member->role), topic, partition)});
 }
 
-/// 0 when as many as asked for have come, or when no number was asked for.
+/// Prints the samples. Returns 0 when the requested number has come, or when no number was requested.
 int echo(const EchoArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   if (!arguments.partition.empty()) check_partition(arguments, launch);

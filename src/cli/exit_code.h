@@ -14,7 +14,7 @@ enum class ExitCode : int {
   kBrokenOff = 7,  ///< another region's node has died, and the run ends: nobody takes it over, or on_death is stop
 };
 
-/// Of a node's process: neither a run that has ended, nor one that was refused before it began.
+/// True if a node's exit code means that it died: the run has neither ended nor been refused before it began.
 inline bool is_death(int code) {
   switch (static_cast<ExitCode>(code)) {
     case ExitCode::kOk:

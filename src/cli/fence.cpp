@@ -27,9 +27,9 @@ bool Fence::open(const std::vector<core::RegionId>& dead, Clock::time_point now)
   return standing_ == node::Standing::kGoOn || settings_.never_waits;
 }
 
-/// A neighbour's death lets the node compute at once, so a new one is looked at before that. While the node stands
-/// nothing is computed: then a neighbour whose stream has ended is lost only as long as its status is not heard, since
-/// its stream begins anew only after the recovery.
+/// Judges the signs of the others. A neighbour's death lets the node compute at once, so a new death is judged before
+/// that. While the node waits nothing is computed. Then a neighbour whose stream has ended is lost only as long as its
+/// status does not come, because its stream begins anew only after the recovery.
 void Fence::look(const std::vector<core::RegionId>& dead, Clock::time_point now) {
   if (now < next_look_ && dead.size() == dead_ && !watches_closely_) return;
   next_look_ = now + kLookEvery;

@@ -1,5 +1,6 @@
-// When a node has to stand or to stop because the rest of the run may go on without it: it has lost touch with the
-// majority, or another process has its region. Two hosts of one body are worse than none. Time is passed in.
+// Decides when a node has to wait or to stop because the rest of the run may go on without it: it has lost the
+// majority, or another process has its region. The reason is that two hosts of one body are worse than none. Time is
+// passed in.
 #pragma once
 
 #include <chrono>
@@ -15,35 +16,35 @@ namespace aurasim::cli {
 
 struct FenceSettings {
   core::RegionId region{};
-  std::uint32_t regions = 1;  ///< of the run
-  bool can_be_cut = false;    ///< the others may be on other hosts
-  bool never_waits = false;   ///< free_running
+  std::uint32_t regions = 1;  ///< number of regions of the run
+  bool can_be_cut = false;    ///< other nodes may be on other hosts
+  bool never_waits = false;   ///< the run is free_running
 };
 
 class Fence {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All regions but this one. Asked only when there is something to find out.
+  /// Returns the signs of all regions but this one. Called only when the fence needs them.
   using Peers = std::function<std::map<core::RegionId, node::PeerSign>()>;
 
   Fence(const FenceSettings& settings, Peers peers);
 
-  /// True while the node may compute its next state. `dead`: neighbours that it holds for dead. Cheap while there are
-  /// none. A node that is cut off may wait for the others for ever: nobody takes its region over but with the majority.
+  /// True while the node may compute its next state. `dead`: neighbours marked dead. The call is cheap while there are
+  /// none. A node that is cut off may wait for ever, because only the majority can give its region to another process.
   bool open(const std::vector<core::RegionId>& dead, Clock::time_point now);
-  /// Hears too few of the others to know what they do.
+  /// True if this node receives from too few of the others to know what they do.
   bool is_cut_off() const { return standing_ == node::Standing::kCutOff; }
-  /// For good: the node has to stop.
+  /// True once the node has to stop for good.
   bool closed() const { return !reason_.empty(); }
-  /// `reason`: for people.
+  /// Closes the fence for good. `reason`: message for users.
   void close(std::string reason) { reason_ = std::move(reason); }
-  /// The node stands, because somebody has died: what was judged before that does not count any more, and every call
-  /// judges anew. From then on the statuses alone say who is lost.
+  /// To be called when the node waits because another has died. Earlier judgements do not count any more, and every
+  /// call of open() judges anew. From then on the statuses alone decide which nodes are lost.
   void watch_closely() { watches_closely_ = true; }
-  /// All regions have nodes again.
+  /// To be called when all regions have nodes again.
   void begin_anew();
-  /// Why it is closed, for people.
+  /// Why the fence is closed, as a message for users.
   const std::string& reason() const { return reason_; }
 
  private:
@@ -54,7 +55,7 @@ class Fence {
   node::Quorum quorum_;
   node::Standing standing_ = node::Standing::kGoOn;
   bool watches_closely_ = false;
-  std::size_t dead_ = 0;  ///< neighbours when last looked
+  std::size_t dead_ = 0;  ///< number of dead neighbours at the last look
   Clock::time_point next_look_;
   std::string reason_;
 };

@@ -1,4 +1,4 @@
-// A folder that one process uses at a time. The kernel lets go of it when the process ends, however it ends.
+// Lock of a folder that one process uses at a time. The kernel releases it when the process ends, however it ends.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,10 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Holds a folder that is there, once nobody else does. Null: there is no such folder, or its file system has no
-  /// locks.
+  /// Waits until no other process holds the folder, and holds it. Null if there is no such folder, or if its file
+  /// system has no locks.
   static std::unique_ptr<FolderLock> when_free(const std::filesystem::path& folder);
-  /// The same at once. Null also where another process holds it.
+  /// As when_free(), without waiting. Null also if another process holds the folder.
   static std::unique_ptr<FolderLock> if_free(const std::filesystem::path& folder);
 
  private:

@@ -1,4 +1,4 @@
-// For a node that is started again by somebody who does not know whether the run goes on without it.
+// Finds out whether a run goes on, for a node that is started again without that knowledge.
 #pragma once
 
 #include <map>
@@ -10,12 +10,12 @@
 
 namespace aurasim::cli {
 
-/// Does any region's node compute, or stand because of somebody who has died? Those that wait for each other to begin,
-/// and those that have ended, are no run that goes on.
+/// True if any region's node computes, or waits because another node has died. Nodes that wait for each other to begin,
+/// and nodes that have ended, do not count.
 bool goes_on(const std::map<core::RegionId, dds::SeenStatus>& statuses);
 
-/// Joins as `top` does, for some seconds where nobody is heard. Its DDS participant stays: who calls this becomes
-/// another program soon (cli/leave.h says why nobody says goodbye).
+/// Joins the domain as `top` does and looks for a run; waits some seconds if no status comes. The DDS participant is
+/// not deleted, because the caller becomes another program soon (the reason is in cli/leave.h).
 bool a_run_goes_on(const config::Launch& launch, const std::string& as, core::RegionId region);
 
 }  // namespace aurasim::cli

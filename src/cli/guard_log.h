@@ -1,13 +1,13 @@
-// What a process's log says of datagrams that were kept from Fast DDS.
+// Log messages about datagrams that were refused before Fast DDS could read them.
 #pragma once
 
 #include "dds/participant.h"
 
 namespace aurasim::cli {
 
-/// One warning for each address of which something was refused for the first time.
+/// Logs one warning for each address from which a datagram was refused for the first time.
 void log_new_refusals(dds::Participant& participant);
-/// All of them, at the end; nothing if there were none.
+/// Logs all refusals at the end of the process. Logs nothing if there were none.
 void log_refusals(dds::Participant& participant);
 
 }  // namespace aurasim::cli

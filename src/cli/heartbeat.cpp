@@ -58,7 +58,7 @@ HeartbeatPipe::HeartbeatPipe() {
   if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("cannot open a pipe");
   read_ = ends[0];
   write_ = ends[1];
-  ::fcntl(write_, F_SETFD, 0);  // the processes that we start have it
+  ::fcntl(write_, F_SETFD, 0);  // started processes inherit it
 }
 
 HeartbeatPipe::~HeartbeatPipe() {
@@ -68,7 +68,7 @@ HeartbeatPipe::~HeartbeatPipe() {
 
 std::vector<std::string> HeartbeatPipe::words() const { return {kOption, std::to_string(write_)}; }
 
-/// Each writes its number in one piece.
+/// Reads the process numbers in the pipe. Each process writes its number in one piece.
 std::vector<pid_t> HeartbeatPipe::take() {
   std::vector<pid_t> heard;
   std::array<pid_t, 256> space{};
@@ -88,7 +88,7 @@ Heartbeat::Heartbeat(int pipe) : pipe_(is_pipe(pipe) ? pipe : -1) {}
 void Heartbeat::beat() const {
   if (pipe_ < 0) return;
   const pid_t self = ::getpid();
-  // A pipe that is full says enough, and one whose reader is gone says it to nobody.
+  // Errors are ignored: a full pipe holds enough signs, and a pipe without a reader needs none.
   [[maybe_unused]] const ssize_t octets = ::write(pipe_, &self, sizeof(self));
 }
 

@@ -1,5 +1,5 @@
-// Signs of life of the processes that a launcher has started. They come over a pipe: DDS may be busy for many seconds
-// with discovery alone, and then says of half of the nodes that their leases have run out.
+// Signs of life of the processes that a launcher has started. They come over a pipe, because DDS may be busy with
+// discovery for many seconds and then report that the leases of half of the nodes have run out.
 #pragma once
 
 #include <chrono>
@@ -14,37 +14,38 @@
 
 namespace aurasim::cli {
 
-/// Who hangs, by when its signs of life came. Time is passed in.
+/// Finds processes that hang, from the times of their signs of life. Time is passed in.
 class LifeWatch {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Call it often. Where the caller was held up itself, that time is nobody's silence.
+  /// To be called often. If the caller itself was held up, that time does not count as silence of the processes.
   void look(Clock::time_point now);
-  /// A sign of life has come.
+  /// Notes a sign of life of `process`.
   void note(pid_t process, Clock::time_point now);
 
-  /// For how long a process that hangs has shown no life. Nothing: it lives, or has not shown any yet.
+  /// How long a process that hangs has been silent. Nothing if it lives, or has not sent any sign yet.
   std::optional<Clock::duration> silence_of(pid_t process, Clock::time_point now) const;
-  /// So long a process may be silent. It grows with how far apart signs have come of late: a busy machine holds all up.
+  /// How long a process may be silent. The time grows with the recent gaps between signs, because a busy machine delays
+  /// all processes.
   Clock::duration patience() const;
 
  private:
   std::map<pid_t, Clock::time_point> heard_;
   std::optional<Clock::time_point> looked_;
-  std::deque<std::pair<Clock::time_point, Clock::duration>> gaps_;  ///< long ones of late, and when they ended
+  std::deque<std::pair<Clock::time_point, Clock::duration>> gaps_;  ///< recent long gaps, with the time when each ended
 };
 
-/// The launcher's end.
+/// The launcher's end of the pipe.
 class HeartbeatPipe {
  public:
-  /// Throws std::runtime_error when there can be no pipe.
+  /// Throws std::runtime_error when the pipe cannot be made.
   HeartbeatPipe();
   ~HeartbeatPipe();
   HeartbeatPipe(const HeartbeatPipe&) = delete;
   HeartbeatPipe& operator=(const HeartbeatPipe&) = delete;
 
-  /// What a process needs to be told to send its signs here.
+  /// Command-line words that make a process send its signs of life to this pipe.
   std::vector<std::string> words() const;
   /// Processes whose signs have come since the last call.
   std::vector<pid_t> take();
@@ -53,12 +54,12 @@ class HeartbeatPipe {
   int read_ = -1, write_ = -1;
 };
 
-/// The other end, named by number.
+/// The node's end of the pipe, given by its file descriptor.
 class Heartbeat {
  public:
-  /// Below 0, or no pipe: beats into the void.
+  /// `pipe`: file descriptor. If it is below 0 or no pipe, beat() does nothing.
   explicit Heartbeat(int pipe);
-  /// Does not wait. Any thread.
+  /// Sends a sign of life. Does not block. May be called from any thread.
   void beat() const;
 
  private:

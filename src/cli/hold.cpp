@@ -7,9 +7,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLongestUnderWay = 200ms;  ///< of a command to a node, also if it is lost once or twice
+constexpr auto kLongestUnderWay = 200ms;  ///< longest time of a command to a node, including one or two losses
 constexpr auto kPatienceWithWords = 1s;
-/// A command is under way for less than a second. What was asked for so long before is known to all.
+/// Limit of step commands kept one by one. A command is under way for less than a second, so all nodes know the older
+/// ones.
 constexpr std::size_t kMost = 1024;
 
 }  // namespace
@@ -24,7 +25,7 @@ void AskedSteps::add(const dds::RunCommand& step) {
   generation_ = step.generation;
   const Asked asked{step.at_step - step.count, step.request, step.count};
   const auto place = std::ranges::lower_bound(asked_, asked);
-  if (place != asked_.end() && *place == asked) return;  // a copy
+  if (place != asked_.end() && *place == asked) return;  // a repetition
   asked_.insert(place, asked);
   if (asked_.size() <= kMost) return;
   begin_ = std::max(begin_, asked_.front().from) + asked_.front().count;

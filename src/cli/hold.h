@@ -1,5 +1,5 @@
-// In which state a node of a paused run stands, and what it waits for before it goes on. No clock, no DDS: time is
-// passed in.
+// The state in which a node of a paused run waits, and what it waits for before it goes on. Uses no clock and no DDS:
+// time is passed in.
 #pragma once
 
 #include <chrono>
@@ -18,11 +18,11 @@ namespace aurasim::cli {
 /// receive them in any order and come to the same state.
 class AskedSteps {
  public:
-  /// The run stands, or is to stand, in `state`: steps that were asked for before are done or void.
+  /// The run is paused, or is to pause, in `state`. Steps asked for before are done or void.
   void begin(core::Step state);
-  /// A step command. One of another generation than those before begins anew.
+  /// Adds a step command. A command of another generation drops those before it.
   void add(const dds::RunCommand& step);
-  /// Where all of them lead.
+  /// The state that all steps added up lead to.
   core::Step end() const;
 
  private:
@@ -36,37 +36,39 @@ class AskedSteps {
 
   core::Generation generation_ = 0;
   core::Step begin_ = 0;
-  std::vector<Asked> asked_;  ///< ascending; the newest kMost of them, begin_ has the others
+  std::vector<Asked> asked_;  ///< ascending; at most the newest kMost commands; begin_ includes the older ones
 };
 
-/// Follows nodes that stand in a later state. Nodes that catch up may be past the state of a pause before they hear of
-/// it: then the others compute up to where they are. Whoever is ahead by a step is not followed at once, because a step
-/// may name words of programs that have to be heard first: it waits as long as the command may be under way.
+/// Follows nodes that pause in a later state. A node that catches up may be past the state of a pause before it
+/// receives the command; then the other nodes compute up to its state. A node that is ahead because of a step command
+/// is not followed at once, because a step may name setpoints that have to be received first. The delay is the longest
+/// time that the command may be under way.
 class PauseFollower {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// The state in which this node is to stand. `farthest`: the latest state in which another node stands.
+  /// The state in which this node is to pause. `farthest`: the latest state in which another node is paused.
   core::Step holds_at(core::Step holds_at, core::Step farthest, Time now);
 
  private:
   std::optional<Time> behind_since_;
 };
 
-/// Words of programs that steps name: no state is computed until all have been heard.
+/// Setpoint messages of programs that step commands name. No state is computed until all have been received.
 class AwaitedWords {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using HasHeard = std::function<bool(const core::ProgramWord&)>;
 
-  /// Of a step.
+  /// Adds the messages that a step command names.
   void add(const dds::RunCommand& step, Time now);
-  /// Another world begins: what was said to the one before is not waited for.
+  /// To be called when another world begins. Messages sent to the world before are not waited for.
   void clear() { words_.clear(); }
-  /// Have all been heard? A word that has not come after a second never will: its program has ended, or this node has
-  /// taken the region over since. It is given up, so that the nodes of a run go on together.
+  /// True if all messages have been received. A message that has not come after a second never will: its program has
+  /// ended, or this node has taken the region over since. Such a message is given up, so that the nodes of a run go on
+  /// together.
   bool are_here(const HasHeard& has_heard, Time now);
-  /// Words that were given up since the last call.
+  /// Messages that were given up since the last call.
   std::vector<core::ProgramWord> take_given_up() { return std::exchange(given_up_, {}); }
 
  private:

@@ -16,7 +16,7 @@ constexpr std::size_t kTriedByFastDds = 100;
 constexpr std::size_t kOthers = 3;  // the launcher, the viewer, and a command such as `top`
 constexpr int kHighestPort = 65535;
 
-/// Zero when it is an address of neither family.
+/// Parses an IPv4 or IPv6 address. Returns its length, or 0 when it is neither.
 ::socklen_t address_of(const std::string& text, std::uint16_t port, ::sockaddr_storage& out) {
   auto* v4 = reinterpret_cast<::sockaddr_in*>(&out);
   auto* v6 = reinterpret_cast<::sockaddr_in6*>(&out);

@@ -1,4 +1,4 @@
-// What one host has room for.
+// Limits of what one host can run.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,18 @@
 
 namespace aurasim::cli {
 
-/// Processes of one DDS domain that find ports on one host: Fast DDS 2.9 tries 100 pairs, from 7411 + 250 domain up.
+/// Number of processes of one DDS domain that find ports on one host. Fast DDS 2.9 tries 100 pairs of ports, from 7411
+/// + 250 * domain up.
 std::size_t participants_that_fit(int domain);
 
-/// Why so many regions cannot run on one host, beside the launcher, a viewer and one command; nothing when they can.
+/// Why `regions` nodes cannot run on one host beside the launcher, a viewer and one command. Nothing if they can.
 std::optional<std::string> problem_with_regions(std::size_t regions, int domain);
 
-/// One line about regions that have to take turns; nothing when each has a processor.
+/// Warning that regions have to share processors. Nothing if each has its own.
 std::optional<std::string> warning_of_turns(std::size_t regions, unsigned processors);
 
-/// Why nobody can listen there; nothing when it works, or when somebody else does, since then there are other ports.
+/// Why no process can listen at this address and port. Nothing if it works, or if the port is only taken, because then
+/// another port can be used.
 std::optional<std::string> problem_with_listening(const std::string& address, std::uint16_t port);
 
 }  // namespace aurasim::cli

@@ -1,5 +1,5 @@
-// What `aurasim import` and `aurasim export` are told. The work is done by a program of its own, aurasim-import: the
-// libraries that read other programs' files would make every node start later.
+// Arguments of `aurasim import` and `aurasim export`. A separate program, aurasim-import, does the work, because the
+// libraries that read other programs' files would slow down the start of every node.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ struct ExportArguments {
   bool strict = false;
 };
 
-/// Adds the command; what it is told goes to `given`, which outlives it.
+/// Adds the command. Its arguments go to `given`, which must outlive the command.
 CLI::App* add_import_words(CLI::App& program, ImportArguments& given);
 CLI::App* add_export_words(CLI::App& program, ExportArguments& given);
 

@@ -7,11 +7,11 @@
 
 namespace aurasim::cli {
 
-/// The exit code. Throws config::BadConfig for wrong input.
+/// Run the commands and return the exit code. They throw config::BadConfig for wrong input.
 int run_import(const ImportArguments& given);
 int run_export(const ExportArguments& given);
 
-/// `import` and `export` as aurasim has them; parsing sets `action`, which outlives it.
+/// The commands `import` and `export`, as aurasim has them. Parsing sets `action`, which must outlive the result.
 std::unique_ptr<CLI::App> make_import_program(Action& action);
 
 }  // namespace aurasim::cli

@@ -15,7 +15,7 @@ struct Ring {
     return of_a == hosts.end() || of_b == hosts.end() || of_a->second == of_b->second;
   }
 
-  /// The first region from `begin` on that is none of `others` and shares a host with as few of them as can be had.
+  /// The first region from `begin` on that is none of `others` and shares a host with as few of them as possible.
   std::optional<core::RegionId> choose(std::uint32_t begin, const std::vector<core::RegionId>& others) const {
     std::optional<core::RegionId> best;
     std::ptrdiff_t fewest = 0;

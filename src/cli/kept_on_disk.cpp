@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kRun = "run-";
 constexpr const char* kOff = "off";
-constexpr std::size_t kRoom_B = 16 << 10;  // a small world's part
+constexpr std::size_t kRoom_B = 16 << 10;  // size of a small world's part
 
 std::optional<std::uint64_t> run_of(const fs::path& folder) {
   const std::string name = folder.filename().string();
@@ -31,7 +31,7 @@ std::optional<std::uint64_t> run_of(const fs::path& folder) {
   return error == std::errc() && last == end ? std::optional(run) : std::nullopt;
 }
 
-/// Null: a file can be written there, and its content as well.
+/// Why no file with content can be written in the folder. Null if it can.
 const char* problem_with_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -41,14 +41,14 @@ const char* problem_with_folder(const fs::path& folder) {
   if (fd < 0) return std::strerror(errno);
   const std::string room(kRoom_B, '\0');
   int why = 0;
-  errno = ENOSPC;  // when fewer octets than all are written
+  errno = ENOSPC;  // for the case that only some octets are written
   if (::write(fd, room.data(), room.size()) != static_cast<ssize_t>(room.size()) || ::fsync(fd) != 0) why = errno;
   ::close(fd);
   fs::remove(probe, error);
   return why == 0 ? nullptr : std::strerror(why);
 }
 
-/// Worlds of a run's own folder. Those of other runs are named in `ignored`.
+/// Whole worlds of a run in its own folder. Worlds of other runs found there are named in `ignored`.
 std::vector<cut::StoredWorld> kept_by(const fs::path& folder, std::uint64_t run, std::vector<std::string>& ignored) {
   cut::PartStore::Listing listing = cut::PartStore(folder).list();
   ignored.insert(ignored.end(), listing.ignored.begin(), listing.ignored.end());

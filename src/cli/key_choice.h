@@ -1,5 +1,5 @@
-// Which key of a run's keys (launch key dds.security) a process uses. Everything that is wrong is a BadConfig, which
-// ends it with exit code 2; in an open run nobody has a key.
+// Chooses the key that a process uses, of a run's keys (launch key dds.security). Errors throw BadConfig, which ends
+// the process with exit code 2. In a run without keys the result is empty.
 #pragma once
 
 #include <optional>
@@ -14,17 +14,17 @@ namespace aurasim::cli {
 
 using Roles = std::vector<security::Role>;
 
-/// Keys `as`, or the first with one of these roles, the best first. A key of another role is refused.
+/// The key named `as`, or else the first key with one of `roles`, best role first. A key of another role is refused.
 std::optional<security::Member> member_for(const config::Launch& launch, const std::string& as, const Roles& roles);
-/// The region's own, or else a spare's, which may speak for any.
+/// The region's own key, or else a spare's, which may publish for any region.
 std::optional<security::Member> member_for_node(const config::Launch& launch, const std::string& as,
                                                 core::RegionId region);
 
-/// `settings` with that key, once it has been checked. Who is refused later is said in the log.
+/// `settings` with the key, once it has been checked. Processes refused later are logged.
 dds::Settings with_keys(dds::Settings settings, const config::Launch& launch,
                         const std::optional<security::Member>& member);
 
-/// A folder of keys for one run on one host: of every region, and of one of each role.
+/// Makes a folder of keys for one run on one host: a key for every region, and one for each other role.
 void make_keys_for_one_host(const std::filesystem::path& folder, std::size_t regions);
 
 }  // namespace aurasim::cli

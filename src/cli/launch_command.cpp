@@ -27,7 +27,7 @@ struct LaunchArguments {
   bool secure = false;
 };
 
-/// What cannot work is refused before anything is started; what may be slow is said.
+/// Refuses a launch that this host cannot run, before anything is started, and warns of one that may be slow.
 void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
   if (const auto problem = problem_with_regions(launch.regions.size(), launch.dds.domain)) {
     throw config::BadConfig({fmt::format("{}: {}", options.files.file, *problem)});
@@ -42,7 +42,7 @@ void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
   if (!options.recording.empty()) check_recording(options.recording);
 }
 
-/// Keys for this run alone, if they are asked for; the processes that it starts hear of them like of any other key.
+/// Keys for this run alone, if the user asks for them. The started processes get them as any other keys.
 std::unique_ptr<ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
   if (!arguments.secure) return nullptr;
   const FileArguments& files = arguments.options.files;
@@ -57,14 +57,14 @@ std::unique_ptr<ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
   return keys;
 }
 
-/// Or its processes would say so, one by one, in the middle of the start.
+/// Checks the keys before the start, because otherwise each process would report the same error in the middle of it.
 void look_at_keys(const config::Launch& launch) {
   for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
     with_keys({}, launch, member_for_node(launch, "", core::RegionId{r}));
   }
 }
 
-/// Where it saves, and from where it goes on.
+/// Prepares the folders for saved worlds, and the world that the run goes on from.
 void prepare_saves(const config::Launch& launch, LaunchOptions& options) {
   if (options.resume) {
     options.save.folder_is_given = true;
@@ -82,12 +82,12 @@ int run_launch(LaunchArguments arguments) {
   look_at_keys(launch);
   look_at_host(launch, arguments.options);
   prepare_saves(launch, arguments.options);
-  const auto world = load_world(arguments.options.load, launch);  // or it is refused before anything is started
+  const auto world = load_world(arguments.options.load, launch);  // a bad file is refused before anything is started
   arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   Launcher launcher(launch, arguments.options);
   leave_after([&] {
-    const auto until_then = std::move(throw_away);  // nothing outside is destroyed
+    const auto until_then = std::move(throw_away);  // leave() destroys no objects outside of this scope
     const LaunchOptions& options = arguments.options;
     const bool is_kept = kept_folder(launch, options.save).has_value();
     if (is_kept) {

@@ -8,7 +8,7 @@
 namespace aurasim::cli {
 namespace {
 
-/// What nodes and spares are told alike.
+/// Command-line options that nodes and spares share.
 std::vector<std::string> command_line(const char* command, const config::Launch& launch, const LaunchOptions& options,
                                       std::uint64_t run) {
   std::vector<std::string> words = {program_at("/proc/self/exe").string(),

@@ -1,4 +1,4 @@
-// What a run is launched with, and the command lines of its processes that follow from it.
+// Options of a launch, and the command lines of its processes.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ struct LaunchOptions {
   std::string recording;  ///< file; empty: none
   LoadArguments load;
   SaveArguments save;
-  bool resume = false;  ///< from the newest world that is there
+  bool resume = false;  ///< goes on from the newest saved world
   int start_time_out_s = 30;
   std::vector<std::string> heartbeat;  ///< words for processes that a launcher watches (heartbeat.h)
-  int spares = 0;  ///< processes that wait for a region; without any, one is started when it is needed
+  int spares = 0;                      ///< number of spare processes; with 0, a process is started when it is needed
 };
 
 enum class Start : std::uint8_t { kWithOthers, kTakeOver };
@@ -33,7 +33,7 @@ enum class Start : std::uint8_t { kWithOthers, kTakeOver };
 /// Program and arguments of the node of `region` in run `run`.
 std::vector<std::string> node_command_line(const config::Launch& launch, const LaunchOptions& options,
                                            std::uint64_t run, core::RegionId region, Start start);
-/// Of a process that waits until a region needs it.
+/// Program and arguments of a spare of run `run`, which waits until a region needs it.
 std::vector<std::string> spare_command_line(const config::Launch& launch, const LaunchOptions& options,
                                             std::uint64_t run);
 

@@ -30,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kShowEvery = 250ms;
 constexpr auto kSayThatWeWait = 2s;
-constexpr int kMostDeaths = 3;  // of one region's nodes in a row, at one place
+constexpr int kMostDeaths = 3;  // deaths in a row of one region's nodes, near one state
 constexpr auto kPatienceWithDrained = 5s;
 constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process twice
 
@@ -77,7 +77,7 @@ ExitCode Launcher::run() {
     next_show = Clock::now() + (view_.is_terminal() ? kShowEvery : 4 * kShowEvery);
     show();
   }
-  for (const pid_t spare : spares_) ::kill(spare, SIGKILL);  // it has nothing to bring to an end
+  for (const pid_t spare : spares_) ::kill(spare, SIGKILL);  // a spare has no work to finish
   for (const pid_t spare : spares_) ::waitpid(spare, nullptr, 0);
   spares_.clear();
   show();
@@ -85,7 +85,7 @@ ExitCode Launcher::run() {
   return conclude();
 }
 
-/// Throws when another run writes there: what it has would be gone.
+/// Locks the report folder. Throws when another run writes there, because its records would be lost.
 void Launcher::take_report_folder() {
   if (!options_.report) return;
   report_folder_.emplace(*options_.report);
@@ -105,8 +105,8 @@ void Launcher::start_nodes() {
   keep_spares();
 }
 
-/// No region waits for its node. Whoever comes in a recovery takes time from those who are waited for: it has to meet
-/// all of them, and with keys that is more work than the recovery.
+/// True if no region waits for its node. Spares are not started in a recovery: each new process has to meet all others,
+/// and with keys that is more work than the recovery.
 bool Launcher::all_go_on() {
   return std::ranges::all_of(children_, [this](const Child& child) {
     if (!child.running) return true;
@@ -124,7 +124,7 @@ void Launcher::keep_spares() {
   }
 }
 
-/// A spare becomes the node of its region; or a new process.
+/// Process that takes the child's region over: a spare, or a new process.
 pid_t Launcher::successor_of(const Child& child) {
   for (const dds::Status& spare : control_.spares()) {
     const auto ours = std::ranges::find(spares_, static_cast<pid_t>(spare.pid));
@@ -153,7 +153,8 @@ void Launcher::look_at_nodes() {
   if (problem) spdlog::error("{}", *problem);
 }
 
-/// Whoever asks for a drain may know a process that has just begun before it is known here.
+/// Receives commands. A drain may name a process that has just begun and is not known here yet, so it is kept for a
+/// while.
 void Launcher::hear_commands() {
   const auto now = Clock::now();
   for (dds::RunCommand& command : control_.take_commands()) {
@@ -165,7 +166,7 @@ void Launcher::hear_commands() {
   });
 }
 
-/// A node that is to leave gets a successor first. False: there is no such process.
+/// Gives a node that is to leave a successor first. False if no child is the named process.
 bool Launcher::begin_drain(const dds::RunCommand& drain) {
   for (Child& child : children_) {
     const dds::SeenStatus* const seen = said_by(child);
@@ -200,7 +201,7 @@ void Launcher::collect_exits() {
   }
 }
 
-/// It has not left its region to another process: the run has come to its end.
+/// True if the child has ended because the run has, and has not left its region to another process.
 bool Launcher::has_finished(const Child& child) {
   const dds::SeenStatus* const seen = said_by(child);
   return child.exit_code == 0 && seen != nullptr && seen->status.state == dds::NodeState::kFinished;
@@ -208,12 +209,12 @@ bool Launcher::has_finished(const Child& child) {
 
 void Launcher::end_successor(Child& child) {
   if (child.successor == 0) return;
-  ::kill(child.successor, SIGKILL);  // it has nothing to bring to an end
+  ::kill(child.successor, SIGKILL);  // a spare has no work to finish
   ::waitpid(child.successor, nullptr, 0);
   child.successor = 0;
 }
 
-/// DDS would need a second to find out.
+/// Publishes that a child is lost, because DDS would need a second to notice.
 void Launcher::tell_lost(const Child& child) {
   const dds::SeenStatus* const seen = said_by(child);
   if (seen == nullptr) return;
@@ -222,7 +223,7 @@ void Launcher::tell_lost(const Child& child) {
   control_.send(about_process(dds::RunCommandKind::kLost, run_, child.region, process));
 }
 
-/// Null: nothing yet. Its region's status may be of the process before it.
+/// The child's status. Null if it has none yet; its region's status may still be of the process before.
 const dds::SeenStatus* Launcher::said_by(const Child& child) {
   const auto& statuses = control_.statuses();
   const auto seen = statuses.find(child.region);
@@ -233,7 +234,7 @@ const dds::SeenStatus* Launcher::said_by(const Child& child) {
 void Launcher::note_exit(Child& child, int status) {
   child.running = false;
   child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  if (child.told_to_end && child.exit_code == 128 + SIGINT) child.exit_code = 0;  // told before it could listen
+  if (child.told_to_end && child.exit_code == 128 + SIGINT) child.exit_code = 0;  // signalled before its handler
   const bool refused = child.exit_code == static_cast<int>(ExitCode::kRefused);
   child.died = is_death(child.exit_code);
   if (child.died) {
@@ -243,7 +244,7 @@ void Launcher::note_exit(Child& child, int status) {
     if (has_begun_ && launch_.survival.on_death == config::OnDeath::kStop) break_off("survival.on_death is stop");
   }
   must_not_go_on_ = must_not_go_on_ || child.exit_code == static_cast<int>(ExitCode::kBrokenOff);
-  // Without all of them the run cannot start: the others need not wait for their time-out.
+  // Without all nodes the run cannot start, and the others need not wait for their time-out.
   cannot_begin_ = cannot_begin_ || refused || (!has_begun_ && child.exit_code != 0);
 }
 
@@ -255,15 +256,15 @@ void Launcher::break_off(const std::string& why) {
                                  {launch_.world_identity(), {run_}, launch_command(launch_)}));
 }
 
-/// The others wait for somebody who takes its region over.
+/// True if the others wait for a process that takes the child's region over.
 bool Launcher::can_be_replaced(const Child& child) const {
   const bool all_wait = std::ranges::all_of(
-      children_, [](const Child& other) { return other.running || other.died; });  // and nobody has finished
+      children_, [](const Child& other) { return other.running || other.died; });  // and none has finished
   return child.died && has_begun_ && all_wait && !stopping_ && !has_to_stop() && children_.size() > 1 &&
          launch_.survival.on_death == config::OnDeath::kRecover;
 }
 
-/// Or else only such as have come to take over from others.
+/// True if any child knows the world. Otherwise all have only come to take regions over.
 bool Launcher::somebody_knows_the_world() {
   return std::ranges::any_of(children_, [this](const Child& child) {
     const dds::SeenStatus* const seen = said_by(child);
@@ -287,14 +288,14 @@ void Launcher::replace(Child& child) {
   spdlog::info("the node of region {} is started again: process {}", core::value_of(child.region), child.pid);
 }
 
-/// As far as the nodes have said.
+/// The farthest state in the nodes' statuses.
 core::Step Launcher::farthest_step() {
   core::Step step = 0;
   for (const auto& [region, seen] : control_.statuses()) step = std::max(step, seen.status.step);
   return step;
 }
 
-/// Whoever asks for it, who hung up, and a run that cannot begin.
+/// True if the user asks to stop, the terminal is closed, or the run cannot begin or go on.
 bool Launcher::has_to_stop() const { return stop_requested() || !is_seen_ || cannot_begin_ || must_not_go_on_; }
 
 bool Launcher::any_running() const {
@@ -311,7 +312,7 @@ void Launcher::signal_all(int signal) {
   }
 }
 
-/// All at the same state, so that every body can be accounted for; those that do not listen are told more firmly.
+/// Stops all nodes at the same state, so that every body can be accounted for. Nodes that do not react get signals.
 void Launcher::stop_all() {
   RunSteering steering(launch_, control_);
   if (has_begun_ && steering.find_run(0ms)) {

@@ -1,4 +1,4 @@
-// One process per region on this host, watched until the last one ends.
+// Starts one process per region on this host, and watches them until the last one ends.
 #pragma once
 
 #include <chrono>
@@ -25,11 +25,11 @@ namespace aurasim::cli {
 class Launcher {
  public:
   Launcher(const config::Launch& launch, const LaunchOptions& options);
-  /// Ends what is still running.
+  /// Ends the processes that are still running.
   ~Launcher();
 
   ExitCode run();
-  /// Its number: all its nodes have it, and no other run.
+  /// Number of this run. All its nodes have it, and no other run does.
   std::uint64_t number() const { return run_; }
 
  private:
@@ -40,9 +40,9 @@ class Launcher {
     int exit_code = 0;  ///< 128 + signal when it was killed
     bool told_to_end = false;
     bool died = false;    ///< ended before the run did
-    pid_t successor = 0;  ///< process that takes its region over when it leaves; 0: it does not
+    pid_t successor = 0;  ///< process that takes the region over when this one leaves; 0: it does not leave
     pid_t hung = 0;       ///< process that was ended because it hung; 0: none
-    /// Deaths in a row of its region's nodes near the same state.
+    /// Number of deaths in a row of the region's nodes near the same state.
     int deaths = 0;
     core::Step died_at = 0;
   };
@@ -95,13 +95,13 @@ class Launcher {
     dds::RunCommand command;
     std::chrono::steady_clock::time_point heard;
   };
-  std::vector<Drain> drains_;              ///< of processes that are not yet known here
-  std::optional<StartWatch> start_watch_;  ///< once the nodes are started
-  bool has_begun_ = false;                 ///< a node has shown that all have met
+  std::vector<Drain> drains_;              ///< drain commands for processes that are not known here yet
+  std::optional<StartWatch> start_watch_;  ///< set once the nodes are started
+  bool has_begun_ = false;                 ///< a node's status has shown that all nodes have met
   bool cannot_begin_ = false;              ///< a node is missing, and the others would wait for it
   bool stopping_ = false;
-  bool must_not_go_on_ = false;  ///< a node has died, and nobody takes its region over
-  bool is_seen_ = true;          ///< the table has a reader
+  bool must_not_go_on_ = false;  ///< a node has died, and no process takes its region over
+  bool is_seen_ = true;          ///< false once the table's terminal or pipe is closed
   ViewerProcess viewer_;
 };
 

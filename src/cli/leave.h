@@ -7,13 +7,13 @@
 
 namespace aurasim::cli {
 
-/// Flushes everything and ends the process without taking its DDS participant down. Fast DDS 2.9.1 aborts in the
-/// *other* processes (assertion in PDP::check_remote_participant_liveliness) when a participant says goodbye while they
-/// check whether it is still alive; one that is silent they drop by its lease, as they would after a crash.
+/// Flushes all output and ends the process without deleting its DDS participant. Fast DDS 2.9.1 aborts in the *other*
+/// processes (assertion in PDP::check_remote_participant_liveliness) when a participant announces its end while they
+/// check whether it is still alive. A silent participant is dropped when its lease ends, as after a crash.
 [[noreturn]] void leave(int exit_code);
 
-/// Leaves with what `work` returns, or says what it has thrown and leaves with kFailed (kBadConfig for that). An
-/// exception that went further up would take the participant down.
+/// Leaves with the result of `work`. If `work` throws, logs the exception and leaves with kFailed, or kBadConfig for
+/// config::BadConfig. An exception that went further up would delete the participant.
 [[noreturn]] void leave_after(const std::function<ExitCode()>& work);
 
 }  // namespace aurasim::cli

@@ -13,12 +13,12 @@
 namespace aurasim::cli {
 namespace {
 
-constexpr std::size_t kLinesBesides = 6;  // head, sums, what the viewer says, the cursor
+constexpr std::size_t kLinesBesides = 6;  // header, sums, the viewer's line, the cursor
 
 struct Column {
   std::string head;
   std::size_t width = 0;  ///< without the space before it
-  int rank = 0;           ///< the one of the highest rank is left out first
+  int rank = 0;           ///< columns of the highest rank are left out first
   std::vector<std::string> cells;
 };
 
@@ -58,7 +58,8 @@ std::size_t width_of(const std::vector<Column>& columns) {
   return width - 1;
 }
 
-/// A line that ends in the last column makes some terminals wrap: one is kept free.
+/// Leaves out columns until the table fits. The last column of the terminal stays free, because some terminals wrap
+/// there.
 void leave_out_what_does_not_fit(std::vector<Column>& columns, std::size_t terminal) {
   while (columns.size() > 1 && width_of(columns) >= terminal) {
     columns.erase(std::max_element(columns.begin(), columns.end(),
@@ -79,7 +80,7 @@ std::string folded(const std::string& note, std::size_t terminal) {
   return lines;
 }
 
-/// What is wrong, in the nodes' own words.
+/// Notices and faults from the nodes' statuses.
 std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal,
                   std::chrono::steady_clock::time_point now) {
   std::string lines;

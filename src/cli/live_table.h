@@ -1,4 +1,4 @@
-// What the nodes say of themselves, as a table for a terminal.
+// The nodes' statuses as a table for a terminal.
 #pragma once
 
 #include <chrono>
@@ -10,30 +10,30 @@
 
 namespace aurasim::cli {
 
-/// Where a table has to fit.
+/// Size that a table has to fit into, in characters.
 struct TerminalSize {
   std::size_t columns = 1000;
   std::size_t rows = 1000;
 };
 
-/// One line per region and a line of sums, each shorter than the terminal is wide: what matters least is left out.
-/// When there are more regions than rows, the last line but one says how many are not shown.
-/// `now`: to say who computes one step for long.
+/// One line per region and a line of sums, each shorter than the terminal is wide. The least important columns are left
+/// out. When there are more regions than rows, the last line but one says how many are not shown. `now`: used to mark
+/// nodes that compute one step for long.
 std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {},
                        std::chrono::steady_clock::time_point now = {});
 
-/// Who listens to whom, a line for each region: since when and by whose introduction, where they are not near each
-/// other.
+/// One line per region with the regions that it receives from. For regions that are not near each other it also shows
+/// since when, and by whose introduction.
 std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
 
-/// Prints `text` over what was printed last (if standard output is a terminal; otherwise below it).
+/// Prints text over the text printed last, if standard output is a terminal; otherwise below it.
 class TerminalView {
  public:
   TerminalView();
-  /// False when nobody sees it any more.
+  /// Prints `text`. False when standard output is closed.
   bool show(const std::string& text);
   bool is_terminal() const { return is_terminal_; }
-  /// Of now; a terminal may change. Boundless for a file or a pipe.
+  /// Present size of the terminal, which may change. Unlimited for a file or a pipe.
   TerminalSize size() const;
 
  private:

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 constexpr auto kLongStep = 2s;  // statuses come ten times a second
 constexpr auto kTellAfter = 10s;
 
-/// Since its last status, which it published before the step.
+/// How long the node has computed its step: the time since its last status, which it published before the step.
 std::optional<std::chrono::steady_clock::duration> computes_for(const dds::SeenStatus& seen,
                                                                 std::chrono::steady_clock::time_point now) {
   const bool computes = !seen.lost && seen.status.state == dds::NodeState::kRunning;

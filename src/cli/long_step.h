@@ -1,4 +1,5 @@
-// A node that computes one step for long says nothing meanwhile, but its process shows life: it is slow, not dead.
+// Detects a node that computes one step for long. It publishes no status meanwhile, but its process shows life: it is
+// slow, not dead.
 #pragma once
 
 #include <chrono>
@@ -10,10 +11,11 @@
 
 namespace aurasim::cli {
 
-/// "computes one step for 12 s". Nothing: its last status is not old, or it is not there, or does not compute.
+/// A text such as "computes one step for 12 s". Nothing if the node's last status is recent, or if the node is not
+/// alive or does not compute.
 std::optional<std::string> long_step(const dds::SeenStatus& seen, std::chrono::steady_clock::time_point now);
 
-/// Which long steps a log is told of: each once after 10 s, and again each time that it has taken twice as long.
+/// Chooses the long steps to log: each once after 10 s, and again each time that its duration has doubled.
 class LongSteps {
  public:
   using Clock = std::chrono::steady_clock;
@@ -22,7 +24,7 @@ class LongSteps {
   std::optional<std::string> news(const dds::SeenStatus& seen, Clock::time_point now);
 
  private:
-  std::map<core::RegionId, Clock::duration> told_;  ///< of steps that are not yet over
+  std::map<core::RegionId, Clock::duration> told_;  ///< duration last logged, of steps that are not over yet
 };
 
 }  // namespace aurasim::cli

@@ -1,4 +1,4 @@
-// Says what a process does that takes more than a second, and how far it is.
+// Reports work that takes more than a second, and how far it is.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@ class LongWork {
   using Clock = std::chrono::steady_clock;
   using Tell = std::function<void(const std::string&)>;
 
-  /// `what`: "looking for bodies that overlap". `tell` is given a sentence after a second, and then ever more seldom:
-  /// after 2, 4, 8 seconds and so on, at least once in 10.
+  /// `what`: a text such as "looking for bodies that overlap". `tell` receives a sentence after a second, and then at
+  /// growing intervals (2, 4, 8 seconds), at least every 10 seconds.
   LongWork(std::string what, Tell tell, Clock::time_point now = Clock::now())
       : what_(std::move(what)), tell_(std::move(tell)), begin_(now) {}
 

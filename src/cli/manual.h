@@ -7,7 +7,8 @@
 
 namespace aurasim::cli {
 
-/// For `man`, in its macros. `about`: sentences on what the program is, beside its one-line description.
+/// The manual page in the macros of `man`. `about`: sentences on what the program is, in addition to its one-line
+/// description.
 std::string manual_page(const CLI::App& program, const std::string& about);
 
 /// The command `manual`, which prints the page.

@@ -1,4 +1,4 @@
-// The report of a whole run, merged from what its nodes have recorded, and told in a few lines.
+// Merges the records of a run's nodes into one report, and prints a short account of it.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace aurasim::cli {
 
-/// The last line of a run, for people. Where records are missing it says what is not known.
+/// The last line of a run's output. If records are missing, it says what is not known.
 std::string closing_line(const node::Accounts& accounts);
 
-/// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or there twice, or
+/// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or hosted twice, or when
 /// records are missing.
 ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, ExitCode so_far);
 

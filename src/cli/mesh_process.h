@@ -1,5 +1,5 @@
-// Meshes of clients are read and taken apart in a process of its own, with limits for its time and memory: whatever a
-// file does to the libraries that read it, this process goes on.
+// Reads and takes apart clients' meshes in a child process with limits for time and memory. If a file crashes the
+// libraries that read it, this process goes on.
 #pragma once
 
 #include <chrono>
@@ -11,25 +11,25 @@
 
 namespace aurasim::cli {
 
-/// Or why there is none.
+/// A mesh, or the reason why there is none.
 using MeshOrWhy = std::variant<core::TriangleMesh, std::string>;
 
 struct MeshProcess {
   std::string program = "/proc/self/exe";  ///< aurasim
   std::chrono::milliseconds limit{10'000};
 
-  /// As config::read_mesh. Waits for it.
+  /// As config::read_mesh, in a child process. Blocks until it has ended.
   MeshOrWhy read(const std::string& name, std::string_view bytes) const;
-  /// As config::decompose. Waits for it.
+  /// As config::decompose, in a child process. Blocks until it has ended.
   MeshOrWhy decompose(const core::TriangleMesh& mesh) const;
 };
 
-/// By a process of this program.
+/// Reads a mesh in a child process of this program.
 MeshOrWhy read_mesh_apart(const std::string& name, std::string_view bytes);
 
-/// What goes between the two processes. Native byte order.
+/// The bytes that the two processes exchange, in native byte order.
 std::string mesh_bytes(const MeshOrWhy& mesh);
-/// Checked; says why not if it is no such thing.
+/// Decodes and checks such bytes. Returns the reason if they are no mesh.
 MeshOrWhy mesh_of_bytes(std::string_view bytes);
 
 }  // namespace aurasim::cli

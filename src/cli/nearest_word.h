@@ -1,4 +1,4 @@
-// What somebody meant who mistyped a word.
+// Finds the known word that is nearest to a mistyped one.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,11 @@
 
 namespace aurasim::cli {
 
-/// Letters to insert, remove, replace or swap with the next one until `a` is `b`.
+/// Number of letters to insert, remove, replace, or swap with the next one to turn `a` into `b`.
 std::size_t typing_distance(std::string_view a, std::string_view b);
 
-/// The first of `known` with the least distance; nothing when that is more than a third of the word, and more than 2.
+/// The first of `known` with the least distance to `word`. Nothing if the distance is more than 2 and more than a third
+/// of the word.
 std::optional<std::string> nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace aurasim::cli

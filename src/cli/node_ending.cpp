@@ -5,11 +5,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStopGently = 900ms;        // so long a node may take to the state in which all stop
-constexpr auto kStandstill = 500ms;        // and longer if its step grows at least so often
-constexpr auto kStopSurely = 1600ms;       // whoever shows no life then is killed
-constexpr auto kSilence = 3s;              // no life: lost, and nothing heard for so long
-constexpr auto kPatienceWithEnding = 30s;  // with whoever does
+constexpr auto kStopGently = 900ms;        // time for a node to reach the state in which all stop
+constexpr auto kStandstill = 500ms;        // extended while its step grows at least so often
+constexpr auto kStopSurely = 1600ms;       // a node without sign of life is killed after this
+constexpr auto kSilence = 3s;              // no sign of life: lost, and no status for so long
+constexpr auto kPatienceWithEnding = 30s;  // patience with a node that shows life
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// How the launcher sees a node off that has been told to stop: as long as it shows that it is on its way, nobody cuts
-// it short, or its report would be lost.
+// How the launcher handles a node that has been told to stop. As long as the node makes progress it is not interrupted,
+// because its report would be lost.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ class NodeEnding {
 
   explicit NodeEnding(Clock::time_point told_to_stop) : begin_(told_to_stop), moved_(told_to_stop) {}
 
-  /// What to do now with a process that still runs. `seen`: what is known of its node; null if nothing is.
-  /// kTerminate is given once.
+  /// The signal to send now to a process that still runs. `seen`: status of its node; null if there is none. kTerminate
+  /// is returned once.
   Urge urge(Clock::time_point now, const dds::SeenStatus* seen);
 
  private:

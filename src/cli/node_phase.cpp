@@ -7,7 +7,7 @@ namespace {
 
 using P = NodePhase;
 
-/// "Stays impossible" in the table below.
+/// An event that is impossible in a phase, in the table below.
 constexpr std::optional<NodePhase> no = std::nullopt;
 
 using Row = std::array<std::optional<NodePhase>, kNodeEvents>;

@@ -49,8 +49,8 @@ RecoverySettings recovery_settings(const config::Launch& launch, const NodeOptio
   return settings;
 }
 
-/// A launcher on this host that hears our heartbeat knows which of its processes live, and ends those that hang: nobody
-/// else judges that.
+/// DDS settings of a node. A launcher on this host that receives the heartbeat knows which of its processes live, and
+/// ends those that hang; then nothing else judges that.
 dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& options) {
   dds::Settings settings =
       with_keys(dds_settings(launch, options.region), launch, member_for_node(launch, options.as, options.region));
@@ -106,7 +106,7 @@ FenceSettings NodeProcess::fence_settings() const {
   return settings;
 }
 
-/// Of a region whose node was never heard, too, since this process has joined DDS (meet_anew): it is lost.
+/// Signs of all regions. A region whose node was never heard since this process joined DDS (meet_anew) counts as lost.
 std::map<core::RegionId, node::PeerSign> NodeProcess::peer_signs() {
   std::map<core::RegionId, node::PeerSign> signs;
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
@@ -124,7 +124,8 @@ bool NodeProcess::fence_is_open() { return fence_.open(node_->protocol().intake(
 ExitCode NodeProcess::run() {
   try {
     const ExitCode code = meet_and_run();
-    participant_->flush_delayed();  // whoever leaves silently destroys nothing, and its last words would wait for ever
+    participant_->flush_delayed();  // this process leaves without destroying its endpoints, so delayed messages would
+                                    // never be sent
     log_impairment(*participant_);
     log_refusals(*participant_);
     return code;
@@ -160,7 +161,7 @@ bool NodeProcess::comes_back_as_spare() const {
   return fence_.closed() && !options_.has_launcher && launch_.survival.on_death == config::OnDeath::kRecover;
 }
 
-/// The others stand and wait for somebody.
+/// Takes over the region of a dead node. The other nodes wait in a recovery.
 ExitCode NodeProcess::take_over() {
   checkpoints_.emplace(*participant_, options_.region);
   recover("takes the region over");
@@ -181,7 +182,7 @@ dds::TransportSettings NodeProcess::transport_settings() {
 
 ExitCode NodeProcess::refuse(const std::string& why) {
   spdlog::error("{}", why);
-  const bool is_known = phase_ != NodePhase::kListening;  // before that, the region may be another process's
+  const bool is_known = phase_ != NodePhase::kListening;  // before that, another process may have the region
   enter(NodeEvent::kRefusal);
   if (is_known) publish(why);
   return ExitCode::kRefused;
@@ -215,7 +216,7 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   node_ = make_node();
   node_->accept_early_mail(std::move(mail));
   command_server_->begin_generation(*node_, generation);
-  recorder_.reset();  // or it would write the rest of its rows into the files of the next
+  recorder_.reset();  // the old recorder must not write its last rows into the new one's files
   if (options_.report) recorder_.emplace(*options_.report, options_.region);
   pacer_.set_epoch(first_step(), begin.epoch_ns, begin.clock_ahead, node::read_clocks());
   hold_at_.reset();
@@ -225,7 +226,7 @@ void NodeProcess::begin_generation(core::Generation generation, const dds::RunCo
   began_ = std::max(pacer_.due(first_step()), Clock::now());
 }
 
-/// The first state of a generation is there.
+/// To be called when the first state of a generation is there.
 void NodeProcess::begin_with(const node::StepReport& report) {
   run_orders_.clear();
   stops_standing_ = false;
@@ -285,14 +286,15 @@ void NodeProcess::run_until_end() {
     if (reset_if_due() || change_if_due()) continue;
     tell_ros2();
     hear_programs();
-    if (!wait_until_due()) continue;  // true: it has not waited
+    if (!wait_until_due()) continue;  // true: the step is due without waiting
     look_for_deaths();
     compute_step();
     plan_checkpoint();
   }
 }
 
-/// True when the next state is due, allowed and everything it needs is here. Returns often, so that commands are heard.
+/// True when the next state is due, allowed and everything it needs is here. Returns often, so that commands are
+/// received.
 bool NodeProcess::wait_until_due() {
   const core::Step next = node_->current_step() + 1;
   const auto begin = Clock::now();
@@ -302,7 +304,7 @@ bool NodeProcess::wait_until_due() {
     publish();
     node_->ready();
     observers_->while_paused(*node_);
-    // Observers wait for what bodies under way to us do in this state.
+    // Observers wait for the states of bodies that are under way to this node.
     if (node_->has_all_until(node_->current_step())) {
       control_.wait(20ms);
     } else {
@@ -333,7 +335,7 @@ bool NodeProcess::wait_until_due() {
   return false;
 }
 
-/// The latest state in which a node of this world stands.
+/// The latest state in which a node of this world is paused.
 core::Step NodeProcess::farthest_paused_step() {
   core::Step farthest = 0;
   for (const auto& [region, seen] : control_.statuses()) {
@@ -354,7 +356,7 @@ void NodeProcess::compute_step() {
   programs_->note_state();
   if (report.put_back_from) return note_redo(report);
   if (!doubtful_saves_.empty()) look_at_doubtful_saves(std::nullopt);
-  command_server_->after_step(report);  // observers look for what it tells
+  command_server_->after_step(report);  // before observers_, because observers need the additions
   observers_->after_step(*node_, report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   for (const core::Order& order : report.orders) {
@@ -374,7 +376,8 @@ void NodeProcess::compute_step() {
   apply_orders();
 }
 
-/// All nodes do so after the same state. Observers stay with what they have seen until the run is there again.
+/// Notes a redo, which all nodes do after the same state. Observers keep the states that they have until the run has
+/// computed them again.
 void NodeProcess::note_redo(const node::StepReport& report) {
   const core::TogetherPair first = report.put_back_for.empty() ? core::TogetherPair{} : report.put_back_for.front();
   notice_ =

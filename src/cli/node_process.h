@@ -40,26 +40,27 @@ namespace aurasim::cli {
 
 struct NodeOptions {
   core::RegionId region{};
-  std::uint64_t run = 0;            ///< the same number for all nodes of a run and no other; 0: nobody has drawn one
-  std::optional<core::Step> steps;  ///< stop after this state; nothing: run until told to stop
+  std::uint64_t run = 0;  ///< number of the run, the same on all its nodes and on no others; 0: none was drawn
+  std::optional<core::Step> steps;  ///< last state to compute; nothing: run until a stop command
   std::optional<std::filesystem::path> report;
-  std::chrono::seconds start_time_out{30};      ///< without anything new of the others
-  std::shared_ptr<const core::WorldCut> world;  ///< saved: the run goes on from it, and comes back to it when reset
-  std::filesystem::path saves = "saves";        ///< where it writes its parts of saved worlds
-  core::Step save_every = 0;                    ///< states; 0: only when somebody asks for it
-  std::size_t save_keep = 3;                    ///< of those that nobody has asked for
-  /// Where runs keep their newest states on disk (kept_folder); nothing: they do not.
+  std::chrono::seconds start_time_out{30};      ///< longest time without progress of the other nodes at the start
+  std::shared_ptr<const core::WorldCut> world;  ///< saved world that the run goes on from; a reset goes back to it
+  std::filesystem::path saves = "saves";        ///< folder for this node's parts of saved worlds
+  core::Step save_every = 0;                    ///< in states; 0: worlds are saved only on request
+  std::size_t save_keep = 3;                    ///< how many regularly saved worlds stay
+  /// Folder where runs keep their newest states on disk (kept_folder); nothing: they keep none.
   std::optional<std::filesystem::path> kept;
-  bool takes_over = false;    ///< a run that goes on: its node of this region has died
-  bool has_launcher = false;  ///< who starts another process when a node dies, and ends them all
+  bool takes_over = false;    ///< this process replaces the dead node of its region in a run that goes on
+  bool has_launcher = false;  ///< a launcher replaces nodes that die, and ends all processes
   int heartbeat = -1;         ///< number of the launcher's pipe for signs of life (heartbeat.h)
-  std::string as;             ///< name of its key, in a run with keys; empty: the region's own
+  std::string as;             ///< name of this node's key, in a run with keys; empty: the region's own key
 };
 
-/// Between a region and those that have to hear of it.
+/// Settings of the transport between a region and its neighbours.
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
 
-/// What all were about to do together cannot be done: all go back to a state that is kept.
+/// Thrown when a node has died while all nodes were about to act together. All nodes then go back to a state that is
+/// kept.
 class SomebodyDied : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -70,11 +71,12 @@ class NodeProcess {
   NodeProcess(const config::Launch& launch, const NodeOptions& options);
 
   ExitCode run();
-  /// After it: the others do without this process, which may be of use to them once more.
+  /// To be called after run(). True if another process has this region now, so that this process may serve the run as a
+  /// spare.
   bool comes_back_as_spare() const;
 
  private:
-  struct Window {  ///< of about the last second, milliseconds
+  struct Window {  ///< durations of about the last second's steps, milliseconds
     std::vector<double> frame, physics, protocol, transport;
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   };
@@ -97,7 +99,7 @@ class NodeProcess {
   void start_when_all_wait();
   void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
   bool wait_for_start();
-  /// `begin`: the command that names when.
+  /// `begin`: the command that names the start time.
   void begin_generation(core::Generation generation, const dds::RunCommand& begin);
   std::unique_ptr<node::Node> make_node();
   void begin_with(const node::StepReport& report);
@@ -189,7 +191,7 @@ class NodeProcess {
   void obey_early_commands();
   void obey_late_commands();
   bool can_be_meant(const dds::RunCommand& command);
-  /// True: another world has begun.
+  /// True if another world has begun.
   bool reset_if_due();
   bool change_if_due();
   void change_scene(const std::string& name);
@@ -232,76 +234,76 @@ class NodeProcess {
   std::optional<CommandServer> command_server_;  ///< likewise
   std::optional<dds::SetpointReader> programs_;  ///< likewise
   std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
-  std::vector<core::Order> run_orders_;          ///< about the run as a whole, not yet due
+  std::vector<core::Order> run_orders_;          ///< orders about the run as a whole that are not due yet
   PartWriter saves_;
-  std::vector<std::uint64_t> saved_runs_;     ///< numbers that this run's saved worlds have had
-  std::vector<StandingSave> standing_saves_;  ///< asked for, and not written yet
-  std::vector<StandingSave> doubtful_saves_;  ///< written of states that a redo may still go back to before
-  core::Step saved_last_ = 0;                 ///< state of the last save that nobody has asked for, on the lead
+  std::vector<std::uint64_t> saved_runs_;     ///< numbers of this run and of those that it goes on from
+  std::vector<StandingSave> standing_saves_;  ///< saves asked for in a pause and not written yet
+  std::vector<StandingSave> doubtful_saves_;  ///< saves written whose states a redo may still make void
+  core::Step saved_last_ = 0;                 ///< state of the last regular save; only the lead uses it
   std::optional<Checkpoints> checkpoints_;    ///< once the domain is known to be free
-  core::Step checkpoint_ = 0;                 ///< the next state that is kept to be gone back to
-  core::Step recorded_ = 0;                   ///< state that all records have been given to `recorder_` of
-  core::Step secured_ = 0;                    ///< and that they are on disk of
+  core::Step checkpoint_ = 0;                 ///< the next state that is kept for a recovery
+  core::Step recorded_ = 0;                   ///< records up to this state have been given to `recorder_`
+  core::Step secured_ = 0;                    ///< records up to this state are on disk
   std::unique_ptr<node::Node> node_;
   std::optional<node::Recorder> recorder_;
   node::Pacer pacer_;
   node::ClockWatch clock_watch_{node::read_clocks()};
   bool says_records_end_ = false, says_left_out_ = false;
-  std::string notice_;  ///< for people, in the status while the node runs
+  std::string notice_;  ///< message for users, in the status while the node runs
   core::Generation generation_ = 0;
-  std::optional<core::Generation> begun_;  ///< whose states node_ computes, or has computed last
+  std::optional<core::Generation> begun_;  ///< generation that node_ computes in, or has computed in last
   std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
-  AskedSteps asked_steps_;                 ///< since it was paused
+  AskedSteps asked_steps_;                 ///< steps asked for since the run was paused
   PauseFollower pause_follower_;
   AwaitedWords awaited_words_;
   std::optional<core::Step> stop_at_;
   std::optional<dds::RunCommand> reset_;
   RunControlLimits run_control_limits_;
   std::optional<dds::RunCommand> start_;
-  core::Generation waits_to_start_ = 0;  ///< the generation that a start command has to name
-  std::optional<core::Order> change_;    ///< of the run as a whole, due now
+  core::Generation waits_to_start_ = 0;  ///< generation that a start command has to name
+  std::optional<core::Order> change_;    ///< order that changes the run as a whole, due now
   struct BeforeChange {
     config::Launch launch;
     std::shared_ptr<const core::WorldCut> world;
   };
-  std::optional<BeforeChange> before_change_;  ///< while one is under way
-  std::vector<dds::RunCommand> early_;         ///< of a generation that has not begun here
-  std::vector<dds::RunCommand> late_;          ///< of generations before restore_'s, heard since
-  std::optional<dds::RunCommand> restore_;     ///< the newest
-  core::Generation restoring_ = 0;             ///< that a recovery is about to begin, or has begun
+  std::optional<BeforeChange> before_change_;  ///< set while a change is under way
+  std::vector<dds::RunCommand> early_;         ///< commands of a generation that has not begun here
+  std::vector<dds::RunCommand> late_;          ///< commands of generations before restore_'s, received since restore_
+  std::optional<dds::RunCommand> restore_;     ///< the newest restore command
+  core::Generation restoring_ = 0;             ///< generation that a recovery is about to begin, or has begun
   int failed_changes_ = 0;                     ///< in a row
-  core::Generation life_ = 0;                  ///< with which the run went on after the last death or change
-  core::Generation life_of_node_ = 0;          ///< with which node_ has begun
+  core::Generation life_ = 0;                  ///< generation with which the run went on after the last death or change
+  core::Generation life_of_node_ = 0;          ///< the life_ with which node_ has begun
   std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
-  bool drains_ = false;                        ///< gives its region to another process as soon as there is one
-  std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: not later than this
+  bool drains_ = false;  ///< this node gives its region to another process as soon as there is one
+  std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: the latest time to do so
   std::set<std::uint64_t> leaving_;                                 ///< processes that drain
-  std::optional<core::Step> successor_since_;                       ///< state in which that one was first seen
+  std::optional<core::Step> successor_since_;                       ///< state in which the successor was first seen
   std::string broken_off_;          ///< why the run ends before its time: another region's node has died
   bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
-  core::Generation stands_in_ = 0;  ///< what others are told while we stand: after this one something has gone wrong
+  core::Generation stands_in_ = 0;  ///< generation published while waiting in a recovery
   std::chrono::steady_clock::time_point recovering_since_;
   Recovery recovery_;
-  std::set<std::uint64_t> taken_;  ///< spares that were called
-  std::string asks_for_;           ///< what a person has to decide before all can go on; empty: nothing
-  bool stops_standing_ = false;    ///< told to stop while it stood: it does not wait for the others
+  std::set<std::uint64_t> taken_;  ///< processes of spares that were called
+  std::string asks_for_;           ///< decision that a user has to take before the run can go on; empty: none
+  bool stops_standing_ = false;    ///< stopped in a recovery: does not wait for the others
   dds::Status status_;
   Window window_;
   double wait_ms_ = 0;
-  std::map<core::Step, node::FrameTimes> frame_times_;  ///< of states that are not recorded yet
-  core::Step hurry_until_ = 0;      ///< somebody waits for this state: no slower than in real time until then
-  std::size_t refusals_noted_ = 0;  ///< of the protocol's
+  std::map<core::Step, node::FrameTimes> frame_times_;  ///< frame times of states that are not recorded yet
+  core::Step hurry_until_ = 0;      ///< a client waits for this state: until then the pace is at least real time
+  std::size_t refusals_noted_ = 0;  ///< number of the protocol's refusals that have been logged
   std::uint64_t unheard_setpoints_ = 0, unbearable_setpoints_ = 0;  ///< since the start
-  bool says_late_ = false, says_refused_ = false;                   ///< of setpoints, once
-  std::uint64_t broken_bodies_ = 0;                                 ///< taken out here since the start
-  std::string fault_;                                               ///< the last one, for people
-  std::string waiting_;                                             ///< whom for, if it takes long
+  bool says_late_ = false, says_refused_ = false;  ///< the message about late or refused setpoints has been given
+  std::uint64_t broken_bodies_ = 0;                ///< bodies removed here since the start because they broke down
+  std::string fault_;                              ///< the last fault, as a message for users
+  std::string waiting_;                            ///< the nodes that this one waits for, if it takes long
   std::optional<std::chrono::steady_clock::time_point> waiting_since_;
-  std::chrono::steady_clock::time_point computed_at_;  ///< the last state
+  std::chrono::steady_clock::time_point computed_at_;  ///< when the last state was computed
   std::chrono::steady_clock::time_point began_;
   std::chrono::steady_clock::duration paused_{};
   std::chrono::steady_clock::time_point last_published_;
-  std::set<core::RegionId> missed_;  ///< died while the nodes met, and said so
+  std::set<core::RegionId> missed_;  ///< regions whose nodes died while the nodes met; each is logged once
 };
 
 }  // namespace aurasim::cli

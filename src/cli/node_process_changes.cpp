@@ -25,13 +25,13 @@ constexpr auto kPatienceWithOthers = 20s;
 constexpr auto kRound = 5ms;
 constexpr int kMostFailedChanges = 3;  // in a row
 
-/// What went wrong and with whom.
+/// Thrown when a change of the run fails, with what went wrong and the regions concerned.
 class ChangeFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What all regions say that they host.
+/// Collects from all regions the bodies that they host.
 std::vector<node::Resident> take_census(const node::RepartitionSettings& settings, Clock::time_point deadline,
                                         dds::Participant& participant, const node::Node& node,
                                         const std::function<void()>& look_for_deaths) {
@@ -54,7 +54,7 @@ std::vector<node::Resident> take_census(const node::RepartitionSettings& setting
 
 }  // namespace
 
-/// Orders about the run as a whole whose state has been computed.
+/// Applies the orders about the run as a whole whose state has been computed.
 void NodeProcess::apply_orders() {
   std::erase_if(run_orders_, [this](const core::Order& order) {
     const bool changes = core::changes_the_run(order.action);
@@ -77,7 +77,7 @@ bool NodeProcess::change_if_due() {
     if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
     if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
   } catch (const ChangeFailed& failed) {
-    // All are here, and what they had before can be gone back to: then it is tried once more.
+    // All nodes are here and can go back to the world before the change, so the change is tried once more.
     if (!recovers() || stop_requested() || ++failed_changes_ > kMostFailedChanges) throw;
     throw SomebodyDied(failed.what());
   }
@@ -88,7 +88,7 @@ bool NodeProcess::change_if_due() {
   return true;
 }
 
-/// Bodies of the old scene are forgotten; the regions stay.
+/// Changes to another scene. Bodies of the old one are dropped; the regions stay.
 void NodeProcess::change_scene(const std::string& name) {
   launch_ = config::with_scene(launch_, name);
   options_.world.reset();
@@ -96,14 +96,14 @@ void NodeProcess::change_scene(const std::string& name) {
   begin_anew();
 }
 
-/// The regions stay as they are, whatever they were when it was saved.
+/// Changes to a saved world. The regions stay, whatever they were when it was saved.
 void NodeProcess::change_world(const std::string& file) {
   options_.world = load_world({(options_.saves / file).string(), false}, launch_);
   spdlog::info("{}, state {}, after step {}", file, first_step(), node_->current_step());
   begin_anew();
 }
 
-/// The agreement is that of the beginning, whatever has changed since.
+/// Publishes the map and scene of a generation. The agreement stays that of the run's beginning.
 void NodeProcess::publish_map(core::Generation generation, core::Step from_step) {
   dds::WorldMap map = world_map(launch_);
   map.agreement = status_.agreement;
@@ -115,16 +115,17 @@ void NodeProcess::publish_map(core::Generation generation, core::Step from_step)
 void NodeProcess::begin_anew() {
   wait_until_all_stand();
   waits_to_start_ = generation_ + 1;
-  publish_map(waits_to_start_, first_step());  // first: observers read the new scene before its bodies come
+  publish_map(waits_to_start_, first_step());  // first, so that observers read the new scene before its bodies come
   node_.reset();
   connect_for_change(neighbour_transport(launch_, options_.region));
   begin_generation(waits_to_start_, *start_);
 }
 
-/// What we have sent may still have to be repeated: nobody closes a transport before all have what they wait for.
+/// Waits until all nodes wait in the state of the change. No node may close its transport earlier, because its messages
+/// may have to be retransmitted.
 void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
-  last_published_ = {};  // the others wait for this state, and whoever comes last goes on at once
+  last_published_ = {};  // publish the status at once, because the others wait for it
   auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
     const dds::Status& status = entry.second.status;
@@ -146,7 +147,7 @@ void NodeProcess::wait_until_all_stand() {
   }
 }
 
-/// Waits until every body that was on its way to us is here.
+/// Waits until every body that was on its way to this node has arrived.
 void NodeProcess::settle_all() {
   if (node_->settled()) return;
   const auto deadline = Clock::now() + kPatienceWithOthers;
@@ -166,7 +167,7 @@ void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
   connect_anew(settings, [&](const char* for_what) {
     if (stop_requested()) throw ChangeFailed("told to stop while the run changes");
     if (Clock::now() > deadline) throw ChangeFailed(fmt::format("a change has waited in vain for {}", for_what));
-    if (phase_ == NodePhase::kWaiting) publish();  // before, there may be no node, and others still look for its state
+    if (phase_ == NodePhase::kWaiting) publish();  // before, others still wait for the last state's status
     execute_commands();
     look_for_deaths();
     control_.wait(10ms);
@@ -180,7 +181,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
   const node::RepartitionSettings settings = {options_.region, generation_ + 1, aura_rules(*changed),
                                               &changed->regions};
-  observers_->use_map(changed->regions.version());  // the old map's observers have nothing to do with it
+  observers_->use_map(changed->regions.version());  // so that observers of the old map do not receive it
   observers_->publish_census(*node_, settings.census);
   const std::vector<core::Departure> departures = node::find_new_hosts(
       settings, take_census(settings, deadline, *participant_, *node_, [this] { look_for_deaths(); }), *node_);

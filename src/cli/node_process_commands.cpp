@@ -1,5 +1,4 @@
-// What a node is told of the run while it runs, and by whom: of which world it is meant, and what comes of it; and what
-// clients ask of it.
+// How a node executes run commands: the world that a command is meant for, and its effect. Also how it serves clients.
 #include <algorithm>
 #include <utility>
 
@@ -29,7 +28,7 @@ void NodeProcess::execute(const dds::RunCommand& command) {
     return;
   }
   if (command.kind == Kind::kDrain) return hear_of_drain(command);
-  if (command.kind == Kind::kTake) return;  // to spares
+  if (command.kind == Kind::kTake) return;  // for spares only
   if (command.kind == Kind::kEnd) return hear_of_end(command);
   switch (world_meant(command.generation, known_worlds())) {
     case WorldMeant::kPresent:
@@ -46,8 +45,8 @@ void NodeProcess::execute(const dds::RunCommand& command) {
   }
 }
 
-/// Handles `end`: another node waits no longer for a process that takes a region over. Only a node that waits, too,
-/// ends.
+/// Handles `end`: another node has given up waiting for a process that takes a region over. This node ends only if it
+/// waits, too.
 void NodeProcess::hear_of_end(const dds::RunCommand& end) {
   const bool waits = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
   if (!waits || !can_be_meant(end)) return;
@@ -107,7 +106,7 @@ void NodeProcess::hold_in(core::Step state) {
   asked_steps_.begin(state);
 }
 
-/// Of a run that is paused. States that somebody has asked for before keep their pace.
+/// Executes a step command in a paused run. States of earlier step commands keep their pace.
 void NodeProcess::step_on(const dds::RunCommand& step) {
   const core::Step next = *hold_at_ + 1;
   node::Pacer later = pacer_;
@@ -117,14 +116,14 @@ void NodeProcess::step_on(const dds::RunCommand& step) {
   hold_at_ = std::max(*hold_at_, asked_steps_.end());
 }
 
-/// What was said to this world before it had begun here: its start would have undone it.
+/// Executes the commands for this world that came before it began here. The start of the world would have undone them.
 void NodeProcess::obey_early_commands() {
   begun_ = generation_;
   for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
-/// What was said to the world that all have left, as they did: some might have obeyed and some not. So all do what the
-/// one who says where all go back to says once more.
+/// Handles commands for the world that all have left. Some nodes may have executed them and some not, so the node that
+/// sent the restore sends them once more, and all execute those.
 void NodeProcess::obey_late_commands() {
   for (dds::RunCommand command : std::exchange(late_, {})) {
     if (restore_->region != options_.region) continue;
@@ -150,19 +149,19 @@ bool NodeProcess::reset_if_due() {
   enter(NodeEvent::kReset);
   begin_generation(reset.generation + 1, reset);
   if (stands) hold_in(node_->current_step());
-  last_published_ = {};  // who has asked waits for it
+  last_published_ = {};  // the client waits for this status
   return true;
 }
 
-/// The state of a change has been computed, and is still to be confirmed: what is ordered now would not reach all
-/// before they stop for it.
+/// True if the state of a change has been computed and is not confirmed yet. An order given now would not reach all
+/// nodes before they stop for the change.
 bool NodeProcess::is_about_to_change() const {
   return std::ranges::any_of(run_orders_, [this](const core::Order& order) {
     return core::changes_the_run(order.action) && node_->current_step() >= order.at_step;
   });
 }
 
-/// The live node of the lowest region gives commands their place in time.
+/// Serves clients' commands. The lead, the live node of the lowest region, gives orders their state.
 void NodeProcess::serve_clients() {
   if (is_about_to_change()) return;
   const auto& statuses = control_.statuses();
@@ -197,8 +196,8 @@ void NodeProcess::serve_clients() {
   if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
 }
 
-/// All nodes are told outside the steps, which may be seconds apart. The step that would be due in a moment stays due
-/// then, and from it on the new rate holds.
+/// Sends all nodes another rate as a run command, because steps may be seconds apart. The next step stays due when it
+/// was, and the new rate holds from it on.
 void NodeProcess::change_rate(double rate) {
   const double steps = std::min(pacer_.rate(), 1.0) * kRateNoticeS / launch_.step_s();
   dds::RunCommand command;
@@ -211,8 +210,8 @@ void NodeProcess::change_rate(double rate) {
   execute(command);
 }
 
-/// A change of the run comes after a state, which has to be certain. In a pause all compute up to there, and stand
-/// again in the first state of what is new.
+/// Makes a paused run compute up to a change. A change needs its state to be confirmed, so all nodes compute up to it,
+/// and pause again in the first state of the new world.
 void NodeProcess::compute_until_change() {
   const std::optional<core::Step> change = command_server_->change_at();
   if (!change || !hold_at_ || node_->current_step() < *hold_at_) return;

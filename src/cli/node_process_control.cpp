@@ -1,4 +1,4 @@
-// What a node hears of programs that steer bodies and joints (topic control).
+// How a node receives setpoints of programs that steer bodies and joints (topic control).
 #include <algorithm>
 #include <iterator>
 
@@ -8,7 +8,8 @@
 
 namespace aurasim::cli {
 
-/// Before each state, and often in between: what has come by then takes effect in it. Every node hears everything.
+/// Takes in the setpoints that have come; they take effect in the next state. To be called before each state, and often
+/// in between. Every node receives all setpoints.
 void NodeProcess::hear_programs() {
   std::vector<core::Setpoints> heard = programs_->take(generation_);
   if (ros2_) std::ranges::move(ros2_->take(generation_), std::back_inserter(heard));
@@ -36,7 +37,7 @@ void NodeProcess::hear_programs() {
   }
 }
 
-/// A step names what its program has said before: no node computes the state without it.
+/// True if all setpoints that step commands name have been received. No node computes the state before.
 bool NodeProcess::has_heard_what_steps_name() {
   const bool all_heard = awaited_words_.are_here(
       [this](const core::ProgramWord& word) { return programs_->has_heard(word); }, std::chrono::steady_clock::now());

@@ -1,4 +1,4 @@
-// How a node comes to the end of its run, and leaves so that the others can come to theirs.
+// How a node ends its run, and leaves so that the other nodes can end theirs.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLinger = 1500ms;
-constexpr auto kPatienceWithRunners = 30s;  // since any of them was seen to go on
-constexpr auto kPatienceWithReaders = 1s;   // some may have left without a word
+constexpr auto kPatienceWithRunners = 30s;  // since any node was last seen to go on
+constexpr auto kPatienceWithReaders = 1s;   // some readers may have left without notice
 
 }  // namespace
 
@@ -27,12 +27,12 @@ bool NodeProcess::finished() {
          !broken_off_.empty();
 }
 
-/// The state is there, and nothing can come to question it.
+/// True if the state has been computed and is confirmed.
 bool NodeProcess::has_reached(core::Step step) const {
   return node_ && node_->current_step() >= step && node_->confirmed_step() >= step;
 }
 
-/// The next state in which the run ends or changes, as far as it is known.
+/// Keeps the next state in which the run ends or changes, if it is known.
 void NodeProcess::keep_the_end() {
   if (stop_at_) node_->keep(*stop_at_);
   for (const core::Order& order : run_orders_) {
@@ -49,7 +49,7 @@ ExitCode NodeProcess::end() {
   }
   publish(fenced ? fence_.reason() : broken_off_);
   observers_->while_paused(*node_);
-  // Whoever leaves from now on has finished, too: that is no death.
+  // Taken first: a node that leaves from now on has finished, and has not died.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (comes_to_its_end) linger();
   const core::Step last = stop_at_ && comes_to_its_end && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
@@ -76,8 +76,9 @@ ExitCode NodeProcess::end_without_world() {
   return ExitCode::kBrokenOff;
 }
 
-/// The others may still need what was published last, and we their acknowledgements. Where nodes do not wait for each
-/// other, one may come to the last state long before the rest: if it left, they would take it for dead.
+/// Waits after the last state. The others may still need this node's last messages, and this node their
+/// acknowledgements. In a free-running run one node may come to the last state long before the rest; if it left, they
+/// would take it for dead.
 void NodeProcess::linger() {
   const auto begin = Clock::now();
   std::map<core::RegionId, core::Step> steps;
@@ -103,7 +104,8 @@ void NodeProcess::linger() {
   while (!control_.status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control_.wait(10ms);
 }
 
-/// Of those who have ended in a later state than this node, too: bodies may be on their way from there.
+/// True if all messages of the nodes that have ended have arrived, also of later states than this node's: bodies may be
+/// on their way from there.
 bool NodeProcess::has_all_of_the_last_states() {
   return std::ranges::all_of(control_.statuses(), [this](const auto& entry) {
     const auto& [region, seen] = entry;
@@ -111,7 +113,8 @@ bool NodeProcess::has_all_of_the_last_states() {
   });
 }
 
-/// Or have died, as far as anybody can tell: of whoever has come to the end the last word may be lost.
+/// True if all other nodes have left or died. The last status of a node that has ended may be lost, so silence counts
+/// as well.
 bool NodeProcess::all_have_left() {
   const std::vector<core::RegionId> silent = node_->protocol().intake().dead_regions();
   return std::ranges::all_of(control_.statuses(), [&](const auto& entry) {

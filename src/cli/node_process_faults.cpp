@@ -1,4 +1,4 @@
-// What a node says when something is wrong, while it runs: it never waits, or loses a body, in silence.
+// Messages of a running node about faults. A node never waits, or loses a body, without a message.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -18,7 +18,8 @@ constexpr auto kLongWait = 2s;
 
 }  // namespace
 
-/// Messages of neighbours that cannot be used. Each such neighbour is held for dead: what it said is lost for good.
+/// Logs messages of neighbours that were refused. Such a neighbour is marked dead, because the content of its message
+/// is lost for good.
 void NodeProcess::note_refusals() {
   status_.refused = transport_->refused();
   const std::vector<core::Refusal>& refusals = node_->protocol().intake().refusals();
@@ -31,7 +32,7 @@ void NodeProcess::note_refusals() {
   }
 }
 
-/// What is refused of others ends nobody's life: it is said once, and counted.
+/// Logs refused messages of non-neighbours. They mark no node dead; each kind is logged once and counted.
 void NodeProcess::note_strangers() {
   for (const std::string& text : participant_->take_said()) {
     spdlog::warn("region {}: {}", core::value_of(options_.region), text);
@@ -65,7 +66,7 @@ void NodeProcess::note_waiting() {
   if (is_news) spdlog::warn("region {} {}", core::value_of(options_.region), waiting_);
 }
 
-/// One step (long_step.h). Whoever waits for all of them has patience: it is not dead.
+/// True if some node computes one step for long (long_step.h). It is not dead, so a wait for all nodes goes on.
 bool NodeProcess::somebody_computes_for_long() {
   const auto now = Clock::now();
   return std::ranges::any_of(control_.statuses(), [&](const auto& entry) {
@@ -73,7 +74,7 @@ bool NodeProcess::somebody_computes_for_long() {
   });
 }
 
-/// Bodies that no world can bear (core/limits.h).
+/// Logs bodies that were removed because they exceeded the limits (core/limits.h).
 void NodeProcess::note_faults(const node::StepReport& report) {
   for (const physics::Removal& removal : report.removals) {
     if (removal.fault.empty()) continue;
@@ -84,7 +85,7 @@ void NodeProcess::note_faults(const node::StepReport& report) {
   }
 }
 
-/// Until `step` is due. In slow motion nobody waits for a pause, a reset or the end longer than in real time.
+/// Time until `step` is due. In slow motion, states before a pause, a reset or the end are due as in real time.
 std::chrono::nanoseconds NodeProcess::time_until(core::Step step) const {
   const std::chrono::nanoseconds until = pacer_.until(step, node::read_clocks());
   if (step > hurry_until_) return until;

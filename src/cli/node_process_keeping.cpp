@@ -1,5 +1,5 @@
-// What a node keeps of the world while it runs: parts that somebody has asked for, as files, and those that it can go
-// back to when a node dies.
+// Parts of the world that a node keeps while it runs: saved parts as files, and checkpoints to go back to when a node
+// dies.
 #include <chrono>
 #include <map>
 #include <optional>
@@ -16,11 +16,11 @@
 namespace aurasim::cli {
 namespace {
 
-constexpr std::chrono::nanoseconds kNoticeOfStepBack{600'000'000};  // that long all take to get there
+constexpr std::chrono::nanoseconds kNoticeOfStepBack{600'000'000};  // time in which all nodes receive the command
 
 }  // namespace
 
-/// Written beside the run. Every node says to whoever has asked for it that it has.
+/// Writes complete parts on threads beside the run. Every node replies to the client that its part is written.
 void NodeProcess::save_parts() {
   for (core::WorldCut& part : node_->take_saved()) {
     const core::Step step = part.step;
@@ -36,7 +36,7 @@ void NodeProcess::save_parts() {
   note_saves();
 }
 
-/// In a pause, as soon as all is here that was on its way.
+/// Saves the paused state once everything that was under way has arrived.
 void NodeProcess::save_as_it_stands() {
   for (StandingSave& save : command_server_->take_standing_saves()) standing_saves_.push_back(std::move(save));
   std::erase_if(standing_saves_, [this](const StandingSave& save) {
@@ -55,8 +55,8 @@ void NodeProcess::save_as_it_stands() {
   });
 }
 
-/// What was saved in a pause was certain to be right only later. `back_to`: all have gone back to this state, to
-/// compute those after it again.
+/// Looks at worlds that were saved in a pause before their state was confirmed. `back_to`: the state that all have gone
+/// back to; later states are computed again, so saves of them are void.
 void NodeProcess::look_at_doubtful_saves(std::optional<core::Step> back_to) {
   std::erase_if(doubtful_saves_, [&](const StandingSave& save) {
     if (!back_to || save.step <= *back_to) return save.step <= node_->confirmed_step();
@@ -69,7 +69,7 @@ void NodeProcess::look_at_doubtful_saves(std::optional<core::Step> back_to) {
   });
 }
 
-/// Every node does so by itself, in the same states.
+/// Asks for the next checkpoint. Every node does so by itself, in the same states.
 void NodeProcess::plan_checkpoint() {
   const core::Step every = kept_every();
   if (every == 0) return;
@@ -79,7 +79,8 @@ void NodeProcess::plan_checkpoint() {
   node_->save(next);
 }
 
-/// A part counts once what was recorded up to it is on disk: it would die with the node otherwise.
+/// Keeps complete parts as checkpoints. A part counts once the records up to its state are on disk, because other
+/// records die with the node.
 void NodeProcess::keep_checkpoints() {
   const std::optional<core::Step> wanted = checkpoints_->waits_for();
   if (wanted && recorded_ >= *wanted && secured_ < *wanted) {
@@ -99,7 +100,7 @@ void NodeProcess::keep_checkpoints() {
   spdlog::warn("{}", notice_);
 }
 
-/// On the lead. What is asked for by nobody is called by its state.
+/// Orders the regular saves; only the lead does so. Such a world is named after its state.
 void NodeProcess::save_regularly() {
   const core::Step due = std::max(saved_last_, first_step()) + options_.save_every;
   if (options_.save_every == 0 || node_->current_step() < due) return;
@@ -107,8 +108,8 @@ void NodeProcess::save_regularly() {
   node_->order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
-/// Somebody wants to see once more what was: all go back to the newest state, half as far back as states are kept or
-/// farther, that all have in memory or that the lead finds in its folder.
+/// Handles the request "step back". All nodes go back to the newest state that all have in memory, or that the lead
+/// finds in its folder. It lies at least half the distance of two kept states back.
 void NodeProcess::step_back(const RunView& run) {
   const std::optional<core::Command> back = command_server_->take_wanted_back();
   if (!back) return;
@@ -124,7 +125,8 @@ void NodeProcess::step_back(const RunView& run) {
   command_server_->refuse(back->request, fmt::format("no state until {} is kept", latest));
 }
 
-/// As after a death, but nobody has died: the new generation begins now, and stands if this one did.
+/// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one
+/// was.
 void NodeProcess::send_back(dds::RunCommand restore, const core::Command& back) {
   restore.run = options_.run;
   restore.region = options_.region;
@@ -143,7 +145,7 @@ cut::SavedWorld NodeProcess::as_saved(core::WorldCut part) const {
           std::move(part)};
 }
 
-/// The regions that keep our parts, by the hosts of the nodes that are there now.
+/// The regions that keep this node's parts, chosen by the hosts of the present nodes.
 std::vector<core::RegionId> NodeProcess::keepers() {
   std::map<core::RegionId, std::uint16_t> hosts;
   for (const auto& [region, seen] : control_.statuses()) hosts[region] = seen.host;

@@ -1,4 +1,4 @@
-// How the nodes of a run find each other, see that nobody else is there, and begin together.
+// How the nodes of a run find each other, check that no other run is in the domain, and begin together.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ std::string ahead_or_behind(std::chrono::nanoseconds ahead) {
                      ahead > 0ns ? "ahead of" : "behind");
 }
 
-/// Of the node of region 0, which says it for all.
+/// Progress messages while nodes are awaited. Only the node of region 0 logs them, for all.
 LongWork waiting_for_nodes(std::size_t regions) {
   return {fmt::format("waiting for the nodes of {} regions to be there", regions),
           [](const std::string& text) { spdlog::info("{}", text); }};
@@ -31,10 +31,11 @@ LongWork waiting_for_nodes(std::size_t regions) {
 
 }  // namespace
 
-/// Two runs in one domain would tear each other's worlds apart.
+/// True if another run is in the domain. Two runs would mix their worlds' messages.
 bool NodeProcess::another_run_is_here() { return another_agreement_is_here() || the_same_run_is_here(); }
 
-/// Another map, scene or setting, or another state to begin with.
+/// True if a map in the domain has another agreement (map, scene or settings) or begins with another state. Refuses to
+/// run then.
 bool NodeProcess::another_agreement_is_here() {
   for (const auto& [version, map] : control_.maps()) {
     if (map.agreement == status_.agreement && map.from_step == first_step()) continue;
@@ -55,12 +56,13 @@ bool NodeProcess::another_agreement_is_here() {
   return false;
 }
 
-/// The same launch twice, by mistake. Of two that begin together, the one with the lower number stays.
+/// True if the same launch runs twice by mistake; refuses to run then. Of two that begin together, the one with the
+/// lower number stays.
 bool NodeProcess::the_same_run_is_here() {
   for (const dds::SeenStatus& stranger : control_.strangers()) {
     const dds::Status& other = stranger.status;
     const bool is_meeting = other.state == dds::NodeState::kStarting || other.state == dds::NodeState::kWaiting;
-    if (other.agreement != status_.agreement) continue;  // its map says more
+    if (other.agreement != status_.agreement) continue;  // another_agreement_is_here() gives the better message
     if (transport_ && is_meeting && other.run > options_.run) continue;
     refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
                        core::value_of(other.region), launch_.dds.domain, other.pid, other.step));
@@ -72,7 +74,7 @@ bool NodeProcess::the_same_run_is_here() {
 /// Listens before it publishes: a node's endpoints would disturb a run that is already here.
 bool NodeProcess::domain_is_free() {
   const auto begin = Clock::now();
-  // Whoever has a status has a map, which is on its way.
+  // A node with a status has published a map, too, which may still be on its way.
   while (Clock::now() < begin + (control_.strangers().empty() ? kListenFirst : 6 * kListenFirst)) {
     if (stop_requested() || another_run_is_here()) return false;
     control_.wait(20ms);
@@ -84,7 +86,7 @@ bool NodeProcess::hears_another_node() {
   return std::ranges::any_of(control_.statuses(), [this](const auto& entry) { return entry.first != options_.region; });
 }
 
-/// That are there, this one included.
+/// Share of the nodes that are there, this one included; 0 to 1.
 double NodeProcess::share_of_nodes() {
   std::size_t there = control_.statuses().contains(options_.region) ? 0 : 1;
   for (const auto& [region, seen] : control_.statuses()) there += seen.is_live();
@@ -120,7 +122,7 @@ bool NodeProcess::meet_neighbours() {
   return true;
 }
 
-/// How far all have come who are to begin together, as far as is known here.
+/// Measure of how far all nodes have met, as far as this node knows. It only grows with progress.
 std::uint64_t NodeProcess::met() {
   std::uint64_t met = transport_->found();
   for (const auto& [region, seen] : control_.statuses()) {
@@ -147,7 +149,7 @@ void NodeProcess::start_when_all_wait() {
   start_ = start;
 }
 
-/// For people.
+/// Message for users: the nodes that do not wait for the start yet, and why.
 std::string NodeProcess::who_does_not_wait() {
   std::vector<std::uint32_t> absent, busy;
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {
@@ -187,8 +189,9 @@ bool NodeProcess::wait_for_start() {
   return true;
 }
 
-/// With endpoints of the generation that waits to start. It meets those that others have made for it, and not those of
-/// the dead or what others are about to let go of: what is sent to that is lost. `wait` returns soon, or throws.
+/// Makes endpoints for the generation that waits to start. They match only endpoints of the same generation, and not
+/// those of dead processes or those that others are about to drop, where messages would be lost. `wait` returns soon,
+/// or throws.
 void NodeProcess::connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait) {
   settings.life = life_ = waits_to_start_;
   transport_.reset();
@@ -204,8 +207,8 @@ void NodeProcess::connect_anew(dds::TransportSettings settings, const std::funct
   enter(NodeEvent::kStarted);
 }
 
-/// Nodes that have died while all wait for each other. Somebody may start them again; a launcher ends the run. A node
-/// that has ended a short run is none of them, though its word that the run begins is still on its way here.
+/// Logs nodes that have died while all wait for each other. A user may start them again; a launcher ends the run. A
+/// node that has finished a short run does not count, even if its message that the run begins is still on its way.
 void NodeProcess::name_the_dead() {
   for (const auto& [region, seen] : control_.statuses()) {
     if (seen.is_live() || seen.status.state == dds::NodeState::kFinished) {
@@ -217,8 +220,8 @@ void NodeProcess::name_the_dead() {
   }
 }
 
-/// A single message may have been long on its way, which looks like a clock that is behind; the fastest of the last
-/// statuses tells better.
+/// The command with the clock difference to its sender, from the fastest of the last statuses. A single message may
+/// have been long on its way, which looks like a clock that is behind.
 dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunCommand command) {
   const auto sender = control_.statuses().find(region);
   if (sender == control_.statuses().end()) return command;
@@ -226,8 +229,8 @@ dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunComman
   return command;
 }
 
-/// Hosts whose clocks are wrong are named; the run does not depend on them. On one host no clock is late: it looks late
-/// when statuses were long on their way, since many processes start at once.
+/// Logs hosts whose clocks are wrong; the run does not depend on them. On one host a clock that looks behind is not
+/// logged: its statuses were only slow, because many processes start at once.
 void NodeProcess::compare_clocks() {
   const bool is_one_host = participant_->stays_on_this_host();
   for (const auto& [region, seen] : control_.statuses()) {

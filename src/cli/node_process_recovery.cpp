@@ -1,5 +1,6 @@
-// What the nodes do when one of them has died: all stand until a process has taken its region over, go back to the
-// newest state of which everybody's part is kept, and compute on from there (docs/design.md, "When a node dies").
+// What the nodes do when one of them has died: all wait until a process has taken its region over, go back to the
+// newest state of which the parts of all regions are kept, and compute on from there (docs/design.md, "When a node
+// dies").
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -26,7 +27,8 @@ using Kind = dds::Checkpoint::Kind;
 
 constexpr auto kInRecovery = 5ms;
 constexpr auto kPatienceWithParts = 10s;
-/// A recovery that is about to succeed is not broken off by a stop: all stop together soon after it.
+/// Time for which a stop does not break off a recovery. One that is about to succeed ends first, and all stop together
+/// soon after it.
 constexpr auto kShortStand = 5s;
 
 }  // namespace
@@ -49,7 +51,7 @@ void NodeProcess::recover(const std::string& why) {
   }
 }
 
-/// What a change of the run had begun is forgotten: whoever wanted it asks again.
+/// Begins to wait for a recovery. A change of the run that had begun is dropped; its client has to ask again.
 void NodeProcess::begin_to_recover() {
   recovering_since_ = Clock::now();
   recovery_.begin(recovering_since_);
@@ -65,7 +67,7 @@ void NodeProcess::begin_to_recover() {
   frame_times_.clear();
 }
 
-/// False when the run ends, or this node has to leave it.
+/// Waits until all nodes agree on a state to go back to. False when the run ends, or this node has to leave it.
 bool NodeProcess::agree_on_restore() {
   while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
     if (!broken_off_.empty()) return false;
@@ -101,7 +103,8 @@ bool NodeProcess::agree_on_restore() {
   return true;
 }
 
-/// The others wait for a node that does not hear all: they are told at once when that changes.
+/// Publishes the regions that this node does not receive from, at once when they change. The others wait for a node
+/// that does not receive from all.
 void NodeProcess::note_unheard(const SeenNodes& nodes) {
   std::vector<core::RegionId> unheard =
       unheard_regions(nodes, options_.region, static_cast<std::uint32_t>(launch_.regions.size()));
@@ -129,7 +132,7 @@ void NodeProcess::meet_anew() {
   publish();
 }
 
-/// A process that has come to take a region over, and is of no use. Throws when nobody knows the world.
+/// True if this process has come to take a region over and is not needed. Throws when no process knows the world.
 bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
   if (recovery_.is_not_needed(nodes, Clock::now())) return true;
   if (recovery_.nobody_knows_the_world(nodes, Clock::now()))
@@ -147,7 +150,7 @@ RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) 
           node_ ? node_->current_step() : first_step()};
 }
 
-/// As the others see this node, too.
+/// The statuses of all nodes, with this node's own as the others see it.
 SeenNodes NodeProcess::nodes_and_self() {
   SeenNodes nodes = control_.statuses();
   nodes[options_.region].status = status_;
@@ -165,7 +168,7 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
   return "waits until all others stand";
 }
 
-/// Nobody has come for these regions, however often that was tried. All nodes end with the same reason.
+/// Ends the run because no process has come for these regions, after all attempts. All nodes end with the same reason.
 void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
   for (const core::RegionId region : vacant) {
     control_.send(about_process(dds::RunCommandKind::kEnd, options_.run, region, 0));
@@ -183,7 +186,7 @@ void NodeProcess::break_off(const std::string& why) {
                 node_ ? node_->current_step() : first_step(), why, say_newest_saved(save_folders(), saved_by()));
 }
 
-/// The lowest region that knows the world says to what state all go back, once somebody is there for each region.
+/// Sends the restore command once each region has a process. The lowest region that knows the world sends it.
 void NodeProcess::lead_recovery() {
   const SeenNodes nodes = nodes_and_self();
   recovery_.note_kept(nodes, status_.era);
@@ -204,8 +207,8 @@ void NodeProcess::lead_recovery() {
   repeat_commands(restore);
 }
 
-/// No state is kept whole. Before a later state than the first one was kept, there is nothing to lose. After that a
-/// person decides: the missing part may be on a host that is down.
+/// True if the run may begin again from the first state because no state is kept whole. If no later state was ever kept
+/// whole, nothing is lost. Otherwise a user has to decide, because the missing part may be on a host that is down.
 bool NodeProcess::may_begin_again(core::Generation era) {
   if (recovery_.may_begin_again(era)) return true;
   if (reset_) {
@@ -223,7 +226,7 @@ bool NodeProcess::may_begin_again(core::Generation era) {
   return false;
 }
 
-/// It names the processes that go on: another one with our region is none of ours.
+/// Receives a restore command. It names the processes that go on, so this process may be left out of the run.
 void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
   if (restore.members.size() != launch_.regions.size()) return;
   const core::Generation begun = node_ ? generation_ : 0;
@@ -234,14 +237,15 @@ void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
   if (meaning == RestoreMeaning::kReplaced && node_) give_way(restore.at_step);
 }
 
-/// Another process has this region since state `step`.
+/// Closes the fence, because another process has this region since state `step`.
 void NodeProcess::give_way(core::Step step) {
   fence_.close(
       fmt::format("another process has taken over region {} in state {}", core::value_of(options_.region), step));
   throw_away_after(step);
 }
 
-/// What this process has computed and recorded alone is not what has become of the world.
+/// Drops the states after `step` that this process has computed and recorded alone. The run's world went on without
+/// them.
 void NodeProcess::throw_away_after(core::Step step) {
   if (node_->current_step() > step) {
     spdlog::warn("region {}: states {} to {} of this process are thrown away", core::value_of(options_.region),
@@ -252,7 +256,8 @@ void NodeProcess::throw_away_after(core::Step step) {
   record_after(step);
 }
 
-/// Whoever takes a region over has not heard of a pause, and those who have would forget a reset.
+/// Sends pause and reset commands again. A process that takes a region over has not received the pause, and the other
+/// nodes would drop the reset.
 void NodeProcess::repeat_commands(const dds::RunCommand& restore) {
   dds::RunCommand command;
   command.generation = restore.generation;
@@ -268,7 +273,7 @@ void NodeProcess::repeat_commands(const dds::RunCommand& restore) {
   if (stop_at_) repeat(dds::RunCommandKind::kStop, *stop_at_);
 }
 
-/// Throws SomebodyDied.
+/// Goes back to the state that the restore names. Throws SomebodyDied when a node dies meanwhile.
 void NodeProcess::go_back(const dds::RunCommand& restore) {
   restoring_ = restore.generation;
   is_going_back_ = true;
@@ -282,7 +287,7 @@ void NodeProcess::go_back(const dds::RunCommand& restore) {
   is_going_back_ = false;
 }
 
-/// The scene and the regions that the run goes on with.
+/// Takes the scene and the regions that the run goes on with from the published map.
 void NodeProcess::take_map_of(const dds::RunCommand& restore) {
   const dds::WorldMap* map = nullptr;
   const auto deadline = Clock::now() + kPatienceWithParts;
@@ -316,7 +321,7 @@ void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_w
   control_.wait(kInRecovery);
 }
 
-/// The world of all parts, with what everybody knows by now of what was ordered.
+/// Puts the world together from all parts, with all orders that any node knows by now.
 core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
   const bool from_first = restore.count == 1;
   const std::size_t regions = launch_.regions.size();
@@ -363,7 +368,7 @@ core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
   return std::move(part.cut);
 }
 
-/// Without records the world goes on all the same.
+/// Opens the records to go on after state `step`. The run goes on even if that fails.
 void NodeProcess::record_after(std::optional<core::Step> step) {
   recorder_.reset();  // or it would write the rest of its rows into the files of the next
   if (!options_.report) return;
@@ -388,7 +393,7 @@ void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::Wor
   checkpoints_->go_back(restore.era, restore.at_step, parts);
   status_.era = restore.era;
   reset_.reset();
-  if (restore.region != options_.region) hold_at_.reset();  // that one says again whether all stand
+  if (restore.region != options_.region) hold_at_.reset();  // the node that sent the restore repeats the pause
   if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
   begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
   const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();

@@ -1,4 +1,4 @@
-// What a node has to do with ROS 2, where the launch file says so (ros2_link.h).
+// How a node publishes to ROS 2, if the launch file says so (ros2_link.h).
 #include <algorithm>
 
 #include "cli/node_process.h"
@@ -9,7 +9,7 @@ void NodeProcess::open_ros2() {
   if (launch_.ros2.on && !ros2_) ros2_.emplace(launch_, options_.region);
 }
 
-/// Between two states. The live node of the lowest region says what time it is.
+/// Publishes to ROS 2 between two states. The live node of the lowest region also publishes the time.
 void NodeProcess::tell_ros2() {
   if (!ros2_) return;
   const bool leads = std::ranges::none_of(control_.statuses(), [this](const auto& entry) {

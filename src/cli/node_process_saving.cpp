@@ -1,5 +1,4 @@
-// What becomes of the parts of worlds that a node writes: whom it tells, what is kept on disk to go on from, and how
-// the run ends with that.
+// What becomes of a node's written parts: the replies to clients, the states kept on disk, and the end of the run.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -12,7 +11,8 @@
 
 namespace aurasim::cli {
 
-/// A run whose nodes were started by hand has no number of its own: that of its start serves.
+/// The run that saves belong to. A run whose nodes were started by hand has no number, so the request id of its start
+/// serves.
 SaveOf NodeProcess::save_of() const {
   const std::uint64_t start = start_->request;
   return {options_.run != 0 ? options_.run : start, start + generation_};
@@ -27,21 +27,21 @@ std::vector<std::filesystem::path> NodeProcess::save_folders() const {
   return folders;
 }
 
-/// A generation begins.
+/// To be called when a generation begins.
 void NodeProcess::begin_to_save() {
   const std::uint64_t run = save_of().run;
   if (std::ranges::find(saved_runs_, run) == saved_runs_.end()) saved_runs_.push_back(run);
   if (options_.kept) saves_.use_kept_folder(kept_folder_of(*options_.kept, run));
 }
 
-/// States from one that can be gone back to until the next; 0: none can. A run of one node has nobody who keeps its
-/// world for it, but a disk.
+/// Number of states between two kept states; 0 if none is kept. A run of one node has no keeper, so its states are kept
+/// on disk only.
 core::Step NodeProcess::kept_every() const {
   if (recovers()) return launch_.checkpoint_steps();
   return options_.kept && launch_.regions.size() == 1 ? kept_steps(launch_) : 0;
 }
 
-/// A disk that is too slow gets some of the states only.
+/// Writes a part for survival.disk. A state is skipped while the last one is still being written.
 void NodeProcess::keep_on_disk(const core::WorldCut& part) {
   if (!options_.kept || saves_.is_writing(SaveKind::kKept)) return;
   core::WorldCut whole = part;
@@ -60,7 +60,7 @@ void NodeProcess::note_saves() {
   }
 }
 
-/// The run has come to its end. Where a launcher sees to it, that removes what is kept on disk.
+/// Finishes all saves at the end of the run. If there is a launcher, it removes the states kept on disk.
 void NodeProcess::conclude_saves() {
   saves_.finish();
   note_saves();

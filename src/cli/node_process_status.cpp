@@ -1,4 +1,4 @@
-// What a node tells of itself, some times a second.
+// The status that a node publishes some times a second.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -92,7 +92,7 @@ void NodeProcess::watch_the_clock() {
   spdlog::warn("{}", notice_);
 }
 
-/// A disk that is full ends the records, not the run.
+/// Logs once that the records have ended. A full disk ends the records, not the run.
 void NodeProcess::watch_the_records() {
   if (!recorder_ || !recorder_->records_end() || says_records_end_) return;
   says_records_end_ = true;

@@ -1,4 +1,4 @@
-// Who has died, who is there in its place, and how a node leaves: what the recovery of a run begins with
+// How a node notices deaths and successors, and how it leaves. A recovery begins with these
 // (node_process_recovery.cpp).
 #include <algorithm>
 #include <cstdlib>
@@ -32,7 +32,7 @@ std::optional<std::string> NodeProcess::death() {
   OwnWorld own;
   own.region = options_.region;
   own.current = std::max(generation_, restoring_);
-  // Else it is the one from before the death: whom it has missed is no news.
+  // Otherwise node_ is from before the death, and its silent neighbours are known already.
   const bool is_running = restoring_ <= generation_ && node_ && life_of_node_ == life_;
   if (is_running) own.silent = node_->protocol().intake().dead_regions();
   if (restore_) own.restore = &*restore_;
@@ -40,7 +40,7 @@ std::optional<std::string> NodeProcess::death() {
   return why_stand(control_.statuses(), own);
 }
 
-/// While all wait for each other. Throws SomebodyDied.
+/// To be called while all wait for each other. Throws SomebodyDied if a node has died.
 void NodeProcess::look_for_deaths() {
   if (const auto why = death()) throw SomebodyDied(*why);
 }
@@ -64,7 +64,7 @@ bool NodeProcess::call_spare(core::RegionId region) {
   return true;
 }
 
-/// Nobody has come for these regions: this host does the work of two.
+/// Starts a second process on this host for each of these regions, because no process has come for them.
 void NodeProcess::stand_in(const std::vector<core::RegionId>& regions) {
   for (const core::RegionId region : regions) {
     spdlog::warn("nobody has taken region {} over: this host does, beside region {}", core::value_of(region),
@@ -73,8 +73,8 @@ void NodeProcess::stand_in(const std::vector<core::RegionId>& regions) {
   }
 }
 
-/// Somebody wants a node to leave. Its launcher starts a successor; where nodes were started by hand, the lowest region
-/// calls a spare, and where there is none the host of the next region starts one.
+/// Receives a drain command: a node is to leave. Its launcher starts a successor. If nodes were started by hand, the
+/// lowest region calls a spare; if there is none, the host of the next region starts a process.
 void NodeProcess::hear_of_drain(const dds::RunCommand& drain) {
   if (!recovers()) return;
   const auto& statuses = control_.statuses();
@@ -95,7 +95,7 @@ void NodeProcess::hear_of_drain(const dds::RunCommand& drain) {
   }
 }
 
-/// Somebody stays who can go on with what we have.
+/// True if another node stays that can go on with this node's world.
 bool NodeProcess::can_leave_to_others() {
   if (!recovers()) return false;
   return std::ranges::any_of(control_.statuses(), [this](const auto& entry) {
@@ -103,7 +103,7 @@ bool NodeProcess::can_leave_to_others() {
   });
 }
 
-/// SIGTERM: its host goes down, the run does not.
+/// Begins to leave after a SIGTERM: the host goes down, but the run goes on.
 void NodeProcess::leave_if_asked() {
   if (!asked_to_leave() || leaves_by_) return;
   leaves_by_ = Clock::now() + kPatienceWithSuccessor;
@@ -112,14 +112,15 @@ void NodeProcess::leave_if_asked() {
   hear_of_drain(drain);
 }
 
-/// There is another process for our region, and a state since then that everybody keeps: nobody has to go back far.
+/// True if another process is there for this region, and a state since then is kept by all keepers, so that the run
+/// does not go back far.
 bool NodeProcess::may_leave() {
   if (!has_successor()) return false;
   if (!successor_since_) successor_since_ = node_->current_step();
   const std::vector<dds::KeptPart> ours = checkpoints_->parts();
   const std::vector<core::RegionId>& keepers = checkpoints_->keepers();
   const auto& statuses = control_.statuses();
-  const bool stands = phase_ == NodePhase::kPaused;  // then there will be no newer state
+  const bool stands = phase_ == NodePhase::kPaused;  // a paused run has no newer state
   return std::ranges::any_of(ours, [&](const dds::KeptPart& part) {
     if (part.region != options_.region || (part.step < *successor_since_ && !stands)) return false;
     return std::ranges::all_of(statuses, [&](const auto& entry) {
@@ -132,7 +133,7 @@ bool NodeProcess::may_leave() {
   });
 }
 
-/// As if it had died, in a moment that costs the others least.
+/// Leaves the region to a successor. To the others it is as a death, at the moment that costs them least.
 ExitCode NodeProcess::leave_to_successor() {
   spdlog::info("region {} leaves after state {}: {}", core::value_of(options_.region), node_->current_step(),
                has_successor() ? "another process takes over" : "nobody has come to take over yet");

@@ -15,7 +15,8 @@ void ObservationPublisher::begin_generation(core::Generation generation, std::ui
   feed_.reset();
 }
 
-/// False: nobody asks. The node sums up contacts for observers from its next step on.
+/// Takes in observers' requests. False if there are none. The node sums up contacts for observers from its next step
+/// on.
 bool ObservationPublisher::look(node::Node& node) {
   server_.look();
   if (!server_.anybody_asks()) {
@@ -61,7 +62,8 @@ void ObservationPublisher::while_paused(node::Node& node) {
   tell_foreseen(node);
 }
 
-/// The new host of a body under way makes its states up when it joins. In a run that stands that is not yet.
+/// Publishes states of bodies that are under way to this node. Usually they are made up when the bodies join; in a
+/// paused run the bodies have not joined yet.
 void ObservationPublisher::tell_foreseen(node::Node& node) {
   std::optional<std::vector<node::MadeUp>> foreseen;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {

@@ -1,5 +1,5 @@
-// When a node process tells whom what of the world that it computes (node/observation_feed.h), over topic observation
-// (dds/observation_bus.h). Nothing is done while nobody asks.
+// Publishes to each observer what it asked for of the node's world (node/observation_feed.h), over topic observation
+// (dds/observation_bus.h). Does nothing while nobody observes.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,17 @@ class ObservationPublisher {
   ObservationPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   void begin_generation(core::Generation generation, std::uint64_t map_version);
-  /// The run goes back: states that were told are told again when they have been computed again.
+  /// To be called when the run goes back. States are published again when they have been computed again.
   void put_back() { feed_.reset(); }
-  /// After the first state and after every step.
+  /// To be called after the first state and after every step.
   void after_step(node::Node& node, const node::StepReport& report);
-  /// As often as you like while the run stands: the state in which it does, to whoever has not been told.
+  /// Publishes the state in which the run is paused to observers that have not received it. May be called as often as
+  /// wanted.
   void while_paused(node::Node& node);
 
  private:
   bool look(node::Node& node);
-  /// False: it takes no more now.
+  /// Publishes to one observer. False if it takes no more now.
   bool tell(node::Node& node, const dds::ObservationServer::Asked& asked);
   void tell_made_up(const node::Node& node, const node::StepReport& report);
   void tell_foreseen(node::Node& node);
@@ -43,17 +44,17 @@ class ObservationPublisher {
   };
   struct Told {
     State state;
-    std::size_t hand_offs = 0;  ///< that had come and did not take effect yet: what they bring was told, too
+    std::size_t hand_offs = 0;  ///< hand-offs that had come without effect yet; their bodies were published, too
   };
 
   struct Served {
-    Told told;  ///< last
+    Told told;  ///< what was published last
     ObserverPace pace;
   };
 
   node::FeedSettings settings_;
   dds::ObservationServer server_;
-  std::optional<node::ObservationFeed> feed_;  ///< while somebody asks
+  std::optional<node::ObservationFeed> feed_;  ///< set while somebody observes
   std::map<std::uint64_t, Served> served_;     ///< by observer
   bool is_observed_ = false;
 };

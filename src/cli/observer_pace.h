@@ -1,8 +1,8 @@
-// Which states a node tells an observer that takes fewer than are computed. Pure.
+// Chooses the states that a node sends to an observer that is slower than the run. Pure.
 //
-// A state is whole when all regions have told it. Nodes do not talk about what they leave out: each of them that finds
-// an observer too slow tells it every second state of those that it told before, by their numbers. So all nodes tell
-// what the one tells that leaves out most.
+// A state is whole for the observer when all regions have sent it. Nodes do not agree on the states that they leave
+// out. A node that finds an observer too slow halves the states that it sends, chosen by their numbers. So the states
+// sent by the slowest node are sent by all others, too.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace aurasim::cli {
 
 class ObserverPace {
  public:
-  /// Is a state that is a multiple of `every` one of those that are told?
+  /// True if state `step` is to be sent to an observer that asked for multiples of `every`.
   bool is_for(core::Step step, std::uint32_t every) const { return step % (core::Step{every} * apart_) == 0; }
   void note_told() {
     if (apart_ == 1 || ++in_a_row_ < kUntilMore) return;
@@ -28,7 +28,7 @@ class ObserverPace {
 
  private:
   static constexpr core::Step kFarthestApart = 1024;
-  static constexpr int kUntilMore = 32;  ///< states that it has taken after which it is told twice as many
+  static constexpr int kUntilMore = 32;  ///< after so many states taken, twice as many are sent
 
   core::Step apart_ = 1;
   int in_a_row_ = 0;

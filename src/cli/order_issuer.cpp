@@ -31,7 +31,7 @@ const core::ClientShape* shape_in(const core::Ask& ask) {
   return fixed != nullptr ? &fixed->shape : nullptr;
 }
 
-/// As orders say it: of length 1 to the last bits.
+/// The pose as orders contain it, with the quaternion normalized to the last bits.
 core::Pose sound(const core::Pose& pose) { return {pose.p_WB, pose.q_WB.normalized()}; }
 
 Issued refusal(std::string why) { return {std::move(why), {}, {}}; }
@@ -142,7 +142,7 @@ core::PrototypeId OrderIssuer::prototype_id(const core::NewBody& body, std::uint
 
 std::optional<core::Shape> OrderIssuer::shape_of(const core::ClientShape& shape, const node::MeshSource& meshes,
                                                  const core::Scene& scene) const {
-  for (const OwnShape& known : own_shapes_) {  // its mesh may have been given up
+  for (const OwnShape& known : own_shapes_) {  // the shape is known even if its mesh has been dropped
     if (std::visit(Same{}, known.shape, shape) && known.index < scene.shapes.size()) {
       return scene.shapes[known.index].shape;
     }

@@ -1,5 +1,5 @@
-// Turns commands of clients (core/command.h) into orders (core/order.h), on the one node that leads: looks whether they
-// can be done, gives new bodies and statics their ids and clients' shapes their indices. No DDS in here.
+// Turns commands of clients (core/command.h) into orders (core/order.h), on the lead. It checks whether they can be
+// executed, and gives ids to new bodies and statics and indices to clients' shapes. Uses no DDS.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace aurasim::cli {
 
-/// What has become of a command. One of the two:
+/// Outcome of a command: either `refused` or `order` is set.
 struct Issued {
-  std::string refused;  ///< why
+  std::string refused;  ///< reason of the refusal
   std::optional<core::Order> order;
   std::optional<core::ObjectRef> object;  ///< the new body or static
 };
 
-/// Of the whole run, beyond what a node knows.
+/// Facts of the whole run that a node alone does not know.
 struct RunFacts {
   bool complete = true;  ///< no node has died
   std::uint64_t bodies = 0;
@@ -29,16 +29,17 @@ struct RunFacts {
 
 class OrderIssuer {
  public:
-  /// The launch is that of the run as it is now, also after it has changed. It outlives the issuer.
+  /// `launch`: the run's present launch, also after changes. It must outlive the issuer.
   explicit OrderIssuer(const config::Launch& launch) : launch_(launch) {}
 
   void begin_generation();
-  /// Orders as they come, in sequence: also those of who has led before.
+  /// Notes an order that has been published. To be called for all orders in sequence, also those of former leads.
   void note(const core::Order& order);
-  /// The run goes on after a change.
+  /// To be called when the run goes on after a change.
   void reopen() { closed_ = false; }
 
-  /// `meshes`: those that clients have brought. Not for rays and rates, which are no orders.
+  /// Checks `command` and makes its order. `meshes`: those that clients have sent. Precondition: the command is no ray
+  /// and no rate, which become no orders.
   Issued issue(const core::Command& command, const RunFacts& run, const node::MeshSource& meshes, node::Node& node);
 
  private:
@@ -51,11 +52,10 @@ class OrderIssuer {
                                       const core::Scene& scene) const;
 
   const config::Launch& launch_;
-  bool closed_ = false;  ///< until the run has changed: an order that not all have received would be forgotten
-  // Orders under way are not in the scene yet: the lead counts ahead.
+  bool closed_ = false;  ///< until the run has changed: orders that some nodes miss would be lost
+  // Counts that include orders under way, which are not in the scene yet.
   std::size_t shapes_ = 0, prototypes_ = 0, statics_ = 0;
-  std::uint64_t bodies_ =
-      0;  ///< whatever else was ordered in between: the same bodies have the same numbers in every run
+  std::uint64_t bodies_ = 0;  ///< counts bodies only, so that the same bodies have the same numbers in every run
   struct OwnShape {
     core::ClientShape shape;
     std::uint32_t index = 0;
@@ -70,7 +70,7 @@ class OrderIssuer {
   std::size_t noted_shapes_ = 0, noted_kinds_ = 0;
 };
 
-/// The mesh that a command brings a shape by, if it does.
+/// The mesh by which a command defines a shape. Null if it names none.
 const core::MeshRef* mesh_in(const core::Ask& ask);
 
 }  // namespace aurasim::cli

@@ -10,7 +10,7 @@
 namespace aurasim::cli {
 namespace {
 
-/// What only a node is told. The second ones have a value, behind them or after '='.
+/// Options that only a node has. Those of the second list have a value, as the next word or after '='.
 constexpr std::string_view kOrSpare = "--or-spare";
 constexpr std::array<std::string_view, 2> kFlagsOfNodes = {"--take-over", kOrSpare};
 constexpr std::array<std::string_view, 2> kOptionsOfNodes = {"--region", "--start-time-out"};
@@ -19,7 +19,7 @@ bool has_value_inside(const std::string& word, std::string_view option) {
   return word.size() > option.size() && word.starts_with(option) && word[option.size()] == '=';
 }
 
-/// Both commands know the rest.
+/// The command line without the options of a node. Nodes and spares both have the rest.
 std::vector<std::string> without_region(const std::vector<std::string>& words) {
   std::vector<std::string> rest;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -66,8 +66,8 @@ std::vector<std::string> words_of_plain_node(std::vector<std::string> words) {
   return words;
 }
 
-/// After an upgrade the kernel calls the file that we were started from "/usr/bin/aurasim (deleted)"; the new one lies
-/// in its place.
+/// After an upgrade the kernel names the file of this process "/usr/bin/aurasim (deleted)". The new file is in its
+/// place.
 std::filesystem::path program_at(const std::filesystem::path& link) {
   constexpr std::string_view kDeleted = " (deleted)";
   const std::filesystem::path program = std::filesystem::read_symlink(link);

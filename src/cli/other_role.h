@@ -1,5 +1,6 @@
-// A process that goes on in another role: a spare becomes the node of a region, a node that the others do without
-// becomes a spare, and a node's host does the work of another one. Each is the same program with nearly the same words.
+// A process that goes on in another role: a spare becomes the node of a region, a node that was replaced becomes a
+// spare, and a host starts a second node for another region. Each is the same program with nearly the same command
+// line.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +12,22 @@
 
 namespace aurasim::cli {
 
-/// `words`: of a node's or a spare's command line, the program first. Those of a node that takes `region` of run `run`
-/// over.
+/// Command line of a node that takes over `region` of run `run`. `words`: command line of a node or a spare, the
+/// program first.
 std::vector<std::string> words_of_successor(const std::vector<std::string>& words, core::RegionId region,
                                             std::uint64_t run);
 
-/// Likewise; those of a spare.
+/// Command line of a spare. `words`: as in words_of_successor().
 std::vector<std::string> words_of_spare(const std::vector<std::string>& words);
 
-/// Likewise; those of a node that has looked whether the run goes on without it.
+/// Command line of a node that has already checked whether the run goes on without it. `words`: as in
+/// words_of_successor().
 std::vector<std::string> words_of_plain_node(std::vector<std::string> words);
 
-/// The program that a link of /proc names, or what has been put in its place since.
+/// Path of the program that a link of /proc names, or of the file that has replaced it since.
 std::filesystem::path program_at(const std::filesystem::path& link);
 
-/// How this process was started, with the program's own path.
+/// Command line of this process, with the program's full path.
 std::vector<std::string> own_words();
 
 }  // namespace aurasim::cli

@@ -27,7 +27,7 @@ struct OverseerArguments {
   std::string recording;
 };
 
-/// Of an overseer whose key does not let it ask for anything.
+/// For an overseer whose key permits no commands.
 class RefusingSink final : public overseer::CommandSink {
  public:
   void submit(overseer::Request request) override {

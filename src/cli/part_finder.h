@@ -1,4 +1,4 @@
-// Takes meshes apart into convex parts, each once, beside the thread that asks.
+// Takes meshes apart into convex parts, each mesh once, on threads beside the caller's.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace aurasim::cli {
 
-/// Used by one thread. Its end waits for what is under way.
+/// May be used by one thread. The destructor waits for the work under way.
 class PartFinder {
  public:
   using Parts = std::variant<core::TriangleMesh, std::string>;
 
-  /// The mesh's parts or why there are none; null while they are being found. `hash`: of the mesh. Valid until the next
-  /// call.
+  /// The mesh's parts, or the reason why there are none. Null while they are being computed. `hash`: hash of the mesh.
+  /// The result is valid until the next call.
   const Parts* parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh);
 
  private:

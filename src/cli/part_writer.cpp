@@ -15,12 +15,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Worlds on disk to go on from. Nodes learn at different times which of them are whole.
+/// Number of kept worlds that stay on disk. More than one, because nodes learn at different times which of them are
+/// whole.
 constexpr std::size_t kKeptWhole = 2;
-/// Saves of one kind that neither become whole nor fail, because a region does not speak.
+/// Limit of saves of one kind that neither become whole nor fail, because a region publishes no status.
 constexpr std::size_t kMostOpen = 6;
 
-/// The same on all nodes that save a world together.
+/// Number of a save. It is the same on all nodes that save a world together.
 std::uint64_t save_number(std::uint64_t life, std::uint64_t request, SaveKind kind, core::Step step) {
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
   const std::uint64_t asked = kind == SaveKind::kKept ? ~std::uint64_t{0} : request;
@@ -93,7 +94,7 @@ std::vector<PartWriter::Written> PartWriter::progress(Clock::time_point now) {
     if (open != open_.end()) {
       *open = save;
     } else {
-      drop(save);  // a later one has become whole meanwhile
+      drop(save);  // a later world has become whole meanwhile
     }
     done.push_back({save.kind, save.request, save.step, save.file.string(), save.error});
     return true;
@@ -131,8 +132,8 @@ void PartWriter::settle(const SaveLedger::Outcome& outcome) {
   note_whole(whole);
 }
 
-/// Now, and not before, earlier worlds of this name are not needed any more. In the folder of states that are kept on
-/// disk a process that had this region before may have left some.
+/// Removes earlier worlds of this name, which are not needed any more once this one is whole. In the folder of kept
+/// states, an earlier process of this region may have left some, too.
 void PartWriter::note_whole(const Save& whole) {
   const bool is_kept = whole.kind == SaveKind::kKept;
   std::vector<std::uint64_t> stay = {whole.number};
@@ -151,7 +152,8 @@ void PartWriter::note_whole(const Save& whole) {
   all.pop_front();
 }
 
-/// One of the regions that could not write says so for all, and once until a world of this kind becomes whole again.
+/// Drops a failed save. Only one of the regions that could not write reports it, and only once until a world of this
+/// kind becomes whole again.
 void PartWriter::note_failed(const Save& failed, const std::vector<core::RegionId>& without) {
   drop(failed);
   if (failed.kind == SaveKind::kRegular) ++regular_failed_;
@@ -178,7 +180,7 @@ void PartWriter::limit_open(SaveKind kind) {
   open_.erase(oldest);
 }
 
-/// A folder of this run's earlier number goes with its last file.
+/// Removes a save's file. A folder of an earlier number of this run is removed with its last file.
 void PartWriter::drop(const Save& save) {
   std::error_code ignored;
   if (!save.file.empty()) std::filesystem::remove(save.file, ignored);

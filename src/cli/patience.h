@@ -1,4 +1,4 @@
-// How long somebody waits for others. Time is passed in.
+// How long a process waits for others. Time is passed in.
 #pragma once
 
 #include <algorithm>
@@ -11,16 +11,16 @@ inline std::int64_t whole_seconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration_cast<std::chrono::seconds>(time).count();
 }
 
-/// The limit counts from the last news, not from the beginning. It grows with how long the others take: where news come
-/// every 20 s they may come after 40 s, too. It also grows with how slow the caller itself has become: who cannot look
-/// ten times a second is on a busy machine, as the others are.
+/// The limit counts from the last news, not from the beginning. It grows with the intervals between news: if news come
+/// every 20 s, the next may take 40 s. It also grows when the caller itself is slow: a caller that cannot look ten
+/// times a second is on a busy machine, as the others may be.
 class Patience {
  public:
   using Clock = std::chrono::steady_clock;
 
   Patience(Clock::duration limit, Clock::time_point now) : limit_(limit), news_(now), looked_(now) {}
 
-  /// Call it often. `progress`: how far the others have come. More than ever before is news.
+  /// To be called often. `progress`: how far the others have come. A new maximum is news.
   void look(std::uint64_t progress, Clock::time_point now) {
     limit_ = std::max(limit_, kTimesALook * (now - looked_));
     looked_ = now;

@@ -10,11 +10,11 @@
 
 namespace aurasim::cli {
 
-/// Every command with its options; parsing it sets `action`, which outlives it.
+/// Every command with its options. Parsing sets `action`, which must outlive the result.
 std::unique_ptr<CLI::App> make_program(Action& action);
 
-/// What to type instead, if `words` (without the program's own name) begin with a command that another program has now;
-/// otherwise nothing.
+/// The command to type instead, if `words` (without the program's name) begin with a command that has moved to another
+/// program. Otherwise nothing.
 std::optional<std::string> moved_command(const std::vector<std::string>& words);
 
 }  // namespace aurasim::cli

@@ -13,13 +13,14 @@ using dds::NodeState;
 
 constexpr auto kPatienceWithSpare = 5s;
 constexpr auto kLaunchersFirst = 5s;
-/// A node that is heard and hears too few itself: a link that is whole again is found out within a second or two.
+/// Patience with a node that is heard but receives from too few others. A repaired link is noticed within a second or
+/// two.
 constexpr auto kPatienceWithCutOff = 5s;
-/// Discovery takes a second or so where the network is whole.
+/// Patience with discovery, which takes about a second in a healthy network.
 constexpr auto kPatienceWithDiscovery = 2500ms;
 constexpr auto kPatienceOfSuccessor = 30s;
 constexpr auto kPatienceWithStandIn = 20s;
-constexpr int kMostStandIns = 3;  // for one region in a row, at one place
+constexpr int kMostStandIns = 3;  // in a row for one region, near one state
 
 bool stands(NodeState state) {
   return state == NodeState::kRecovering || state == NodeState::kSpare || state == NodeState::kCutOff;
@@ -63,7 +64,7 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
       return own.restore != nullptr && number < own.restore->members.size() &&
              own.restore->members[number].process == seen.status.process;
     };
-    // Others may still hear of the process that has died before they hear of the one in its place.
+    // The status may still be of the process that died, because that of its replacement has not come yet.
     if (region == own.region || (own.is_going_back && !is_member())) continue;
     const NodeState state = seen.status.state;
     const std::uint32_t number = core::value_of(region);
@@ -75,7 +76,7 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
       const std::string& why = seen.status.text;
       return fmt::format("the node of region {} has given up{}{}", number, why.empty() ? "" : ": ", why);
     }
-    // Whoever was there has left: its successor waits. (After a recovery, others are heard late to have begun.)
+    // The node has left, and its successor waits. (After a recovery, statuses of nodes that have begun may come late.)
     if (!own.is_going_back && !seen.lost && state == NodeState::kSpare && !is_member()) {
       return fmt::format("the node of region {} has left", number);
     }
@@ -127,7 +128,7 @@ RecoveryActs Recovery::look(const RecoveryView& view, Clock::time_point now) {
   }
   if (now <= somebody_came_ + settings_.patience) return acts;
   somebody_came_ = now + kPatienceWithStandIn - settings_.patience;
-  // A launcher has its own reasons not to start a process again.
+  // With a launcher, no stand-in is started: a launcher that starts no process has its own reasons.
   acts.gives_up = settings_.has_launcher;
   for (const core::RegionId region : acts.vacant) {
     acts.gives_up = acts.gives_up || tried_too_often(region, view.step);
@@ -136,8 +137,9 @@ RecoveryActs Recovery::look(const RecoveryView& view, Clock::time_point now) {
   return acts;
 }
 
-/// A region is vacant when neither this node hears its node nor anybody that this one hears, or when its node has said
-/// for some seconds that it hears too few of the others: then only one direction of its link works.
+/// A region is vacant in two cases. Neither this node nor any node that it hears receives from the region's node; or
+/// that node has published for some seconds that it receives from too few others, because only one direction of its
+/// link works.
 bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::time_point now) {
   if (region == settings_.region) return false;
   const auto seen = nodes.find(region);
@@ -158,10 +160,10 @@ bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::t
   });
 }
 
-/// Of two processes, the lease of one for the other may have run out while the other's has not: one direction of a link
-/// was down, or both for about as long as a lease. Fast DDS 2.9.1 never matches such a pair again (the acknowledgements
-/// of the one begin to count anew, and the other takes them for old). A process that joins DDS anew is a new one to
-/// both.
+/// True if this process has to leave DDS and join it again. One direction of a link may have been down, or both for
+/// about as long as a lease. Then the lease has run out at one of two processes and not at the other. Fast DDS 2.9.1
+/// never matches such a pair again, because the acknowledgements of the one count from the beginning and the other
+/// takes them for old. A process that joins DDS anew is a new one to both.
 bool Recovery::meets_anew(const RecoveryView& view, Clock::time_point now) {
   const bool is_unheard = std::ranges::any_of(view.nodes, [this](const auto& entry) {
     const auto& [region, seen] = entry;
@@ -174,14 +176,15 @@ bool Recovery::meets_anew(const RecoveryView& view, Clock::time_point now) {
     return false;
   }
   if (!unmet_since_) unmet_since_ = met_ = now;
-  // On a busy machine, or a bad network, discovery may take longer: each time it is waited for longer.
+  // On a busy machine or a bad network discovery takes longer, so the wait grows with each attempt.
   const auto patience = std::max<Clock::duration>(kPatienceWithDiscovery, (now - *unmet_since_) / 4);
   if (now < met_ + patience) return false;
   met_ = now;
   return true;
 }
 
-/// The lowest region that stands calls them. A launcher starts its own nodes again, and is faster.
+/// True if this node is to call spares: it is the lowest region that waits. A launcher starts its own nodes again, and
+/// faster, so it gets time first.
 bool Recovery::calls_spares(const SeenNodes& nodes, Clock::time_point now) const {
   if (settings_.has_launcher && now < began_ + kLaunchersFirst) return false;
   return std::ranges::none_of(nodes, [this](const auto& entry) {
@@ -214,7 +217,8 @@ void Recovery::note_kept(const SeenNodes& nodes, core::Generation era) {
   if (const auto newest = newest_complete(nodes, era, settings_.regions)) kept_ = std::max(kept_.value_or(0), *newest);
 }
 
-/// Whoever is there for another region, if anybody is, has come to take over, too. A node that is cut off knows it.
+/// True if all heard nodes of other regions have only come to take over, too. A node that is cut off still knows the
+/// world.
 bool Recovery::nobody_knows_the_world(const SeenNodes& nodes, Clock::time_point now) {
   const bool somebody_does = std::ranges::any_of(nodes, [this](const auto& entry) {
     return entry.first != settings_.region && is_heard(entry.second) && entry.second.status.state != NodeState::kSpare;

@@ -8,7 +8,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kKeyFramePeriod = std::chrono::seconds(1);
-constexpr auto kClusterGraphPeriod = std::chrono::milliseconds(250);  // of a run that stands
+constexpr auto kClusterGraphPeriod = std::chrono::milliseconds(250);  // period of the cluster graph in a paused run
 
 }  // namespace
 
@@ -46,12 +46,12 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
 void ReplicaPublisher::while_paused(node::Node& node) {
   observations_.while_paused(node);
   if (!writer_.anybody_listens()) return;
-  // Again and again: nobody asks for a sample that was lost.
+  // The cluster graph is repeated, because lost samples are not retransmitted.
   if (Clock::now() - last_graph_ >= kClusterGraphPeriod) publish_cluster_graph(node);
   if (published_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) publish(node);
 }
 
-/// Whoever has just come gets a key frame at once: the last one may be of a time when nobody listened.
+/// True if a key frame is due. A new observer gets one at once, because the last one may be older than its arrival.
 bool ReplicaPublisher::key_frame_is_due() const {
   if (arrivals_ != writer_.arrivals()) return true;
   return feed_->changed_since_key_frame() && Clock::now() - last_key_frame_ >= kKeyFramePeriod;
@@ -59,7 +59,7 @@ bool ReplicaPublisher::key_frame_is_due() const {
 
 void ReplicaPublisher::publish_census(node::Node& node, core::Generation generation) {
   begin_generation(generation);
-  writer_.send(feed_->compose_changes(node.world().snapshot()));  // key frames count from the first tick on
+  writer_.send(feed_->compose_changes(node.world().snapshot()));  // a key frame follows a tick
   writer_.send(feed_->compose_key_frame(node.world().snapshot(), {}));
 }
 

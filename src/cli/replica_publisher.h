@@ -1,5 +1,5 @@
-// When a node process publishes what for observers (node/replica_feed.h), and over which topic (dds/replica_bus.h).
-// What each of them has asked for is another matter (observation_publisher.h).
+// Decides when a node process publishes replicas for all observers (node/replica_feed.h), over the topics of
+// dds/replica_bus.h. Individual requests of observers are served by observation_publisher.h.
 #pragma once
 
 #include <chrono>
@@ -19,14 +19,15 @@ class ReplicaPublisher {
   ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   void begin_generation(core::Generation generation);
-  /// The run goes back: nothing is published until it is where it was, and then everything anew.
+  /// To be called when the run goes back. Nothing is published until the run is where it was; then everything is
+  /// published anew.
   void put_back();
-  /// The bodies that are here, whoever listens, as a key frame of `generation`.
+  /// Publishes the bodies hosted here as a key frame of `generation`, even without observers.
   void publish_census(node::Node& node, core::Generation generation);
   void use_map(std::uint64_t map_version) { map_version_ = map_version; }
-  /// After the first state and after every step.
+  /// To be called after the first state and after every step.
   void after_step(node::Node& node, const node::StepReport& report);
-  /// As often as you like while the run stands still: what was not published yet of the state that it stands in.
+  /// Publishes the rest of the state in which the run is paused. May be called as often as wanted.
   void while_paused(node::Node& node);
 
  private:
@@ -43,7 +44,7 @@ class ReplicaPublisher {
   std::optional<node::ReplicaFeed> feed_;
   core::Generation generation_ = 0;
   core::Step published_ = -1;
-  std::uint64_t arrivals_ = 0;  ///< observers that have got a key frame of their own
+  std::uint64_t arrivals_ = 0;  ///< number of arrivals of observers that have got a key frame
   std::chrono::steady_clock::time_point last_key_frame_;
   std::chrono::steady_clock::time_point last_graph_;
 };

@@ -1,4 +1,4 @@
-// To which state do all go back when a node has died? No clock, no DDS: from what the nodes say of themselves.
+// Chooses the state that all nodes go back to when a node has died, from the nodes' statuses. Uses no clock and no DDS.
 #pragma once
 
 #include <map>
@@ -9,12 +9,13 @@
 namespace aurasim::cli {
 
 struct RestorePlan {
-  core::RegionId lead{};      ///< whose node says so to the others
+  core::RegionId lead{};      ///< region whose node sends the command to the others
   dds::RunCommand command{};  ///< kRestore, without the times
 };
 
-/// Nothing as long as a region has nobody, somebody still computes, or somebody does not hear all others. The state is
-/// the newest whose parts are all there, or the first one of the scene (RunCommand::count is 1 then).
+/// The plan, or nothing as long as a region has no node, a node still computes, or a node does not receive from all
+/// others. The state is the newest of which all parts are kept, or the first one of the scene (then RunCommand::count
+/// is 1).
 std::optional<RestorePlan> plan_restore(const std::map<core::RegionId, dds::SeenStatus>& nodes, std::size_t regions);
 
 }  // namespace aurasim::cli

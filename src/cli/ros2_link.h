@@ -1,4 +1,5 @@
-// When a node process says what to ROS 2, and what it makes of what it hears (dds/ros2_bus.h). docs/ros2.md.
+// Publishes a node's bodies and joints to ROS 2 and turns messages from ROS 2 into setpoints (dds/ros2_bus.h,
+// docs/ros2.md).
 #pragma once
 
 #include <chrono>
@@ -16,13 +17,13 @@ namespace aurasim::cli {
 
 class Ros2Link {
  public:
-  /// `launch` outlives it, and is the one that the run goes by: its scene may change with the generation.
+  /// `launch` must outlive the link and is the run's present launch: its scene may change with the generation.
   Ros2Link(const config::Launch& launch, core::RegionId region);
 
-  /// As often as you like between two states: what is due of the newest one, and in a run that stands, what has just
-  /// begun to listen. `leads`: this node says what time it is.
+  /// Publishes what is due of the newest state, and in a paused run sends it to readers that have just come. May be
+  /// called as often as wanted between two states. `leads`: this node also publishes the time.
   void tell(node::Node& node, core::Generation generation, bool leads);
-  /// What has been heard since the last call, as setpoints that name no state.
+  /// Messages received since the last call, as setpoints that name no state.
   std::vector<core::Setpoints> take(core::Generation generation);
   std::uint64_t refused() const { return bus_.refused(); }
 
@@ -34,13 +35,13 @@ class Ros2Link {
   const config::Launch& launch_;
   dds::Ros2Bus bus_;
   core::Step tick_steps_;
-  std::optional<core::Generation> generation_;  ///< whose names these are
+  std::optional<core::Generation> generation_;  ///< generation that names_ and joints_ belong to
   std::optional<FrameNames> names_;
   std::optional<JointRows> joints_;
   std::vector<dds::Ros2Transform> transforms_;  ///< reused
   core::Step next_ = 0;                         ///< the next state that is due
   std::uint64_t arrivals_ = 0;
-  std::optional<std::chrono::steady_clock::time_point> somebody_came_at_;  ///< and may have missed it
+  std::optional<std::chrono::steady_clock::time_point> somebody_came_at_;  ///< when a reader last came
 };
 
 }  // namespace aurasim::cli

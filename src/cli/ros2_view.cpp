@@ -10,13 +10,13 @@
 namespace aurasim::cli {
 namespace {
 
-/// Null: it is not there.
+/// The body `id` of a snapshot. Null if it is not there, or not born yet.
 const core::BodyState* find(const core::Snapshot& snapshot, core::BodyId id) {
   const core::BodyState* const body = core::find_body(snapshot.bodies, id);
   return body != nullptr && body->birth <= snapshot.step ? body : nullptr;
 }
 
-/// Pairs that joints hold together: one that is broken holds nothing.
+/// The pairs of bodies that joints hold together. Broken joints are left out.
 class Held {
  public:
   explicit Held(const core::Snapshot& snapshot) : first_(snapshot.bodies.data()) {

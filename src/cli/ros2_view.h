@@ -1,4 +1,4 @@
-// Bodies and joints as ROS 2 sees them: names of frames, and where a joint stands. Pure.
+// Bodies and joints for ROS 2: names of frames, and positions of joints. Pure functions.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ namespace aurasim::cli {
 /// Simulated time of a state, to the nanosecond.
 dds::Ros2Time ros2_time(core::Step step, double step_hz);
 
-/// What the scene's file calls a body, or "body_<id>".
+/// Names of bodies' frames: the name in the scene's file, or "body_<id>".
 class FrameNames {
  public:
   explicit FrameNames(const config::Launch& launch);
   std::string of(core::BodyId id) const;
-  /// Nothing: no body of the scene has this name.
+  /// The body with this name. Nothing if the scene has none.
   std::optional<core::BodyId> body(const std::string& name) const;
 
  private:
@@ -36,7 +36,7 @@ class JointRows {
  public:
   explicit JointRows(const core::Scene& scene);
   bool empty() const { return rows_.empty(); }
-  /// Of those whose bodies are both in `snapshot`, and hold together there.
+  /// Positions of the joints that hold and whose bodies are both in `snapshot`.
   dds::Ros2Joints in(const core::Snapshot& snapshot) const;
 
  private:

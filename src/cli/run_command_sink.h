@@ -1,5 +1,5 @@
-// Carries what pages ask for to the run: pause, resume, step and reset as run commands, everything else as commands of
-// clients (cli/command_client.h). Never waits; a request is answered when its effect has been seen.
+// Sends the requests of web pages to the run: pause, resume, step and reset as run commands, all others as commands of
+// clients (cli/command_client.h). Never blocks. A request is answered when its effect has been seen.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace aurasim::cli {
 
 class RunCommandSink final : public overseer::CommandSink {
  public:
-  /// All of these outlive it.
+  /// All arguments must outlive this object.
   RunCommandSink(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
                  const overseer::ShapeStore& shapes)
       : steering_(launch, control), client_(participant, control, launch.agreement()), shapes_(shapes) {}
@@ -54,7 +54,8 @@ class RunCommandSink final : public overseer::CommandSink {
   CommandClient client_;
   const overseer::ShapeStore& shapes_;
   PartFinder part_finder_;
-  /// Until all nodes listen (an overseer that has just begun is not heard by all), or a mesh has been taken apart.
+  /// Requests held until all nodes have discovered this process, which takes a moment at its start, or until a mesh has
+  /// been taken apart.
   std::vector<Held> held_;
   std::map<std::uint64_t, Sent> sent_;
   std::vector<UnderWay> under_way_;

@@ -1,5 +1,5 @@
-// What can be meant by a run command, by the state that it names and the time. A command that comes late is still one;
-// a state long past, a step decades ahead, or a generation out of nowhere is not. Time is passed in.
+// Checks whether a run command is plausible, by the state that it names and the time. A command that comes late is
+// plausible. One with a state long past, a step decades ahead, or an unknown generation is not. Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -15,12 +15,13 @@ class RunControlLimits {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// A world begins, or goes on from an earlier state: what was past in the one before says nothing of it.
+  /// To be called when a world begins, or goes on from an earlier state. The past of the world before is dropped.
   void begin(core::Step step, Time now) { past_ = {{now, step}}; }
-  /// The node is in this state.
+  /// Notes that the node is in this state.
   void note(core::Step step, Time now);
 
-  /// Why it cannot be meant; empty: it can. `now_ns`: of our wall clock. `generation`: the newest that is known.
+  /// Why the command is not plausible; empty if it is. `now_ns`: time of our wall clock. `generation`: the newest known
+  /// one.
   std::string problem_with(const dds::RunCommand& command, core::Generation generation, std::int64_t now_ns) const;
 
  private:
@@ -30,7 +31,7 @@ class RunControlLimits {
     Time when;
     core::Step step = 0;
   };
-  std::deque<Past> past_;  ///< of the last seconds, oldest first
+  std::deque<Past> past_;  ///< states of the last seconds, oldest first
 };
 
 }  // namespace aurasim::cli

@@ -1,4 +1,4 @@
-// How long a run goes, as the command line says it.
+// Command-line options for the length of a run.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ struct RunLength {
   core::Step steps = -1;
   double duration_s = -1;
 
-  /// --steps or --duration.
+  /// Adds --steps and --duration.
   void add_to(CLI::App& command);
-  /// The last state of a run that begins with `first`; nothing: until told to stop.
+  /// The last state of a run that begins with state `first`. Nothing if the run goes on until a stop command.
   std::optional<core::Step> last_step(const config::Launch& launch, core::Step first = 0) const;
 };
 

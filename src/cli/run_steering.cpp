@@ -16,10 +16,10 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Kind = dds::RunCommandKind;
 
-/// Long enough for a command to reach every node.
+/// Time in which a command reaches every node, seconds.
 constexpr double kNoticeS = 0.3;
 
-/// In which a step shows in the nodes' statuses.
+/// Time in which a step shows in the nodes' statuses.
 constexpr auto kUntilShown = 1s;
 
 }  // namespace
@@ -78,7 +78,7 @@ bool RunSteering::wait_until_paused(std::chrono::milliseconds time_out) {
   return is_paused();
 }
 
-/// By what the live nodes say, and by their own silence.
+/// Regions that are dead according to the statuses of live nodes, or whose own status has ended.
 std::set<std::uint32_t> RunSteering::dead_regions() {
   std::set<std::uint32_t> dead;
   for (const auto& [region, seen] : control_.statuses()) {
@@ -109,7 +109,7 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
     rate = std::max(rate, seen.status.rate);
     running = running || seen.status.state == dds::NodeState::kRunning;
   }
-  // What is computed in that time at this rate; the nodes hurry to the state if that is slow.
+  // Number of states computed in kNoticeS at this rate. The nodes hurry to the state if the rate is slow.
   const auto notice = static_cast<core::Step>(std::ceil(kNoticeS * launch_.time.step_hz * rate)) +
                       core::horizon::command_notice(launch_.lookahead());
   if (running) command.at_step += notice;
@@ -123,7 +123,7 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   return command;
 }
 
-/// By the last step: who presses the key twice means two, and the statuses may not show the first one yet.
+/// The state that the last step command leads to. The statuses may not show it yet, and a second step has to add to it.
 core::Step RunSteering::stepped_to(core::Generation generation) const {
   const bool is_news = last_step_.generation == generation && Clock::now() < last_step_.sent + kUntilShown;
   return is_news ? last_step_.until : 0;
@@ -165,7 +165,7 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
     case Kind::kDrain:
     case Kind::kTake:
     case Kind::kEnd:
-      break;  // what nodes and launchers tell each other
+      break;  // commands between nodes and launchers
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// Commands to a whole run. Each names the state at which it takes effect, far enough ahead that every node hears of it
+// Commands to a whole run. Each names the state at which it takes effect, far enough ahead that every node receives it
 // before it gets there.
 #pragma once
 
@@ -11,45 +11,45 @@
 
 namespace aurasim::cli {
 
-/// What a run cannot do, and why.
+/// Thrown with the reason when a run cannot execute a command.
 class SteeringRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What is said of one node, or to one spare: lost, drain, take.
+/// A command about one node, or to one spare: lost, drain, take.
 dds::RunCommand about_process(dds::RunCommandKind kind, std::uint64_t run, core::RegionId region,
                               std::uint64_t process);
 
 class RunSteering {
  public:
-  /// Both outlive it.
+  /// `launch` and `control` must outlive this object.
   RunSteering(const config::Launch& launch, dds::ControlBus& control)
       : launch_(launch), agreement_(launch.agreement()), control_(control) {}
 
   /// Waits until the statuses of all live regions of this launch have been seen; false at the time-out.
   bool find_run(std::chrono::milliseconds time_out);
 
-  /// By what has been seen so far: have all regions said something, and do they listen; is any node of this launch
-  /// alive; do all that are stand still?
+  /// Judged by the statuses seen so far. is_complete(): all regions have published a status and receive commands.
+  /// is_there(): any node of this launch is alive. is_paused(): all live nodes are paused.
   bool is_complete();
   bool is_there();
   bool is_paused();
-  /// Do they, or will they before they have computed more than so many states?
+  /// True if the run is paused, or will be before it has computed `states` more states.
   bool is_paused_within(core::Step states);
-  /// False if they do not within that time.
+  /// Waits until the run is paused; false at the time-out.
   bool wait_until_paused(std::chrono::milliseconds time_out);
 
   /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent. Throws
   /// SteeringRefused when the run cannot do that any more.
   dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
 
-  /// Of a run that stands in state `from` of this generation: the next ones are due at once. For a client that waits
-  /// for each of them. No node computes them before it has heard `after`.
+  /// Orders a run that is paused in state `from` of this generation to compute the next `count` states at once. For a
+  /// client that waits for each step. No node computes them before it has received the setpoints that `after` names.
   dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count,
                             const core::ProgramWord& after);
 
-  /// Does every live node show the effect of `command`?
+  /// True if every live node's status shows the effect of `command`.
   bool has_taken_effect(const dds::RunCommand& command);
 
   /// Waits until every live node shows the effect of `command`; false at the time-out.

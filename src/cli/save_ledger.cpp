@@ -7,9 +7,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Saves that a status names. Others hear it at least once before a save leaves the list.
+/// Number of saves that a status names. It is large enough that others receive each save at least once.
 constexpr std::size_t kTold = 16;
-/// So long a failed save waits for the word of all regions, so that its message can name all that have failed.
+/// How long a failed save waits for the statuses of all regions, so that its message can name all that have failed.
 constexpr auto kUntilAllHaveSpoken = 2s;
 
 void tell(std::deque<std::uint64_t>& saves, std::uint64_t save) {

@@ -1,6 +1,6 @@
-// Which regions have their parts of a saved world on disk. A world is whole once all have, and only then may go what it
-// replaces; once one region could not write its part, the parts of the others are of no use. Knows no files; time is
-// passed in.
+// Keeps account of which regions have their parts of a saved world on disk. A world is whole once all have, and only
+// then the world that it replaces may be removed. Once one region could not write its part, the other parts are of no
+// use. Touches no files; time is passed in.
 #pragma once
 
 #include <chrono>
@@ -25,12 +25,12 @@ class SaveLedger {
 
   /// This region's part of the save is being written.
   void begin(std::uint64_t save) { open_.push_back({save, {}, {}, {}}); }
-  /// And now it is on disk, or is not.
+  /// Notes that this region's part is on disk, or could not be written.
   void note_own(std::uint64_t save, bool is_written);
-  /// What another region says of its own parts (dds::Status). It repeats that in every status.
+  /// Notes what another region's status says of its own parts (dds::Status). Every status repeats it.
   void hear(core::RegionId region, const std::vector<std::uint64_t>& saved,
             const std::vector<std::uint64_t>& not_saved);
-  /// What becomes of it does not matter any more.
+  /// Forgets a save whose outcome does not matter any more.
   void forget(std::uint64_t save);
 
   struct Outcome {

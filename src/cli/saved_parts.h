@@ -1,4 +1,4 @@
-// The parts of a saved world, once its nodes have written them.
+// Makes one file of a saved world's parts, once its nodes have written them.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ struct PutTogether {
   std::uintmax_t bytes = 0;
 };
 
-/// Makes one file of the parts, called `name` and in their folder, and removes the parts, if all of them are in one
-/// folder of this host. Throws cut::BadCut or std::runtime_error.
+/// If all parts are in one folder of this host, writes them there into one file called `name` and removes the parts.
+/// Throws cut::BadCut or std::runtime_error.
 PutTogether put_together(const std::vector<std::string>& parts, const std::string& name);
 
 }  // namespace aurasim::cli

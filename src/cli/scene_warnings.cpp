@@ -20,7 +20,7 @@ using core::Pose;
 using core::Vec3;
 
 constexpr std::size_t kMostOfAKind = 10;
-/// Overlaps that are small against the bodies are how stacks are written down.
+/// Share of the size below which an overlap is not reported: scenes often write stacks with small overlaps.
 constexpr double kDeepShare = 0.05;
 
 std::string place_of(const config::Launch& launch, const std::vector<config::SceneSource>& sources, std::size_t i) {
@@ -36,7 +36,7 @@ std::string body_text(const config::Launch& launch, std::size_t i) {
   return fmt::format("body {}{}", core::value_of(launch.scene.bodies[i].id), name);
 }
 
-/// With its place, as messages begin.
+/// The body with its place in the file, as messages begin.
 std::string body_at_place(const config::Launch& launch, std::size_t i) {
   return fmt::format("{}: {}", place_of(launch, launch.body_sources, i), body_text(launch, i));
 }
@@ -111,7 +111,8 @@ class StartOfScene {
     }
   }
 
-  /// With one of those that it overlaps, unless one of them has named it. To be called for all in their order.
+  /// Adds a warning that the body overlaps another one, unless a warning names it already. To be called for all bodies
+  /// in their order.
   void add_overlap_of_body(std::uint32_t i, OfAKind& overlaps) {
     if (overlapping_[i]) return;
     const core::InitialBody& a = scene_.bodies[i];
@@ -131,7 +132,7 @@ class StartOfScene {
     return static_cast<std::size_t>(std::count(overlapping_.begin(), overlapping_.end(), true));
   }
 
-  /// One static for each body.
+  /// Adds a warning that the body overlaps a static; at most one for each body.
   void add_overlap_with_static(std::uint32_t i, OfAKind& overlaps) const {
     for (const core::StaticBody* const plane : planes_) {
       if (add_overlap_with_plane(i, *plane, overlaps)) return;
@@ -150,7 +151,7 @@ class StartOfScene {
  private:
   struct ConvexStatic {
     const core::StaticBody* body = nullptr;
-    core::PrototypeId prototype{};  ///< of a body with its shape
+    core::PrototypeId prototype{};  ///< prototype of a body with the static's shape
   };
 
   const core::Shape& shape_of(const core::InitialBody& body) const {
@@ -177,7 +178,7 @@ class StartOfScene {
     return boxes;
   }
 
-  /// How deep the two are in each other; 0 if that is nothing to speak of.
+  /// How deep the two overlap, metres; 0 if the overlap is too small to report.
   double depth_of(core::PrototypeId a, const Pose& pose_a, const core::InitialBody& b) const {
     const double depth = -query_->clearance(a, pose_a, b.prototype, b.pose, 0);
     return depth > deep(b, query_->bounding_radius(a)) ? depth : 0;
@@ -206,7 +207,7 @@ class StartOfScene {
   std::vector<const core::StaticBody*> planes_;
   std::vector<ConvexStatic> convex_statics_;
   core::BoxTree bodies_, statics_;
-  std::vector<bool> overlapping_;  ///< bodies that are in a message, or would be, were there fewer
+  std::vector<bool> overlapping_;  ///< bodies that are named in a warning, or counted beyond the limit
   std::unique_ptr<core::ClearanceQuery> query_;
   std::set<std::pair<core::BodyId, core::BodyId>> joined_;
 };

@@ -30,7 +30,7 @@ using Kind = dds::RunCommandKind;
 using Numbers = std::vector<double>;
 
 constexpr auto kPatienceWithAPause = 10s;
-constexpr auto kPatienceWithTheRun = 60s;  ///< in slow motion an order's state may be so far away
+constexpr auto kPatienceWithTheRun = 60s;  ///< in slow motion an order's state may take that long
 
 const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"resume", Kind::kResume},
@@ -136,7 +136,7 @@ core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClien
 
 nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The parts become one file, if all of them are on this host.
+/// Joins the parts into one file, if all of them are on this host.
 nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::string& name) {
   const PutTogether made = put_together(parts, name);
   if (!made.file.empty()) return {{"file", made.file}, {"bytes", made.bytes}};
@@ -181,7 +181,7 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
 }
 
 [[noreturn]] void steer(const SendArguments& arguments, RunSteering& steering) {
-  // A world that goes back in a pause computes until it is where it stood.
+  // A world that has gone back in a pause first computes up to the paused state again.
   if (arguments.what == "step" && !steering.wait_until_paused(kPatienceWithAPause))
     fail("steps are for a run that is paused");
   const dds::RunCommand command = steering.send(kSteering.at(arguments.what), arguments.count);
@@ -192,7 +192,7 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
   leave(0);
 }
 
-/// Done when another process computes the region, and nobody waits any more.
+/// Drains a region. Done when another process computes the region and the run goes on.
 [[noreturn]] void drain(const SendArguments& arguments, dds::ControlBus& control) {
   Drain leaving(control, core::RegionId{arguments.region});
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
@@ -291,7 +291,7 @@ void ray_options(CLI::App& command, SendArguments& a) {
   vector_option(command, "--to", a.to, "m");
 }
 
-/// What follows `aurasim send KIND demo`.
+/// Example arguments that follow `aurasim send KIND demo`.
 const std::map<std::string, std::string> kExamples = {
     {"step", "--count 10"},
     {"spawn", "--radius 0.5 --p 0 0 10 --v 5 0 0"},

@@ -1,4 +1,4 @@
-// What a program does that listens to a run, and hears nobody.
+// Behaviour of a program that waits for a run and receives no status.
 #pragma once
 
 #include <chrono>
@@ -10,18 +10,19 @@
 
 namespace aurasim::cli {
 
-/// Nodes are found in a fraction of a second, on a bad network in a few.
+/// How long a program waits for a first status. Nodes are discovered in a fraction of a second, on a bad network in a
+/// few seconds.
 inline constexpr std::chrono::seconds kPatienceWithSilence{10};
 
-/// Says in which domain nobody was heard, and ends the process with 1.
+/// Prints in which domain no node was found, and ends the process with exit code 1.
 [[noreturn]] void fail_for_want_of_a_run(const FileArguments& files, const config::Launch& launch,
                                          const dds::Participant& participant);
 
-/// Who is in the domain and cannot be understood, as they have keys and this process has none, or the other way round;
-/// and what to do about it. Empty: nobody. Otherwise it goes on behind a sentence without a full stop.
+/// Message about processes in the domain that use keys while this one does not, or the other way round, and what to do
+/// about it. Empty if there are none. Otherwise it continues a sentence without a full stop.
 std::string word_about_keys(const dds::PeersByKeys& peers, const config::Launch& launch);
 
-/// For programs that go on listening: says so once, when nobody has been heard for some time.
+/// For programs that go on waiting: prints a message once, when no status has come for some time.
 class SilenceWord {
  public:
   using Clock = std::chrono::steady_clock;

@@ -1,4 +1,4 @@
-// A process without a region: when a node of the run dies or leaves, it is told to take that region over.
+// A process without a region: when a node of the run dies or leaves, it receives a command to take that region over.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -39,7 +39,7 @@ struct SpareArguments {
   RunLength length;
   LoadArguments load;
   SaveArguments save;
-  LauncherArguments launcher;  // for the node that it becomes
+  LauncherArguments launcher;  // passed on to the node that the spare becomes
 };
 
 class Spare {
@@ -62,7 +62,7 @@ class Spare {
     status_.text = "a spare: takes over a region whose node dies";
   }
 
-  /// The region and run to take over; nothing: the run has ended, or somebody has asked us to.
+  /// Waits for the command to take a region over. Nothing if the run has ended, or this process was asked to stop.
   std::optional<dds::RunCommand> wait() {
     bool has_seen_it = false;
     SilenceWord silence(launch_, participant_);
@@ -92,7 +92,8 @@ class Spare {
     return run == 0 ? std::nullopt : std::optional(run);
   }
 
-  /// Now and then: it hears its own status, too, and would have the next thing to say at once.
+  /// Publishes the status, at intervals. Without them it would publish at each wake-up, and its own status wakes it up,
+  /// too.
   void publish() {
     const auto now = std::chrono::steady_clock::now();
     if (now < published_ + kStatusPeriod) return;
@@ -109,12 +110,12 @@ class Spare {
 
 int run_spare(const SpareArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  load_world(arguments.load, launch);  // or it is refused now
+  load_world(arguments.load, launch);  // a bad file is refused now, not at the take-over
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
   catch_stop_signals();
   Spare spare(launch, arguments.keys.as, arguments.run);
   const std::optional<dds::RunCommand> take = spare.wait();
-  if (!take) leave(0);  // silently, as nodes do, and so it does when it becomes one
+  if (!take) leave(0);  // without deleting the participant, as nodes do
   spdlog::info("takes over region {}", core::value_of(take->region));
   become(words_of_successor(own_words(), take->region, take->run));
 }

@@ -9,18 +9,17 @@
 
 namespace aurasim::cli {
 
-/// `words`: the program's path and its arguments. It does not get our Ctrl-C, and ends (SIGTERM) when the calling
-/// thread does. What it prints goes to the file descriptor `output`. Exit code 127 if there is no such program. Throws
-/// std::runtime_error when no process can be started.
+/// `words`: the program's path and its arguments. The program does not receive this terminal's Ctrl-C, and gets SIGTERM
+/// when the calling thread ends. Its output goes to the file descriptor `output`. Exit code 127 if there is no such
+/// program. Throws std::runtime_error when no process can be started.
 pid_t spawn(std::vector<std::string> words, int output = STDOUT_FILENO);
 
-/// Likewise, but for good: it has a session of its own, and ends neither with us nor with our terminal. Throws
-/// likewise.
+/// As spawn(), but the program has a session of its own, and ends neither with this process nor with its terminal.
 void spawn_apart(std::vector<std::string> words);
 
-/// The words that this process was started with.
+/// The command line that this process was started with.
 std::vector<std::string> own_command_line();
-/// This process becomes the program `words[0]` with these arguments, which has no file or socket of ours but the
+/// Replaces this process by the program `words[0]` with these arguments. Open files and sockets are closed, except the
 /// standard ones and the heartbeat's pipe. Throws std::runtime_error if that fails.
 [[noreturn]] void become(std::vector<std::string> words);
 

@@ -1,5 +1,5 @@
-// Before a run begins: are the processes of its nodes still on their way? One that computes without end, without a
-// word, holds up all others, and none of them can tell. Time is passed in.
+// Watches the processes of a run's nodes before the run begins. A node that computes without end and publishes nothing
+// holds up all others, and none of them can notice. Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -20,13 +20,13 @@ class StartWatch {
   StartWatch(std::size_t regions, std::chrono::seconds time_out, Clock::time_point now)
       : regions_(regions), time_out_(time_out + kNodesSpeakFirst), moved_(now) {}
 
-  /// Why the run cannot begin: for --start-time-out seconds, and some more, a node has said nothing, and no other one
-  /// has come a step further either. Where many nodes share few processors each one that does gives the rest as long
-  /// again.
+  /// Why the run cannot begin. Nothing while there is progress. The problem is a node that has published no status for
+  /// --start-time-out seconds and some more, while no other node has made progress either. Each node's progress starts
+  /// the time anew, because many nodes may share few processors.
   std::optional<std::string> problem(const std::map<core::RegionId, dds::SeenStatus>& statuses, Clock::time_point now);
 
  private:
-  /// A node that waits in vain for another one ends the start, too, and says for whom.
+  /// Additional time. A node that waits in vain for another one ends the start itself, with a better message.
   static constexpr std::chrono::seconds kNodesSpeakFirst{10};
   using Progress = std::map<core::RegionId, std::pair<dds::NodeState, core::Step>>;
 

@@ -1,5 +1,5 @@
-// To which earlier state does a run go back when somebody asks for it? No clock, no DDS: from what the nodes say that
-// they keep.
+// Chooses the earlier state that a run goes back to on request, from the parts that the nodes' statuses list. Uses no
+// clock and no DDS.
 #pragma once
 
 #include <map>
@@ -9,9 +9,9 @@
 
 namespace aurasim::cli {
 
-/// The newest state not later than `latest` of which every region's node keeps its own part, as the command (kRestore)
-/// that takes all back to it, without the times. Orders given since are forgotten: nobody is asked for them. Nothing if
-/// there is none, or if a node is missing or does something else.
+/// The command (kRestore), without the times, that takes all nodes back to the newest state not later than `latest` of
+/// which every region's node keeps its own part. Orders given since are dropped. Nothing if there is no such state, or
+/// if a node is missing or in another phase.
 std::optional<dds::RunCommand> plan_step_back(const std::map<core::RegionId, dds::SeenStatus>& nodes,
                                               std::size_t regions, core::Step latest);
 

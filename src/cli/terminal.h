@@ -1,11 +1,11 @@
-// Standard output that may go away: a closed pipe or a terminal that hung up is no reason to lose a run.
+// Standard output that may be closed during a run: a closed pipe or terminal must not end the run.
 #pragma once
 
 #include <string>
 
 namespace aurasim::cli {
 
-/// False when nobody takes it any more. Throws nothing.
+/// Prints `text`. False when standard output is closed. Throws nothing.
 bool print(const std::string& text);
 
 }  // namespace aurasim::cli

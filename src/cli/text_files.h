@@ -1,4 +1,4 @@
-// Texts that commands leave in files.
+// Writes the texts that commands produce into files.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace aurasim::cli {
 
-/// Writes `text` to `out` and each of `beside` where its path leads from there; folders are made. Without an `out` it
-/// prints the text. Throws std::runtime_error if a file cannot be written, config::BadConfig if there is none for what
-/// has to be beside it.
+/// Writes `text` to `out`, and each text of `beside` to its path relative to `out`; folders are made. With empty `out`
+/// it prints the text. Throws std::runtime_error if a file cannot be written, config::BadConfig if `out` is empty but
+/// `beside` is not.
 void write_texts(const std::string& out, const std::string& text,
                  const std::vector<std::pair<std::filesystem::path, std::string>>& beside);
 

@@ -8,8 +8,8 @@
 
 namespace aurasim::cli {
 
-/// Keys for one run on this host, in a folder that nobody else may read, until this ends. It is locked as long as its
-/// process lives: what is left of a process that was killed is known by that.
+/// Keys for one run on this host, in a folder that only this user may read. The destructor removes them. The folder is
+/// locked as long as the process lives, so that folders of killed processes can be recognised.
 class ThrowAwayKeys {
  public:
   explicit ThrowAwayKeys(std::size_t regions);
@@ -24,8 +24,8 @@ class ThrowAwayKeys {
   std::unique_ptr<FolderLock> lock_;
 };
 
-/// Removes the keys of this user's processes that have ended without doing so, from the folder for temporary files.
-/// Returns the folders that are gone now.
+/// Removes, from the folder for temporary files, the keys that this user's ended processes have left. Returns the
+/// removed folders.
 std::vector<std::filesystem::path> remove_keys_of_the_gone();
 
 }  // namespace aurasim::cli

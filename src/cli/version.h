@@ -1,4 +1,4 @@
-// What this program was made from.
+// Version and commit of this program.
 #pragma once
 
 #include <string>

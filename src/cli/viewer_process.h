@@ -1,4 +1,4 @@
-// The overseer that comes with a launch: a process of its own, so that nothing that happens to it matters to the run.
+// The overseer that a launch starts. It is a process of its own, so that its failure does not affect the run.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace aurasim::cli {
 class ViewerProcess {
  public:
   ViewerProcess() = default;
-  /// Ends it.
+  /// Ends the process.
   ~ViewerProcess();
   ViewerProcess(const ViewerProcess&) = delete;
   ViewerProcess& operator=(const ViewerProcess&) = delete;
 
-  /// `recording`: file; empty: none.
+  /// Starts the process. `recording`: file to record into; empty: none.
   void start(const FileArguments& files, const std::string& recording);
-  /// Reads what it has printed; notices when it has ended. Never waits.
+  /// Reads the process's output, and notices when it has ended. Never blocks.
   void look();
-  /// Its address, and its token if it has one; empty before it listens.
+  /// The overseer's address, and its token if it has one. Empty before it listens.
   const std::string& said() const { return said_; }
-  /// By itself, before it was stopped.
+  /// True if the process has ended by itself, before stop().
   bool has_ended_early() const { return ended_early_; }
   void stop();
 

@@ -38,14 +38,14 @@ std::string address_of(const overseer::WebSettings& settings, std::uint16_t port
   return fmt::format("{}://{}:{}/", settings.tls ? "https" : "http", host, port);
 }
 
-/// What this host calls itself, and is called in its own network.
+/// The host's own name, and its names in its network.
 std::vector<std::string> own_names() {
   std::array<char, HOST_NAME_MAX + 1> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
   return {name.data(), std::string(name.data()) + ".local"};
 }
 
-/// "FILE:LINE:COLUMN" of a value of overseer.tls; the file alone if it is not in there.
+/// "FILE:LINE:COLUMN" of a value of overseer.tls. Only the file if the value is not in it.
 std::string place_in(const std::filesystem::path& file, const std::string& key) {
   config::Errors ignored;
   const std::optional<config::YamlNode> root = config::read_yaml(file, ignored);
@@ -135,7 +135,7 @@ overseer::WebSettings web_settings(const config::Launch& launch, const WebArgume
 std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, const WebArguments& given,
                                                      overseer::ShapeStore& shapes) {
   std::unique_ptr<overseer::WebServer> server;
-  std::string remark;  // beside the address, since launch shows that below its table for as long as it runs
+  std::string remark;  // printed with the address, because launch shows that line below its table all the time
   try {
     server = std::make_unique<overseer::WebServer>(settings, shapes);
   } catch (const overseer::CannotListen& error) {

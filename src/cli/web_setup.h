@@ -1,4 +1,4 @@
-// From launch file and command line to a web server.
+// Makes a web server from the launch file and the command line.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace aurasim::cli {
 
-/// As on the command line; what is not given is as in the launch file.
+/// Options of the command line. Options not given are taken from the launch file.
 struct WebArguments {
   int port = -1;
   std::string bind;
@@ -30,15 +30,16 @@ struct WebArguments {
 /// Throws BadConfig when certificate and key, if there are any, cannot be used.
 void check_tls_of(const config::Launch& launch);
 
-/// Draws the tokens that are needed and were not given. Throws as check_tls_of; so for what the command line names.
+/// Settings of the web server. Draws the needed tokens that were not given. Throws as check_tls_of() does, also for
+/// files that the command line names.
 overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments);
 
-/// Prints the address, and the tokens that were not given: who starts it may keep its output, and knows those. Takes
-/// another port when the wanted one is taken, and says so.
+/// Opens the server. Prints the address, and the tokens that were drawn; given tokens are not printed, because the
+/// output may be stored. If the wanted port is taken, it uses another one and says so.
 std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, const WebArguments& given,
                                                      overseer::ShapeStore& shapes);
 
-/// Throws std::runtime_error when the file cannot be written.
+/// Checks the recording's file. Throws std::runtime_error when it cannot be written.
 void check_recording(const std::filesystem::path& file);
 
 }  // namespace aurasim::cli

@@ -7,8 +7,8 @@
 
 namespace aurasim::lab {
 
-/// Distance between the bounding spheres, where an aura K steps old says the other body to be, at which two bodies that
-/// fly at each other at top speed have to share a host. Metres.
+/// Distance between two bounding spheres, in metres, at which the bodies have to share a host when they fly at each
+/// other at top speed. The other body's place is taken from an aura K steps old.
 double head_on_reach_m(AuraChoice choice, const Conditions& conditions);
 
 /// aura_radius.csv: factor, tolerance (m/s or ms), lookahead and one column of metres per aura.

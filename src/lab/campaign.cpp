@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A job's pairs depend on what it is, not on where it stands in the list.
+/// Seed of a job's pair. It depends on the job's contents, not on its place in the list.
 std::uint64_t seed_of(const Campaign& campaign, const Job& job, std::uint32_t repeat) {
   core::Fnv1a hash;
   hash.add_text(fmt::format("{} {} {} {} {}", campaign.seed, name_of(job.pairs), name_of(job.series),
@@ -28,7 +28,7 @@ std::uint64_t seed_of(const Campaign& campaign, const Job& job, std::uint32_t re
   return hash.value();
 }
 
-/// Steps until the meeting: slow bodies have a long way.
+/// Estimated work of a job, from the steps until the meeting: slow bodies need many.
 double work_of(const Campaign& campaign, const Job& job) {
   Chance chance(1);
   return 30.0 +
@@ -36,7 +36,7 @@ double work_of(const Campaign& campaign, const Job& job) {
              make_pair(job.pairs, conditions_at(job.series, job.value, campaign.substeps), chance).expected_step);
 }
 
-/// What two runs must agree on to add to the same file.
+/// Description that two runs must share to add to the same file.
 std::string described(const Campaign& campaign) {
   nlohmann::json variants = nlohmann::json::array();
   for (const Variant& v : campaign.variants) variants.push_back(fmt::format("{} {}", name_of(v.aura), name_of(v.sync)));
@@ -70,7 +70,7 @@ void agree_with(const Campaign& campaign, const std::filesystem::path& directory
   std::ofstream(file) << wanted;
 }
 
-/// Gives out jobs, takes their rows, writes them in order.
+/// Hands jobs to threads, collects their rows, and writes them in order.
 class JobQueue {
  public:
   JobQueue(const Campaign& campaign, const std::filesystem::path& file, std::size_t done,

@@ -1,4 +1,4 @@
-// All trials of an experiment: which there are, running them on a few threads, going on where an earlier run stopped.
+// All trials of an experiment: lists them, runs them on a few threads, and goes on where an earlier run stopped.
 #pragma once
 
 #include <atomic>
@@ -37,31 +37,32 @@ std::vector<Variant> all_variants(const std::vector<AuraChoice>& auras, const st
 
 void add_jobs(Campaign& campaign, PairKind pairs, const Series& series);
 
-/// One pair of a job and what else is random in its trials.
+/// One pair of a job, and the other random settings of its trials.
 struct Draw {
   Pair pair;
   Disorder disorder;
 };
-/// The same for the same campaign, job and repeat. `aside_m`: by so much the pair is moved along y.
+/// Draws a pair. The result is the same for the same campaign, job and repeat. `aside_m`: distance in metres by which
+/// the pair is moved along y.
 Draw draw_pair(const Campaign& campaign, const Job& job, std::uint32_t repeat, double aside_m = 0);
-/// The pair in one world.
+/// The trial of the pair in one world.
 Trial control_of(const Draw& draw, const Conditions& conditions);
 inline constexpr Variant kControl = {AuraChoice::kNone, core::SyncMode::kBounded, true};
-/// With what it is a trial of.
+/// The trial with the job, variant and repeat that it belongs to.
 Trial labelled(Trial trial, const Job& job, const Variant& variant, std::uint32_t repeat);
 
-/// In virtual time. The same job of the same campaign gives the same trials, in any order and on any thread.
+/// Runs a job in virtual time. The same job of the same campaign gives the same trials, in any order and on any thread.
 std::vector<Trial> run_job(const Campaign& campaign, const Job& job);
 using JobRunner = std::function<std::vector<Trial>(const Campaign&, const Job&)>;
 
 struct Progress {
-  double share = 0;  ///< of the work, 0 to 1
+  double share = 0;  ///< share of the work done, 0 to 1
   double elapsed_s = 0;
   double left_s = 0;
 };
 
-/// Runs what DIR/collisions.csv lacks and appends it. Throws std::runtime_error when DIR holds another campaign.
-/// Returns false when `stop` became true before the end. `run` is called on `threads` threads.
+/// Runs the trials that DIR/collisions.csv lacks and appends them. Throws std::runtime_error when DIR holds another
+/// campaign. Returns false when `stop` became true before the end. `run` is called on `threads` threads.
 bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, const JobRunner& run, int threads,
                   const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
 

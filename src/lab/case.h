@@ -15,11 +15,11 @@ namespace aurasim::lab {
 /// All bodies of one state, ascending by id.
 struct Moment {
   double t_s = 0;
-  double step_s = 0;  ///< of the physics: the velocity of a free fall is half of it ahead of the positions
+  double step_s = 0;  ///< step of the physics; in free fall the velocity is half a step ahead of the positions
   std::span<const core::BodyRecord> bodies;
 };
 
-/// How the errors of single states become one number.
+/// How the errors of all states become one number.
 enum class Over : std::uint8_t { kLargest, kLast, kMean };
 
 struct Metric {
@@ -31,12 +31,12 @@ struct Metric {
 
 struct Case {
   std::string name;
-  std::string reference;   ///< what it is compared with, and where that is from
+  std::string reference;   ///< the reference solution, and its source
   std::uint64_t seed = 0;  ///< 0: nothing is random
   double duration_s = 1;
   core::Scene scene = {};
   std::vector<Metric> metrics = {};
-  double border_x_m = 0;     ///< where two nodes meet
+  double border_x_m = 0;     ///< x of the border between two nodes
   double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"; 1 where contacts throw resting bodies
   double contact_erp = 0.2;
   std::optional<bool> continuous = {};  ///< continuous collision detection; none: with the soft step

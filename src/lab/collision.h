@@ -15,8 +15,8 @@ struct CollisionPlan {
   std::uint32_t repeats = 50;
   std::uint64_t seed = 1;
   int substeps = 1;
-  std::size_t values_of_head_on_pairs = 0;  ///< of each series, evenly spread; 0: every value of the thesis
-  /// Likewise, of other kinds of pairs.
+  std::size_t values_of_head_on_pairs = 0;  ///< number of values of each series, evenly spread; 0: all of the thesis
+  /// The same number for other kinds of pairs.
   std::size_t values_of_other_pairs = 4;
 };
 

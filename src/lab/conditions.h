@@ -1,5 +1,5 @@
-// What a trial is run under: what was promised (tolerances), and what really is. The series of the thesis (section
-// 5.2.3) vary one of the three real values and hold the other two at their tolerances.
+// Conditions of a trial: the promised values (tolerances) and the real ones. The series of the thesis (section 5.2.3)
+// vary one of the three real values and hold the other two at their tolerances.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Tolerances {
   double frame_s = 0.015;
 };
 
-/// The auras of core, and `kTight` as large as the thesis makes its own.
+/// The auras of core, and `kTight` at the size of the thesis's aura.
 enum class AuraChoice : std::uint8_t { kNone, kThesis, kTight, kTightAtThesisSize, kSwept };
 
 /// How the nodes of a trial are set up. The control is one node.
@@ -44,7 +44,7 @@ struct Conditions {
 
 enum class Factor : std::uint8_t { kSpeed, kLatency, kFrame, kLoss };
 
-/// One factor varied over `values` (m/s, s, s, share), with the tolerance that stands for it.
+/// One factor varied over `values` (m/s, s, s, share), with the tolerance of that factor.
 struct Series {
   Factor factor{};
   double tolerance = 0;

@@ -1,4 +1,4 @@
-// A launch file's rules for nodes in virtual time.
+// Makes rules for nodes in virtual time from a launch file.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace aurasim::lab {
 
-/// A launch's rules for one of its nodes.
+/// Returns the setup of one node of a launch.
 using SetupOf = std::function<node::NodeSetup(const config::Launch&, core::RegionId)>;
 
-/// What nodes of this launch are told, who listens to whom included. Clock, network and frames are left to the caller.
+/// Rules for the nodes of this launch, with the distance of neighbours. The caller sets clock, network and frames.
 ClusterRules launch_rules(const config::Launch& launch, const SetupOf& setup_of);
 
 }  // namespace aurasim::lab

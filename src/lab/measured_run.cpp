@@ -76,7 +76,7 @@ class Meter {
       const Metric& metric = case_.metrics[i];
       if (metric.over == Over::kLast && step < steps_) continue;
       const double error = metric.error(now);
-      const bool worse = !(error <= sums_[i]);  // also what is no number
+      const bool worse = !(error <= sums_[i]);  // true for NaN, too
       if (metric.over == Over::kMean) {
         sums_[i] += error;
       } else if (metric.over == Over::kLast || worse) {
@@ -112,7 +112,7 @@ MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap
   MeasuredRun run;
   run.steps = static_cast<core::Step>(std::lround(c.duration_s * rules.step_hz));
   run.hash.assign(static_cast<std::size_t>(run.steps) + 1, 0);
-  const core::Step more = 4 * rules.lookahead + 2;  // by then, whoever was under way has arrived
+  const core::Step more = 4 * rules.lookahead + 2;  // by then, all bodies under way have arrived
   VirtualCluster cluster(c.scene, map, cluster_rules(c, rules));
   Meter meter(c, rules, run.steps);
   std::vector<double> cpu_s(cluster.size(), 0);

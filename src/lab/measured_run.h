@@ -1,4 +1,4 @@
-// A case run to its end on one or several nodes in virtual time: its errors, its bits and its cost.
+// Runs a case to its end on one or several nodes in virtual time, and measures its errors, bits and cost.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,16 @@ struct RunRules {
 };
 
 struct MeasuredRun {
-  std::vector<double> errors;       ///< as Case::metrics
-  std::vector<std::uint64_t> hash;  ///< of every state
-  double cpu_us_per_step = 0;       ///< of the busiest node, with its protocol
+  std::vector<double> errors;       ///< one for each of Case::metrics, in their order
+  std::vector<std::uint64_t> hash;  ///< hash of every state
+  double cpu_us_per_step = 0;       ///< CPU time of the busiest node, with its protocol, microseconds
   std::uint64_t hand_offs = 0;      ///< bodies
   std::uint64_t violations = 0;
   core::Step steps = 0;
 };
 
-/// States in which a body is under way between two nodes (lookahead above 1) are left out of the errors.
+/// Runs the case on the regions of `map`. The errors leave out states in which a body is under way between two nodes
+/// (lookahead above 1).
 MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap& map);
 
 /// Regions of a width that no case crosses, the middle border at Case::border_x_m.

@@ -23,9 +23,9 @@ struct Contact {
 
 double penetration_time_s(const Contact& contact);
 
-/// Above one step. The last bits of a quotient are no lateness.
+/// True if the penetration time is above one step. Rounding errors do not count.
 bool is_late(const Contact& contact, double step_s);
-/// They met in one world, and passed through each other in several.
+/// True if the bodies met in one world, and passed through each other in several.
 bool is_missed(const std::optional<Contact>& contact, bool met_in_one_world);
 /// More than one hand-off of the pair before its first contact.
 bool is_thrashed(std::uint64_t hand_offs);
@@ -34,16 +34,16 @@ bool is_thrashed(std::uint64_t hand_offs);
 struct Trial {
   PairKind pairs{};
   std::string series;
-  double tolerance = 0;  ///< as the figures show it: m/s, ms, ms, percent
-  double value = 0;      ///< likewise
+  double tolerance = 0;  ///< in the figures' units: m/s, ms, ms, percent
+  double value = 0;      ///< in the same unit
   bool within = false;   ///< the value keeps the tolerance
   Variant variant;
   std::uint32_t repeat = 0;
   std::optional<Contact> contact;
-  std::optional<core::Step> central_step;  ///< of the contact in the control
-  bool same_bits = false;                  ///< as in the control, to the last bit
-  std::uint64_t hand_offs = 0;             ///< before the contact, or before it should be; a cluster moves as one
-  std::uint64_t pulls = 0;                 ///< those of them that an aura hit asked for
+  std::optional<core::Step> central_step;  ///< state of the contact in the control
+  bool same_bits = false;                  ///< all states are as in the control, to the last bit
+  std::uint64_t hand_offs = 0;             ///< hand-offs before the contact, real or expected; a cluster counts once
+  std::uint64_t pulls = 0;                 ///< hand-offs caused by an aura collision
   std::uint64_t violations = 0;            ///< broken promises before the contact, all nodes together
   bool flagged = false;                    ///< the node that saw the contact holds a violation for its possible cause
   double slow_down = 1;                    ///< time taken over time simulated
@@ -51,10 +51,11 @@ struct Trial {
   bool late() const { return contact && is_late(*contact, kStep_s); }
   bool missed() const { return is_missed(contact, central_step.has_value()); }
   bool thrashed() const { return is_thrashed(hand_offs); }
-  /// Late, and nobody knew: a contact's own violation, in the same step, is no warning.
+  /// Late without an earlier violation. A violation in the contact's own step is no warning.
   bool late_without_violation() const { return late() && (!flagged || violations == 0); }
   bool missed_without_violation() const { return missed() && violations == 0; }
-  /// Contact in a later state than in the control. Stricter than late(): bodies past each other overlap less again.
+  /// True if the contact came in a later state than in the control. Stricter than late(), because bodies that have
+  /// passed each other overlap less again.
   bool later_than_central() const { return contact && central_step && contact->step > *central_step; }
 };
 
@@ -63,12 +64,12 @@ struct Tally {
   std::uint64_t late = 0;
   std::uint64_t missed = 0;
   std::uint64_t thrashed = 0;
-  std::uint64_t pulled_twice = 0;  ///< thrashed as in the thesis: by more than one aura hit
+  std::uint64_t pulled_twice = 0;  ///< trials that thrash by the thesis's definition: more than one pull
   std::uint64_t late_without_violation = 0;
   std::uint64_t missed_without_violation = 0;
   std::uint64_t later_than_central = 0;
   std::uint64_t same_bits = 0;
-  std::uint64_t with_violations = 0;  ///< before the contact
+  std::uint64_t with_violations = 0;  ///< trials with violations before the contact
   double slow_down_sum = 0;
   double slow_down_most = 1;
   double penetration_time_most_s = -1;

@@ -8,7 +8,8 @@
 
 namespace aurasim::lab {
 
-/// Calls `work` on each of `threads` threads and waits for all. Throws what one of them threw.
+/// Calls `work` on each of `threads` threads and waits for all. If threads throw, one of their exceptions is thrown
+/// here.
 template <class Work>
 void on_threads(int threads, const Work& work) {
   std::exception_ptr failure;

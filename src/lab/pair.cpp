@@ -17,7 +17,7 @@ constexpr double kCell_m = 1000;
 constexpr std::uint32_t kSphere = 0, kBox = 1, kCapsule = 2;
 constexpr std::array<std::string_view, 6> kNames = {"head_on", "corner", "grazing", "boxes", "capsules", "random"};
 
-/// Bodies never sleep: in Bullet a slow one that flies freely would stop.
+/// A scene without bodies. Its bodies must never sleep, because in Bullet a slow one in free flight would stop.
 core::Scene empty_scene() {
   core::Scene scene;
   scene.name = "pair";
@@ -69,7 +69,7 @@ Meeting draw(PairKind kind, double speed_m_s, Chance& chance) {
   return meeting;
 }
 
-/// Where the centre of one of the two is when they touch: over the border x = 0, or over the corner.
+/// Place of one body's centre when they touch: over the border x = 0, or over the corner.
 Vec3 over_the_border(PairKind kind, Chance& chance) {
   if (kind != PairKind::kCorner) return {chance.between(-1, 1) * kRadius_m, chance.between(-50, 50), 0};
   const double turn = chance.between(0, 2 * std::numbers::pi);
@@ -92,7 +92,7 @@ class RoundShapes final : public core::ClearanceQuery {
   }
 };
 
-/// How fast an aura says that a body of this speed may leave its path.
+/// Speed with which a body may leave its path according to its aura, m/s.
 double stated_m_s(double speed_m_s, double uncertainty) {
   constexpr double kCalm_m_s = 0.1;
   return core::Push::of(speed_m_s, {1, core::Material{}.restitution}, uncertainty).speed_m_s + kCalm_m_s;
@@ -135,7 +135,7 @@ core::InitialBody body_before(double t_s, std::uint64_t id, std::uint32_t protot
   return body;
 }
 
-/// Any direction square to `line`.
+/// A random unit vector perpendicular to `line`.
 Vec3 square_to(const Vec3& line, Chance& chance) {
   for (;;) {
     const Vec3 side = line.cross(chance.direction());

@@ -15,9 +15,9 @@ namespace aurasim::lab {
 
 enum class PairKind : std::uint8_t {
   kHeadOn,   ///< thesis figure 5.19: two spheres at the same speed; one is over the border when they touch
-  kCorner,   ///< the same where four regions meet: one is over the corner, in any direction
+  kCorner,   ///< as kHeadOn, where four regions meet: one body is over the corner, in any direction
   kGrazing,  ///< two spheres that barely touch in passing
-  kBoxes,    ///< turned and spinning
+  kBoxes,    ///< two boxes, turned and spinning
   kCapsules,
   kRandom,  ///< any two of sphere, box and capsule, any directions and speeds up to that of the series
 };
@@ -27,7 +27,7 @@ inline constexpr std::array kPairKinds = {PairKind::kHeadOn, PairKind::kCorner, 
 std::string_view name_of(PairKind kind);
 std::optional<PairKind> pair_named(std::string_view name);
 
-/// Uniform numbers; the same sequence everywhere.
+/// Uniform random numbers. The sequence depends on the seed only, not on the machine.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : bits_(seed) {}
@@ -54,8 +54,8 @@ struct Pair {
 /// that up to there every late contact looks late, and one world alone misses none.
 inline constexpr double kRadius_m = 3.5;
 
-/// Bodies 0 and 1. They start so far apart that no aura, of any kind at these tolerances, sees the meeting before the
-/// nodes talk to each other.
+/// Makes a pair; its bodies have ids 0 and 1. They start so far apart that, at these tolerances, the nodes exchange
+/// messages before any kind of aura predicts the meeting.
 Pair make_pair(PairKind kind, const Conditions& conditions, Chance& chance);
 
 }  // namespace aurasim::lab

@@ -118,7 +118,8 @@ ParetoPoint measure(const PlannedRun& planned, const std::vector<Case>& cases) {
   return point;
 }
 
-/// The others, with the physics of a preset, would only say how much CPU times scatter.
+/// True for points that vary the physics. The others have a preset's physics, and would only show the scatter of CPU
+/// times.
 bool is_about_physics(const ParetoPoint& p) {
   const RunRules usual;
   return p.nodes == 1 && p.rules.sync == usual.sync && p.rules.lookahead == usual.lookahead &&

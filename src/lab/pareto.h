@@ -1,4 +1,4 @@
-// The pareto experiment: what each way to set up the physics and the nodes costs, and how wrong it is.
+// The pareto experiment: cost and error of each setup of the physics and the nodes.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct ParetoPlan {
   std::vector<int> iterations = {5, 10, 20, 50};
   std::vector<int> substeps = {1, 2, 4, 8};
   std::vector<int> friction_directions = {1, 2};
-  bool nodes = true;  ///< also vary what is about the nodes: their number, sync mode, lookahead, aura
+  bool nodes = true;  ///< also vary the settings of nodes: their number, sync mode, lookahead, aura
 };
 
 /// One error of one case, as a column of pareto.csv.
@@ -30,22 +30,22 @@ const std::vector<ParetoError>& pareto_errors();
 struct ParetoPoint {
   RunRules rules;
   int nodes = 1;
-  std::string preset;          ///< the presets that it is, or empty
-  std::vector<double> errors;  ///< as pareto_errors()
-  double error = 0;            ///< their geometric mean
-  double cpu_us_per_step = 0;  ///< of the busiest node, summed over the cases
-  bool same_bits = true;       ///< as one node with the same physics
-  bool on_front = false;       ///< no other way to set up the physics is cheaper and better
+  std::string preset;          ///< names of the presets equal to this point, or empty
+  std::vector<double> errors;  ///< in the order of pareto_errors()
+  double error = 0;            ///< geometric mean of `errors`
+  double cpu_us_per_step = 0;  ///< CPU time of the busiest node, summed over the cases
+  bool same_bits = true;       ///< bits are as on one node with the same physics
+  bool on_front = false;       ///< no other setup of the physics is both cheaper and better
 };
 
-/// Points that nothing else is both cheaper and better than, among those that vary the physics.
+/// Marks the points on the front: among those that vary the physics, no other point is both cheaper and better.
 void mark_front(std::vector<ParetoPoint>& points);
 
-/// As StabilityProgress.
+/// Called before each run with the share done; false from it ends the experiment.
 using ParetoProgress = std::function<bool(double share)>;
 std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress& progress);
 
-/// pareto.csv and summary.json; returns what has to hold.
+/// Writes pareto.csv and summary.json; returns the requirements.
 std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
                                  const std::filesystem::path& directory);
 

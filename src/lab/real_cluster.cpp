@@ -22,10 +22,10 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr auto kPatience = 20s;
 constexpr auto kStartsIn = 40ms;
-/// By so much a thread wakes up too late: a frame that is to be as long as the tolerance would break it.
+/// Time by which a thread wakes up too late, seconds. Without it, a frame as long as the tolerance would exceed it.
 constexpr double kOversleeps_s = 0.0005;
 
-/// Holds back what a step says until its frame is over.
+/// Holds back a step's messages until its frame is over.
 class FrameEnd final : public transport::Transport {
  public:
   explicit FrameEnd(transport::Transport& below) : below_(below) {}
@@ -72,7 +72,7 @@ struct RealCluster::Member {
         wire(participant, transport_settings(map, region)),
         held(wire) {}
 
-  /// Steps until `last`. Throws std::runtime_error when neighbours do not come.
+  /// Steps the node until state `last`. Throws std::runtime_error when messages of neighbours do not come.
   void drive(node::Node& node, const ClusterRules& rules, Clock::time_point epoch, core::Step last);
   void wait_until_due(node::Node& node, Clock::time_point due);
   void note(const node::Node& node, const node::StepReport& report);

@@ -1,6 +1,6 @@
 // A few nodes over DDS in real time, each with a thread and a participant of its own, that stay up from run to run.
-// Frames last as long as they are told to, and a step's messages leave at the end of its frame; the network is delayed
-// and loses datagrams by the transport's impairment (dds/impairment.h). Traffic stays on loopback.
+// Frames last as long as the rules say, and a step's messages leave at the end of its frame. Delay and loss of the
+// network come from the transport's impairment (dds/impairment.h). Traffic stays on loopback.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ namespace aurasim::lab {
 struct RealNetwork {
   std::uint32_t domain = 0;
   std::filesystem::path profiles;
-  double latency_s = 0;  ///< one way, beyond what the machine takes by itself
+  double latency_s = 0;  ///< one-way latency added to the machine's own
   double loss = 0;       ///< probability that a datagram is lost
   std::uint64_t seed = 1;
 };
 
 /// What one node did in a run.
 struct Course {
-  /// Broken promises up to the end of a step; those of latency are known before it is computed.
+  /// Numbers of broken promises up to the end of a step. Those of latency are known before the step is computed.
   struct Promises {
     std::uint64_t broken = 0;
     std::uint64_t latency = 0;
@@ -36,15 +36,15 @@ struct Course {
   double slow_down = 1;            ///< time taken over time simulated
 };
 
-/// Used by one thread.
+/// May be used by one thread only.
 class RealCluster {
  public:
   /// Returns when all nodes have found each other. Throws dds::DdsError.
   RealCluster(const core::RegionMap& map, const RealNetwork& network);
   ~RealCluster();
 
-  /// One world from state 0 to state `last`, by region. Of `rules.network` nothing is used. Throws std::runtime_error
-  /// when a node does not get on.
+  /// Runs one world from state 0 to state `last`. Returns the courses by region. `rules.network` is ignored. Throws
+  /// std::runtime_error when a node makes no progress.
   std::vector<Course> run(const core::Scene& scene, const ClusterRules& rules, core::Step last);
 
  private:

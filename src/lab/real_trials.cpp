@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSideBySide_m = 2000;
 
-/// Pairs beside each other, as bodies 2k and 2k+1 of one scene.
+/// One scene of all pairs side by side; pair k is bodies 2k and 2k+1.
 core::Scene together(std::span<const Draw> draws) {
   core::Scene scene = draws.front().pair.scene;
   scene.bodies.clear();
@@ -25,7 +25,8 @@ core::Scene together(std::span<const Draw> draws) {
 
 bool is_of(std::size_t pair, core::BodyId body) { return core::value_of(body) / 2 == pair; }
 
-/// Broken promises of all nodes before the state in which region `seer` saw the contact; what is late there, is known.
+/// Number of broken promises of all nodes before the state in which region `seer` saw the contact. Late messages of
+/// that state count, too, because they are known before it is computed.
 std::uint64_t broken_before(core::Step step, const std::vector<Course>& courses, std::size_t seer) {
   std::uint64_t sum = 0;
   const auto at = [](const Course& course, core::Step s) {

@@ -1,5 +1,5 @@
-// Trials over DDS in real time. The nodes stay up between trials, and pairs of one series fly side by side, far enough
-// apart not to hear of each other: as many worlds in one.
+// Trials over DDS in real time. The nodes stay up between trials. Pairs of one series fly side by side, so far apart
+// that they do not affect each other, as if each had its own world.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace aurasim::lab {
 
-/// Used by one thread.
+/// May be used by one thread only.
 class RealLaboratory {
  public:
-  /// `domain`: of DDS, for this laboratory alone.
+  /// `domain`: DDS domain, used by this laboratory alone.
   RealLaboratory(std::uint32_t domain, std::filesystem::path profiles);
   ~RealLaboratory();
 
@@ -28,11 +28,11 @@ class RealLaboratory {
   std::uint32_t domain_;
   std::filesystem::path profiles_;
   std::unique_ptr<RealCluster> cluster_;
-  RealNetwork network_;            ///< of the nodes that are up
-  std::uint64_t map_version_ = 0;  ///< likewise
+  RealNetwork network_;            ///< network of the running nodes
+  std::uint64_t map_version_ = 0;  ///< of the map that the running nodes have
 };
 
-/// Pairs that fly at the same time.
+/// Number of pairs that fly at the same time.
 inline constexpr std::uint32_t kPairsAtOnce = 10;
 
 }  // namespace aurasim::lab

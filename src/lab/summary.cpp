@@ -17,7 +17,8 @@ using Key = Tallies::Key;
 
 bool is(const Key& key, AuraChoice aura) { return !key.variant.central && key.variant.aura == aura; }
 bool is(const Key& key, AuraChoice aura, SyncMode sync) { return is(key, aura) && key.variant.sync == sync; }
-/// Auras that promise something here. Eq. 3.4 does not: it counts on both sides pulling, and has no word on corners.
+/// True for auras that promise correct collisions here. Eq. 3.4 does not: it relies on both sides pulling, and does not
+/// cover corners.
 bool is_aura(const Key& key) {
   const bool promises = key.variant.aura != AuraChoice::kNone && key.variant.aura != AuraChoice::kThesis;
   return !key.variant.central && promises;
@@ -34,7 +35,7 @@ nlohmann::json json_of(const ThesisRow& row) {
           {"thrashed", row.thrashed}};
 }
 
-/// Smallest count of late and missed collisions among the series, naive nodes within tolerance.
+/// Smallest count of late and missed collisions of nodes without aura within tolerance, among the series.
 std::uint64_t fewest_naive_errors(const Tallies& tallies) {
   std::map<std::string, std::uint64_t> errors;
   for (const auto& [key, tally] : tallies.entries()) {

@@ -1,4 +1,4 @@
-// summary.json: sums over collisions.csv, beside the thesis's numbers, and what must hold of them.
+// summary.json: sums over collisions.csv beside the thesis's numbers, and the requirements for them.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace aurasim::lab {
 
-/// One requirement: how many of what were found, and how many are allowed.
+/// One requirement: a value that was found, and its limit.
 struct Target {
   std::string name;
   double found = 0;
@@ -36,7 +36,7 @@ class Tallies {
     bool within = false;
     double value = -1;  ///< only where single values matter (loss); -1: all
   };
-  /// Sum over what `wanted(key)` picks.
+  /// Sum of the tallies whose key `wanted(key)` selects.
   template <class Wanted>
   Tally sum(Wanted&& wanted) const {
     Tally total;
@@ -60,8 +60,8 @@ class Tallies {
 nlohmann::json json_of(const Tally& tally);
 nlohmann::json json_of(const std::vector<Target>& targets);
 
-/// docs/design.md, "What is counted", and the thesis's own numbers, as requirements. Only those that the campaign has
-/// trials for.
+/// Requirements from docs/design.md, "What is counted", and from the thesis's numbers. Only those for which the
+/// campaign has trials.
 std::vector<Target> collision_targets(const Tallies& tallies);
 std::vector<Target> loss_targets(const Tallies& tallies);
 

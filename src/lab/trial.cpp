@@ -76,7 +76,8 @@ Trial run_pair(const Pair& pair, const Conditions& conditions, const Variant& va
   const core::Step last = last_step(pair, conditions, central);
   HandOffs hand_offs;
   while (!trial.contact && cluster.slowest() < last) {
-    // Messages that are late are so before the step is computed; what else is broken in it may be the contact's doing.
+    // Late messages of a step are known before it is computed, so they count. Other violations in it may come from the
+    // contact itself.
     trial.violations = cluster.violations() - cluster.violations(core::ViolationKind::kLatency);
     const VirtualCluster::Event event = cluster.next();
     trial.violations += cluster.violations(core::ViolationKind::kLatency);

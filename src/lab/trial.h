@@ -1,4 +1,4 @@
-// One pair, once in one world and once in several.
+// Runs one pair in one world, and on several nodes.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +13,38 @@
 
 namespace aurasim::lab {
 
-/// What the nodes of a trial have of their own, the same for every variant.
+/// Random settings of a trial's nodes, the same for every variant.
 struct Disorder {
   std::vector<double> phase_s;  ///< by region, 0 to one frame (thesis section 5.2.3)
-  std::uint64_t seed = 1;       ///< of frames and losses
+  std::uint64_t seed = 1;       ///< seed of frame times and losses
 };
 
 Disorder make_disorder(const Conditions& conditions, Chance& chance);
 
-/// How nodes are to compute a variant.
+/// Rules of the nodes for a variant.
 ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder);
 
-/// Up to which a trial goes: so much that a late hand-off can still be seen after the pair has passed each other.
+/// Last state of a trial. It is late enough that a late hand-off shows after the pair has passed each other.
 core::Step last_step(const Pair& pair, const Conditions& conditions, const std::optional<Contact>& central);
 
 Contact contact_of(const node::SeenCollision& seen);
 
-/// One for each cluster that left: when, from where, to where, why.
+/// One entry for each cluster that was handed over: state, source, destination, reason.
 using HandOffs = std::set<std::tuple<core::Step, core::RegionId, core::RegionId, core::HandOffReason>>;
 
-/// Those before state `met` count.
+/// Counts the hand-offs before state `met` in `trial`.
 void count_hand_offs(Trial& trial, HandOffs hand_offs, core::Step met);
 
-/// Lost datagrams are sent again by the reliable writer (RTPS): it says every heartbeat period what it has, the reader
-/// asks for what it lacks, the writer repeats it. So one loss costs a heartbeat period and a round trip, and whatever
-/// is lost again costs the same again; later messages wait, since delivery is in order.
+/// Seconds until a lost datagram has been retransmitted. The reliable RTPS writer sends a heartbeat every period with
+/// what it has, the reader asks for what it lacks, and the writer retransmits it. So one loss costs a heartbeat period
+/// and a round trip, and another loss costs the same again. Later messages wait, because delivery is in order.
 double resend_after_s(const Conditions& conditions);
 inline constexpr double kHeartbeat_s = 0.005;  ///< of the aura and migration writers, qos/aurasim.xml
 
 /// The first contact in one world.
 std::optional<Contact> run_central(const Pair& pair, const Conditions& conditions);
 
-/// The pair under `variant`: fills in what is found out, not which trial it is.
+/// Runs the pair under `variant`. Fills in the results, but not the fields that identify the trial.
 Trial run_pair(const Pair& pair, const Conditions& conditions, const Variant& variant, const Disorder& disorder,
                const std::optional<Contact>& central);
 

@@ -17,7 +17,7 @@ std::string trial_row(const Trial& trial);
 void read_trials(const std::filesystem::path& file, const std::function<void(const Trial&)>& row);
 
 /// Keeps the header and the first `rows / block * block` complete rows; returns how many blocks of `block` rows these
-/// are. A file that is not there, or has another header, is begun anew.
+/// are. A file that does not exist, or has another header, is begun anew.
 std::size_t keep_whole_blocks(const std::filesystem::path& file, std::size_t block);
 
 }  // namespace aurasim::lab

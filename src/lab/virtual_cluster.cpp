@@ -16,8 +16,8 @@ std::vector<std::vector<core::RegionId>> listeners(const core::RegionMap& map, d
   return all;
 }
 
-/// Each cluster makes worlds, a few MB each, and drops them: what the C library gives back to the system, it has to ask
-/// for again, and the kernel to clear. Once for the process.
+/// Keeps freed memory in the process; to be called once. Each cluster makes and drops worlds of a few MB. Memory given
+/// back to the system would have to be requested and cleared again.
 bool keep_freed_memory() { return mallopt(M_MMAP_THRESHOLD, 1 << 28) != 0 && mallopt(M_TRIM_THRESHOLD, 1 << 28) != 0; }
 
 }  // namespace
@@ -74,7 +74,7 @@ double VirtualCluster::chance() {
   return static_cast<double>(random_ >> 11) * 0x1p-53;
 }
 
-/// On the clock that all nodes share; whoever is behind it does not pause between frames.
+/// When the member's next step is due on the shared clock. A member that is late does not pause between frames.
 double VirtualCluster::due_s(const Member& member) const {
   const auto next = static_cast<double>(member.node->current_step() + 1);
   return std::max(next * rules_.aura.step_s + member.phase_s, member.free_s);

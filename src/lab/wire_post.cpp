@@ -10,7 +10,7 @@
 namespace aurasim::lab {
 namespace {
 
-/// No node is further than this behind the others: they wait for each other.
+/// Number of states whose messages are kept. Nodes wait for each other, so none is further behind.
 constexpr core::Step kStatesKept = 200;
 
 template <class Map>
@@ -51,8 +51,8 @@ class WirePost::Endpoint : public transport::Transport {
     }
   }
 
-  /// What travels in the network are envelopes; the bytes wait at the post. A step's messages leave together, when the
-  /// link has sent the last of them.
+  /// The network carries envelopes only; the bytes stay here. A step's messages leave together, when the link has sent
+  /// the last of them.
   void send(const core::Outbox& outbox) override {
     core::Outbox envelopes;
     envelopes.listeners = outbox.listeners;

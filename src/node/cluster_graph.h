@@ -1,4 +1,4 @@
-// Which bodies of a node hang together, and by what.
+// The cluster graph of a node: which of its bodies form clusters, and the links between them.
 #pragma once
 
 #include "core/cluster_graph.h"
@@ -6,7 +6,7 @@
 
 namespace aurasim::node {
 
-/// In the last state. The links are those that the protocol saw, before bodies were handed over.
+/// The cluster graph of the last state. Its links are those that the protocol saw before bodies were handed over.
 core::ClusterGraph cluster_graph_of(Node& node, core::Generation generation, std::uint64_t map_version);
 
 }  // namespace aurasim::node

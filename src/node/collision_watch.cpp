@@ -9,13 +9,13 @@
 namespace aurasim::node {
 namespace {
 
-/// Overlaps smaller than this are Bullet's own: contacts are made within its margins (metres).
+/// Overlaps below this many metres do not count: Bullet makes contacts within its margins.
 constexpr double kSlop = 0.02;
 
-/// For so many states after its birth, a body's overlaps are the scene's doing: it appeared there.
+/// Number of states after its birth in which a body's overlaps do not count, because the scene made it appear there.
 constexpr core::Step kYoungSteps = 2;
 
-/// Place of a body in a snapshot.
+/// Index of a body in a snapshot, if it is there.
 std::optional<std::uint32_t> index_of(const core::Snapshot& snapshot, core::BodyId id) {
   const auto found = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
                                       [](const core::BodyState& b, core::BodyId x) { return b.id < x; });
@@ -71,8 +71,9 @@ void CollisionWatch::judge(std::span<const physics::Collision> first_contacts, c
   }
 }
 
-/// Two that have been in one world for longer touch as in one world, however deep: what breaks or appears may put one
-/// into the other. Whoever has joined for the last state moved then at the latest, and is found in this one.
+/// True if the two bodies came into one world in this state or the one before. Bodies that have been in one world for
+/// longer collide as in a single world, however deep they overlap: a thing that breaks or appears may put one into the
+/// other. Bodies that joined for the last state are included, because Bullet may find their contact only in this state.
 bool CollisionWatch::met_here(const physics::Collision& c) const {
   const auto came = [&](const std::vector<Joined>& joined) {
     return (find(joined, c.a) || find(joined, c.b)) && !came_together({c.a, c.b}, joined);
@@ -111,21 +112,22 @@ const CollisionWatch::Joined* CollisionWatch::find(const std::vector<Joined>& jo
   return found != joined.end() && found->id == id ? &*found : nullptr;
 }
 
-/// They were in one world before: whatever is between them has been judged there.
+/// True if both bodies came in one hand-off. They were in one world before, where their contacts have been judged.
 bool CollisionWatch::came_together(const Pair& pair, const std::vector<Joined>& joined) {
   const Joined* const first = find(joined, pair.first);
   const Joined* const second = find(joined, pair.second);
   return first && second && first->source == second->source && first->stamp == second->stamp;
 }
 
-/// Who has left, and perhaps come back, may have been moved meanwhile.
+/// Forgets pairs of which a body has left, even if it has come back: it may have moved meanwhile.
 void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
   const auto stays = [&](core::BodyId id) { return index_of(snapshot, id) && !find(joined_, id); };
   std::erase_if(untouching_, [&](const Pair& pair) { return !stays(pair.first) || !stays(pair.second); });
 }
 
-/// Nothing if they touch, or if one moves: then Bullet looks at them in the next step. Whoever will be kicked counts as
-/// awake already, so it is the motion that tells.
+/// The overlap of two bodies that Bullet will not look at. Empty if they touch, or if one moves, because then Bullet
+/// checks them in the next step. Motion decides, not sleep: a sleeping body that will get an impulse already counts as
+/// awake.
 std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::uint32_t j,
                                                         const core::Snapshot& snapshot,
                                                         const core::InterestMatching& matching) const {
@@ -186,7 +188,8 @@ const core::Pose* CollisionWatch::remembered(core::Step step, core::BodyId id) c
   return nullptr;
 }
 
-/// Two that have not been seen to overlap for longer than an aura may be old are apart, and may meet again.
+/// Forgets pairs that have not been seen to overlap for longer than an aura may be old. They are apart and may meet
+/// again.
 void CollisionWatch::forget_separated(core::Step now) {
   std::erase_if(overlapping_,
                 [&](const auto& pair) { return now - pair.second > 2 * core::horizon::under_way(lookahead_); });

@@ -1,7 +1,7 @@
-// Late and missed collisions (docs/design.md, "What is counted"), as one node can see them.
-// Late: when two bodies have come to one host and touch in the first states that it computes of both, or come there
-// without touching, they already overlap by more than one step of their relative speed. Missed: two bodies of different
-// hosts overlap in the same state.
+// Late and missed collisions (docs/design.md, "What is counted"), as one node can see them. A collision is late when
+// two bodies come to one host, and in the first states that it computes of both they already overlap by more than one
+// step of their relative speed, with or without a contact. It is missed when two bodies of different hosts overlap in
+// the same state.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct SeenCollision {
 struct CollisionCounts {
   std::uint64_t late = 0;
   std::uint64_t missed = 0;
-  std::uint64_t unflagged = 0;  ///< of both, those that no violation explains
+  std::uint64_t unflagged = 0;  ///< late and missed collisions that no violation explains
 };
 
 class CollisionWatch {
@@ -39,7 +39,7 @@ class CollisionWatch {
   CollisionWatch(double step_s, double gravity_m_s2, int lookahead, const core::ClearanceQuery& clearance)
       : step_s_(step_s), gravity_m_s2_(gravity_m_s2), lookahead_(lookahead), clearance_(clearance) {}
 
-  /// Bodies of age less than a step: where they appear is the scene's doing.
+  /// Notes a body that has just been born. Its first overlaps are not counted, because the scene placed it there.
   void newborn(core::BodyId body, core::Step birth);
 
   /// A cluster has joined for the state that is being computed.
@@ -49,8 +49,9 @@ class CollisionWatch {
   void judge(std::span<const physics::Collision> first_contacts, core::Step last_violation,
              std::vector<SeenCollision>& out);
 
-  /// Judges overlaps without a contact of the bodies that have joined. Bullet makes none between two that sleep:
-  /// nothing would be seen until something wakes them, long after the promise was broken that let it come to this.
+  /// Judges overlaps without a contact of the bodies that have joined. Bullet makes no contact between two sleeping
+  /// bodies. Without this check the overlap would show only when something wakes them, long after the broken promise
+  /// that caused it.
   void judge_arrivals(const core::Snapshot& snapshot, const core::InterestMatching& matching, core::Step last_violation,
                       std::vector<SeenCollision>& out);
 
@@ -62,7 +63,7 @@ class CollisionWatch {
   std::uint64_t missed() const { return counts_.missed; }
   std::uint64_t unflagged() const { return counts_.unflagged; }
   const CollisionCounts& counts() const { return counts_; }
-  /// The run goes back to where so many had been counted.
+  /// Called when the run goes back to a cut: restores the counts of that cut.
   void put_back(const CollisionCounts& counts);
 
  private:
@@ -103,12 +104,12 @@ class CollisionWatch {
   double gravity_m_s2_;
   int lookahead_;
   const core::ClearanceQuery& clearance_;
-  std::vector<std::pair<core::BodyId, core::Step>> births_;  ///< ascending id, of those that are young or unborn
+  std::vector<std::pair<core::BodyId, core::Step>> births_;  ///< bodies that are young or not born yet, ascending id
   std::deque<State> states_;
-  std::map<Pair, core::Step> overlapping_;  ///< counted as missed, and the newest state in which they overlapped
-  std::vector<Joined> joined_;              ///< for the state that is computed; ascending id from judge() on
-  std::vector<Joined> joined_before_;       ///< for the state before
-  std::set<Pair> untouching_;               ///< overlap without a contact: judged before it comes
+  std::map<Pair, core::Step> overlapping_;  ///< pairs counted as missed, with the newest state in which they overlapped
+  std::vector<Joined> joined_;              ///< joined for the state being computed; ascending id from judge() on
+  std::vector<Joined> joined_before_;       ///< joined for the state before
+  std::set<Pair> untouching_;  ///< pairs that overlap without a contact; their contact is already judged when it comes
   CollisionCounts counts_;
 };
 

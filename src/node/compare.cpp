@@ -14,7 +14,7 @@ namespace {
 using Hashes = std::map<core::Step, Hex64>;
 using Poses = std::map<core::BodyId, core::Pose>;
 
-/// Half of a row is no state to compare.
+/// Throws if a file has broken rows, because half of a row is no state to compare.
 void refuse_broken(std::size_t rows, const std::filesystem::path& file) {
   if (rows > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), rows));
 }

@@ -10,8 +10,8 @@
 namespace aurasim::node {
 
 struct Comparison {
-  bool hashes_equal = false;  ///< of all steps that both have, and both have the same steps from `first_step` on
-  core::Step first_step = 0;  ///< of the one that begins later: it may go on from a saved world
+  bool hashes_equal = false;  ///< true if both reports have the same steps from `first_step` on, with equal hashes
+  core::Step first_step = 0;  ///< first step of the report that begins later, because it may go on from a saved world
   std::uint64_t steps_compared = 0;
   std::optional<core::Step> first_difference_step;
   std::uint64_t bodies_compared = 0;

@@ -1,5 +1,5 @@
-// Rows of comma-separated numbers and names under one header line, no quotes. What a row holds, and what its columns
-// are called, is said once, by its type:
+// Rows of comma-separated numbers and names under one header line, no quotes. The row's type defines its contents and
+// the names of its columns:
 //
 //   struct Birth {
 //     RegionId region{};
@@ -9,7 +9,7 @@
 //     }
 //   };
 //
-// It is written in that order, and read by name: in any order, beside columns that nobody asked for.
+// Columns are written in that order and read by name. A file may have them in any order, and may have further columns.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +37,8 @@ namespace aurasim::node {
 /// A number in 16 hexadecimal digits.
 enum class Hex64 : std::uint64_t {};
 
-/// `access`: a member, or a callable that takes a row. Of one that returns no reference the column is derived from the
-/// others: it is written, and not read.
+/// One column. `access` is a member, or a callable that takes a row. If the callable returns no reference, the column
+/// is derived from others: it is written but not read.
 template <class Access>
 struct Column {
   constexpr Column(std::string_view column_name, Access column_access, std::string_view cell_format = "{}")
@@ -46,7 +46,7 @@ struct Column {
 
   std::string_view name;
   Access access;
-  std::string_view format;  ///< of fmt
+  std::string_view format;  ///< format string of fmt
 };
 
 template <class Value>
@@ -62,13 +62,13 @@ void write_cell(std::string& out, const Value& value, std::string_view format) {
   }
 }
 
-/// An empty cell says that there is none.
+/// Writes an optional value; an empty cell means that there is none.
 template <class Value>
 void write_cell(std::string& out, const std::optional<Value>& value, std::string_view format) {
   if (value) write_cell(out, *value, format);
 }
 
-/// False if the cell says no such thing.
+/// Reads a cell into `value`. False if the cell is no such value.
 template <class Value>
 bool read_cell(std::string_view cell, Value& value) {
   if constexpr (std::same_as<Value, std::string_view> || std::same_as<Value, std::string>) {
@@ -127,11 +127,11 @@ inline void split_cells(std::string_view line, std::vector<std::string_view>& ce
   }
 }
 
-/// Where the columns of a row are in a file with this header.
+/// Reads rows of one type from the lines of a file, whose header tells the places of the columns.
 template <class Row>
 class CsvReader {
  public:
-  /// Throws std::runtime_error if the header lacks one.
+  /// Throws std::runtime_error if the header lacks a column that is read.
   CsvReader(std::string_view header, std::string_view file_name) {
     split_cells(header, cells_);
     width_ = cells_.size();
@@ -166,13 +166,13 @@ class CsvReader {
   }
 
   std::size_t width_ = 0;
-  std::vector<std::size_t> places_;  ///< by column of the row
+  std::vector<std::size_t> places_;  ///< place in the line, by column of the row
   std::vector<std::string_view> cells_;
 };
 
-/// Calls `visit(row)` for each complete line after the header, and returns how many of them were no such row. A file
-/// that is not there has no rows; a last line cut off by a crash is left out. Throws std::runtime_error if a column is
-/// missing.
+/// Calls `visit(row)` for each complete line after the header, and returns how many of these lines were no such row. A
+/// file that is not there has no rows; a last line cut off by a crash is left out. Throws std::runtime_error if a
+/// column is missing.
 template <class Row, class Visit>
 std::size_t read_csv(const std::filesystem::path& file, Visit&& visit) {
   std::ifstream in(file);
@@ -191,7 +191,7 @@ std::size_t read_csv(const std::filesystem::path& file, Visit&& visit) {
   return broken;
 }
 
-/// What a cell says as a number; 0 when it says none.
+/// Value of a cell as a number; 0 if the cell is no number.
 inline double number(std::string_view text) {
   double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);

@@ -19,8 +19,8 @@ std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
   return sum;
 }
 
-/// Whatever a hand-off names is in the scene by the time that it takes effect. If not, its source computes another
-/// world.
+/// True if the scene has all objects that a hand-off names. Every object is in the scene by the time that the hand-off
+/// takes effect. If one is missing, the sender computes another world.
 bool is_of_the_scene(const core::ClusterState& cluster, const core::Scene& scene) {
   const auto is_known = [&](core::ObjectRef object) {
     return object >= 0 || -(object + 1) < static_cast<core::ObjectRef>(scene.statics.size());
@@ -63,7 +63,8 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
   protocol_.emplace(setup.protocol, map, *clearance_);
 }
 
-/// Bodies that appear `birth_notice` steps after `state`: the owner of the place makes them known from now on.
+/// Announces the bodies that appear `birth_notice` steps after `state`. The owner of their place publishes them from
+/// now on.
 void Node::announce_births(core::Step state) {
   const core::Step birth = state + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
   announce_spawns(birth);
@@ -118,7 +119,7 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   transport_ = &transport;
   inbox_.clear();
   protocol_.emplace(setup_.protocol, map, *clearance_);
-  const bool hashes = std::exchange(setup_.hash_states, false);  // this state's has been reported
+  const bool hashes = std::exchange(setup_.hash_states, false);  // the hash of this state has been reported
   finish_state();
   setup_.hash_states = hashes;
   take_cut();
@@ -219,7 +220,8 @@ void Node::apply(const core::Changes& changes) {
   }
 }
 
-/// `nth` of those that join for the next state. After the last state they may be of a later one: they come as they are.
+/// Takes in a cluster, the `nth` of those that join for the next state. After the last state its stamp may be a later
+/// one; then it joins unchanged.
 void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
   world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
                [&](core::Step step, std::span<const core::BodyRecord> bodies) {
@@ -236,7 +238,7 @@ void Node::observe(bool states, bool contacts) {
   world_.watch_contacts(contacts);
 }
 
-/// Of the states that have just been reported, in their order.
+/// Adds the contacts of the made-up states that have just been reported, in the order of these states.
 void Node::note_made_up_contacts() {
   std::vector<physics::MadeUpContacts> contacts = world_.take_made_up_contacts();
   const std::size_t first = report_.made_up.size() - std::min(report_.made_up.size(), contacts.size());
@@ -259,7 +261,7 @@ std::vector<MadeUp> Node::foresee() {
   return states;
 }
 
-/// In deterministic mode state n needs what was sent in states up to n - K.
+/// In deterministic mode state n needs the messages sent in states up to n - K.
 bool Node::has_all_until(core::Step last) const {
   return protocol_->missing(last + setup_.protocol.aura.lookahead).empty();
 }
@@ -279,7 +281,7 @@ void Node::note_arrivals(const core::Adoption& adoption) {
   watch_.join(adoption);
 }
 
-/// The second half of a step: look at the state, publish, let go.
+/// The second half of a step: matches interest in the new state, publishes, and takes out the bodies that leave.
 void Node::finish_state() {
   const core::Snapshot* snapshot = nullptr;
   {
@@ -310,7 +312,8 @@ void Node::finish_state() {
   transport_->send(protocol_->outbox());
 }
 
-/// Where every state is checked, and computed again if need be, nothing is late or missed.
+/// Counts late and missed collisions. There are none in a run with redo, which checks every state and computes it again
+/// if needed.
 void Node::watch_collisions(const core::Snapshot& snapshot) {
   if (protocol_->computes_again()) {
     for (const physics::Collision& collision : world_.collisions()) report_.collisions.push_back({collision});
@@ -322,7 +325,7 @@ void Node::watch_collisions(const core::Snapshot& snapshot) {
   watch_.compare(snapshot, protocol_->matching(), last_violation, report_.collisions);
 }
 
-/// Bodies of both lists are in ascending order, and most are in both.
+/// Updates which bodies have had a contact since they came. Both lists are in ascending order and share most bodies.
 void Node::note_contacts(const core::Snapshot& snapshot) {
   std::swap(touched_, touched_before_);
   touched_.clear();

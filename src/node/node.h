@@ -1,6 +1,6 @@
-// One region's node: protocol, physics and mail, one step at a time (docs/design.md, "One step"). Knows no wall clock
-// but for measuring its own phases; the caller says when to step. The same class runs in a process over DDS and, many
-// at a time, inside a test in virtual time.
+// One region's node: protocol, physics and mail, one step at a time (docs/design.md, "One step"). It reads the wall
+// clock only to measure its own phases; the caller decides when to step. The same class runs in a process over DDS and,
+// many at a time, inside a test in virtual time.
 #pragma once
 
 #include <chrono>
@@ -27,9 +27,9 @@ namespace aurasim::node {
 /// What a node needs to go back to a state: a part of a consistent cut through the run (docs/design.md, "The cut").
 struct Cut {
   core::Step step = 0;
-  core::ClusterState bodies;            ///< hosted here, after those that left in this state
-  std::vector<core::Adoption> joining;  ///< sent here in this state or before, and not here yet
-  std::vector<core::Order> to_spawn;    ///< received so far, also after the cut
+  core::ClusterState bodies;            ///< hosted here; those that left in this state are taken out
+  std::vector<core::Adoption> joining;  ///< clusters sent here in this state or before that have not joined yet
+  std::vector<core::Order> to_spawn;    ///< spawn orders received so far, also those received after the cut
   std::vector<std::uint64_t> next_injection;
   core::RankClaimer claimer;
   CollisionCounts collisions;
@@ -39,7 +39,7 @@ struct NodeSetup {
   core::ProtocolSettings protocol;
   physics::Settings physics;
   core::ControlRules control;
-  std::vector<core::Setpoints> recorded;  ///< of an earlier run, to be heard in their states
+  std::vector<core::Setpoints> recorded;  ///< setpoints of an earlier run; each is received again in its state
   bool hash_states = true;
   PhaseClock clock = PhaseClock::kWall;
 };
@@ -49,17 +49,17 @@ struct HandOffRow {
   core::Step stamp = 0;   ///< state in which it left
   core::Step joined = 0;  ///< state in whose computation it takes part first; 0 in the sender's rows
   core::BodyId body{};
-  core::Epoch epoch = 0;  ///< the new one
+  core::Epoch epoch = 0;  ///< epoch after the change
   core::RegionId source{};
   core::RegionId destination{};
   core::HandOffReason reason{};
   bool reclaimed = false;
-  bool touched = false;  ///< it had a contact since its last change of host (sender's rows)
+  bool touched = false;  ///< the body had a contact since its last change of host (sender's rows)
 
   bool is_pull() const { return reason == core::HandOffReason::kAuraCollision; }
 };
 
-/// Has the state that a run goes on from been recorded, with all that joined it late?
+/// Whether the records already hold the state that a run goes on from, with all bodies that joined it late.
 enum class Recorded : std::uint8_t { kNo, kYes };
 
 /// A body's first host, and the state in which it exists first.
@@ -77,38 +77,39 @@ struct HashPart {
 struct Applied {
   std::uint64_t request = 0;
   core::Step step = 0;                    ///< the first state that shows the effect
-  std::optional<core::ObjectRef> object;  ///< the body that it has made
+  std::optional<core::ObjectRef> object;  ///< the body that the request has made
 };
 
-/// What has been in effect on bodies and joints hosted here, from a state on that each names: what has changed, and all
-/// that is in effect on those that have come. On those that have left nothing is, unless their next host says so.
+/// Setpoints in effect on bodies and joints hosted here. Each entry names the state from which on it holds. Listed are
+/// the changes, and for bodies that have arrived all that is in effect on them. An entry without a value ends a
+/// setpoint: each body that leaves gets one, and its next host reports anew what is in effect.
 struct Effects {
   std::vector<core::BodyEffect> bodies;
   std::vector<core::JointEffect> joints;
-  std::vector<core::StaticEffect> statics;  ///< told by the node that takes orders
+  std::vector<core::StaticEffect> statics;  ///< filled only by the node that takes orders
 };
 
 /// Seconds spent in the phases of one step, by NodeSetup::clock.
 struct Durations {
   double physics_s = 0;    ///< apply, step, snapshot, release
-  double protocol_s = 0;   ///< receive, observe
+  double protocol_s = 0;   ///< receiving messages, interest matching
   double transport_s = 0;  ///< take, decode, encode, send
-  double watch_s = 0;      ///< late and missed collisions, counts: for the report alone
-  double cut_s = 0;        ///< keeping the state, to be able to come back to it
+  double watch_s = 0;      ///< late and missed collisions, and counts; only the report needs them
+  double cut_s = 0;        ///< keeping a cut, so that a redo can go back to it
 };
 
-/// The mesh of this content, for this use, if the process has it.
+/// Returns the shape that a mesh reference names, or nothing if the process does not have that mesh.
 using MeshSource = std::function<std::optional<core::Shape>(const core::MeshRef&)>;
 
-/// A state that was made up for bodies that have joined late.
+/// A state computed again for bodies that joined late, which they had missed on their way.
 struct MadeUp {
   core::Step step = 0;
   std::vector<core::BodyRecord> bodies;        ///< ascending id
   std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
-  std::vector<core::BodyId> gone;              ///< of those that were handed over: taken out on the way. Ascending
+  std::vector<core::BodyId> gone;              ///< handed-over bodies that were removed before they joined; ascending
 };
 
-/// What one step did. Valid until the next.
+/// Result of one step. Valid until the next step.
 struct StepReport {
   core::Step step = 0;
   Durations durations;
@@ -119,111 +120,117 @@ struct StepReport {
   std::size_t largest_cluster = 0;
   std::vector<Birth> births;                ///< bodies that this node has announced or taken over at the start
   std::vector<physics::Removal> removals;   ///< bodies taken out, by orders or because they broke down
-  std::vector<core::Order> orders;          ///< received
+  std::vector<core::Order> orders;          ///< orders received in this step
   std::vector<Applied> applied;             ///< requests that were applied here
-  std::vector<physics::Declined> declined;  ///< and those that bodies here could not bear
+  std::vector<physics::Declined> declined;  ///< requests refused because a body here could not bear them
   Effects effects;
-  std::uint64_t unbearable = 0;  ///< setpoints that would have made a body faster than may be
+  std::uint64_t unbearable = 0;  ///< number of setpoints refused because a body would have become too fast
   std::vector<HandOffRow> departures;
-  std::vector<core::BodyRecord> departed;  ///< as `departures`: the states in which they left, old epochs
-  std::vector<core::BodyId> let_go;        ///< gave way to copies with higher epochs
+  std::vector<core::BodyRecord> departed;  ///< the bodies of `departures` as they left, with old epochs
+  std::vector<core::BodyId> let_go;        ///< bodies dropped here because another node hosts them under a higher epoch
   std::vector<HandOffRow> arrivals;
-  std::vector<MadeUp> made_up;  ///< while somebody observes
+  std::vector<MadeUp> made_up;  ///< filled only while somebody observes
   std::vector<SeenCollision> collisions;
-  std::vector<HashPart> hash;  ///< this state, and states made up for bodies that joined
+  std::vector<HashPart> hash;  ///< hash parts of this state, and of states made up for bodies that joined
   std::vector<core::Violation> violations;
   std::uint64_t violations_total = 0;            ///< since the start
-  std::optional<core::Step> put_back_from;       ///< the run has gone back to `step`
-  std::vector<core::TogetherPair> put_back_for;  ///< the pairs that come to one host in time now
+  std::optional<core::Step> put_back_from;       ///< set after a redo: the run has gone back from this state to `step`
+  std::vector<core::TogetherPair> put_back_for;  ///< pairs of the redo; they now come to one host in time
 };
 
-/// What a scene begins with, as a saved world: all that Node::start() knows by itself.
+/// The world in state 0 as a saved world: the scene's bodies, and the injected ones that are born before anybody could
+/// announce them. `step_s`: duration of a step in seconds.
 core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_s);
 
 class Node {
  public:
-  /// Map and transport outlive the node. The scene is copied: orders add to it.
+  /// `map` and `transport` must outlive the node. The scene is copied, because orders add to it.
   Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionMap& map, transport::Transport& transport);
 
   /// Takes the bodies of state 0 that are this region's and publishes them. Once, before anything else.
   const StepReport& start();
-  /// Instead: goes on from a saved world, of which every node of the run is given the whole. Throws
-  /// std::invalid_argument if it is none of this scene.
+  /// Starts from a saved world instead of state 0. Every node of the run is given the whole world and takes its part.
+  /// Throws std::invalid_argument if the world does not belong to this scene.
   const StepReport& start(core::WorldCut world, Recorded recorded = Recorded::kNo);
 
-  /// Takes in the mail. True when the next state may be computed.
+  /// Takes in the messages that have arrived. True when the next state may be computed.
   bool ready();
 
   /// Computes the next state, or goes back to an earlier one where the run is to be computed again. Only when ready().
   const StepReport& step();
-  /// The reports that can be relied on since the last step, in order: with AuraRules::redo those of states that nothing
-  /// can come to question any more, with the hashes of states that nothing can join any more; otherwise the last one.
-  /// Valid until the next step.
+  /// Reports that have become final with the last step, in order. Without AuraRules::redo this is the report of the
+  /// last step. With it, a report is final once no alarm can question its state any more, and a hash is once no body
+  /// can join its state any more. Valid until the next step.
   std::span<const StepReport> confirmed() const { return confirmed_; }
-  /// The run may end after state `last`, or change: finish() will need it.
+  /// Keeps state `last` for finish(), because the run may end or change after it.
   void keep(core::Step last);
-  /// No alarm can come to question this state any more. Reports follow later.
+  /// The newest confirmed state: no alarm can question it any more. Its report may be given out later.
   core::Step confirmed_step() const;
-  /// Once state `last` is confirmed, and the run is over: the reports up to it that have not been given out, and one
-  /// more of state `last` with what has joined it since. The world is that of state `last`, with all that was under
-  /// way, if keep() named it.
+  /// Ends the run. Precondition: state `last` is confirmed. Returns the reports up to `last` that have not been given
+  /// out, and one more of state `last` with what has joined it since. If keep() named `last`, the world is put back to
+  /// that state, with all bodies that were under way.
   std::span<const StepReport> finish(core::Step last);
-  /// finish() has taken in what was under way.
+  /// True once finish() has taken in the bodies that were under way.
   bool settled() const { return settled_; }
-  /// Somewhere a node has died: nothing can be computed again any more, and collisions are judged as without a redo.
+  /// To be called when a node of the run has died. From then on no state is computed again, and late and missed
+  /// collisions are counted as in a run without redo.
   void give_up_redo() { protocol_->give_up_alarms(); }
-  /// How often the run has gone back.
+  /// How many redos the run has had.
   std::uint32_t redos() const { return setup_.protocol.redo; }
 
-  /// This region's part of the world in state `step` is wanted, which has not been computed yet.
+  /// Asks for this region's part of the world in state `step`. A state that has been computed already is ignored.
   void save(core::Step step);
-  /// The parts that are complete: nothing can come to question them any more, and all that was under way is here.
+  /// Takes the parts asked for with save() that are complete: their state is confirmed, and everything that was under
+  /// way has arrived.
   std::vector<core::WorldCut> take_saved();
-  /// This region's part of the world in the present state, while the run stands; nothing: some of what was sent here up
-  /// to then has not come. A redo may still go back to before this state: then the part is of a world that was void.
+  /// This region's part of the world in the present state, for a run that is held. Empty while some message sent here
+  /// up to that state has not arrived. A redo may still go back to before this state; then the part belongs to a world
+  /// that no longer counts.
   std::optional<core::WorldCut> present_part() const;
-  /// What this node knows by now that a world saved in an earlier state does not: a part of it without bodies, with all
-  /// orders.
+  /// A part without bodies, with all orders that this node knows by now. It brings `earlier`, a saved world, up to
+  /// date.
   core::WorldCut orders_now(const core::WorldCut& earlier) const;
 
-  /// Orders the world to do something, as soon as all nodes can have received it, or in state `at_step` if that is
-  /// later. Only on the one node that takes orders.
+  /// Makes an order of `action`, the request of a client. It is executed as soon as all nodes can have received it, or
+  /// in state `at_step` if that is later. Only the one node that takes orders may call this.
   const core::Order& order(const core::Action& action, std::uint64_t request, core::Step at_step = 0);
-  /// What has become of a client's request, if it has been ordered, here or elsewhere: as far as is known here, and not
-  /// longer than orders are kept. Null: nothing is known. Not of orders about the run as a whole.
+  /// The order that a client's request has become, whichever node gave it. Null if no such order is known here, if it
+  /// is no longer kept, or if it concerns the run as a whole.
   const core::Order* ordered(std::uint64_t request) const;
   /// Sequence of the newest order that has changed the scene; 0: none.
   std::uint64_t newest_scene_order() const { return newest_scene_order_; }
-  /// A program's word. Takes effect wherever the bodies are by then. What it says of statics the node that takes orders
-  /// orders for all; where states are computed again if need be, the others expect it (core/static_moves.h).
+  /// Receives a program's setpoints. They are applied wherever the bodies are by then. For statics, the node that takes
+  /// orders makes an order for all nodes; in runs with redo the other nodes expect that order and go by it before it
+  /// comes (core/static_moves.h).
   core::Heard hear(const core::Setpoints& setpoints);
   void use_meshes(MeshSource source) { meshes_ = std::move(source); }
-  /// Whether somebody wants to know what late bodies have done before they came, and what presses on what. In the steps
-  /// from now on; it changes no bit.
+  /// From now on, reports contain what late bodies did before they joined (`states`) and the contact impulses
+  /// (`contacts`). The simulation itself stays the same to the bit.
   void observe(bool states, bool contacts);
-  /// As it has grown.
+  /// The scene with all that orders have added to it.
   const core::Scene& scene() const { return scene_; }
 
-  /// What bodies on their way here do up to the present state, whose hand-offs have come: they make it up when they
-  /// join, to the same bits. Changes nothing. By hand-off, each ascending by state.
+  /// States up to the present one of bodies whose hand-offs have arrived but that have not joined yet. When they join,
+  /// they make up the same states to the same bits. The world does not change. Grouped by hand-off, each group
+  /// ascending by state.
   std::vector<MadeUp> foresee();
-  /// How many hand-offs have come that do not take effect yet.
+  /// Number of hand-offs that have arrived but do not take effect yet.
   std::size_t hand_offs_to_come() const { return protocol_->intake().to_come().size(); }
-  /// Everything is here that others have sent to this node in states up to `last`.
+  /// True if everything that others sent to this node in states up to `last` has arrived.
   bool has_all_until(core::Step last) const;
 
-  /// After the last step: may what is still under way be taken in?
+  /// To be called after the last step. True when the bodies still under way may be taken in.
   bool ready_to_settle();
   /// Takes in the bodies that are still under way to this region, so that every state's hash is whole.
   const StepReport& settle();
 
-  /// Another map, in the state that has been computed. All bodies are where the new map wants them, and every node of
-  /// the run does the same. Map and transport outlive the node.
+  /// Changes to another map in the present state. Precondition: all bodies are where the new map wants them, and every
+  /// node of the run changes in the same state. `map` and `transport` must outlive the node.
   const StepReport& take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
                              transport::Transport& transport);
 
   core::RegionId region() const { return setup_.protocol.self; }
-  /// Of the last step.
+  /// Report of the last step.
   const StepReport& report() const { return report_; }
   core::Step current_step() const { return world_.step_number(); }
   const core::Protocol& protocol() const { return *protocol_; }
@@ -231,7 +238,7 @@ class Node {
   core::Protocol& protocol() { return *protocol_; }
   physics::RegionWorld& world() { return world_; }
   const CollisionWatch& collision_watch() const { return watch_; }
-  /// Messages of a later generation, for the node that takes over after a reset.
+  /// The inbox with messages of a later generation, for the node that takes over after a reset.
   core::Inbox& mail() { return inbox_; }
   void accept_early_mail(core::Inbox mail) { inbox_ = std::move(mail); }
 
@@ -306,12 +313,12 @@ class Node {
   const core::RegionMap* map_;
   transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
-  std::optional<core::Protocol> protocol_;  ///< always there; another one with another map
+  std::optional<core::Protocol> protocol_;  ///< never empty; replaced when the map changes
   physics::RegionWorld world_;
   CollisionWatch watch_;
   core::Inbox inbox_;
   std::vector<core::Order> to_spawn_;
-  std::vector<std::uint64_t> next_injection_;  ///< by injector: first index not yet announced
+  std::vector<std::uint64_t> next_injection_;  ///< per injector, the first index not yet announced
   struct Touch {
     core::BodyId id{};
     bool touched = false;  ///< had a contact since it came here
@@ -321,42 +328,42 @@ class Node {
   struct Saving {
     core::Step step = 0;
     std::optional<Cut> cut;
-    bool is_whole = false;    ///< what was under way has arrived
-    bool is_the_end = false;  ///< named by keep(): not for others
+    bool is_whole = false;    ///< the bodies that were under way have arrived
+    bool is_the_end = false;  ///< named by keep(); take_saved() does not hand it out
   };
   std::vector<Saving> saving_;
-  std::vector<core::Order> orders_;  ///< in sequence: for whoever goes on from a saved world
+  std::vector<core::Order> orders_;  ///< in sequence; a saved world contains them
   std::uint64_t newest_scene_order_ = 0;
-  std::size_t orders_kept_ = 1024;            ///< those among them that may not be forgotten, at most
-  std::size_t first_own_shape_ = 0;           ///< of the scene, beyond those of its file
-  std::optional<core::WorldCut> begun_with_;  ///< as long as a redo may come back to it
-  std::vector<core::BodyRecord> born_soon_;   ///< announced neither there nor later
+  std::size_t orders_kept_ = 1024;            ///< upper bound of those in orders_ that may not be forgotten
+  std::size_t first_own_shape_ = 0;           ///< index of the first shape that an order added to the scene's file
+  std::optional<core::WorldCut> begun_with_;  ///< kept as long as a redo may go back to it
+  std::vector<core::BodyRecord> born_soon_;   ///< bodies of begun_with_ announced neither in the saved world nor later
   bool settled_ = false;
   bool is_observed_ = false;
-  std::optional<core::Order> redo_;  ///< not yet due
-  bool redo_is_ordered_ = false;     ///< by us
-  bool is_changing_ = false;         ///< we have ordered what changes the run: what is ordered now would be lost
+  std::optional<core::Order> redo_;  ///< a redo that has been ordered and is not due yet
+  bool redo_is_ordered_ = false;     ///< this node has ordered redo_
+  bool is_changing_ = false;         ///< this node has ordered a change of the run; an order given now would be lost
   std::vector<core::StaticEffect> recorded_moves_;  ///< of setup_.recorded, ascending step
   std::size_t next_recorded_move_ = 0;
   core::Step moves_ordered_for_ = -1;  ///< the state in which we have ordered moves_ordered_
   std::size_t moves_ordered_ = 0;
   struct LateWord {
-    core::Step at_step = 0;  ///< that it named
-    core::Step heard = 0;    ///< the newest state by then
+    core::Step at_step = 0;  ///< the state that the setpoints named
+    core::Step heard = 0;    ///< the newest state when they were received
   };
   std::deque<LateWord> late_words_;  ///< the last ones
-  std::vector<core::Step> doubted_;  ///< states in which the run was put back since a static was elsewhere
-  core::Epoch first_epoch_ = 0;      ///< of bodies that are new
-  std::size_t stubborn_ = 0;         ///< redos in a row that have not brought a pair together
+  std::vector<core::Step> doubted_;  ///< states from which the run went back because a static was elsewhere
+  core::Epoch first_epoch_ = 0;      ///< epoch that new bodies get
+  std::size_t stubborn_ = 0;         ///< number of redos in a row that have not brought a pair together
   std::deque<StepReport> held_;      ///< not confirmed yet
   struct HeldHash {
-    core::Step told_in = 0;     ///< report
-    bool told_by_redo = false;  ///< of what has joined anew
+    core::Step told_in = 0;     ///< state of the report that had it
+    bool told_by_redo = false;  ///< a redo's report had it: bodies joined anew
     HashPart part;
   };
-  std::vector<HeldHash> hash_parts_;  ///< of states that may get more
+  std::vector<HeldHash> hash_parts_;  ///< hash parts of states that may get more parts
   core::Step released_ = -1;          ///< reports up to this one have been given out
-  core::Step hashed_ = -1;            ///< likewise, the hashes of states
+  core::Step hashed_ = -1;            ///< hashes of states up to this one have been given out
   std::vector<StepReport> confirmed_;
   double mail_s_ = 0;  ///< time spent with the mail since the last step
   StepReport report_;

@@ -1,4 +1,4 @@
-// What a node does with the setpoints of programs (core/control_log.h): hears them, and tells what they came to.
+// How a node receives setpoints of programs (core/control_log.h) and reports their effects.
 #include <algorithm>
 
 #include "core/horizon.h"
@@ -7,8 +7,8 @@
 namespace aurasim::node {
 namespace {
 
-/// States for which they are remembered: a run goes back no farther when a node has died, but for checkpoints that are
-/// farther apart.
+/// Number of states for which setpoints are kept. When a node has died, a run goes back no farther, unless checkpoints
+/// are farther apart.
 constexpr core::Step kRemembered = 600;
 
 constexpr std::size_t kMostLateWords = 256;
@@ -27,8 +27,9 @@ core::Heard Node::hear(const core::Setpoints& setpoints) {
   return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard);
 }
 
-/// States from `from` to `until` have been reported, and are computed again, perhaps on other hosts: who has heard a
-/// word that was for one of them at another time has another world then, and no alarm tells.
+/// To be called when the reported states from `from` to `until` are computed again, perhaps on other hosts. Setpoints
+/// for one of these states may have been received there at another time. That host then computes another world, and no
+/// alarm shows it, so such setpoints are reported as violations.
 void Node::note_late_words(core::Step from, core::Step until) {
   for (const LateWord& word : late_words_) {
     const bool matters = word.heard >= from && word.at_step <= until;
@@ -36,12 +37,12 @@ void Node::note_late_words(core::Step from, core::Step until) {
   }
 }
 
-/// It is here, and was in the state before.
+/// True if the body is hosted here, and was in the state before, too.
 bool Node::stays(core::BodyId id) const {
   return world_.contains(id) && std::ranges::find(report_.arrivals, id, &HandOffRow::body) == report_.arrivals.end();
 }
 
-/// What is new in the state that has been computed.
+/// Reports the setpoints that are new in the state that has just been computed.
 void Node::note_effects() {
   if (world_.controls().empty()) return;
   const bool all_stay = report_.removals.empty() && report_.arrivals.empty();
@@ -52,7 +53,7 @@ void Node::note_effects() {
   note_effects_on_arrivals();
 }
 
-/// What is new in the present state, which was computed before.
+/// Reports the setpoints that are new in the present state, after the run has gone back to it.
 void Node::note_effects_anew() {
   const core::ControlLog& controls = world_.controls();
   if (controls.empty()) return;
@@ -64,7 +65,8 @@ void Node::note_effects_anew() {
   note_effects_on_arrivals();
 }
 
-/// Whoever has come was told of in other states by others: all that has been in effect on it since then. And joints.
+/// Reports, for bodies that have arrived and for their joints, all that has been in effect since they left their former
+/// host. That host has reported the earlier states.
 void Node::note_effects_on_arrivals() {
   const core::ControlLog& controls = world_.controls();
   const core::Step n = current_step();
@@ -91,7 +93,8 @@ void Node::note_effects_on_arrivals() {
   }
 }
 
-/// Its next host may have heard less. Drives of joints go along.
+/// Reports that the setpoints of a leaving body end, because its next host may have received fewer of them. Drives of
+/// joints go with the body.
 void Node::note_left_behind(const core::ClusterState& cluster) {
   const core::ControlLog& controls = world_.controls();
   const core::Step n = current_step();

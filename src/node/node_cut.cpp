@@ -9,7 +9,7 @@
 namespace aurasim::node {
 namespace {
 
-/// What a saved world has to know of; what changes the run as a whole it has not to.
+/// True if a saved world has to contain the order. Orders that change the run as a whole are left out.
 bool is_kept(const core::Action& action) {
   return !core::changes_the_run(action) && !std::holds_alternative<core::Redo>(action) &&
          !std::holds_alternative<core::Save>(action);
@@ -21,7 +21,8 @@ void Node::save(core::Step step) {
   if (step > current_step()) saving_.push_back({step, {}, false, false});
 }
 
-/// Before the clusters for the next state are taken in: those that left before a state that is saved are among them.
+/// Notes which saved states are whole. To be called before the clusters for the next state are taken in, because some
+/// of them left before a saved state.
 void Node::note_arrived() {
   for (Saving& saving : saving_) {
     saving.is_whole =
@@ -35,7 +36,7 @@ void Node::save_if_due() {
   }
 }
 
-/// The orders of a saved world, and what they have made, are those that are known once it is complete.
+/// Makes a part of a saved world. It contains the orders known when the part is complete, and all that they have made.
 core::WorldCut Node::part_of_world(Cut cut) const {
   core::WorldCut part;
   part.step = cut.step;
@@ -60,8 +61,8 @@ core::WorldCut Node::orders_now(const core::WorldCut& earlier) const {
   return part;
 }
 
-/// Those that have changed the scene, and those for states later than `after`. What a mesh becomes is known once its
-/// order has been given out.
+/// Adds the orders that have changed the scene, and those for states later than `after`. The shape of a mesh is known
+/// once its order has been executed.
 void Node::add_orders(core::WorldCut& part, core::Step after) const {
   part.last_order = protocol_->last_order();
   part.setpoints = world_.controls().since(after);
@@ -101,20 +102,21 @@ std::vector<core::WorldCut> Node::take_saved() {
   return complete;
 }
 
-/// A request that defines a shape for its body is the order of the body.
+/// The newest order of a request counts: a request that first defines a shape for its body counts as the order of the
+/// body.
 const core::Order* Node::ordered(std::uint64_t request) const {
   const auto found = std::ranges::find(orders_.rbegin(), orders_.rend(), request, &core::Order::request);
   return request == 0 || found == orders_.rend() ? nullptr : &*found;
 }
 
-/// The next body's number follows from it.
+/// The newest order that makes a body. The number of the next body follows from it.
 const core::Order* Node::newest_spawn() const {
   const auto spawns = [](const core::Order& order) { return std::holds_alternative<core::Spawn>(order.action); };
   const auto newest = std::ranges::find_if(orders_.rbegin(), orders_.rend(), spawns);
   return newest == orders_.rend() ? nullptr : &*newest;
 }
 
-/// For worlds that are saved later.
+/// Keeps an order for worlds that are saved later.
 void Node::remember(const core::Order& order) {
   if (!is_kept(order.action)) return;
   orders_.push_back(order);

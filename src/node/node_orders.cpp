@@ -1,4 +1,4 @@
-// What clients have ordered: given a number and a state by the node that takes orders, and heeded by all.
+// Orders made from clients' requests. The node that takes orders gives each a number and a state; all nodes execute it.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -22,7 +22,7 @@ const core::Order& Node::give(core::Order order) {
   return protocol_->announce(std::move(order));
 }
 
-/// From where it is by then, after all that has been ordered.
+/// Fills in where a moved static starts: its place at that state, after all moves ordered so far.
 void Node::complete(core::Order& order) const {
   auto& move = std::get<core::MoveStatic>(order.action);
   core::StaticMoves moves = world_.moves().ordered(move.id);
@@ -36,7 +36,7 @@ void Node::complete(core::Order& order) const {
   move = plan.move;
 }
 
-/// What an order changes at once; the rest waits for its state.
+/// Applies the part of an order that takes effect at once. The rest waits for the state that the order names.
 void Node::heed(const core::Order& order) {
   report_.orders.push_back(order);
   remember(order);
@@ -58,7 +58,8 @@ void Node::heed(const core::Order& order) {
   }
 }
 
-/// As births from injectors, but in the state that the order names.
+/// Announces bodies that orders make. They are announced as births from injectors are, but in the state that the order
+/// names.
 void Node::announce_spawns(core::Step birth) {
   std::erase_if(to_spawn_, [&](const core::Order& order) {
     if (order.at_step > birth) return false;
@@ -66,7 +67,7 @@ void Node::announce_spawns(core::Step birth) {
     if (map_->owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
     core::BodyRecord record = record_of(spawn, order.at_step);
     record.epoch = first_epoch_;
-    world_.schedule(order);  // its shape may be new
+    world_.schedule(order);  // the body's shape may be new
     world_.add({&record, 1});
     watch_.newborn(record.id, record.birth);
     report_.births.push_back({record.id, record.birth});

@@ -12,7 +12,7 @@
 namespace aurasim::node {
 namespace {
 
-/// Cuts that are kept besides those that a redo needs at first: for pairs that one redo does not bring together.
+/// Number of older cuts that are kept for pairs that one redo does not bring together.
 constexpr std::size_t kOlderCuts = 4;
 
 constexpr std::size_t kMostCuts = 40;
@@ -28,7 +28,7 @@ core::Step Node::confirmed_step() const {
   return protocol_->alarms_given_up() ? protocol_->confirmed_but_for_alarms() : protocol_->confirmed();
 }
 
-/// Where nothing is computed again nobody goes back to it.
+/// Keeps a cut of the present state. Without redo no run goes back to a cut, so none is taken.
 void Node::take_cut() {
   if (!setup_.protocol.aura.redo) return;
   const Timed timed(report_.durations.cut_s, setup_.clock);
@@ -47,8 +47,8 @@ void Node::keep(core::Step last) {
   saving_.push_back({last, {}, false, true});
 }
 
-/// What is older than anything that a redo can still go back to. All nodes go back to the same state, so none may let
-/// go of it, or of the reports since, before all have.
+/// Drops the cuts that are older than any that a redo can still go back to. All nodes go back to the same state, so no
+/// node may drop its cut, or the reports since, before all have confirmed later states.
 void Node::forget_cuts() {
   if (!setup_.protocol.aura.redo) return;
   const core::Step oldest = cut_before(protocol_->confirmed() + 1, kOlderCuts).step;
@@ -57,7 +57,7 @@ void Node::forget_cuts() {
   if (protocol_->alarms_given_up() && cuts_.size() > kMostCuts) cuts_.pop_front();  // an alarm may stand for ever
 }
 
-/// The newest that leaves time enough to bring a pair together, or `farther` cuts before it.
+/// The newest cut early enough to bring a pair that touched in state `touch` to one host, or `farther` cuts before it.
 const Cut& Node::cut_before(core::Step touch, std::size_t farther) const {
   const core::Step wanted = touch - core::horizon::before_touch(setup_.protocol.aura.lookahead);
   std::size_t newest = 0;
@@ -65,7 +65,7 @@ const Cut& Node::cut_before(core::Step touch, std::size_t farther) const {
   return cuts_[newest - std::min(newest, farther)];
 }
 
-/// On the one node that gives orders.
+/// Orders a redo for the standing alarms. Does nothing except on the one node that takes orders.
 void Node::order_redo() {
   const std::span<const core::Alarm> alarms = protocol_->alarms().standing();
   if (!protocol_->intake().dead_regions().empty()) give_up_redo();
@@ -95,7 +95,8 @@ void Node::order_redo() {
   redo_is_ordered_ = true;
 }
 
-/// All nodes do so after the same state. What is under way is of the old redo, and dropped by whoever receives it.
+/// Goes back to the cut that redo_ names. All nodes do so after the same state. Messages under way belong to the old
+/// redo, and their receivers drop them.
 void Node::put_back() {
   const core::Step from = current_step();
   const core::Order order = *redo_;
@@ -110,7 +111,8 @@ void Node::put_back() {
   }
   Cut& cut = cuts_.back();
   setup_.protocol.together = redo.pairs;
-  // Epochs only ever grow, also for those who look on: more than anybody can have changed host since.
+  // Epochs must only grow, for observers too. `more` exceeds the number of times that any body can have changed host
+  // since.
   const auto more = static_cast<core::Epoch>(from - cut.step + 1);
   first_epoch_ += more;
   const auto raise = [&](core::ClusterState& cluster) {
@@ -154,8 +156,8 @@ void Node::go_back_to(const Cut& cut) {
   note_effects_anew();
 }
 
-/// Keeps a report until its state is confirmed. A redo may go back farther than to what has been confirmed: the same
-/// states are computed again, and have been reported.
+/// Keeps a report until its state is confirmed. A redo may go back to before a confirmed state. Such states are
+/// computed again, and not reported twice.
 void Node::hold(StepReport report) {
   if (!setup_.protocol.aura.redo) {
     confirmed_.push_back(std::move(report));
@@ -178,18 +180,18 @@ void Node::hold(StepReport report) {
 
 void Node::release_reports(core::Step until) {
   for (const Saving& saving : saving_) {
-    if (saving.is_the_end) until = std::min(until, saving.step);  // the run will not have been farther
+    if (saving.is_the_end) until = std::min(until, saving.step);  // the run ends with this state
   }
   while (!held_.empty() && held_.front().step <= until) {
     StepReport& report = confirmed_.emplace_back(std::move(held_.front()));
     held_.pop_front();
     released_ = std::max(released_, report.step);
-    // What joins last for a state does so K states later.
+    // The last bodies that join for a state do so K states later.
     release_hashes(released_ - setup_.protocol.aura.lookahead, report);
   }
 }
 
-/// Of states up to `until`, which are whole. Those that were computed again have been told.
+/// Gives out the hashes of states up to `until`, which nothing can join any more. Hashes given out before are left out.
 void Node::release_hashes(core::Step until, StepReport& report) {
   std::erase_if(hash_parts_, [&](const HeldHash& one) {
     if (one.part.step > until) return false;
@@ -207,7 +209,7 @@ std::span<const StepReport> Node::finish(core::Step last) {
   if (settled_) go_back_to(*end->cut);
   release_reports(last);
   std::erase_if(saving_, [](const Saving& saving) { return saving.is_the_end; });
-  // Who joined later has made up its part of the last states.
+  // Bodies that joined later have made up their part of the last states.
   StepReport rest;
   rest.step = last;
   for (const StepReport& later : held_) {
@@ -224,7 +226,7 @@ std::span<const StepReport> Node::finish(core::Step last) {
   return confirmed_;
 }
 
-/// There is no way back to before another map.
+/// Confirms all states, because no redo goes back to before a change of the map.
 void Node::confirm_all() {
   release_reports(current_step());
   cuts_.clear();

@@ -15,7 +15,7 @@ namespace {
   throw std::invalid_argument("the saved world does not fit the scene: " + what);
 }
 
-/// What an order names has to be there by then.
+/// Checks that everything that an order names exists when the order is executed.
 class OrderCheck {
  public:
   explicit OrderCheck(const core::Scene& scene)
@@ -73,7 +73,7 @@ const StepReport& Node::start() {
   return report_;
 }
 
-/// Bodies of state 0, and those born so soon after it that nobody could know of them in time.
+/// Takes the bodies of state 0, and those born so soon after it that they could not be announced in time.
 void Node::host_initial_bodies() {
   const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
   for (const core::Injector& injector : scene_.injectors) {
@@ -88,8 +88,8 @@ void Node::host_initial_bodies() {
   world_.add(ours);
 }
 
-/// Who hosts which of all bodies of the world; pairs that a redo brings together come to one host at once. Notes who
-/// has to listen to us.
+/// The host of each body of `all`, in the same order. Pairs that a redo brings together get one host at once. Also
+/// notes the regions that have to exchange batches with this one.
 std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
   for (const core::TogetherPair& pair : setup_.protocol.together) {
     const auto a = std::ranges::lower_bound(all.bodies, pair.a, {}, &core::BodyState::id);
@@ -122,7 +122,7 @@ core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_
   return world;
 }
 
-/// Those of state 0 that this node hosts.
+/// The bodies of the scene's first world that this node hosts.
 std::vector<core::BodyRecord> Node::initial_bodies() {
   const std::vector<core::BodyRecord> records =
       first_world(scene_, setup_.protocol.aura.lookahead, setup_.physics.step_s).bodies.bodies;
@@ -165,7 +165,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   return report_;
 }
 
-/// The scene grows as it had, and later states get what was ordered for them.
+/// Executes the orders of a saved world: the scene gets its additions again, and orders for later states are scheduled.
 void Node::heed_saved() {
   for (const core::Setpoints& said : begun_with_->setpoints) {
     const auto is_unknown = [&](const core::JointSetpoint& joint) {
@@ -207,13 +207,14 @@ void Node::heed_saved() {
   }
 }
 
-/// Who is born up to then is known in the first state, whatever lookahead the world was saved with.
+/// Bodies born up to the returned state are known in the first state, whatever lookahead the world was saved with.
 core::Step Node::births_known_at_start() const {
   const core::Step ours = begun_with_->step + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
   return std::max(ours, begun_with_->births_known);
 }
 
-/// What this region hosts of the saved world: it is put together whole, as if on one node, and taken apart by the map.
+/// The bodies of the saved world that this region hosts. The world is put together as if on one node, and then divided
+/// by the map.
 core::ClusterState Node::our_part() {
   world_.put_back(begun_with_->step, begun_with_->bodies);
   for (const core::UnderWay& one : begun_with_->under_way) world_.adopt(one.cluster, one.stamp);

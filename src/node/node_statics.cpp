@@ -1,6 +1,6 @@
-// How statics follow programs (docs/decisions/0030-a-word-before-its-order.md): the node that takes orders makes orders
-// of what it hears; the others go by what they hear themselves until the order is here, and compute again where it says
-// something else.
+// How statics follow the setpoints of programs (docs/decisions/0030-a-word-before-its-order.md). The node that takes
+// orders makes an order of each setpoint that it receives. The other nodes go by the setpoints that they receive
+// themselves until the order comes, and compute again if the order differs.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -12,15 +12,15 @@
 namespace aurasim::node {
 namespace {
 
-/// Orders of moves that one state brings, at most: every node repeats each of them.
+/// Maximum number of move orders given in one state. The limit exists because every node repeats each order.
 constexpr std::size_t kMostMovesInAState = 256;
 
-/// A run that had to go back so often within so many states, because nodes had not heard in time what was said of
-/// statics, waits for orders instead.
+/// A run that went back kMostDoubts times within kDoubtsWithin states, because setpoints of statics came late to some
+/// nodes, waits for orders instead.
 constexpr std::size_t kMostDoubts = 3;
 constexpr core::Step kDoubtsWithin = 1800;
 
-/// The same on every node.
+/// Request number of the order for a static's setpoint. It is the same on every node.
 std::uint64_t request_of(const core::Setpoints& said, core::StaticId id) {
   core::Fnv1a hash;
   for (const std::uint64_t part :
@@ -48,14 +48,15 @@ bool Node::can_go(std::span<const core::StaticSetpoint> statics) const {
   });
 }
 
-/// The live node of the lowest region.
+/// True if this node is the lead: the live node of the lowest region.
 bool Node::leads() const {
   const auto dead = protocol_->intake().dead_regions();
   return std::ranges::count_if(dead, [this](core::RegionId other) { return other < region(); }) ==
          static_cast<std::ptrdiff_t>(core::value_of(region()));
 }
 
-/// Whether all go by what they hear. Alone there is nobody to differ from.
+/// True if all nodes go by the setpoints that they receive. A node that is alone always does, because no other node can
+/// differ.
 bool Node::believes_programs() const {
   if (protocol_->round() == 0) return true;
   const auto lately =
@@ -91,7 +92,8 @@ const core::Order& Node::give_move(const core::StaticSetpoint& wanted, core::Ste
   return give(std::move(order));
 }
 
-/// Where nobody goes by what was heard, or no state was named, it takes the time of an order.
+/// Makes an order of a static's setpoint. If nodes do not go by received setpoints, or the setpoint names no state, the
+/// move waits until all nodes can have the order.
 core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
   const auto is_it = [request](const core::Order& order) { return order.request == request; };
   if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it))
@@ -106,7 +108,7 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
   return at_step != 0 && given.at_step > at_step ? core::Heard::kLate : core::Heard::kInTime;
 }
 
-/// All nodes know the record from the beginning; its orders tell those who look on.
+/// Expects the moves of the record, which all nodes know from the beginning. Their orders are given for observers.
 void Node::expect_recorded_moves() {
   std::ranges::stable_sort(recorded_moves_, {}, &core::StaticEffect::step);
   for (const core::StaticEffect& recorded : recorded_moves_) {
@@ -126,7 +128,7 @@ void Node::order_recorded_moves() {
   }
 }
 
-/// By now its order would be here.
+/// Gives up expected moves whose orders should have come by now.
 void Node::give_up_expected() {
   if (!protocol_->computes_again()) return;
   const core::Step next = current_step() + 1;
@@ -134,12 +136,12 @@ void Node::give_up_expected() {
   if (changed && *changed <= current_step()) doubt(*changed);
 }
 
-/// It has been computed with a static that was elsewhere than all will have it.
+/// Doubts state `step`: it was computed with a static in another place than the order puts it.
 void Node::doubt(core::Step step) {
   if (protocol_->computes_again()) protocol_->doubt(step);
 }
 
-/// For the record.
+/// Reports the moves of statics that begin after this state, for the record. Only the lead does so.
 void Node::note_moves() {
   if (!leads()) return;
   world_.moves().for_each_from(current_step(), [this](const core::MoveStatic& move) {

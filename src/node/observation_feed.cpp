@@ -16,7 +16,7 @@ bool wants(const Interest& interest, const BodyState& body) {
   return interest.wants(body.id, body.prototype, body.pose.p_WB);
 }
 
-/// Of which one end at least is wanted. `bodies`: both ends of each, ascending.
+/// Adds the contacts of which at least one body is wanted. `bodies`: contains both bodies of each contact, ascending.
 void add_contacts(const Interest& interest, const std::vector<BodyState>& bodies,
                   const std::vector<core::ContactImpulse>& contacts, Observation& to) {
   if (!interest.contacts) return;
@@ -61,7 +61,7 @@ void ObservationFeed::begin(core::Step step, const std::deque<core::HandOff>& un
 }
 
 void ObservationFeed::note(const StepReport& report, const std::deque<core::HandOff>& under_way) {
-  // Who joins for a step may leave in it.
+  // A body that joins for a step may leave in the same step, so arrivals come first.
   for (const HandOffRow& row : report.arrivals) {
     left_.erase(row.body);
     arrived_.insert_or_assign(row.body, report.step);
@@ -76,7 +76,7 @@ void ObservationFeed::note(const StepReport& report, const std::deque<core::Hand
     left_.insert_or_assign(body.id, Left{body, report.departures[i].destination, report.step});
     arrived_.erase(body.id);
   }
-  // Longer than the way takes: others, who are behind, still count on it.
+  // Entries are kept for longer than a message is under way, because nodes that are behind still refer to them.
   const core::Step old = report.step - 4 * settings_.lookahead - 8;
   std::erase_if(arrived_, [old](const auto& entry) { return entry.second < old; });
   std::unordered_set<BodyId> open;
@@ -99,7 +99,8 @@ Observation ObservationFeed::begin(const Interest& interest, core::Step stamp, s
   return observation;
 }
 
-/// Those that leave in a state are exactly known in it. Of others nobody can say here where they are by now.
+/// Adds bodies on their way from here. A body that leaves in this state is known exactly. Of one that left earlier,
+/// this node cannot know the present place, so it is marked stale.
 void ObservationFeed::add_left(const Interest& interest, const core::Snapshot& snapshot, Observation& to) const {
   for (const auto& [id, left] : left_) {
     if (left.body.birth > snapshot.step || core::find_body(snapshot.bodies, id) != nullptr) continue;
@@ -148,7 +149,7 @@ Observation ObservationFeed::compose(const Interest& interest, const core::Snaps
   std::ranges::sort(observation.bodies, {}, [](const ObservedBody& body) { return body.row.id; });
   std::ranges::sort(observation.outside);
   if (!interest.joints && !interest.contacts) return observation;
-  std::vector<BodyState> known;  // also those that have left in this very state
+  std::vector<BodyState> known;  // bodies hosted here, and those that have left in this very state
   std::ranges::copy_if(snapshot.bodies, std::back_inserter(known),
                        [&](const BodyState& body) { return body.birth <= snapshot.step; });
   for (const auto& [id, left] : left_) {

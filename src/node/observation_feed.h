@@ -1,5 +1,5 @@
-// What a node tells its observers (core/observation.h): in each state what each of them wants of what is hosted here,
-// or on its way from here. Knows neither clock nor wire.
+// Composes what a node publishes for its observers (core/observation.h): in each state, for each observer, the bodies
+// it wants among those hosted here or on their way from here. Uses neither clock nor network.
 #pragma once
 
 #include <cstdint>
@@ -26,23 +26,25 @@ struct FeedSettings {
 
 class ObservationFeed {
  public:
-  /// The scene outlives it; its joints are those of the beginning.
+  /// `scene` must outlive the feed. Only the joints that it has now are observed.
   ObservationFeed(const FeedSettings& settings, const core::Scene& scene);
 
-  /// After every step while somebody asks. `under_way`: hand-offs that nobody has acknowledged yet.
+  /// To be called after every step while somebody observes. `under_way`: hand-offs that have not been acknowledged yet.
   void note(const StepReport& report, const std::deque<core::HandOff>& under_way);
-  /// Nobody has asked until now, or the run has gone back: what was known of bodies under way is out of date.
+  /// To be called when the first observer comes, or when the run has gone back. Replaces what was known of bodies under
+  /// way, which is out of date then.
   void begin(core::Step step, const std::deque<core::HandOff>& under_way);
 
-  /// Of the state of `snapshot`, after the departures of its step, which note() has heard of. `contacts`: of the step.
+  /// Composes the observation of the state of `snapshot`, after the departures of its step. Precondition: note() has
+  /// been called for that step. `contacts`: the contact impulses of the step.
   core::Observation compose(const core::Interest& interest, const core::Snapshot& snapshot,
                             const std::vector<core::ContactImpulse>& contacts, std::uint32_t redo) const;
-  /// Of a state that was made up here for bodies that have joined late.
+  /// Composes the observation of a state that was made up here for bodies that have joined late.
   core::Observation compose(const core::Interest& interest, const MadeUp& state, std::uint32_t redo) const;
 
  private:
   struct Left {
-    core::BodyState body;  ///< as it left, under its new epoch
+    core::BodyState body;  ///< its state when it left, with its new epoch
     core::RegionId destination{};
     core::Step stamp = 0;
   };
@@ -62,9 +64,9 @@ class ObservationFeed {
   void remember(const core::HandOff& hand_off, core::Step stamp);
 
   FeedSettings settings_;
-  std::vector<Joint> joints_;  ///< those with one coordinate, ascending id
+  std::vector<Joint> joints_;  ///< joints with one coordinate, ascending id
   std::map<core::BodyId, Left> left_;
-  std::map<core::BodyId, core::Step> arrived_;  ///< or were taken out: accounted for here
+  std::map<core::BodyId, core::Step> arrived_;  ///< state in which a body came here or was removed here
 };
 
 }  // namespace aurasim::node

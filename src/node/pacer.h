@@ -1,6 +1,6 @@
-// When each step is due. All nodes share one epoch, so their steps are phase-aligned. The epoch is named by the wall
-// clock, which hosts have in common; from then on the steady clock keeps the pace, so that a wall clock that is set
-// makes no node run ahead or stand still. Time is passed in.
+// Computes when each step is due. All nodes share one epoch (a point in time), so their steps are phase-aligned. The
+// epoch is given in wall-clock time, which hosts have in common. From then on the steady clock keeps the pace, so that
+// setting the wall clock makes no node run ahead or wait. Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -20,27 +20,27 @@ Instant read_clocks();
 /// Nanoseconds since 1970.
 std::int64_t wall_clock_ns();
 
-/// Wall clocks that differ by less are held for one: an epoch is believed to the nanosecond, however long it was on its
-/// way. By more: it counts from the moment when it came.
+/// Wall clocks that differ by less than this are taken as equal: an epoch then holds to the nanosecond, however long
+/// its message was under way. If they differ by more, the epoch counts from the moment when the message came.
 inline constexpr std::chrono::milliseconds kClockTolerance{250};
 
 class Pacer {
  public:
-  /// `wait` false: every step is due at once.
+  /// `step_s`: duration of a step in seconds. With `wait` false every step is due at once.
   Pacer(double step_s, bool wait) : step_s_(step_s), wait_(wait) {}
 
   /// Step `first` is due at `epoch_ns` (wall clock, nanoseconds since 1970), the others follow. `clock_ahead`: how far
-  /// the wall clock of whoever named the epoch is ahead of ours.
+  /// the wall clock of the host that named the epoch is ahead of ours.
   void set_epoch(core::Step first, std::int64_t epoch_ns, std::chrono::nanoseconds clock_ahead, const Instant& now);
 
-  /// Step `step` is due at `epoch_ns`, those after it at so many simulated seconds per second.
+  /// Step `step` is due at `epoch_ns` (as in set_epoch()); later steps follow at `rate` simulated seconds per second.
   void set_rate(double rate, core::Step step, std::int64_t epoch_ns, std::chrono::nanoseconds clock_ahead,
                 const Instant& now);
   double rate() const { return rate_; }
 
-  /// When `step` is due, or was.
+  /// The time when `step` is due, which may be past.
   std::chrono::steady_clock::time_point due(core::Step step) const;
-  /// Time until `step` is due; 0 when it is.
+  /// Time until `step` is due; 0 if it is due already.
   std::chrono::nanoseconds until(core::Step step, const Instant& now) const;
 
  private:

@@ -4,10 +4,10 @@
 
 namespace aurasim::node {
 
-/// What the durations of a step count.
+/// The clock that measures the durations of a step.
 enum class PhaseClock : std::uint8_t {
-  kWall,       ///< what a frame takes
-  kThreadCpu,  ///< what the node's thread does, however busy the machine is
+  kWall,       ///< wall-clock time
+  kThreadCpu,  ///< CPU time of the node's thread, independent of how busy the machine is
 };
 
 }  // namespace aurasim::node

@@ -18,7 +18,7 @@ Standing Quorum::judge(const std::map<core::RegionId, PeerSign>& signs, std::chr
   lost_ = std::move(lost);
   if (lost_.empty()) return Standing::kGoOn;
 
-  // What came before the loss says nothing: it may have been on its way when the link was cut.
+  // Only messages received after the loss count. An earlier one may have been under way when the link was cut.
   std::set<core::RegionId> here = {self_};
   for (const auto& [region, sign] : signs) {
     if (members_.contains(region) && !sign.lost && sign.heard > lost_since_) here.insert(region);

@@ -1,6 +1,6 @@
-// May a node go on without those that have fallen silent? A host that is cut off sees the same as one whose neighbours
-// have all died; if it went on, there would be two worlds. So a node that has lost others goes on only with the
-// majority (docs/decisions/0012). Time is passed in.
+// Decides whether a node may go on after it has lost others. A host that is cut off sees the same as one whose
+// neighbours have all died; if it went on, there would be two worlds. So a node that has lost others goes on only with
+// the majority (docs/decisions/0012). Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -14,15 +14,15 @@ namespace aurasim::node {
 
 /// What is known of another region's node.
 struct PeerSign {
-  bool lost = false;  ///< its proof of life has ended
-  bool left = false;  ///< it has said that it ends
+  bool lost = false;  ///< its liveliness has ended
+  bool left = false;  ///< it has published that it ends
   std::chrono::steady_clock::time_point heard;
 };
 
 enum class Standing : std::uint8_t {
   kGoOn,
-  kWait,    ///< others were lost just now; not yet enough of the rest have been heard since
-  kCutOff,  ///< not the majority: this node has to stop
+  kWait,    ///< others were lost just now; too few of the rest have sent a message since then
+  kCutOff,  ///< this node is not with the majority and has to stop
 };
 
 class Quorum {
@@ -31,8 +31,8 @@ class Quorum {
   /// again, and until then the majority is one of all.
   Quorum(core::RegionId self, std::uint32_t regions);
 
-  /// Half of the members are enough for those among whom is the lowest member. A region without a sign counts as not
-  /// heard of. `now` never goes back.
+  /// Judges whether this node may go on. Exactly half of the members is enough if the lowest member is among them. A
+  /// region that is missing in `signs` counts as not received from. Precondition: `now` never goes back.
   Standing judge(const std::map<core::RegionId, PeerSign>& signs, std::chrono::steady_clock::time_point now);
 
   const std::set<core::RegionId>& members() const { return members_; }

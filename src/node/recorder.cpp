@@ -15,14 +15,15 @@ namespace {
 
 constexpr core::Step kFlushEvery = 60;
 constexpr std::size_t kLastWordBytes = 8 * 1024;
-constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max() / 2;  ///< no row of ours
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max() / 2;  ///< above the step of any row
 constexpr std::array<const char*, core::kViolationKinds> kKindNames = {"speed", "latency", "frame", "promise", "span"};
 
 const char* name_of(core::HandOffReason reason) {
   return reason == core::HandOffReason::kAuraCollision ? "aura_collision" : "boundary_traversal";
 }
 
-/// What a node that is killed leaves for a last word, with room for a longer one.
+/// Creates the region's folder with a node.json that says "died", as a killed node would leave it. It reserves room for
+/// the longer final node.json.
 std::filesystem::path make_folder(const std::filesystem::path& folder, core::RegionId region) {
   std::filesystem::create_directories(folder);
   const nlohmann::json died = {{"region", core::value_of(region)}, {"outcome", "died"}};
@@ -30,7 +31,7 @@ std::filesystem::path make_folder(const std::filesystem::path& folder, core::Reg
   return folder;
 }
 
-/// Rows of states up to `after`, by the column that says so; nothing: no rows at all.
+/// Keeps the rows of states up to `after`, which stand in column `column`. Without `after` no rows are kept.
 std::optional<RowFile::Keep> up_to(std::optional<core::Step> after, std::size_t column) {
   if (!after) return {};
   return RowFile::Keep{static_cast<std::uint64_t>(*after), [column](std::span<const std::string_view> cells) {
@@ -38,7 +39,7 @@ std::optional<RowFile::Keep> up_to(std::optional<core::Step> after, std::size_t 
                        }};
 }
 
-/// Who came is told by the state in which it took part first.
+/// As up_to(), for migrations.csv. For a body that came, the state in which it first took part counts.
 std::optional<RowFile::Keep> moves_up_to(std::optional<core::Step> after) {
   if (!after) return {};
   return RowFile::Keep{static_cast<std::uint64_t>(*after), [](std::span<const std::string_view> cells) {
@@ -76,7 +77,7 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region, s
 void Recorder::write(const StepReport& r, const FrameTimes& times) {
   if (r.put_back_from) return note_redo(r);
   if (end_) return;
-  if (r.step <= last_) return write_settling(r);  // what has come since
+  if (r.step <= last_) return write_settling(r);  // bodies that have joined since
   last_ = r.step;
   steps_.add("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", core::value_of(region_), r.step,
              times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s, 1e3 * r.durations.protocol_s,
@@ -91,13 +92,14 @@ void Recorder::write(const StepReport& r, const FrameTimes& times) {
   for (const physics::Removal& removal : r.removals) {
     removals_.add("{},{},{}\n", core::value_of(region_), core::value_of(removal.body), removal.step);
   }
-  // Rare, and nobody else knows of them.
+  // Births and removals are flushed at once: they are rare, and no other record has them.
   if (!r.births.empty() && !births_.flush()) end_records(births_);
   if (!r.removals.empty() && !removals_.flush()) end_records(removals_);
   if (r.step >= flushed_ + kFlushEvery) flush(r.step);
 }
 
-/// A state's hash comes in parts: what joins later has made up that state, too. The merge adds them up.
+/// Writes rows of a state that is recorded already. A state's hash comes in parts, because bodies that join later have
+/// made up that state, too. The merge adds the parts up.
 void Recorder::write_settling(const StepReport& report) {
   if (end_) return;
   write_hand_offs(report);
@@ -127,7 +129,7 @@ void Recorder::write_collisions(const StepReport& report) {
   }
 }
 
-/// The state has been recorded; what had joined later has joined anew.
+/// Notes a redo. The state is recorded already; the bodies that had joined later have joined anew.
 void Recorder::note_redo(const StepReport& report) {
   redos_.push_back({*report.put_back_from, report.step, report.put_back_for});
   write_settling(report);
@@ -149,7 +151,7 @@ void Recorder::flush(core::Step step) {
   flushed_ = step;
 }
 
-/// The run goes on without.
+/// Ends the records after a failed write. The run goes on without them.
 void Recorder::end_records(const RowFile& failed) {
   if (!end_) end_ = RecordsEnd{flushed_, failed.failure()};
 }

@@ -1,6 +1,6 @@
-// What one node leaves on disk: one folder per region, one CSV file per question. Written as the run goes, so that a
-// node that dies leaves what it had. The launcher merges the folders (report.h). A disk that is full ends the records,
-// not the run.
+// Writes the records of one node to disk: one folder per region, one CSV file per topic. Rows are written as the run
+// goes, so that a node that dies leaves what it had. The launcher merges the folders (report.h). A full disk ends the
+// records, not the run.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace aurasim::node {
 /// Wall-clock times of one step, milliseconds.
 struct FrameTimes {
   double frame_ms = 0;  ///< from the first thing done for the step to the last, without waiting
-  double wait_ms = 0;   ///< for neighbours
+  double wait_ms = 0;   ///< time spent waiting for neighbours
 };
 
 /// How a node's run ended.
@@ -25,8 +25,8 @@ struct Ending {
   double real_time_factor = 1;
   std::string outcome;
   std::vector<core::RegionId> dead_regions;
-  std::uint64_t sent_bytes = 0;            ///< to neighbours: auras, hand-offs, acknowledgements; without RTPS headers
-  std::uint64_t checkpoint_bytes = 0;      ///< parts of the world, to their keeper
+  std::uint64_t sent_bytes = 0;  ///< auras, hand-offs and acknowledgements sent to neighbours, without RTPS headers
+  std::uint64_t checkpoint_bytes = 0;      ///< parts of the world sent to their keeper
   std::uint64_t checkpoints_left_out = 0;  ///< parts for which the way to the keeper was too slow
 };
 
@@ -38,25 +38,25 @@ struct RecordsEnd {
 
 class Recorder {
  public:
-  /// Creates `folder`/region_<r>; throws std::runtime_error when that fails. With `after`: goes on with what is there,
-  /// of which what is told of later states than that one has not been.
+  /// Creates `folder`/region_<r>; throws std::runtime_error when that fails. With `after` it goes on with the files
+  /// that are there, and removes their rows of states later than `after`.
   Recorder(const std::filesystem::path& folder, core::RegionId region, std::optional<core::Step> after = {});
 
   void write(const StepReport& report, const FrameTimes& times);
 
-  /// Everything written so far is out of this process' hands.
+  /// Flushes everything written so far to the operating system, so that it survives the end of this process.
   void secure();
 
-  /// What came in after the last step.
+  /// Writes what came in after the last step.
   void write_settling(const StepReport& report);
 
-  /// The last word: who is here, who is on the way, all counters, and how fast it went.
+  /// Writes the end of the records: bodies hosted here, bodies under way, all counters, and the real-time factor.
   void finish(Node& node, const Ending& ending);
 
-  /// Nothing while all could be written.
+  /// Where and why the records ended early. Empty as long as everything could be written.
   const std::optional<RecordsEnd>& records_end() const { return end_; }
 
-  /// Another process records this region there now.
+  /// True if another process now records this region in the same folder.
   bool is_replaced() const { return hashes_.is_replaced(); }
 
   static std::filesystem::path region_folder(const std::filesystem::path& folder, core::RegionId region);
@@ -77,10 +77,10 @@ class Recorder {
   struct Redo {
     core::Step from = 0;
     core::Step to = 0;
-    std::vector<core::TogetherPair> pairs;  ///< that it was for, and those of earlier ones that still hold
+    std::vector<core::TogetherPair> pairs;  ///< pairs of this redo, and those of earlier redos that still hold
   };
   std::vector<Redo> redos_;
-  core::Step last_ = -1;  ///< state written
+  core::Step last_ = -1;  ///< newest state written
   core::Step flushed_ = 0;
   std::optional<RecordsEnd> end_;
 };

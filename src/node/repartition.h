@@ -1,6 +1,7 @@
-// How bodies find their new hosts when the run gets other regions. The world stands still in one state; every node has
-// taken in all bodies that were on their way to it. Each node tells all others what it hosts, all work out the same new
-// hosts, and each sends its bodies straight there, with all that physics remembers of them. No clock: the caller waits.
+// How bodies get to their new hosts when the run gets other regions. The world is held in one state, and every node has
+// taken in all bodies that were on their way to it. Each node publishes what it hosts. All nodes compute the same new
+// hosts, and each sends its bodies straight to them, with all that physics remembers of them. Uses no clock: the caller
+// waits.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +18,27 @@ namespace aurasim::node {
 
 struct RepartitionSettings {
   core::RegionId region{};
-  core::Generation census = 0;  ///< generation of the key frames that say who hosts what, and of the exchange
+  core::Generation census = 0;  ///< generation of the key frames that list each node's bodies, and of the exchange
   core::AuraRules aura;
-  const core::RegionMap* map = nullptr;  ///< the new one; outlives all that takes these settings
+  const core::RegionMap* map = nullptr;  ///< the new map; must outlive all objects that take these settings
 };
 
-/// A body and who hosts it.
+/// A body and its host.
 struct Resident {
   core::BodyState state;
   core::RegionId host{};
 };
 
-/// Who hosts what in state `step`, from the key frames of all regions.
+/// Collects the host of every body in state `step`, from the key frames of all regions.
 class Census {
  public:
   Census(const RepartitionSettings& settings, core::Step step);
 
   void accept(const core::Replica& replica);
   bool complete() const { return silent().empty(); }
-  /// Regions that have not published what they host.
+  /// Regions whose key frame has not arrived.
   std::vector<std::uint32_t> silent() const;
-  /// Ascending by body.
+  /// Takes all bodies with their hosts, ascending by body.
   std::vector<Resident> take();
 
  private:
@@ -48,23 +49,25 @@ class Census {
   std::vector<Resident> residents_;
 };
 
-/// Who leaves `node` for whom. The same answer on every node for the same residents.
+/// The bodies that have to leave `node`, with their new hosts. All nodes compute the same new hosts from the same
+/// residents.
 std::vector<core::Departure> find_new_hosts(const RepartitionSettings& settings, const std::vector<Resident>& residents,
                                             const Node& node);
 
-/// Every body goes straight to its new host.
+/// Sends every body straight to its new host, and receives those that others send here.
 class Exchange {
  public:
-  /// Takes the departures out of the world and sends them. `transport` reaches all regions, under the new map. Both
-  /// outlive this.
+  /// Takes the departing bodies out of the world of `node` and sends them. `transport` reaches all regions under the
+  /// new map. `transport` and `node` must outlive the exchange.
   Exchange(const RepartitionSettings& settings, const std::vector<core::Departure>& departures,
            transport::Transport& transport, Node& node);
 
-  /// Takes in the mail. True when every region has sent what it sends us.
+  /// Takes in the messages that have arrived. True when every region has sent all its bodies for this node.
   bool ready();
-  /// Regions that have not, ascending.
+  /// Regions that have not sent all their bodies for this node, ascending.
   std::vector<std::uint32_t> silent() const;
-  /// Once ready: adopts what has come. Returns the hand-offs, both ways, for the report.
+  /// Adopts the bodies that have come. Precondition: ready() was true. Returns the hand-offs in both directions, for
+  /// the report.
   std::vector<HandOffRow> finish();
 
  private:
@@ -74,7 +77,7 @@ class Exchange {
   transport::Transport& transport_;
   Node& node_;
   core::Inbox inbox_;
-  std::map<core::RegionId, bool> expects_;  ///< by region that has spoken: does it send us bodies?
+  std::map<core::RegionId, bool> expects_;  ///< by region that has sent: whether it sends bodies here
   std::map<core::RegionId, core::HandOff> came_;
   std::vector<HandOffRow> rows_;
 };

@@ -6,8 +6,8 @@
 namespace aurasim::node {
 namespace {
 
-// A body that has moved less than this since it was published last has not moved: far below what can be seen, far above
-// the jitter of a body at rest that has not fallen asleep yet.
+// A body that has moved less than this since it was last published counts as not moved. The values are far below what
+// can be seen, and far above the jitter of a body at rest that has not fallen asleep yet.
 constexpr double kStillM = 1e-4;
 constexpr float kStillQuaternion = 2e-4F;
 
@@ -34,7 +34,7 @@ void ReplicaFeed::note(const StepReport& report) {
     row.epoch = report.departures[i].epoch;
     left_.insert_or_assign(body.id, Left{row, body.birth});
   }
-  // Whoever has the higher epoch publishes it; here it is forgotten without a message.
+  // The host with the higher epoch publishes the body; this node forgets it without a message.
   for (const core::BodyId id : report.let_go) published_.erase(id);
 }
 
@@ -66,7 +66,7 @@ const core::Replica& ReplicaFeed::compose_changes(const core::Snapshot& snapshot
     changes_.bodies.push_back(core::replica_body(body, self_));
     const core::ReplicaBody& row = changes_.bodies.back();
     published_.insert_or_assign(body.id, Published{row.epoch, row.asleep, row.p_WB, row.q_WB});
-    left_.erase(body.id);  // it has come back
+    left_.erase(body.id);  // the body has come back
   }
   compose_departures();
   compose_removals(snapshot);
@@ -111,7 +111,7 @@ const core::Replica& ReplicaFeed::compose_key_frame(const core::Snapshot& snapsh
         all_.bodies.push_back(core::replica_body(core::state_of(body), hand_off.destination));
     }
   }
-  // A body that went out twice is on its way under the higher epoch.
+  // A body that left twice is on its way under the higher epoch.
   std::sort(all_.bodies.begin(), all_.bodies.end(), [](const core::ReplicaBody& a, const core::ReplicaBody& b) {
     return a.id != b.id ? a.id < b.id : a.epoch > b.epoch;
   });

@@ -1,5 +1,5 @@
-// What a node publishes for observers (core/replica.h): at each tick what has changed since the last one, and key
-// frames with everything. Knows neither clock nor wire.
+// Composes what a node publishes for observers (core/replica.h): at each tick the changes since the last tick, and key
+// frames with all bodies. Uses neither clock nor network.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,30 @@
 
 namespace aurasim::node {
 
-/// Steps between two ticks. Every node publishes the states whose number is a multiple of it, so an observer can put
-/// states of all regions together.
+/// Number of steps between two ticks; at least 1. Every node publishes the states whose number is a multiple of it, so
+/// an observer can put states of all regions together.
 core::Step tick_steps(double step_hz, double tick_hz);
 
 class ReplicaFeed {
  public:
   ReplicaFeed(core::RegionId self, core::Generation generation, std::uint64_t map_version);
 
-  /// After every step while somebody listens: who has left since the last tick.
+  /// To be called after every step while somebody receives replicas. Notes the bodies that have left since the last
+  /// tick.
   void note(const StepReport& report);
 
-  /// What has changed since the last tick, for a tick at `snapshot`, which is the state after the departures of its
-  /// step. Valid until the next call.
+  /// Composes the changes since the last tick. `snapshot`: the state of this tick, after the departures of its step.
+  /// The result is valid until the next call.
   const core::Replica& compose_changes(const core::Snapshot& snapshot);
 
-  /// Everything: the bodies of the same state, and those on their way from here. After compose_changes. Valid until the
-  /// next call.
+  /// Composes a key frame: all bodies of the same state, and those on their way from here. To be called after
+  /// compose_changes(). The result is valid until the next call.
   const core::Replica& compose_key_frame(const core::Snapshot& snapshot, const std::deque<core::HandOff>& under_way);
 
-  /// Something was published since the last key frame.
+  /// True if changes were published since the last key frame.
   bool changed_since_key_frame() const { return changed_since_key_frame_; }
 
-  /// Nobody listens any more: whoever comes next gets everything anew.
+  /// To be called when nobody receives replicas any more. The next receiver gets all bodies anew.
   void forget();
 
  private:
@@ -57,10 +58,10 @@ class ReplicaFeed {
   std::uint64_t sequence_ = 0;
   std::unordered_map<core::BodyId, Published> published_;
   struct Left {
-    core::ReplicaBody row;  ///< under the new epoch
-    core::Step birth = 0;   ///< published from then on
+    core::ReplicaBody row;  ///< the body under its new epoch
+    core::Step birth = 0;   ///< state from which on the body is published
   };
-  std::map<core::BodyId, Left> left_;  ///< since the last tick
+  std::map<core::BodyId, Left> left_;  ///< bodies that have left since the last tick
   core::Replica changes_;
   core::Replica all_;
   bool changed_since_key_frame_ = false;

@@ -23,20 +23,20 @@ namespace {
 using Json = nlohmann::json;
 using Cells = std::vector<std::string_view>;
 
-constexpr std::uint64_t kMostSteps = 1'000'000'000;  // of a run; a step beyond is a broken row
-constexpr std::size_t kSummaryBytes = 32 * 1024;     // with some to spare for many regions
+constexpr std::uint64_t kMostSteps = 1'000'000'000;  // upper bound of a run's steps; a row with a higher step is broken
+constexpr std::size_t kSummaryBytes = 32 * 1024;     // room reserved for summary.json, enough for many regions
 
-/// A change of host as the records tell it.
+/// A change of host, put together from the records.
 struct Move {
   std::uint64_t stamp = 0;
   std::uint64_t body = 0;
   std::uint64_t epoch = 0;
   std::uint64_t source = 0;
   std::uint64_t destination = 0;
-  bool pulled = false;  ///< by AC
+  bool pulled = false;  ///< the reason was an aura collision
   bool reclaimed = false;
   bool touched = true;
-  bool adopted = false;  ///< the destination has acknowledged
+  bool adopted = false;  ///< its arrival is recorded, too
 
   bool is_pull() const { return pulled; }
 };
@@ -45,7 +45,7 @@ std::filesystem::path of_region(const std::filesystem::path& folder, std::size_t
   return Recorder::region_folder(folder, core::RegionId{static_cast<std::uint32_t>(region)}) / name;
 }
 
-/// What a node wrote when it ended.
+/// node.json, which a node wrote when it ended.
 Json last_word_of(const std::filesystem::path& folder, std::size_t region) {
   std::ifstream in(of_region(folder, region, "node.json"));
   Json node = in ? Json::parse(in, nullptr, false) : Json();
@@ -90,21 +90,21 @@ class Merge {
     return static_cast<bool>(out.flush());
   }
 
-  /// Half a file would look like a whole one.
+  /// Removes a merged file for which there was no room, because half a file would look like a whole one.
   void give_up(const char* name) {
     std::error_code ignored;
     std::filesystem::remove(folder_ / name, ignored);
     accounts_.not_merged.emplace_back(name);
   }
 
-  /// The rows of all regions, whether or not there was room for a merged file.
+  /// Reads the rows of all regions, whether or not there was room for a merged file.
   template <class Row>
   void read_all(const char* name, Row&& row) const {
     for (std::size_t r = 0; r < facts_.regions; ++r) read_csv(of_region(folder_, r, name), row);
   }
 
   void read_moves() {
-    std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // by body and epoch: two reports of one move
+    std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // key: body and epoch
     read_all("migrations.csv", [&](const Cells& c) {
       if (c.size() != 11) return;
       Move& move = moves[{whole(c[4]), whole(c[5])}];
@@ -133,7 +133,7 @@ class Merge {
       read_csv(of_region(folder_, r, "removals.csv"), [&](const Cells& c) {
         if (c.size() == 3) removed_.insert(whole(c[1]));
       });
-      // What a fenced node believes to host has other hosts by now, or is written off.
+      // Bodies that a fenced node still records as its own have other hosts by now, or are written off.
       read_csv(of_region(folder_, r, "bodies.csv"), [&](const Cells& c) {
         if (c.size() != 12 || died(r)) return;
         const std::uint64_t body = whole(c[1]);
@@ -177,7 +177,7 @@ class Merge {
       std::uint64_t host = first;
       std::uint64_t epoch = 0;
       for (const Move& move : moves_[body]) {
-        // What a node had sent off but nobody adopted before it died has died with it.
+        // Bodies that a node had sent, but that no node adopted before it died, count as gone with it.
         const bool dropped = !move.adopted && died(move.source);
         if (move.epoch > epoch) host = dropped ? move.source : move.destination;
         epoch = std::max(epoch, move.epoch);
@@ -291,7 +291,7 @@ class Merge {
     }
   }
 
-  /// All nodes go back alike: one of them that has come to the end tells of all.
+  /// The redos of the run. All nodes go back alike, so the node that recorded most of them has them all.
   Json redos() const {
     Json most = Json::array();
     for (const Json& node : nodes_) {

@@ -1,4 +1,4 @@
-// The files of a report, row by row: written by the recorder of a node, merged and read by the launcher (report.h).
+// The rows of a report's files. The recorder of a node writes them; the launcher merges and reads them (report.h).
 // Units are in the names of the columns.
 #pragma once
 

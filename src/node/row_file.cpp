@@ -16,7 +16,7 @@
 namespace aurasim::node {
 namespace {
 
-/// False with errno when not all of it could be written.
+/// Writes all of `text`. False, with errno set, when not all of it could be written.
 bool write_all(int file, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = ::write(file, text.data() + done, text.size() - done);
@@ -37,7 +37,7 @@ std::uint64_t state_of(const std::string& row, const RowFile::Keep& keep) {
   return keep.state_of(cells);
 }
 
-/// How many bytes from the first on are rows that all stay, with the header: at least that.
+/// A lower bound, in bytes, of the beginning of the file whose rows all stay; it includes the header.
 std::int64_t bytes_that_stay(std::ifstream& in, std::int64_t size, const RowFile::Keep& keep) {
   std::string line;
   if (!std::getline(in, line) || in.eof()) return 0;
@@ -53,7 +53,7 @@ std::int64_t bytes_that_stay(std::ifstream& in, std::int64_t size, const RowFile
   return rows;
 }
 
-/// Makes `fresh` of the part of `file` that stays as it is; returns the rest of the rows that stay.
+/// Copies the beginning of `file` that stays as it is into `fresh`. Returns the other rows that stay.
 std::string copy_what_stays(const std::filesystem::path& file, const std::filesystem::path& fresh,
                             const std::string& header, const RowFile::Keep& keep) {
   std::ifstream in(file, std::ios::binary);
@@ -79,7 +79,7 @@ std::string copy_what_stays(const std::filesystem::path& file, const std::filesy
 
 RowFile::RowFile(const std::filesystem::path& file, const std::string& header, const std::optional<Keep>& keep)
     : path_(file), buffer_(header) {
-  // Whoever is killed meanwhile leaves the old file.
+  // The new file gets its name only when complete, so a process that is killed meanwhile leaves the old file.
   std::filesystem::path fresh = file;
   if (keep) {
     fresh += ".new";
@@ -105,7 +105,7 @@ bool RowFile::flush() {
     whole_ += static_cast<std::int64_t>(buffer_.size());
   } else {
     failure_ = cannot_write(path_);
-    // A row that is cut off would be read as another one.
+    // Cuts the file after its last whole row, because a row that is cut off would be read as another row.
     if (::ftruncate(file_, whole_) != 0) failure_ += " (and its last row may be cut off)";
   }
   buffer_.clear();

@@ -1,4 +1,5 @@
-// A file of rows that survives a full disk: what it holds are whole rows, and the first failed write is the last.
+// A file of rows that survives a full disk: it holds whole rows only, and after the first failed write it writes
+// nothing.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +16,36 @@ namespace aurasim::node {
 
 class RowFile {
  public:
-  /// Which rows of a file stay: those of states up to `last`.
+  /// Selects the rows of an existing file that are kept: those of states up to `last`.
   struct Keep {
     std::uint64_t last = 0;
-    /// Which state a row is of, by its cells. Rows are in the order of their states, but for some that came late.
+    /// Returns the state that a row belongs to, from its cells. Rows are in the order of their states, except that some
+    /// come late (kLatest).
     std::function<std::uint64_t(std::span<const std::string_view> cells)> state_of;
   };
-  /// A row does not come later than this many states after its own.
+  /// Number of states by which a row may come late.
   static constexpr std::uint64_t kLatest = 3600;
 
-  /// An empty file with one header line; with `keep` those rows that are there already and are to stay. A long file is
-  /// neither read nor held as a whole. Throws std::runtime_error when there can be none.
+  /// Creates a file with one header line. With `keep` it keeps the rows of an existing file that `keep` selects. A long
+  /// file is neither read nor held as a whole. Throws std::runtime_error when the file cannot be created.
   RowFile(const std::filesystem::path& file, const std::string& header, const std::optional<Keep>& keep = {});
   ~RowFile();
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 
-  /// One row, newline included. It reaches the disk with the next flush, or when many have come together.
+  /// Adds one row; `row` includes the newline. The row is written with the next flush, or when kBuffered bytes have
+  /// gathered.
   template <class... Values>
   void add(fmt::format_string<Values...> row, Values&&... values) {
     fmt::format_to(std::back_inserter(buffer_), row, std::forward<Values>(values)...);
     if (buffer_.size() > kBuffered) flush();
   }
 
-  /// False when a write has failed, now or earlier; then nothing is written any more.
+  /// Writes the buffered rows. False when a write has failed, now or earlier; after a failure nothing more is written.
   bool flush();
-  /// Another process has begun a file in its place: nobody will read this one.
+  /// True if another process has begun a file under the same name, so that nobody will read this one.
   bool is_replaced() const;
-  /// Why it failed, for people; empty while it has not.
+  /// Why a write failed, as text for users. Empty while no write has failed.
   const std::string& failure() const { return failure_; }
 
  private:
@@ -51,14 +54,14 @@ class RowFile {
   std::filesystem::path path_;
   int file_ = -1;
   std::string buffer_;
-  std::int64_t whole_ = 0;  ///< bytes that hold whole rows
+  std::int64_t whole_ = 0;  ///< length of the file that holds whole rows, in bytes
   std::string failure_;
 };
 
-/// Writes a file of which `reserve` has kept the blocks. False when that fails.
+/// Writes `text` into a file whose blocks reserve() has kept. False when that fails.
 bool overwrite(const std::filesystem::path& file, const std::string& text);
-/// A file of `text` and enough blanks after it that `overwrite` has room on a disk that is full by then. Throws
-/// std::runtime_error when there can be none.
+/// Writes `text` followed by blanks, `bytes` in all, so that overwrite() has room even on a full disk. Throws
+/// std::runtime_error when the file cannot be written.
 void reserve(const std::filesystem::path& file, const std::string& text, std::size_t bytes);
 
 }  // namespace aurasim::node

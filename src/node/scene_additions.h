@@ -1,5 +1,5 @@
-// A scene that orders add to: the same additions in the same sequence on every node, so that an index means the same
-// thing everywhere.
+// Additions that orders make to the scene. Every node makes the same additions in the same sequence, so that an index
+// means the same thing on every node.
 #pragma once
 
 #include <functional>
@@ -15,10 +15,10 @@ namespace aurasim::node {
 void extend(core::Scene& scene, const core::Action& action,
             const std::function<std::optional<core::Shape>(const core::MeshRef&)>& meshes);
 
-/// The body that an order makes, epoch 0.
+/// The body that an order makes. `birth`: the state in which it exists first. Its epoch is 0.
 core::BodyRecord record_of(const core::Spawn& spawn, core::Step birth);
 
-/// Does it add to what observers have to know of the scene, take from it, or move it?
+/// True if the action adds, removes or moves something that observers have to know of the scene.
 bool changes_scene(const core::Action& action);
 
 }  // namespace aurasim::node

@@ -46,7 +46,7 @@ std::optional<double> finite_or_infinite(std::string_view cell) {
   return value;
 }
 
-/// Of two for one state what says something comes last.
+/// Sequence number of a recorded setpoint. Of two for one state, the one with a value comes last and so counts.
 std::uint64_t sequence_of(bool says_something) { return says_something ? 2 : 1; }
 
 std::optional<core::BodyEffect> body_effect(std::string_view what, core::Step step, std::uint64_t id,
@@ -74,7 +74,7 @@ std::optional<core::StaticEffect> static_effect(core::Step step, std::uint64_t i
   return core::is_sound(wanted) ? std::optional(core::StaticEffect{step, wanted}) : std::nullopt;
 }
 
-/// Nothing: no row of setpoints.
+/// Reads one row. Nothing is returned if it is no row of setpoints.
 std::optional<core::Setpoints> read_row(std::span<const std::string_view> cells) {
   if (cells.size() != kColumns) return {};
   const auto step = finite_or_infinite(cells[1]), id = finite_or_infinite(cells[3]);
@@ -146,7 +146,7 @@ std::vector<core::Setpoints> read_setpoints(const std::filesystem::path& file) {
   if (!std::getline(in, line) || line + '\n' != kSetpointsHeader) {
     throw std::runtime_error(fmt::format("{}: this is no record of setpoints", file.string()));
   }
-  std::map<std::pair<core::Step, std::uint64_t>, core::Setpoints> of_state;  // what counts for one comes in one message
+  std::map<std::pair<core::Step, std::uint64_t>, core::Setpoints> of_state;  // one message per state and sequence
   std::vector<std::string_view> cells;
   for (std::size_t number_of_line = 2; std::getline(in, line); ++number_of_line) {
     split_cells(line, cells);

@@ -13,7 +13,7 @@ inline double now_s(PhaseClock clock) {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Adds the time between its construction and its end to a duration.
+/// Adds the time between its construction and its destruction to `seconds`.
 class Timed {
  public:
   Timed(double& seconds, PhaseClock clock) : seconds_(seconds), clock_(clock), begin_s_(now_s(clock)) {}

@@ -35,13 +35,13 @@ Message failure(Kind kind, const std::string& what) { return {{{"error", name_of
 
 std::string lines_of(const config::BadConfig& bad) { return fmt::format("{}", fmt::join(bad.errors(), "\n")); }
 
-/// What follows `aurasim launch`.
+/// Arguments for `aurasim launch`.
 std::vector<std::string> launch_words(const json& asked, const std::string& file) {
   std::vector<std::string> words = {file, "--headless"};
   for (const std::string& change : asked.value("set", std::vector<std::string>{})) {
     words.insert(words.end(), {"--set", change});
   }
-  // The program that asks for the run ends it, too, and can save it: a site that goes down takes both.
+  // No states are kept on disk: the client ends the run and can save it, and a crash of the host ends both.
   words.insert(words.begin() + 2, {"--set", "survival.disk=off"});
   for (const char* option : {"as", "load", "report", "saves"}) {
     if (const std::string value = asked.value(option, ""); !value.empty()) {
@@ -76,7 +76,7 @@ void Agent::look() {
   try {
     if (run_) run_->turn(0ms);
   } catch (const Problem&) {
-    // It is told when somebody asks.
+    // The error is reported with the next request.
   }
 }
 
@@ -86,11 +86,11 @@ void Agent::reply(const Message& question) {
     said.head["request"] = question.head.value("request", std::uint64_t{0});
     client::write_message(socket_, said);
   } catch (const Abandoned&) {
-    // Nobody waits for it any more.
+    // The client does not wait for the answer any more.
   }
 }
 
-/// Whatever goes wrong is told.
+/// Answers a question. Every exception becomes an answer with the error.
 Message Agent::answer(const Message& question, const Patience& patience) {
   try {
     const json& asked = question.head;
@@ -187,7 +187,8 @@ json Agent::open(const json& asked, const Patience& patience) {
   return {{"version", version_and_commit()}, {"launcher", launches ? run_->launched()->pid() : 0}};
 }
 
-/// No node can be told to wait before it has begun. In a pause the run begins anew, and stands in its first state.
+/// Begins a launched run paused. No node can be paused before it has begun, so the run is paused and reset, and stays
+/// in its first state.
 void Agent::begin_paused(const Patience& patience) {
   run_->pause(patience);
   run_->steer(Steer::kReset, patience);

@@ -1,4 +1,4 @@
-// The process behind a client library (docs/client.md): speaks DDS for it, and ends with it.
+// The process behind a client library (docs/client.md): uses DDS on behalf of the client, and ends with it.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@ namespace aurasim::cli::agent {
 
 class Agent {
  public:
-  /// `socket`: to the client.
+  /// `socket`: connection to the client.
   explicit Agent(int socket) : socket_(socket) {}
 
-  /// Answers until the client says that it closes, or has gone. Then nothing of what was launched runs any more, or it
-  /// is about to end.
+  /// Answers requests until the client closes or has gone. A run that the client has launched has ended by then, or is
+  /// about to.
   void serve();
 
  private:

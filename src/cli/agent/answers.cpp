@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// One column of all bodies, behind those before it.
+/// Appends one column of all bodies.
 template <class T, class Values>
 void add_column(std::string& bytes, const std::vector<WorldBody>& bodies, const Values& values_of) {
   for (const WorldBody& body : bodies) {

@@ -1,4 +1,4 @@
-// What a client is told, as JSON and bytes; client/answers.cpp reads it.
+// Answers to a client, as JSON and bytes. client/answers.cpp reads them.
 #pragma once
 
 #include "cli/agent/run_link.h"
@@ -9,12 +9,12 @@ namespace aurasim::cli::agent {
 client::Message state_message(const WorldState& state, double step_s);
 nlohmann::json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes);
 nlohmann::json info_json(const RunLink& run);
-/// Of anything but a ray or a saved world; with a key `refused` if it is not done. Throws Problem if nobody has said
-/// why it is not.
+/// Answer for any command but a ray or a save. It has a key `refused` if the command was not executed. Throws Problem
+/// if no reply says why.
 nlohmann::json act_json(const Delivery& delivery);
-/// Throw Problem if it is not done.
+/// Answers for rays and saves. Throw Problem if the command was not executed.
 nlohmann::json ray_json(const Delivery& delivery);
-/// Makes one file of its parts, beside them.
+/// Also joins the parts into one file in their folder.
 nlohmann::json save_json(const Delivery& delivery, const std::string& name);
 
 }  // namespace aurasim::cli::agent

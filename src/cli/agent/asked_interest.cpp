@@ -81,7 +81,7 @@ core::Interest selection_of(const json& asked, const core::Scene& scene) {
   selection.joints = asked.value("joints", false);
   const json bodies = asked.value("bodies", json::array()), boxes = asked.value("boxes", json::array());
   check_count(bodies.size(), core::kMostWantedBodies, "bodies");
-  check_count(boxes.size(), core::kMostWantedBoxes / 2, "boxes");  // sensors have some, too
+  check_count(boxes.size(), core::kMostWantedBoxes / 2, "boxes");  // half of the boxes, because sensors need some, too
   for (const json& id : bodies) selection.bodies.push_back(core::BodyId{id.get<std::uint64_t>()});
   for (const std::string& pattern : asked.value("patterns", std::vector<std::string>{})) {
     add_prototypes(pattern, scene, selection.prototypes);

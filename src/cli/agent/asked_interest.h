@@ -1,4 +1,4 @@
-// What a client wants to observe, from JSON.
+// Reads from JSON what a client wants to observe.
 #pragma once
 
 #include <vector>
@@ -12,13 +12,13 @@
 namespace aurasim::cli::agent {
 
 struct AskedInterest {
-  core::Interest selection;  ///< of bodies; client and sequence are not filled in
+  core::Interest selection;  ///< interest in bodies; client and sequence are not filled in
   std::vector<FanSpec> fans;
   std::vector<TriggerSpec> triggers;
 };
 
 inline constexpr std::size_t kMostFans = 16;
-inline constexpr std::size_t kMostRays = 100'000;  ///< of a fan
+inline constexpr std::size_t kMostRays = 100'000;  ///< rays of one fan
 inline constexpr std::size_t kMostTriggers = 64;
 inline constexpr double kFarthestRay_m = 1e4;
 

@@ -20,7 +20,7 @@ using nlohmann::json;
   throw Problem(Kind::kRefused, fmt::format("{}: found {}, allowed: {}", key, found.dump(), allowed));
 }
 
-/// NaN and infinity have come as null.
+/// True for a list of `size` numbers. NaN and infinity arrive as null and are refused.
 bool is_list(const json& found, std::size_t size) {
   return found.is_array() && found.size() == size &&
          std::all_of(found.begin(), found.end(), [](const json& number) { return number.is_number(); });

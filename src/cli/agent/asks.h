@@ -1,4 +1,4 @@
-// What clients ask of a world, from JSON.
+// Reads clients' commands from JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,16 +8,16 @@
 
 namespace aurasim::cli::agent {
 
-/// Gives meshes to the nodes. Throws Problem (kRefused) with what is wrong.
+/// The command in `json`; also sends its meshes to the nodes. Throws Problem (kRefused) with the error.
 core::Ask ask_of(const nlohmann::json& json, const core::Scene& scene, CommandClient& client);
 
-/// "static": its number, or the name that the scene gives it. Throws Problem.
+/// The static that key "static" gives by number or by its name in the scene. Throws Problem.
 core::StaticId static_of(const nlohmann::json& json, const core::Scene& scene);
-/// "p", m, and "q", a quaternion w x y z of any length. Throws Problem.
+/// The pose in keys "p" (metres) and "q" (a quaternion w x y z of any length). Throws Problem.
 core::Pose pose_of(const nlohmann::json& json);
-/// "name", of a saved world. Throws Problem.
+/// The name of a saved world in key "name". Throws Problem.
 std::string save_name_of(const nlohmann::json& json);
-/// Three numbers, all finite. Throws Problem.
+/// Three finite numbers in key `key`. Throws Problem.
 core::Vec3 vector_of(const nlohmann::json& json, const char* key);
 
 }  // namespace aurasim::cli::agent

@@ -6,7 +6,7 @@
 namespace aurasim::cli::agent {
 namespace {
 
-/// Of what was asked for, so much is remembered: far more than is under way.
+/// Number of interests remembered; far more than can be under way.
 constexpr std::size_t kMostAsked = 256;
 constexpr double kLeastMargin_m = 2;
 constexpr double kMarginOfReach = 0.25;

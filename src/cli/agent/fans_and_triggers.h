@@ -18,7 +18,7 @@ struct Mount {
   std::optional<core::BodyId> carrier;
   core::Pose X_CS;
 
-  /// Nothing: the carrier is not in this state.
+  /// Pose in the world. Nothing if the carrier is not among `bodies`.
   std::optional<core::Pose> pose_in(const std::vector<WorldBody>& bodies) const;
 };
 
@@ -26,7 +26,7 @@ struct FanSpec {
   Mount mount;
   std::vector<core::Vec3> directions;  ///< in S, of length 1
   double range_m = 0;
-  core::Step every = 1;  ///< states whose number is a multiple of it
+  core::Step every = 1;  ///< cast in states whose number is a multiple of this
 };
 
 /// A box around the origin of S with its sides along the axes of S, or a ball.
@@ -41,7 +41,7 @@ struct TriggerSpec {
 
 struct FanResult {
   bool was_cast = false;
-  bool complete = false;  ///< all that its rays could meet was known
+  bool complete = false;  ///< all bodies that its rays could hit were known
   std::vector<physics::RayHit> hits;
 };
 
@@ -50,8 +50,8 @@ struct TriggerResult {
   std::vector<core::BodyId> inside, entered, left;  ///< ascending
 };
 
-/// The origins of bodies that are in it; with what it was like in the state before, who has come and gone. A carrier is
-/// never in its own trigger.
+/// Finds the bodies whose origins are in a trigger, and those that have entered or left it since the state before. A
+/// carrier is never in its own trigger.
 class Trigger {
  public:
   explicit Trigger(TriggerSpec spec) : spec_(std::move(spec)) {}
@@ -64,20 +64,20 @@ class Trigger {
   std::vector<core::BodyId> inside_;
 };
 
-/// The part of the world that a sensor has to know, and by which interest it was asked for. It moves with its carrier,
-/// now and then: with a margin, so that it is seldom too late.
+/// The part of the world that a sensor has to know, and the interest that asked for it. It follows the sensor's carrier
+/// at intervals, with a margin so that it is seldom too late.
 class Surroundings {
  public:
-  /// `reach_m`: around the sensor.
+  /// `reach_m`: radius around the sensor, metres.
   Surroundings(Mount mount, double reach_m);
 
-  /// Asks anew, if the sensor has come so far. True if it does.
+  /// Moves the box that is asked for, if the sensor has left the margin. True if a new interest has to be sent.
   bool follow(const core::Vec3& p_WS, double reach_m);
-  /// Of what is asked for now; nothing while nobody knows where the carrier is.
+  /// The box that is asked for now. Nothing while the carrier's place is unknown.
   std::optional<core::WorldBox> box() const;
-  /// It has been asked for by this interest.
+  /// Notes that the interest `sequence` has asked for the present box.
   void note(std::uint64_t sequence);
-  /// Is all that is around the sensor within what was asked for by that interest?
+  /// True if the interest `sequence` asked for all that is around the sensor.
   bool was_asked_for(std::uint64_t sequence, const core::Vec3& p_WS) const;
   const Mount& mount() const { return mount_; }
   double reach_m() const { return reach_m_; }

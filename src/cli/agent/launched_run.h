@@ -11,21 +11,22 @@ namespace aurasim::cli::agent {
 
 class LaunchedRun {
  public:
-  /// `words`: what follows `aurasim launch`. It ends when this process does. Throws std::runtime_error.
+  /// `words`: arguments of `aurasim launch`. The launcher ends when this process does. Throws std::runtime_error.
   explicit LaunchedRun(const std::vector<std::string>& words);
-  /// Kills it; its nodes end when they see that.
+  /// Kills the launcher. Its nodes end when they notice.
   ~LaunchedRun();
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;
 
   bool is_running();
-  /// 0: it does not run any more.
+  /// Process id; 0 once it has ended.
   pid_t pid() const { return pid_; }
-  /// 128 + a signal that has ended it. Once it does not run any more.
+  /// Exit code, or 128 + the signal that ended it. Precondition: it has ended.
   int exit_code() const { return exit_code_; }
-  /// All nodes stop in one state and write their reports; after the deadline it is killed. Returns its exit code.
+  /// Stops the run: all nodes stop in one state and write their reports. After the deadline the launcher is killed.
+  /// Returns its exit code.
   int stop(std::chrono::steady_clock::time_point deadline);
-  /// Likewise, without waiting for it.
+  /// As stop(), without waiting for the end.
   void ask_to_stop();
 
  private:
@@ -33,7 +34,7 @@ class LaunchedRun {
   int exit_code_ = 0;
 };
 
-/// The end of what was said on standard error, where that is a file.
+/// The last lines of standard error, if that is a file.
 std::string last_words();
 
 }  // namespace aurasim::cli::agent

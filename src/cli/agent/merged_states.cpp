@@ -6,9 +6,9 @@
 namespace aurasim::cli::agent {
 namespace {
 
-/// States that are kept waiting, at most: the oldest go.
+/// Limit of states that wait; the oldest are dropped.
 constexpr std::size_t kMostPending = 4096;
-/// Likewise before the first whole state, for which there is no time limit.
+/// The same limit before the first whole state, which has no time limit.
 constexpr std::size_t kMostBeforeTheFirst = 256;
 
 Observations all_of(const std::map<core::RegionId, core::Observation>& hosted,
@@ -31,7 +31,7 @@ void MergedStates::begin_generation(core::Generation generation) {
   left_out_.clear();
 }
 
-/// What was told of this state and later ones before is void.
+/// Drops the observations of `to` and later states from before the redo.
 void MergedStates::go_back(core::Step to, std::uint32_t redo) {
   std::erase_if(pending_, [&](const auto& entry) { return entry.first >= to && entry.second.redo < redo; });
   for (auto& [region, step] : told_) step = std::min(step, to - 1);
@@ -62,7 +62,7 @@ void MergedStates::accept(core::Observation observation, double now_s) {
   if (pending_.size() > (has_given_ ? kMostPending : kMostBeforeTheFirst)) pending_.erase(pending_.begin());
 }
 
-/// A region that has told nothing of it and never will: so the state is never whole.
+/// True if a region has left this state out, so that it will never be whole.
 bool MergedStates::is_left_out(core::Step step, const Pending& pending) const {
   return std::ranges::any_of(left_out_, [&](const LeftOut& states) {
     return states.first <= step && step <= states.last && !pending.hosted.contains(states.source);
@@ -81,7 +81,8 @@ bool MergedStates::is_over(core::Step step, const Pending& pending, const std::s
   const bool is_late = now_s - pending.since_s > settings_.patience_s;
   const bool all_have_told =
       std::ranges::all_of(regions, [&](core::RegionId region) { return pending.hosted.contains(region); });
-  // Before the first whole state some regions have not heard what is wanted: in a run that stands it is the only one.
+  // Before the first whole state, some regions have not received the interest. In a paused run this is the only state,
+  // so it is not given up.
   if (!all_have_told) return have_passed(step, regions) || (has_given_ && is_late);
   return is_late || missing_in(all_of(pending.hosted, pending.made_up)).empty() ||
          have_passed(step + settings_.latest_steps, regions);
@@ -109,7 +110,7 @@ MergedState MergedStates::merge(core::Step step, const Pending& pending,
   }
   std::ranges::sort(state.joints, {}, &core::JointState::id);
   std::ranges::stable_sort(state.contacts, {}, [](const core::ContactImpulse& c) { return std::pair(c.a, c.b); });
-  // Of what is on its way twice, both tell.
+  // A joint that is under way twice is in two observations.
   const auto same_joint = [](const core::JointState& x, const core::JointState& y) { return x.id == y.id; };
   state.joints.erase(std::unique(state.joints.begin(), state.joints.end(), same_joint), state.joints.end());
   const auto same_pair = [](const core::ContactImpulse& x, const core::ContactImpulse& y) {
@@ -129,7 +130,7 @@ std::vector<MergedState> MergedStates::take(const std::set<core::RegionId>& regi
     }
     if (!is_over(step, pending, regions, now_s)) break;
     MergedState state = merge(step, pending, regions);
-    // Before the first whole state some regions have not yet heard what is wanted.
+    // Before the first whole state, some regions have not received the interest yet.
     if (state.silent.empty() || has_given_) {
       given_ = step;
       has_given_ = true;

@@ -1,9 +1,9 @@
-// States of a whole world, as far as an observer has asked for them, from what all its regions say of them. No clock,
-// no wire.
+// Merges the observations of all regions into states of the whole world, as far as an observer has asked for them. Uses
+// no clock and no network.
 //
-// A body on its way between hosts is in no region's hands for up to K - 1 states. Its former host names it; its next
-// one makes the states up and tells them: when it joins, or before that in a run that stands. A state waits for that,
-// and what does not come is named.
+// A body on its way between hosts belongs to no region for up to K - 1 states. Its former host names it. Its next host
+// makes its states up and publishes them: when it joins, or earlier in a paused run. A state waits for them, and lists
+// the bodies whose states do not come.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ struct MergedState {
   std::uint32_t redo = 0;
   core::Step step = 0;
   std::uint64_t sequence = 0;                  ///< the oldest interest that a region has answered
-  std::uint64_t scene_order = 0;               ///< the newest that has changed the scene
-  std::vector<WorldBody> bodies;               ///< ascending id; those in `missing` as they were when they left
-  std::vector<core::BodyId> missing;           ///< under way, and nobody has said where; ascending
-  std::vector<core::RegionId> silent;          ///< regions that have not said what they have of this state
+  std::uint64_t scene_order = 0;               ///< sequence of the newest order that has changed the scene
+  std::vector<WorldBody> bodies;               ///< ascending id; bodies in `missing` are as they were when they left
+  std::vector<core::BodyId> missing;           ///< bodies under way whose place is unknown; ascending
+  std::vector<core::RegionId> silent;          ///< regions whose observation of this state has not come
   std::vector<core::JointState> joints;        ///< ascending id
   std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
 
@@ -34,24 +34,23 @@ struct MergedState {
 };
 
 struct MergeSettings {
-  /// When all regions have told a state so much later than one, nothing more of that one comes.
+  /// A state is over when all regions have published one so many steps later.
   core::Step latest_steps = 8;
-  double patience_s = 1;  ///< nor when it has begun to come so long ago
+  double patience_s = 1;  ///< a state is over so many seconds after its first observation, too
 };
 
 class MergedStates {
  public:
   explicit MergedStates(const MergeSettings& settings) : settings_(settings) {}
 
-  /// `now_s`: of any clock that does not go back.
+  /// Takes in an observation. `now_s`: seconds of any clock that does not go back.
   void accept(core::Observation observation, double now_s);
 
-  /// Those that are complete, or that nothing more comes of, without those that a region has left out because they were
-  /// too many: in order, each once; after a redo again, from where it has
-  /// gone back to. `regions`: those that are alive.
+  /// The states that are complete or over, in order, each once. States that a region has left out for a slow observer
+  /// are skipped. After a redo, states come again from the one that it went back to. `regions`: live regions.
   std::vector<MergedState> take(const std::set<core::RegionId>& regions, double now_s);
 
-  /// The highest generation that was heard of.
+  /// The highest generation received.
   std::optional<core::Generation> generation() const { return generation_; }
 
  private:
@@ -72,7 +71,7 @@ class MergedStates {
   MergeSettings settings_;
   std::optional<core::Generation> generation_;
   std::uint32_t redo_ = 0;
-  core::Step given_ = -1;  ///< up to this state
+  core::Step given_ = -1;  ///< the newest state given out
   bool has_given_ = false;
   std::map<core::Step, Pending> pending_;
   std::map<core::RegionId, core::Step> told_;  ///< the newest state of each region
@@ -80,7 +79,7 @@ class MergedStates {
     core::RegionId source{};
     core::Step first = 0, last = 0;
   };
-  std::deque<LeftOut> left_out_;  ///< states that regions have not told, because the observer takes no more
+  std::deque<LeftOut> left_out_;  ///< states that regions have left out, because the observer was too slow
 };
 
 }  // namespace aurasim::cli::agent

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Of a ray that has met nothing: no reference is that low.
+/// Marks a ray that has hit nothing: no object reference is that low.
 constexpr std::int64_t kNothing = std::numeric_limits<std::int64_t>::min();
 
 template <class T>

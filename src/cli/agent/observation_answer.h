@@ -1,4 +1,4 @@
-// What a client is told of an observed state, as JSON and bytes; client/observation.cpp reads it.
+// The answer with an observed state, as JSON and bytes. client/observation.cpp reads it.
 #pragma once
 
 #include "cli/agent/observer.h"

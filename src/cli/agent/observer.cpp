@@ -6,10 +6,10 @@
 namespace aurasim::cli::agent {
 namespace {
 
-/// States that wait for a client: the oldest go.
+/// Limit of states that wait for the client; the oldest are dropped.
 constexpr std::size_t kMostReady = 256;
 
-/// Orders that have not come by then may take longer, as those of a mesh that is missing.
+/// Time to wait for scene orders, seconds. Later ones, such as those of a missing mesh, are not waited for.
 constexpr double kPatienceWithScene_s = 1;
 
 core::WorldBox around(const core::WorldBox& box, double margin_m) {
@@ -38,7 +38,7 @@ Observer::Observer(dds::Participant& participant, const overseer::WorldWatch& wa
     surroundings_.emplace_back(trigger.mount, trigger.reach_m());
     triggers_.emplace_back(trigger);
   }
-  // Carriers are about there.
+  // The view has the approximate places of carriers.
   watch_.view().for_each([this](const overseer::ViewBody& body) {
     for (Surroundings& around_it : surroundings_) {
       if (around_it.mount().carrier == body.id) around_it.follow(body.p_WB, around_it.reach_m());
@@ -47,7 +47,7 @@ Observer::Observer(dds::Participant& participant, const overseer::WorldWatch& wa
   want();
 }
 
-/// What the client wants, and what its sensors have to know.
+/// Sends the interest: the client's selection, and the boxes that its sensors need.
 void Observer::want() {
   core::Interest interest = asked_.selection;
   for (const Surroundings& around_it : surroundings_) {
@@ -70,7 +70,8 @@ void Observer::turn(const std::set<core::RegionId>& regions) {
   sense_what_is_known(now_s);
 }
 
-/// Rays have to know where statics were that orders have moved by then; others tell that than tell of bodies.
+/// Evaluates sensors of the states whose scene is known. Rays need the places of statics that orders have moved, which
+/// come over another topic than bodies.
 void Observer::sense_what_is_known(double now_s) {
   while (!whole_.empty()) {
     Whole& oldest = whole_.front();
@@ -86,7 +87,7 @@ void Observer::sense_what_is_known(double now_s) {
   }
 }
 
-/// Nodes leave states out that this process is too slow for, as they do where the client is.
+/// Number of states that nodes have left out before this one, because this process or the client was too slow.
 std::uint64_t Observer::states_left_out_before(const MergedState& state) {
   const Place place{state.generation, state.redo, state.step};
   const Place last = std::exchange(last_, place);
@@ -104,7 +105,7 @@ std::optional<Observed> Observer::next() {
   return oldest;
 }
 
-/// Sensors that have moved ask anew.
+/// Sends a new interest if a sensor has moved out of its box.
 void Observer::look_around(const MergedState& state) {
   bool has_moved = false;
   for (std::size_t i = 0; i < surroundings_.size(); ++i) {
@@ -118,12 +119,12 @@ void Observer::look_around(const MergedState& state) {
   if (has_moved) want();
 }
 
-/// Nobody is missing, and all that is within reach was asked for.
+/// True if no body within reach is missing, and all within reach was asked for.
 bool Observer::is_known(const Surroundings& around_it, const MergedState& state) const {
   const std::optional<core::Pose> X_WS = around_it.mount().pose_in(state.bodies);
   if (!X_WS || !state.silent.empty() || !around_it.was_asked_for(state.sequence, X_WS->p_WB)) return false;
   const std::optional<core::WorldBox> box = around_it.box();
-  // Nobody under way has come from farther than a state or two.
+  // A missing body has moved for a state or two at most, so a margin is enough.
   return std::ranges::none_of(state.bodies, [&](const WorldBody& body) {
     return std::ranges::binary_search(state.missing, body.row.id) && around(*box, 10).holds(body.row.p_WB);
   });
@@ -159,7 +160,7 @@ Observed Observer::sense(MergedState state) {
   return observed;
 }
 
-/// Without what only its sensors have to know.
+/// Removes the bodies that only the sensors need.
 void Observer::keep_what_is_wanted(MergedState& state) const {
   const core::Interest& selection = asked_.selection;
   if (selection.all || surroundings_.empty()) return;

@@ -1,4 +1,4 @@
-// One observer of a client: what it has asked for, and the states that have come of it.
+// One observer of a client: its interest, and the states received for it.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +18,19 @@
 namespace aurasim::cli::agent {
 
 struct Observed {
-  MergedState state;  ///< of the bodies that were asked for
+  MergedState state;  ///< only the bodies asked for
   std::vector<FanResult> fans;
   std::vector<TriggerResult> triggers;
   std::uint64_t skipped = 0;  ///< states before this one that the client, or this process, was too slow for
 };
 
-/// Used by one thread.
+/// May be used by one thread only.
 class Observer {
  public:
-  /// The participant and the watch outlive it.
+  /// `participant` and `watch` must outlive the observer.
   Observer(dds::Participant& participant, const overseer::WorldWatch& watch, AskedInterest asked);
 
-  /// Takes in what has come; as often as you like. `regions`: those that are alive.
+  /// Takes in what has come. May be called as often as wanted. `regions`: live regions.
   void turn(const std::set<core::RegionId>& regions);
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out) { endpoint_.wait(time_out); }
@@ -53,24 +53,24 @@ class Observer {
   dds::ObserverEndpoint endpoint_;
   MergedStates states_;
   std::optional<SeenScene> scene_;          ///< for rays
-  std::vector<Surroundings> surroundings_;  ///< of fans, then of triggers
+  std::vector<Surroundings> surroundings_;  ///< those of fans, then those of triggers
   std::vector<Trigger> triggers_;
   struct Whole {
     MergedState state;
     double since_s = 0;
   };
-  std::deque<Whole> whole_;  ///< perhaps the scene is not yet known as it was in them
+  std::deque<Whole> whole_;  ///< states that wait until the scene is known as it was in them
   std::deque<Observed> ready_;
   struct Place {
     core::Generation generation = 0;
     std::uint32_t redo = 0;
     core::Step step = -1;
   };
-  Place last_;  ///< of the last state that was whole
+  Place last_;  ///< the last whole state
   std::uint64_t skipped_ = 0;
 };
 
-/// Those of one client, by number.
+/// The observers of one client, by number.
 using Observers = std::map<std::uint64_t, std::unique_ptr<Observer>>;
 
 }  // namespace aurasim::cli::agent

@@ -14,7 +14,7 @@ class Patience {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `socket`: of the client. Whatever comes there while it waits ends the wait.
+  /// `socket`: connection to the client. Any message there ends the wait.
   Patience(int socket, double seconds)
       : socket_(socket),
         deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -22,7 +22,7 @@ class Patience {
 
   bool is_over() const { return Clock::now() >= deadline_; }
   Clock::time_point deadline() const { return deadline_; }
-  /// Throws Abandoned, or Problem once the time is over: `what` has not come.
+  /// Throws Abandoned if the client has sent something, or Problem with text `what` once the time is over.
   void check(const std::string& what) const {
     if (client::is_readable(socket_, std::chrono::milliseconds(0))) throw Abandoned();
     if (is_over()) throw Problem(Kind::kTimedOut, what);

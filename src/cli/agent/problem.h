@@ -17,7 +17,7 @@ class Problem : public std::runtime_error {
   Kind kind_;
 };
 
-/// As the client library reads it.
+/// The kind's name in answers to the client library.
 inline const char* name_of(Kind kind) {
   switch (kind) {
     case Kind::kBadFile:

@@ -17,12 +17,12 @@ namespace {
 using namespace std::chrono_literals;
 using Steer = dds::RunCommandKind;
 
-constexpr auto kPatienceWithObservation = 5s;  ///< that some node does not give
+constexpr auto kPatienceWithObservation = 5s;  ///< for observations that a node does not send
 constexpr std::size_t kMostObservers = 16;     ///< of one client
-constexpr auto kPatienceWithSilence = 5s;      ///< of all nodes, before the run has ended
+constexpr auto kPatienceWithSilence = 5s;      ///< silence of all nodes after which the run counts as ended
 constexpr auto kStillHereEvery = 20ms;
-constexpr auto kLongestWayOfStatus = 50ms;    ///< of two nodes' statuses the later one may come first
-constexpr auto kPatienceAmongStrangers = 3s;  ///< ours would have been heard as soon as they
+constexpr auto kLongestWayOfStatus = 50ms;    ///< statuses of two nodes may come in the wrong order
+constexpr auto kPatienceAmongStrangers = 3s;  ///< our nodes would have been discovered as soon as they
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void RunLink::turn(std::chrono::milliseconds time_out) {
   say_still_here();
 }
 
-/// Else the nodes would hold its client for dead. It acts nowhere, whatever happens to be late.
+/// Sends a sign of life, because nodes would otherwise take the client for dead. It has no effect on bodies.
 void RunLink::say_still_here() {
   if (!setpoints_ || Clock::now() < said_last_ + kStillHereEvery) return;
   said_last_ = Clock::now();
@@ -59,7 +59,8 @@ void RunLink::say_still_here() {
   setpoints_->send(std::move(word));
 }
 
-/// A run that computes many states at once might be through with them before it hears another word.
+/// Sends signs of life for all states up to `wanted`, because a run that computes many states at once may be done
+/// before it receives another message.
 void RunLink::say_still_here_until(const Standing& wanted) {
   if (!setpoints_) return;
   const core::Step apart = std::max<core::Step>(1, launch().control_rules().silence / 2);
@@ -88,7 +89,7 @@ core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience)
   return at_step;
 }
 
-/// In a run that stands, all nodes know by the end what is wanted: so no state that is computed next is left out.
+/// In a paused run this waits until all nodes have the interest, so that no state computed next is left out.
 std::uint64_t RunLink::observe(AskedInterest asked, const Patience& patience) {
   if (observers_.size() >= kMostObservers) {
     throw Problem(Kind::kRefused, fmt::format("observers: allowed: {} at a time", kMostObservers));
@@ -139,7 +140,7 @@ void RunLink::meet(const Patience& patience) {
   const auto begin = Clock::now();
   const auto computes = [this] {
     const std::set<core::RegionId> live = live_regions();
-    // What has come is looked at now and then only: a region that is not there yet would count for none.
+    // The watch takes messages in at intervals only, so a region that it has not seen yet would not be counted.
     return steering_.is_complete() && watch_.nodes().size() >= launch_.regions.size() &&
            std::ranges::all_of(live,
                                [this](core::RegionId region) {
@@ -159,7 +160,7 @@ void RunLink::meet(const Patience& patience) {
                     fmt::format("the run in DDS domain {} differs: give the same file and overrides as its nodes have",
                                 launch_.dds.domain));
     }
-    if (patience.is_over() && steering_.is_there() && !launched_) break;  // some of its nodes may be gone
+    if (patience.is_over() && steering_.is_there() && !launched_) break;  // some nodes of the run may be gone
     if (patience.is_over() && !launched_) {
       throw Problem(Kind::kNoSuchRun,
                     fmt::format("no run of {} in DDS domain {}{}", launch_.file.string(), launch_.dds.domain,
@@ -184,7 +185,7 @@ const std::map<core::RegionId, dds::SeenStatus>& RunLink::nodes(const Patience& 
   const auto end = Clock::now() + kPatienceWithAReader;
   while (stands_in_ && !all_say_that_they_stand() && Clock::now() < end) {
     patience.check("not every node says that it stands");
-    if (farthest() > *stands_in_) break;  // somebody else has moved it
+    if (farthest() > *stands_in_) break;  // another client has moved the run
     turn(kRound);
   }
   return watch_.nodes();
@@ -214,8 +215,8 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
   return {state.generation(), state.step(), true, state.bodies()};
 }
 
-/// A step of another client may be on its way, and a world that goes back in a pause computes until it is where it
-/// stood. A run that nobody has paused never stands.
+/// Waits until the run is paused. A step of another client may be on its way, and a world that has gone back in a pause
+/// computes up to the paused state again. A run that is not paused is refused.
 void RunLink::wait_until_it_stands(const Patience& patience) {
   const auto begin = Clock::now();
   const auto goes_on = [begin](const dds::SeenStatus& seen) {
@@ -234,10 +235,10 @@ void RunLink::wait_until_it_stands(const Patience& patience) {
 void RunLink::steer(Steer kind, const Patience& patience) {
   const bool stood = kind == Steer::kReset && is_known_to_stand();
   stands_in_.reset();
-  if (kind == Steer::kStop) has_met_ = false;  // its end is no error
+  if (kind == Steer::kStop) has_met_ = false;  // the end of the run is no error now
   const dds::RunCommand command = steering_.send(kind);
   const auto has_ended = [&] { return launched_ && !launched_->is_running(); };
-  // What is asked for from then on is of the new world: the watch may be behind what the steering has seen.
+  // After a reset, wait until the watch has seen the new world, too: it may be behind the statuses.
   const auto is_seen = [&] { return kind != Steer::kReset || farthest().generation > command.generation; };
   wait_until([&] { return (steering_.has_taken_effect(command) && is_seen()) || has_ended(); }, patience,
              fmt::format("{} was sent, but not every node shows its effect", dds::name_of(kind)));
@@ -266,7 +267,7 @@ std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Pa
     turn(0ms);
     for (Delivery& delivery : client_.take()) {
       const auto place = places.find(delivery.request);
-      if (place == places.end()) continue;  // of a request that was given up
+      if (place == places.end()) continue;  // the reply belongs to an abandoned request
       deliveries[place->second] = std::move(delivery);
       places.erase(place);
     }
@@ -275,7 +276,7 @@ std::vector<Delivery> RunLink::act(std::vector<core::Command> commands, const Pa
     stands_in_.reset();
     wait_until([&] { return steering_.is_there() && (!stood || stands()); }, patience, "the run does not go on");
     const bool has_changed = std::ranges::all_of(deliveries, &Delivery::done);
-    // The answer may come before anything of the new world: who asks for bodies then is not given the old ones.
+    // The answer may come before the new world's data. Wait for that, so that later requests do not get the old bodies.
     for (const auto end = Clock::now() + kPatienceWithAReader;
          has_changed && farthest().generation <= before && Clock::now() < end;) {
       patience.check("the run does not begin anew");

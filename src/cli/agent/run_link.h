@@ -1,4 +1,4 @@
-// All that an agent has of a run: it sees it like a viewer, and steers it like `aurasim send`.
+// An agent's connection to a run. It observes the run as a viewer does, and steers it as `aurasim send` does.
 #pragma once
 
 #include <chrono>
@@ -29,46 +29,46 @@ namespace aurasim::cli::agent {
 struct WorldState {
   core::Generation generation = 0;
   core::Step step = 0;
-  bool exact = false;  ///< all of this very state, bit by bit; else as far as they have been published
+  bool exact = false;  ///< true: all bodies of this very state, bit by bit; false: the newest published ones
   std::vector<WorldBody> bodies;
 };
 
-/// Used by one thread. Whatever waits throws Problem or Abandoned.
+/// May be used by one thread only. Functions with a Patience throw Problem or Abandoned.
 class RunLink {
  public:
-  /// Joins the DDS domain, and hears nobody yet.
+  /// Joins the DDS domain. No node has been discovered yet.
   RunLink(const config::Launch& launch, const std::optional<security::Member>& member);
 
-  /// A run that this process has started: once it has ended so has the link.
+  /// Takes a run that this process has launched. When that ends, the link has ended, too.
   void own(std::unique_ptr<LaunchedRun> launched) { launched_ = std::move(launched); }
   LaunchedRun* launched() { return launched_.get(); }
 
-  /// All nodes are there and compute, or stand.
+  /// Waits until all nodes are there and compute or are paused.
   void meet(const Patience& patience);
-  /// Takes what has come; as often as you like.
+  /// Takes in what has come. May be called as often as wanted.
   void turn(std::chrono::milliseconds time_out);
 
-  /// As the run is now.
+  /// The run's present launch.
   const config::Launch& launch() const { return watch_.launch(); }
   const std::optional<security::Member>& member() const { return member_; }
-  /// Of a run that this client has made stand: as they stand.
+  /// The nodes' statuses. If this client has paused the run, they show the paused state.
   const std::map<core::RegionId, dds::SeenStatus>& nodes(const Patience& patience);
 
   WorldState state(const Patience& patience);
   WorldState pause(const Patience& patience);
   WorldState step(std::int64_t count, const Patience& patience);
-  /// resume, reset, stop.
+  /// Sends resume, reset or stop, and waits for the effect.
   void steer(dds::RunCommandKind kind, const Patience& patience);
-  /// Tells all nodes. Returns the state from which on it has effect; 0: as soon as all can know of it. In a run that
-  /// stands that is the next state, if none is named.
+  /// Sends setpoints to all nodes. Returns the state in which they take effect; 0: as soon as all nodes can have them.
+  /// In a paused run that is the next state if none is named.
   core::Step control(core::Setpoints setpoints, const Patience& patience);
-  /// In their order.
+  /// Executes commands and returns their outcomes in the same order.
   std::vector<Delivery> act(std::vector<core::Command> commands, const Patience& patience);
-  /// The process that has taken the region over.
+  /// Drains a region. Returns the process that has taken it over.
   std::uint32_t drain(core::RegionId region, const Patience& patience);
   /// Begins to observe; returns the observer's number. Throws Problem for what cannot be asked for.
   std::uint64_t observe(AskedInterest asked, const Patience& patience);
-  /// The next state of it.
+  /// The next state of an observer.
   Observed next(std::uint64_t observer, const Patience& patience);
   void end_observer(std::uint64_t observer) { observers_.erase(observer); }
   CommandClient& client() { return client_; }
@@ -77,8 +77,8 @@ class RunLink {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kRound{2};
-  static constexpr std::chrono::seconds kPatienceWithAReader{1};  ///< that some node has not found
-  static constexpr std::chrono::seconds kMoment{1};  ///< of simulated time: a step that takes no longer is waited for
+  static constexpr std::chrono::seconds kPatienceWithAReader{1};  ///< time for nodes to discover a reader
+  static constexpr std::chrono::seconds kMoment{1};  ///< simulated time: steps that take no longer are waited for
   struct Standing {
     core::Generation generation = 0;
     core::Step step = 0;
@@ -100,7 +100,7 @@ class RunLink {
   bool collect(StandingState& state, const Patience& patience);
   bool collect_key_frames(StandingState& state, const Patience& patience);
   void watch_standing_states();
-  using When = std::tuple<core::Generation, std::uint32_t, core::Step>;  ///< with the redo: which state, and which one
+  using When = std::tuple<core::Generation, std::uint32_t, core::Step>;  ///< generation, redo and state
   static When when(const core::Observation& told) { return {told.generation, told.redo, told.stamp}; }
   When newest_told() const;
   void hear_of_standing_states();
@@ -110,21 +110,21 @@ class RunLink {
   void say_still_here();
   void say_still_here_until(const Standing& wanted);
 
-  config::Launch launch_;  ///< as it was given
+  config::Launch launch_;  ///< the launch as given to the constructor
   std::optional<security::Member> member_;
   dds::Participant participant_;
   dds::ControlBus control_;
   RunSteering steering_;
   CommandClient client_;
   overseer::WorldWatch watch_;
-  std::optional<dds::SetpointWriter> setpoints_;  ///< once it has steered anything
-  Clock::time_point said_last_;                   ///< that it is still here
+  std::optional<dds::SetpointWriter> setpoints_;  ///< set once setpoints have been sent
+  Clock::time_point said_last_;                   ///< when the last sign of life was sent
   Standing said_up_to_;  ///< it has said so for this state, and for all before it no longer ago than silence allows
   std::unique_ptr<LaunchedRun> launched_;
-  std::optional<Standing> stands_in_;                 ///< as all regions have shown; nothing: not known
-  std::optional<dds::ObserverEndpoint> standing_;     ///< tells all bodies of states in which the run stands
-  std::map<core::RegionId, core::Observation> told_;  ///< by it, the last of each region
-  std::vector<core::Observation> foreseen_;           ///< by it, of bodies under way in the newest of these states
+  std::optional<Standing> stands_in_;                 ///< the state in which all regions are paused; nothing: unknown
+  std::optional<dds::ObserverEndpoint> standing_;     ///< receives all bodies of paused states
+  std::map<core::RegionId, core::Observation> told_;  ///< from standing_, the last observation of each region
+  std::vector<core::Observation> foreseen_;  ///< from standing_, of bodies under way in the newest of these states
   Observers observers_;
   std::uint64_t last_observer_ = 0;
   bool has_met_ = false;

@@ -1,4 +1,4 @@
-// Where the run stands, and the bodies of a state, from what its nodes tell.
+// The state in which a run is paused, and the bodies of a state, from its nodes' messages.
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -10,7 +10,8 @@ namespace aurasim::cli::agent {
 
 using namespace std::chrono_literals;
 
-/// Or it will, in a moment: a step of another client is on its way. After one of our own earlier than the statuses say.
+/// True if the run is paused, or will be in a moment after another client's step. After an own step this is known
+/// before the statuses show it.
 bool RunLink::is_known_to_stand() {
   if (!steering_.is_there()) return false;
   const auto moment = static_cast<core::Step>(launch().time.step_hz * kMoment.count());
@@ -19,7 +20,7 @@ bool RunLink::is_known_to_stand() {
 
 bool RunLink::stands() { return steering_.is_there() && steering_.is_paused(); }
 
-/// As far as live nodes have said, whichever way. A status may be older than what is published or told.
+/// The farthest state in any message of live nodes. A status may be older than replicas or observations.
 RunLink::Standing RunLink::farthest() {
   const std::set<core::RegionId> live = live_regions();
   Standing farthest;
@@ -36,7 +37,7 @@ RunLink::Standing RunLink::farthest() {
   return farthest;
 }
 
-/// What nodes say of themselves comes after the states that they tell.
+/// True if the statuses of all live nodes say that they are paused. Statuses come after the states that nodes publish.
 bool RunLink::all_say_that_they_stand() {
   return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
     const dds::Status& status = watch_.nodes().at(region).status;
@@ -51,7 +52,7 @@ bool RunLink::all_have_published(const Standing& wanted) {
   });
 }
 
-/// Once told, nodes say without being asked again what they have of each state in which they stand.
+/// Starts to observe paused states. After that, nodes send all bodies of each state in which they pause.
 void RunLink::watch_standing_states() {
   if (!standing_) {
     standing_.emplace(participant_, watch_.observer_settings());
@@ -83,8 +84,8 @@ RunLink::When RunLink::newest_told() const {
   return newest;
 }
 
-/// True once it is complete: all regions have told one state, and of each body under way where it is by then. What was
-/// told before a redo does not count any more.
+/// True once `state` is complete: all regions have sent the same state, and the place of each body under way is known.
+/// Observations from before a redo do not count.
 bool RunLink::take_standing(StandingState& state) {
   const When newest = newest_told();
   const bool all_have_told = std::ranges::all_of(live_regions(), [&](core::RegionId region) {
@@ -104,7 +105,7 @@ bool RunLink::take_standing(StandingState& state) {
   return is_whole;
 }
 
-/// False: it does not stand, or some node has not found this reader.
+/// Collects the paused state. False if the run is not paused, or some node has not discovered this reader.
 bool RunLink::collect(StandingState& state, const Patience& patience) {
   watch_standing_states();
   const auto end = Clock::now() + kMoment + kPatienceWithAReader;
@@ -120,7 +121,7 @@ bool RunLink::collect(StandingState& state, const Patience& patience) {
   return true;
 }
 
-/// Nodes publish all that they have for a reader that has just come.
+/// Collects the paused state from key frames, which nodes publish for a new reader.
 bool RunLink::collect_key_frames(StandingState& state, const Patience& patience) {
   dds::ReplicaReader reader(participant_, watch_.observer_settings());
   const auto end = Clock::now() + kPatienceWithAReader;
@@ -134,7 +135,7 @@ bool RunLink::collect_key_frames(StandingState& state, const Patience& patience)
   return true;
 }
 
-/// Nothing: as collect().
+/// The state in which the run is paused. Nothing in the cases in which collect() returns false.
 std::optional<WorldState> RunLink::look_at_standing_state(const Patience& patience) {
   const Standing least = farthest();
   StandingState state(least.generation, least.step);
@@ -151,7 +152,7 @@ WorldState RunLink::standing_state(const Patience& patience) {
   }
 }
 
-/// Of a run that goes on.
+/// The newest published bodies of a run that is not paused.
 WorldState RunLink::seen_state(const Patience& patience) {
   const auto all_are_seen = [this] {
     const overseer::WorldView& view = watch_.view();
@@ -186,9 +187,9 @@ WorldState RunLink::pause(const Patience& patience) {
   return standing_state(patience);
 }
 
-/// Of a run that stands.
+/// The state in which the run is paused.
 const RunLink::Standing& RunLink::known_standing(const Patience& patience) {
-  const Standing said = farthest();  // somebody else may have moved it
+  const Standing said = farthest();  // another client may have moved the run
   if (!stands_in_ || stands_in_->generation != said.generation || stands_in_->step < said.step) {
     standing_state(patience);
   }

@@ -26,7 +26,7 @@ bool SeenScene::has_meshes_of(const core::Order& order) {
   return ref == nullptr || meshes_.mesh(ref->hash) != nullptr;
 }
 
-/// In their order, as far as their meshes have come.
+/// Applies the additions in order, up to the first whose mesh has not come.
 void SeenScene::look() {
   if (std::optional<dds::SceneAdditions> newest = additions_reader_.take()) {
     const bool is_another_world = additions_ && additions_->generation != newest->generation;

@@ -1,4 +1,4 @@
-// The scene of a run as it has grown, as an observer knows it, to cast rays at.
+// The scene of a run with its additions, as an observer knows it, for ray casts.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace aurasim::cli::agent {
 
-/// Used by one thread.
+/// May be used by one thread only.
 class SeenScene {
  public:
-  /// Both outlive it.
+  /// `participant` and `watch` must outlive this object.
   SeenScene(dds::Participant& participant, const overseer::WorldWatch& watch);
 
-  /// Takes in what has been added.
+  /// Takes in the additions that have come.
   void look();
-  /// Knows all kinds of bodies with lower ids than this.
+  /// Number of known prototypes: all with lower ids are known.
   std::size_t prototypes() const { return scene_.prototypes.size(); }
   const physics::RayScene& rays() const { return *rays_; }
-  /// Are all orders up to this one in it, of those that change the scene?
+  /// True if all scene-changing orders up to sequence `order` are included.
   bool has_all_up_to(std::uint64_t order) const { return added_ >= order; }
 
  private:
@@ -33,7 +33,7 @@ class SeenScene {
   dds::SceneAdditionsReader additions_reader_;
   dds::MeshReader meshes_;
   std::optional<dds::SceneAdditions> additions_;
-  std::uint64_t added_ = 0;  ///< sequence of the last one of them
+  std::uint64_t added_ = 0;  ///< sequence of the last order included
   std::uint64_t map_version_ = 0;
   core::Scene scene_;
   std::optional<physics::RayScene> rays_;

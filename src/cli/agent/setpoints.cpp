@@ -42,7 +42,7 @@ class Arrays {
   std::size_t at_ = 0;
 };
 
-/// Of one list: how many, and whether they have values; without, they are let go of.
+/// One list of setpoints: the number of rows, and whether they have values. Without values they end earlier setpoints.
 struct Count {
   std::size_t rows = 0;
   bool has_values = false;
@@ -58,7 +58,7 @@ Count count_of(const json& head, const char* list) {
   return count;
 }
 
-/// Bodies of clients are not checked: they may have been made a moment ago.
+/// True if the body may exist. Bodies that clients made are not checked, because they may be very new.
 bool is_known(core::BodyId id, const core::Scene& scene) {
   if (core::value_of(id) >= core::kFirstClientBody || core::find_body(scene, id) != nullptr) return true;
   return std::ranges::any_of(scene.injectors, [id](const core::Injector& injector) {
@@ -138,7 +138,7 @@ void take_statics(const json& head, const config::Launch& launch, core::Setpoint
       refuse(fmt::format("statics: found {} states, allowed: 1 to {}", wanted.states, core::limits::kMostStepsAhead));
     }
     const std::uint32_t index = core::value_of(wanted.id);
-    if (index >= launch.scene.statics.size()) continue;  // a client's: nodes know it
+    if (index >= launch.scene.statics.size()) continue;  // added by a client: nodes check it
     const core::StaticBody& fixed = launch.scene.statics[index];
     if (std::holds_alternative<core::Plane>(launch.scene.shapes[fixed.shape].shape)) refuse("a plane cannot move");
   }

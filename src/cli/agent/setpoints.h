@@ -1,4 +1,4 @@
-// What clients want of bodies, joints and statics, from their messages.
+// Reads clients' setpoints for bodies, joints and statics from their messages.
 #pragma once
 
 #include "client/message.h"
@@ -7,7 +7,7 @@
 
 namespace aurasim::cli::agent {
 
-/// Throws Problem (kRefused) with what is wrong, then nothing of it acts.
+/// The setpoints of a message. Throws Problem (kRefused) with the error; then no setpoint takes effect.
 core::Setpoints setpoints_of(const client::Message& message, const config::Launch& launch);
 
 }  // namespace aurasim::cli::agent

@@ -42,7 +42,7 @@ bool StandingState::is_complete(const std::set<core::RegionId>& regions) const {
   });
 }
 
-/// Of this state: what a region had that has died since is not of it.
+/// The observations of this state. Those of a region that has died since may be of an earlier state and are left out.
 Observations StandingState::told() const {
   Observations told;
   for (const auto& [source, observation] : hosted_) {

@@ -1,7 +1,7 @@
-// The state in which a paused run stands, bit by bit, from what all its regions tell of it. No clock, no wire.
+// The state in which a run is paused, bit by bit, from what all regions publish of it. Uses no clock and no network.
 //
-// What changes is published only where it has moved by more than an eye sees (node/replica_feed.h). An observation has
-// everything as it is, and so has a key frame, which every region publishes for whoever has just come.
+// Changes are published only for bodies that have moved visibly (node/replica_feed.h). Observations and key frames
+// contain all bodies exactly. Every region publishes a key frame for a new reader.
 #pragma once
 
 #include <map>
@@ -16,16 +16,16 @@ namespace aurasim::cli::agent {
 
 class StandingState {
  public:
-  /// Of no earlier state than this one.
+  /// Ignores states before `at_least`.
   StandingState(core::Generation generation, core::Step at_least) : generation_(generation), at_least_(at_least) {}
 
-  /// Only a key frame counts. It tells of bodies under way where they left.
+  /// Takes in a key frame; other replicas are ignored. It shows bodies under way as they were when they left.
   void accept(const core::Replica& replica);
-  /// All bodies of a region; or those on their way to it, as they are in this state.
+  /// Takes in an observation: all bodies of a region, or those on their way to it, as they are in this state.
   void accept(core::Observation observation);
-  /// Each of these regions has given all that it has of one and the same state.
+  /// True if all bodies of each of these regions are known for one and the same state.
   bool is_complete(const std::set<core::RegionId>& regions) const;
-  /// Bodies under way that are shown as they were when they left. Ascending.
+  /// Bodies under way that are only known as they were when they left. Ascending.
   std::vector<core::BodyId> missing() const { return missing_in(told()); }
 
   core::Generation generation() const { return generation_; }

@@ -8,7 +8,7 @@
 namespace aurasim::cli::agent {
 namespace {
 
-/// What is known in this state of bodies that have changed host lately. The others, most of them, are in none of these.
+/// Knowledge of bodies that have changed host lately. Most bodies are in none of these sets.
 struct Changing {
   std::set<core::BodyId> as_they_left, outside, exactly;
 };
@@ -50,7 +50,7 @@ std::vector<WorldBody> bodies_of(const Observations& told) {
     return std::tuple(row.body->row.id, ~row.body->row.epoch, row.body->stale, row.under_way);
   };
   std::ranges::stable_sort(rows, {}, rank);
-  // A body that was in a box when it left may be outside by now, or taken out.
+  // A body that was in a box when it left may be outside or removed by now.
   const Changing known = changing_in(told);
   std::vector<WorldBody> bodies;
   for (const Row& row : rows) {

@@ -1,4 +1,4 @@
-// Bodies of a whole state, from what the regions tell of it. No clock, no wire.
+// Puts the bodies of a state together from the observations of all regions. Uses no clock and no network.
 #pragma once
 
 #include <vector>
@@ -11,17 +11,17 @@ namespace aurasim::cli::agent {
 /// A body of a whole world.
 struct WorldBody {
   core::ReplicaBody row;
-  bool under_way = false;  ///< handed over, and its next host does not compute it yet in this state
+  bool under_way = false;  ///< the body was handed over, and its next host does not compute it yet in this state
 };
 
-/// Of one state.
+/// Observations of one state.
 using Observations = std::vector<const core::Observation*>;
 
-/// Ascending by id. The highest epoch counts. Under one epoch a row of this state counts before one of when the body
-/// left, and that of its host before that of its former host.
+/// The bodies, ascending by id. The row with the highest epoch counts. With equal epochs, a row of this state counts
+/// before one from when the body left, and its host's row before its former host's.
 std::vector<WorldBody> bodies_of(const Observations& told);
 
-/// Bodies under way of which nobody tells where they are in this state. Ascending.
+/// Bodies under way whose place in this state is unknown. Ascending.
 std::vector<core::BodyId> missing_in(const Observations& told);
 
 }  // namespace aurasim::cli::agent

@@ -20,7 +20,7 @@
 namespace aurasim::lab::commands {
 namespace {
 
-/// Shows how far an experiment is; says false when the user wants it to stop.
+/// Shows the progress of an experiment, and returns false when the user wants to stop.
 class Watch {
  public:
   bool operator()(double share) {
@@ -39,7 +39,8 @@ class Watch {
   ProgressBar bar_;
 };
 
-/// Empty when there is such a case. (They are not listed in advance: every command would wait for them.)
+/// Error if there is no such case; empty otherwise. Cases are not listed in advance, because every command would wait
+/// for that.
 std::string problem_with_case(const std::string& name) {
   std::vector<std::string> names;
   for (const lab::Case& c : lab::stability_cases()) names.push_back(c.name);

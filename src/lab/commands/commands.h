@@ -20,7 +20,7 @@ void add_endurance(CLI::App& experiment, cli::Action& action);
 void add_speed(CLI::App& experiment, cli::Action& action);
 void add_speed_errors(CLI::App& experiment, cli::Action& action);
 
-/// What an option that chooses a solver may say.
+/// Allowed values of options that choose a solver.
 std::vector<std::string> solver_names();
 
 }  // namespace aurasim::lab::commands

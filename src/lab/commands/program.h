@@ -7,7 +7,7 @@
 
 namespace aurasim::lab::commands {
 
-/// Every command with its options; parsing it sets `action`, which outlives it.
+/// Every command with its options. Parsing sets `action`, which must outlive the result.
 std::unique_ptr<CLI::App> make_program(cli::Action& action);
 
 }  // namespace aurasim::lab::commands

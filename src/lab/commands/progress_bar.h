@@ -1,11 +1,12 @@
-// How far a long piece of work is, and how long it may still take.
+// Shows how far a long piece of work is, and how long it may still take.
 #pragma once
 
 #include "lab/campaign.h"
 
 namespace aurasim::lab::commands {
 
-/// On standard error: a line that is written over on a terminal; elsewhere one line for every tenth.
+/// Writes to standard error. A terminal gets one line that is written over; files and pipes get one line for every
+/// tenth.
 class ProgressBar {
  public:
   ProgressBar();

@@ -17,7 +17,7 @@
 namespace aurasim::lab::commands {
 namespace {
 
-/// Waits for it. True if it ended well.
+/// Runs a program and waits for its end. True if it succeeded.
 bool run_program(std::vector<std::string> words) {
   const pid_t pid = cli::spawn(std::move(words));
   int status = 0;

@@ -51,7 +51,7 @@ void print_speed_ups(const nlohmann::json& speed_ups) {
   }
 }
 
-/// False when it was told to stop.
+/// Runs the rains. False when the user has stopped it.
 bool run(const std::vector<lab::Rain>& rains, const RainArguments& arguments) {
   cli::catch_stop_signals();
   std::atomic<bool> stop = false;
@@ -68,7 +68,7 @@ bool run(const std::vector<lab::Rain>& rains, const RainArguments& arguments) {
   return finished;
 }
 
-/// One after the other, since they measure the wall clock. False when one of them has failed.
+/// Runs the rains one after the other, because they measure the wall clock. False when one of them has failed.
 bool run_as_processes(const std::vector<lab::Rain>& rains, const RainArguments& arguments) {
   std::filesystem::create_directories(arguments.out / "runs");
   for (const lab::Rain& rain : rains) {

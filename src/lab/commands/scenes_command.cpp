@@ -31,7 +31,7 @@ struct ScenesArguments {
   bool no_shrink = false;
 };
 
-/// "A-B" or "A". Says what is wrong; empty: nothing.
+/// Reads a range of seeds, "A-B" or "A". Returns the error; empty if there is none.
 std::string read_seeds(const std::string& text, std::uint64_t& first, std::uint64_t& last) {
   const std::string wrong = "found \"" + text + "\", allowed: A-B or A, whole numbers with A up to B";
   const std::size_t dash = text.find('-');

@@ -1,4 +1,4 @@
-// What an experiment has to show, as a table for people.
+// The requirements of an experiment, as a table for users.
 #pragma once
 
 #include <vector>

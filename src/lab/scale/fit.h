@@ -13,11 +13,12 @@ struct Line {
   double at(double x) const { return intercept + slope * x; }
 };
 
-/// The line with the least sum of squared distances in y. Two different x at least; a flat line through the mean
-/// otherwise. `xs` and `ys` have the same length, at least 1.
+/// The line with the least sum of squared distances in y. If all x are equal, a flat line through the mean of y. `xs`
+/// and `ys` have the same length, at least 1.
 Line fitted_line(std::span<const double> xs, std::span<const double> ys);
 
-/// Of log10(ys): how the thesis describes frame times over bodies (section 5.1.3). All ys above 0.
+/// Line fitted to log10(ys), as the thesis describes frame times over bodies (section 5.1.3). Precondition: all ys are
+/// above 0.
 Line fitted_growth(std::span<const double> xs, std::span<const double> ys);
 
 double median(std::vector<double> values);

@@ -1,5 +1,5 @@
-// How a plane is cut into regions, by a short name: "columns_4x80" (four columns of 80 m), "grid_9x80", "corner_3x80"
-// (three regions that meet in a point).
+// A division of the plane into regions. Its short name is, for example, "columns_4x80" (four columns of 80 m),
+// "grid_9x80" or "corner_3x80" (three regions that meet in a point).
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct Layout {
   double cell_m = 80;
 
   std::string name() const;
-  /// As the `regions` of a launch file or the `layout` of a scene. Throws std::invalid_argument for a grid that is not
-  /// square, and for a corner of other than three.
+  /// The text for `regions` of a launch file or `layout` of a scene. Throws std::invalid_argument for a grid that is
+  /// not square, and for a corner of other than three regions.
   std::string yaml() const;
 };
 

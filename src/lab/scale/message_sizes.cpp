@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMany = 1000;
 
-/// `count` awake bodies, as Projection describes them.
+/// A batch with the auras of `count` awake bodies, as Projection makes them.
 core::AuraBatch batch_of(std::size_t count, core::AuraKind kind) {
   core::AuraBatch batch;
   batch.top_speed_m_s = 32;
@@ -32,7 +32,7 @@ core::HandOff hand_off_of(std::size_t bodies, std::size_t contact_points) {
   return hand_off;
 }
 
-/// Of each of a thousand more: sequences are padded, so one alone says little.
+/// Bytes per element, from a thousand more of them: sequences are padded, so a single one is not exact.
 template <class SizeOf>
 double each(SizeOf&& size_of) {
   return static_cast<double>(size_of(2 * kMany) - size_of(kMany)) / static_cast<double>(kMany);

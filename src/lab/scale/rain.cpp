@@ -31,7 +31,8 @@ std::vector<std::string> Rain::overrides() const {
       fmt::format("time.substeps={}", substeps),
       "time.lookahead=" + (lookahead > 0 ? fmt::to_string(lookahead) : std::string("auto")),
   };
-  // One region has no boundaries: everything falls into its middle. The same where nothing is to fall near them.
+  // One region has no boundaries: everything falls into its middle. The same holds if no body is to fall near
+  // boundaries.
   const bool middle_only = world.count == 1 || border_share <= 0;
   const double share = middle_only || border_share >= 1 ? 0.5 : border_share;
   const auto set = [&](int injector, const char* key, const std::string& value) {

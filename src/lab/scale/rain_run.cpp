@@ -9,7 +9,7 @@ namespace aurasim::lab {
 namespace {
 
 constexpr double kMs = 1e3;
-/// In virtual time a frame is always in time: what is measured is work, not waiting.
+/// In virtual time frames are never late, so the run measures work and not waiting.
 constexpr double kFrame_s = 0.001;
 constexpr double kLatency_s = 0.0005;
 

@@ -13,14 +13,15 @@
 
 namespace aurasim::lab {
 
-inline constexpr double kWindow_s = 5;  ///< as the thesis
+inline constexpr double kWindow_s = 5;  ///< as in the thesis
 
 struct RainPlace {
-  std::filesystem::path launch_file;  ///< launch_configs/columns_rain.yaml, or one with injectors like its
+  std::filesystem::path launch_file;  ///< launch_configs/columns_rain.yaml, or a file with the same injectors
   SetupOf setup_of;
 };
 
-/// Nothing when `stop` became true. `stepped(share)` is called now and then, with the share of the run that is done.
+/// Runs the rain and returns its windows. Nothing when `stop` became true. `stepped(share)` is called now and then with
+/// the share of the run that is done, 0 to 1.
 std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
                                             const std::function<void(double)>& stepped, const std::atomic<bool>& stop);
 

@@ -12,10 +12,10 @@
 
 namespace aurasim::lab {
 
-/// What one run comes to.
+/// Figures of one run.
 struct RainFigures {
-  double frame_max_ms = 0;     ///< of any node in any step
-  double frame_p95_ms = 0;     ///< largest of the windows' 95th percentiles of the slowest node
+  double frame_max_ms = 0;     ///< longest frame of any node in any step
+  double frame_p95_ms = 0;     ///< largest 95th percentile of the slowest node's frames, over all windows
   double last_frame_ms = 0;    ///< mean of the slowest node in the last window
   double growth_per_body = 0;  ///< slope of log10(largest frame of each window) over bodies (thesis 5.1.4)
   double physics_ms = 0;       ///< means of the last window, summed over nodes
@@ -24,7 +24,7 @@ struct RainFigures {
   double watch_ms = 0;
   double overhead_share = 0;    ///< protocol and transport over physics, last window
   std::uint64_t hand_offs = 0;  ///< bodies
-  std::uint64_t returns = 0;    ///< of those, back within a second
+  std::uint64_t returns = 0;    ///< hand-offs that bring a body back within a second
   std::uint64_t aura_updates = 0;
   std::uint64_t aura_bytes = 0, hand_off_bytes = 0, link_bytes = 0, datagrams = 0;
   double slow_down = 1;
@@ -37,7 +37,7 @@ struct RainFigures {
 
 RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes);
 
-/// Reads the runs that are there, writes DIR/summary.json and returns it.
+/// Reads the windows of the runs that have been made, writes DIR/summary.json and returns it.
 nlohmann::json summarise_rains(const std::vector<Rain>& rains, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -1,4 +1,4 @@
-// Hand-offs that bring a body back to the node that it has just come from: work that nobody wanted.
+// Counts hand-offs that bring a body back to the node that it has just come from. Such hand-offs are wasted work.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace aurasim::lab {
 
 class RoundTrips {
  public:
-  /// A return within so many steps counts (one second: 60).
+  /// `within_steps`: a return counts within so many steps (60 for one second).
   explicit RoundTrips(core::Step within_steps) : within_steps_(within_steps) {}
 
-  /// A body left `source` for `destination` in state `stamp`. In order of stamp for each body. True if this takes it
-  /// back to where it came from, soon enough.
+  /// Notes that a body left `source` for `destination` in state `stamp`. To be called in ascending order of stamp for
+  /// each body. True if the body returns within the limit to the node that it came from.
   bool add(core::BodyId body, core::RegionId source, core::RegionId destination, core::Step stamp) {
     ++moves_;
     const auto [last, first] = last_.try_emplace(body, Move{source, destination, stamp});

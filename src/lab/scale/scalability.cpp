@@ -26,7 +26,7 @@ Rain begin(const ScalabilityPlan& plan, const std::string& series, const Layout&
   return rain;
 }
 
-/// The same rain under every aura; one node needs none, so once is enough.
+/// Adds the same rain with every aura. One node needs no aura, so it runs once.
 void add_with_auras(const ScalabilityPlan& plan, Rain rain, std::vector<Rain>& out) {
   for (const std::string& aura : plan.auras) {
     rain.aura = aura;
@@ -87,12 +87,12 @@ void add_series(const ScalabilityPlan& plan, const std::string& series, std::vec
   }
 }
 
-/// Bodies times steps, and something for each step of each node.
+/// Estimated work: bodies times steps, and a constant for each step of each node.
 double work_of(const Rain& rain) {
   return rain.run_s * (static_cast<double>(rain.bodies()) + 100 * static_cast<double>(rain.regions.count));
 }
 
-/// Gives out runs and adds up what is done.
+/// Hands runs to threads and adds up the work done.
 class Queue {
  public:
   Queue(std::vector<Rain> rains, const std::function<void(const Progress&)>& show)

@@ -1,5 +1,5 @@
-// The scalability experiment (thesis section 5.1): which runs there are, and running them on a few threads. A run that
-// is whole is not repeated.
+// The scalability experiment (thesis section 5.1): lists its runs and runs them on a few threads. A complete run is not
+// repeated.
 #pragma once
 
 #include <atomic>
@@ -24,7 +24,7 @@ namespace aurasim::lab {
 ///   uncertainty  U from 0 to 2
 ///   lookahead    K of 1 and 2
 std::vector<std::string> scalability_series();
-/// Likewise, of the bandwidth experiment; every body falls near the border of two columns:
+/// Names of series of the bandwidth experiment. Every body falls near the border of two columns:
 ///   speed  top speed at birth from 2.5 to 15 m/s along each axis
 ///   link   each node's link from 12.5 MB/s (100 Mbit/s) down to 50 kB/s
 std::vector<std::string> bandwidth_series();
@@ -38,12 +38,12 @@ struct ScalabilityPlan {
   double run_s = 60;
   std::string solver = "soft_step";
   int substeps = 4;
-  int lookahead = 0;  ///< K of runs with several nodes, but for the series of that name; 0: from the tolerances
+  int lookahead = 0;  ///< K of runs with several nodes, except series "lookahead"; 0: from the tolerances
 };
 
 std::vector<Rain> rains_of(const ScalabilityPlan& plan);
 
-/// Runs what DIR/runs lacks. Returns false when `stop` became true before the end.
+/// Runs those of `rains` that DIR/runs lacks. Returns false when `stop` became true before the end.
 bool run_rains(const std::vector<Rain>& rains, const RainPlace& place, const std::filesystem::path& directory,
                int threads, const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
 

@@ -154,7 +154,7 @@ void write_windows(const std::filesystem::path& file, const std::vector<Window>&
   for (const Window& window : windows) out << node::csv_line(WindowRow{window});
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write {}", part.string()));
-  std::filesystem::rename(part, file);  // a file that is there is whole
+  std::filesystem::rename(part, file);  // renamed when complete, so an existing file is whole
 }
 
 std::vector<Window> read_windows(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-// What the nodes of a run did in each stretch of a few seconds: the rows of the thesis's figures 5.2 to 5.16.
+// Load of a run's nodes in each window of a few seconds: the data of the thesis's figures 5.2 to 5.16.
 #pragma once
 
 #include <cstdint>
@@ -35,14 +35,14 @@ struct StepLoad {
   double frame_ms() const { return physics_ms + protocol_ms + transport_ms + watch_ms; }
 };
 
-/// One node, or (region -1) all of them. Of all: frames are those of the slowest node in each step, the other times
-/// means over nodes, numbers sums, and the largest cluster the largest.
+/// One window of one node, or of all nodes together (region -1). For all nodes, frames are those of the slowest node in
+/// each step, other times are means over nodes, counts are sums, and the largest cluster is the largest of all.
 struct Window {
   int region = -1;
   double begin_s = 0;
   double frame_max_ms = 0, frame_p95_ms = 0, frame_mean_ms = 0;
-  double slow_down = 1;  ///< time taken over time simulated, of the whole run
-  StepLoad mean;         ///< of the times; counts are sums over the window, numbers of bodies those of its last step
+  double slow_down = 1;  ///< time taken over time simulated, for the whole run
+  StepLoad mean;         ///< times: means; counts: sums over the window; numbers of bodies: of its last step
 };
 
 /// Gathers the steps of all nodes, in any order.
@@ -51,9 +51,10 @@ class WindowSums {
   WindowSums(std::size_t regions, core::Step steps_per_window, double step_s)
       : regions_(regions), steps_per_window_(steps_per_window), step_s_(step_s), loads_(regions) {}
 
-  /// Of a step that is computed again, times are those of the first time; what it sends is added.
+  /// Adds the load of one step. If a step is computed again, its times are those of the first time, and its messages
+  /// are added.
   void add(std::size_t region, core::Step step, const StepLoad& load);
-  /// Of the windows that every node has completed; region -1 after those of the nodes.
+  /// The windows that every node has completed. In each, region -1 comes after the nodes.
   std::vector<Window> windows() const;
 
  private:

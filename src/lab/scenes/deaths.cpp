@@ -10,7 +10,7 @@ namespace {
 
 constexpr core::Step kBetweenCheckpoints = 60;
 
-/// From one death to the next.
+/// The part of a run between two deaths.
 class Life {
  public:
   Life(VirtualCluster& cluster, const Disasters& disasters, int lookahead, const core::WorldCut* world)
@@ -23,7 +23,7 @@ class Life {
     for (std::size_t r = 0; r < cluster.size(); ++r) record(r);
   }
 
-  /// Until `victim` has computed state `last`. False when `stop` became true.
+  /// Runs until `victim` has computed state `last`. False when `stop` became true.
   bool run(Interference& interference, std::size_t victim, core::Step last, const std::atomic<bool>& stop) {
     ImpatientClient client(interference.requests);
     Programs programs(interference.words, cluster_, world_ != nullptr ? world_->step : 0);
@@ -43,7 +43,7 @@ class Life {
     return true;
   }
 
-  /// The world in the newest state that nothing is missing of, with what the survivors know by now; nothing: none.
+  /// The world in the newest complete state, with the orders that the survivors know by now. Nothing if there is none.
   std::optional<core::WorldCut> saved(std::size_t victim) {
     const core::Step recorded = *std::ranges::min_element(recorded_);
     for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
@@ -76,7 +76,7 @@ class Life {
   std::map<core::Step, std::vector<core::WorldCut>> parts_;
 };
 
-/// The states after `from`, up to `until`.
+/// Copies the results of the states after `from`, up to `until`.
 void take_over(const Played& part, core::Step from, core::Step until, Played& whole) {
   const auto at = [](core::Step step) { return static_cast<std::ptrdiff_t>(step + 1); };
   std::copy(part.hash.begin() + at(from), part.hash.begin() + at(until), whole.hash.begin() + at(from));
@@ -110,7 +110,7 @@ std::optional<Played> play_with_deaths(const Disasters& disasters, const config:
     Life life(*cluster, disasters, launch.lookahead(), world ? &*world : nullptr);
     if (!life.run(interference, victim, last, stop)) return std::nullopt;
     std::optional<core::WorldCut> saved = life.saved(victim);
-    if (!saved) continue;  // all over again
+    if (!saved) continue;  // begin again from state 0
     take_over(life.played(), from, saved->step, whole);
     from = saved->step;
     world = through_a_file(std::move(*saved));

@@ -20,7 +20,7 @@ namespace {
 
 constexpr core::Step kBetweenParts = 60;
 constexpr core::Step kBetweenOrders = 45;
-constexpr core::Step kOrderedAhead = 120;  // more than any map asks for, also when nodes are many
+constexpr core::Step kOrderedAhead = 120;  // more than any map needs, even with many nodes
 constexpr std::size_t kPartsKept = 4;
 constexpr std::uint64_t kMostNewcomers = 8;
 constexpr int kNodes[] = {4, 4, 4, 2, 9, 1};
@@ -36,14 +36,14 @@ core::RegionMap map_of(int nodes) {
   return core::RegionMap::grid(rows, static_cast<std::size_t>(nodes) / rows, 8, 8);
 }
 
-/// What a client wants, in which state.
+/// A client's request, and its state.
 struct Wish {
   std::uint64_t request = 0;
   core::Step at_step = 0;
   core::Action action;
 };
 
-/// Of states that have not been compared yet: a sum over all bodies.
+/// Hash sums over all bodies, of states that have not been compared yet.
 using Hashes = std::map<core::Step, std::uint64_t>;
 
 void note(const node::StepReport& report, Hashes& hashes) {
@@ -74,7 +74,7 @@ class Endurance {
     note_all(*many_, many_seen_);
   }
 
-  /// Some seconds of the run, and what ends them.
+  /// Runs for some seconds, and then lets a node die or loads a saved world.
   void chapter() {
     const core::Step begin = many_->slowest();
     const core::Step last = (begin / kBetweenParts + 1 + draw(18)) * kBetweenParts + kBetweenParts;
@@ -103,7 +103,7 @@ class Endurance {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
   }
 
-  /// A node is gone, with what it had in memory; the others know what was ordered.
+  /// Lets a node die with its memory. The other nodes know the orders.
   void die(core::Step last) {
     const auto victim = static_cast<std::size_t>(draw(static_cast<core::Step>(many_->size())));
     run_until([&] { return many_->node(victim).current_step() >= last; });
@@ -118,10 +118,10 @@ class Endurance {
       }
       return go_on_from(core::merge(std::move(all)), static_cast<int>(many_->size()));
     }
-    // Nothing is kept yet since the chapter began: it dies in another one.
+    // No state has been kept since the chapter began, so no node dies in this one.
   }
 
-  /// The state goes through a file, to as many other nodes.
+  /// Saves the state to a file and goes on from it on other nodes.
   void load(core::Step state) {
     run_until([&] { return parts_.contains(state) && is_complete(*parts_.find(state)); });
     if (has_failed()) return;
@@ -186,7 +186,7 @@ class Endurance {
     one_seen_.erase(one_seen_.begin(), one_seen_.upper_bound(step));
   }
 
-  /// A kick, a body that comes, or one that goes: in a state that is so far ahead that both runs can still have it.
+  /// Requests an impulse, a new body, or a removal, in a state so far ahead that both runs can still execute it.
   void wish() {
     Wish wish{++requests_, one_->slowest() + kOrderedAhead, {}};
     const bool is_kick = !one_->records(0).empty() && draw(4) != 0;
@@ -202,7 +202,7 @@ class Endurance {
     if (given.at_step != wish.at_step) throw std::logic_error("an order comes too late for one of the two runs");
   }
 
-  /// Any body; towards the middle, or it would be gone before the hour is over.
+  /// An impulse on any body, towards the middle, because the body would otherwise leave the scene within the hour.
   core::Action kick() {
     const std::span<const core::BodyRecord> all = one_->records(0);
     const core::BodyRecord& body = all[static_cast<std::size_t>(draw(std::ssize(all)))];
@@ -237,7 +237,7 @@ class Endurance {
   std::map<core::Step, std::vector<core::WorldCut>> parts_;
   core::Step compared_ = 0;  ///< the next state
   std::uint64_t requests_ = 0;
-  std::deque<Wish> wishes_;  ///< that may have to be said again
+  std::deque<Wish> wishes_;  ///< requests that may have to be repeated
   std::deque<core::BodyId> newcomers_;
   Endured told_;
 };

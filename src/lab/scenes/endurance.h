@@ -1,5 +1,5 @@
-// A run that is never left in peace, in virtual time, for hours: bodies are kicked, come and go, nodes die, the world
-// is saved and goes on from the file on other nodes. Beside it the same world on one node, to which nothing happens.
+// A run of hours with constant disturbances, in virtual time: bodies get impulses, come and go, nodes die, and the
+// world is saved and goes on from the file on other nodes. It is compared with the same world on one undisturbed node.
 #pragma once
 
 #include <atomic>
@@ -19,20 +19,20 @@ struct EndurancePlan {
   SetupOf setup_of;
 };
 
-/// What has come of it so far.
+/// Results of the run so far.
 struct Endured {
   core::Step state = 0;
   double hours = 0;
   std::uint64_t deaths = 0, loads = 0, orders = 0;
-  std::uint64_t compared = 0;     ///< states
-  std::uint64_t computed = 0;     ///< by the nodes, all together, those after a death once more
-  std::uint64_t bodies = 0;       ///< in the last state that was gone on from, those announced among them
+  std::uint64_t compared = 0;     ///< number of states compared
+  std::uint64_t computed = 0;     ///< states computed by all nodes, repeated ones included
+  std::uint64_t bodies = 0;       ///< bodies in the last saved state that the run went on from, announced ones included
   std::uint64_t resident_kB = 0;  ///< memory of this process
   std::string failure;            ///< empty: none
 };
 
-/// Until the first failure, or the end, or `stop` becomes true. `tell` hears of the beginning, each so many hours, and
-/// the end.
+/// Runs until the first failure, the end, or `stop` becomes true. `tell` is called at the beginning, every
+/// `told_every_h` simulated hours, and at the end.
 Endured endure(const config::Launch& launch, const EndurancePlan& plan, const std::function<void(const Endured&)>& tell,
                const std::atomic<bool>& stop);
 

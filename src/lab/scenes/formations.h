@@ -1,4 +1,4 @@
-// Bodies that belong together, around a place of their own: stacks, rows, thrown bodies, and what joints hold together.
+// Groups of bodies placed together: stacks, rows, thrown bodies, and mechanisms with joints.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 namespace aurasim::lab {
 
 struct Piece {
-  std::size_t kind = 0;  ///< of Kinds::all
+  std::size_t kind = 0;  ///< index in Kinds::all
   core::Vec3 p = core::Vec3::Zero();
   core::Vec3 v = core::Vec3::Zero();
   core::Vec3 spin = core::Vec3::Zero();
@@ -25,17 +25,17 @@ struct Link {
   std::optional<std::size_t> leader = {};  ///< the link that a hinge or slider follows
 };
 
-/// Around the origin, standing on z = 0.
+/// Bodies and joints around the origin, standing on z = 0.
 struct Formation {
   std::vector<Piece> pieces;
   std::vector<Link> links;
 };
 
-/// What formations are made from.
+/// Parameters that formations are made from.
 struct Makings {
   const Kinds& kinds;
-  double speed_m_s = 10;  ///< that bodies may start with
-  double region_m = 10;   ///< how wide the narrowest region is
+  double speed_m_s = 10;  ///< highest speed that bodies start with
+  double region_m = 10;   ///< width of the narrowest region
 
   std::size_t any_kind(Chance& chance) const { return chance.below(static_cast<std::uint32_t>(kinds.all.size())); }
   const Kind& kind(const Piece& piece) const { return kinds.all[piece.kind]; }
@@ -43,14 +43,14 @@ struct Makings {
   double radius_m(std::size_t kind) const { return kinds.all[kind].radius_m; }
 };
 
-/// One of those without joints.
+/// A random formation without joints.
 Formation random_heap(const Makings& makings, Chance& chance);
-/// One of those with joints.
+/// A random formation with joints.
 Formation random_mechanism(const Makings& makings, Chance& chance);
-/// One body on its way.
+/// A single body with a velocity.
 Formation thrown_body(const Makings& makings, Chance& chance);
 
-/// Turned about z by so many quarter turns.
+/// The formation turned about z by `quarters` quarter turns.
 Formation turned(Formation formation, std::uint32_t quarters);
 
 }  // namespace aurasim::lab

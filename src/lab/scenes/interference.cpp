@@ -28,7 +28,7 @@ core::Pose pose_in(const Json& map) { return {vec3_in(map.at("position")), core:
 
 core::BodyId body_in(const Json& json) { return core::BodyId{json.get<std::uint64_t>()}; }
 
-/// Numbers what orders add as nodes will.
+/// Reads requests, and numbers the objects that orders add, as nodes will.
 class RequestReader {
  public:
   explicit RequestReader(const core::Scene& scene)
@@ -86,7 +86,7 @@ class RequestReader {
     return request;
   }
 
-  /// One that has been added, or else one of the scene's.
+  /// A static that an order has added, or else one of the scene.
   core::StaticId static_named(const std::string& name) const {
     if (const auto added = named_.find(name); added != named_.end()) return added->second;
     const auto found = core::find_static(scene_, name);
@@ -141,7 +141,7 @@ Word word_in(const Json& json, const core::Scene& scene, std::uint64_t number) {
   return word;
 }
 
-/// Ascending by the state that `key` names.
+/// Entries of `list`, ascending by the state that `key` names.
 std::vector<Json> sorted(const Json& json, const char* list, const char* key) {
   if (!json.contains(list)) return {};
   auto entries = json[list].get<std::vector<Json>>();
@@ -149,7 +149,7 @@ std::vector<Json> sorted(const Json& json, const char* list, const char* key) {
   return entries;
 }
 
-/// Orders in the order in which they will be given, since what they add is numbered.
+/// Reads orders in the sequence in which they will be given, because the objects that they add are numbered.
 Interference interference_in(const Json& json, const core::Scene& scene) {
   Interference interference;
   interference.shuffle_ranks_steps = json.value("shuffle_ranks_steps", core::Step{0});
@@ -186,7 +186,7 @@ void ImpatientClient::speak_after(const core::WorldCut& world, node::Node& lead)
   while (next_ < requests_.size()) ask(lead);
 }
 
-/// The next one, which has its place's number.
+/// Gives the next request. Its number is its place in the list, from 1.
 void ImpatientClient::ask(node::Node& lead) {
   Request& request = requests_[next_++];
   for (std::size_t i = 0; i < request.actions.size(); ++i) {

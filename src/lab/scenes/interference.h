@@ -1,4 +1,4 @@
-// What happens to a world in mid-run: interference.json beside its launch file.
+// Orders and setpoints that act on a world in mid-run: interference.json beside its launch file.
 //   {"shuffle_ranks_steps": 30,
 //    "orders": [{"at_step": 120, "remove_body": 7},
 //               {"at_step": 90, "spawn": {"id": 1000000001, "prototype": "box_3", "position": [..], "velocity": [..]}},
@@ -33,11 +33,11 @@ class VirtualCluster;
 
 /// Orders that are given together: a new kind of body and the first one of it.
 struct Request {
-  core::Step at_step = 0;  ///< of the last one; the others hold from when they are known
+  core::Step at_step = 0;  ///< state of the last action; the others take effect when they are received
   std::vector<core::Action> actions;
 };
 
-/// What a program says once the run is in state `said_step`.
+/// Setpoints that a program sends once the run is in state `said_step`.
 struct Word {
   core::Step said_step = 0;
   core::Setpoints setpoints;
@@ -49,19 +49,20 @@ struct Interference {
   std::vector<Word> words;        ///< ascending said_step
 };
 
-/// The scene that the launch file names, as it is at the start: orders refer to its prototypes by name, and add to
-/// them. Without the file there is no interference. Throws std::runtime_error that names the file and what is wrong.
+/// Reads interference.json; without the file there is no interference. `scene`: the launch file's scene at the start,
+/// whose prototypes orders name and add to. Throws std::runtime_error that names the file and the error.
 Interference read_interference(const std::filesystem::path& file, const core::Scene& scene);
 
-/// Gives the requests to the lead, each at the last moment, as an impatient client does: so late that it can just take
-/// effect in its state. One that comes too late for that takes effect later, and the request says so from then on.
+/// Gives each request to the lead at the last moment at which it can still take effect in its state. If it comes too
+/// late for that, it takes effect later, and the request's at_step is changed to that state.
 class ImpatientClient {
  public:
   explicit ImpatientClient(std::vector<Request>& requests) : requests_(requests) {}
 
-  /// Before each step of the lead.
+  /// Gives the requests that are due. To be called before each step of the lead.
   void speak(node::Node& lead);
-  /// Instead, once, in a run that goes on from a saved world: all that the world does not know of yet.
+  /// For a run that goes on from a saved world: gives once all requests that the world does not contain. Used instead
+  /// of speak().
   void speak_after(const core::WorldCut& world, node::Node& lead);
 
  private:
@@ -71,14 +72,14 @@ class ImpatientClient {
   std::size_t next_ = 0;
 };
 
-/// Tells every node what programs say, each in the node's own state `said_step`: some compute, some wait, and some
-/// are put back by then.
+/// Sends programs' setpoints to every node when the node itself is in state `said_step`. At that time other nodes may
+/// compute, wait, or have gone back.
 class Programs {
  public:
-  /// `from`: the state that the run begins or goes on from; what has acted by then is in the saved world.
+  /// `from`: the state that the run begins or goes on from; earlier setpoints are in the saved world.
   Programs(const std::vector<Word>& words, VirtualCluster& listeners, core::Step from);
 
-  /// Before each step of a node.
+  /// To be called before each step of a node.
   void speak();
 
  private:

@@ -11,7 +11,7 @@ namespace aurasim::lab {
 
 using Json = nlohmann::ordered_json;
 
-/// To a tenth of a millimetre: short to read, and the same on every machine whatever its last bits. Zero has no sign.
+/// Rounds to a tenth of a millimetre, so that the text is short and the same on every machine. Zero has no sign.
 inline double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0; }
 inline Json json_vec3(const core::Vec3& v) { return Json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())}); }
 

@@ -60,7 +60,7 @@ void note_redo(const VirtualCluster::Event& event, Played& played) {
 
 std::optional<Played> play(VirtualCluster& cluster, Interference& interference, core::Step steps, int lookahead,
                            const std::atomic<bool>& stop, Saver* saver, const core::WorldCut* world) {
-  const core::Step more = 4 * lookahead + 2;  // by then, whoever was under way has arrived
+  const core::Step more = 4 * lookahead + 2;  // by then, all bodies under way have arrived
   Played played;
   played.hash.assign(static_cast<std::size_t>(steps) + 1, 0);
   const double begin_s = thread_time_s();

@@ -1,4 +1,4 @@
-// One run of a random world in virtual time, from its beginning or from a saved world, and what came of it.
+// Plays one run of a random world in virtual time, from its beginning or from a saved world, and collects its results.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace aurasim::lab {
 
 struct Played {
-  std::vector<std::uint64_t> hash;  ///< by state
+  std::vector<std::uint64_t> hash;  ///< hash of each state
   std::uint64_t hand_offs = 0;
   std::uint64_t broken = 0;
   std::string first_fault;
@@ -22,10 +22,10 @@ struct Played {
   std::size_t bodies = 0;
   double cpu_s = 0;
   std::uint64_t redos = 0;
-  std::uint64_t again = 0;  ///< states computed once more
+  std::uint64_t again = 0;  ///< number of states computed again
 };
 
-/// As a file would have it.
+/// The world after encoding and decoding it, as through a file.
 core::WorldCut through_a_file(core::WorldCut cut);
 
 /// Collects the parts of all regions of one cluster.
@@ -35,7 +35,7 @@ class Saver {
 
   void begin(VirtualCluster& cluster) const;
   void collect(node::Node& node);
-  /// Throws std::runtime_error if they are not all there.
+  /// The whole world. Throws std::runtime_error if a part is missing.
   core::WorldCut take(std::size_t regions);
 
  private:
@@ -47,10 +47,10 @@ class Saver {
 double thread_time_s();
 
 void note_report(const node::StepReport& report, Played& played);
-/// An event of the cluster: a redo is counted once.
+/// Notes an event of the cluster. A redo is counted once, not once for each node.
 void note_redo(const VirtualCluster::Event& event, Played& played);
 
-/// State 0, or that of a saved world, and what comes after it. Nothing when `stop` became true.
+/// Plays from state 0, or from the saved world `world`, to state `steps`. Nothing when `stop` became true.
 std::optional<Played> play(VirtualCluster& cluster, Interference& interference, core::Step steps, int lookahead,
                            const std::atomic<bool>& stop, Saver* saver = nullptr,
                            const core::WorldCut* world = nullptr);

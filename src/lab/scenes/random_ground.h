@@ -1,4 +1,4 @@
-// What the bodies of a random world stand on.
+// Random statics that the bodies of a random world stand on.
 #pragma once
 
 #include <map>
@@ -10,13 +10,14 @@
 
 namespace aurasim::lab {
 
-/// Mesh files that a scene names: their text by their names.
+/// Texts of the mesh files that a scene names, by file name.
 using MeshTexts = std::map<std::string, std::string>;
 
-/// "statics" of the scene: a plane, boxes, a heightfield or a mesh, none above z = 0, and at times walls around it all.
+/// Adds "statics" to the scene: a plane, boxes, a heightfield or a mesh, none above z = 0, and sometimes walls around
+/// them.
 void add_ground(const RandomLayout& layout, Json& scene, MeshTexts& meshes, Chance& chance);
 
-/// Lifts, gates, turnstiles and belts where regions meet, in "statics". For worlds that soft_step solves.
+/// Adds lifts, gates, turnstiles and belts to "statics" where regions meet. Only for worlds with solver soft_step.
 void add_moving_statics(const RandomLayout& layout, Json& scene, Chance& chance);
 
 }  // namespace aurasim::lab

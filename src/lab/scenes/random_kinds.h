@@ -14,12 +14,12 @@ namespace aurasim::lab {
 struct Kind {
   std::string name;
   Json shape;
-  double radius_m = 0;       ///< of a sphere around the origin that holds it
-  double half_height_m = 0;  ///< along z, as it is when it is not turned
+  double radius_m = 0;       ///< radius of a sphere around the origin that contains the shape
+  double half_height_m = 0;  ///< half the extent along z, without rotation
   double mass_kg = 1;
 };
 
-/// The first of `all` are there in every world, for formations that need them.
+/// All kinds of a world. The first ones exist in every world, because formations need them.
 struct Kinds {
   static constexpr std::size_t kBar = 0;     ///< long along x
   static constexpr std::size_t kDomino = 1;  ///< thin along x
@@ -30,10 +30,11 @@ struct Kinds {
   double largest_radius_m() const;
 };
 
-/// Shapes of all kinds, about `half_m` in half their size. `largest_m`: radius of one that is larger; 0: none.
+/// Draws kinds with all types of shapes. `half_m`: about half the size of each. `largest_m`: radius of one larger
+/// shape; 0: none.
 Kinds random_kinds(double half_m, double largest_m, Chance& chance);
 
-/// "materials", "shapes" and "prototypes" of the scene. The material "ground" is for what does not move.
+/// Adds "materials", "shapes" and "prototypes" to the scene. The material "ground" is for statics.
 void add_kinds(const Kinds& kinds, Json& scene, Chance& chance);
 
 }  // namespace aurasim::lab

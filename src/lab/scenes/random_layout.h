@@ -1,4 +1,4 @@
-// How a random world is divided, and where that hurts.
+// Random regions of a world, and the critical places where they meet.
 #pragma once
 
 #include <vector>

@@ -27,7 +27,7 @@ class OrderWriter {
     return order;
   }
 
-  /// Of the walls that have been added, some come down again.
+  /// Removes some of the walls that orders have added.
   void take_walls_down(Json& orders) {
     for (const std::string& name : walls_) {
       if (chance_.below(2) == 0) continue;
@@ -46,7 +46,7 @@ class OrderWriter {
     const Vec3 aside = {chance_.between(-0.3, 0.3), chance_.between(-0.3, 0.3), 0};
     return spot + std::min(layout_.half_x_m, layout_.half_y_m) * aside + Vec3(0, 0, z);
   }
-  /// One of the scene's bodies, or of those that clients have spawned; also one that is not there yet or any more.
+  /// A body of the scene, or one that a client spawns. It may not exist yet, or not any more.
   const Json& any_body() {
     if (!spawned_.empty() && chance_.below(4) == 0) {
       return spawned_[chance_.below(static_cast<std::uint32_t>(spawned_.size()))];

@@ -1,4 +1,4 @@
-// What a launch file cannot say: what clients ask for in mid-run, and ranks that change.
+// Random events that a launch file cannot contain: clients' requests in mid-run, and changing ranks.
 #pragma once
 
 #include "lab/pair.h"
@@ -8,10 +8,11 @@
 
 namespace aurasim::lab {
 
-/// The first state that an order of a random world may name, and the last: early enough for a run of 400 steps.
+/// The first and the last state that an order of a random world may name. They fit a run of 400 steps.
 inline constexpr std::int64_t kFirstOrder = 50, kLastOrder = 360;
 
-/// interference.json (see interference.h) for a scene that has its bodies. `speed_m_s`: that clients may ask for.
+/// Contents of interference.json (interference.h). Precondition: `scene` has its bodies. `speed_m_s`: highest speed
+/// that clients ask for.
 Json random_interference(const Kinds& kinds, const RandomLayout& layout, const Json& scene, double speed_m_s,
                          Chance& chance);
 

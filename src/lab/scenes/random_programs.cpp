@@ -19,7 +19,7 @@ class ProgramWriter {
   ProgramWriter(const Makings& makings, const Json& scene, int lookahead, Chance& chance)
       : makings_(makings), scene_(scene), lookahead_(lookahead), chance_(chance) {}
 
-  /// All that it says.
+  /// Writes all setpoints of the program.
   void write(std::uint64_t client, Json& said) {
     constexpr std::array<std::uint32_t, 6> kRhythms = {1, 1, 2, 5, 20, 45};
     const std::array<std::uint32_t, 5> leads = {1, 2, k() + 1, k() + 2, 8};

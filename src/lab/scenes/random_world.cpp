@@ -18,9 +18,9 @@ using core::Vec3;
 constexpr std::size_t kMostBodies = 70;
 constexpr const char* kUsualSolver = "soft_step";
 constexpr const char* kOtherSolver = "sequential_impulse";
-constexpr std::uint64_t kProgramsOf = 0x9E3779B97F4A7C15;  ///< sets their chances apart from the rest
+constexpr std::uint64_t kProgramsOf = 0x9E3779B97F4A7C15;  ///< separates the random numbers of programs from the rest
 
-/// What the rest of a world hangs on.
+/// Parameters that determine the rest of a world.
 struct Dials {
   double step_hz = 60;
   int lookahead = 1;
@@ -47,7 +47,8 @@ Dials random_dials(Chance& chance) {
   return dials;
 }
 
-/// So wide a region has to be for points at the promised speed (docs/design.md, "The aura and its reach"), rounded up.
+/// Width that a region needs for points at the promised speed, metres (docs/design.md, "The aura and its reach"),
+/// rounded up.
 double way_m(const Dials& dials) { return 3 * dials.promised_m_s * dials.lookahead / dials.step_hz + 0.1; }
 
 Json launch_of(const Dials& dials, const Json& regions, Chance& chance) {
@@ -97,7 +98,7 @@ class Builder {
     double radius_m;
   };
 
-  /// Often exactly on it.
+  /// A place near a spot where regions meet, often exactly on it.
   Vec3 near_a_spot() {
     const Vec3 spot = layout_.spots[chance_.below(static_cast<std::uint32_t>(layout_.spots.size()))];
     if (chance_.below(3) == 0) return spot;
@@ -184,7 +185,7 @@ void add_bodies(const Makings& makings, const RandomLayout& layout, Json& scene,
   }
 }
 
-/// Two of three of those that move are sent elsewhere under way, once or twice, whatever their paths are.
+/// Adds orders that send two of three moving statics elsewhere, once or twice, independent of their paths.
 void send_statics(World& world, Chance& chance) {
   for (const Json& moving : world.scene["statics"]) {
     if (!moving.contains("path") && !moving.contains("belt")) continue;
@@ -200,8 +201,8 @@ void send_statics(World& world, Chance& chance) {
   }
 }
 
-/// Two of three of those that move, for a program: of two who send one static the later begins no earlier, so clients
-/// leave them alone.
+/// Chooses two of three moving statics for a program. Clients do not move these, because the later of two moves of one
+/// static does not begin before the earlier one.
 std::vector<std::string> movers_for_a_program(World& world, Chance& chance) {
   std::vector<std::string> names;
   for (const Json& fixed : world.scene["statics"]) {
@@ -237,7 +238,8 @@ World random_world(std::uint64_t seed) {
   add_bodies({kinds, dials.speed_m_s, region_m}, layout, world.scene, chance);
   world.launch = launch_of(dials, layout.regions, chance);
   world.interference = random_interference(kinds, layout, world.scene, dials.speed_m_s, chance);
-  // Chances of their own: without statics that move and programs, each seed is the world that it has always been.
+  // Separate random numbers, so that a seed's world without moving statics and programs stays the same as in earlier
+  // versions.
   Chance of_statics(~seed);
   if (dials.solver == kUsualSolver && of_statics.below(3) == 0) {
     add_moving_statics(layout, world.scene, of_statics);

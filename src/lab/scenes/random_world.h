@@ -1,4 +1,5 @@
-// A world from a seed: scene, launch and interference that hurt. The same seed gives the same world everywhere.
+// Makes a random world from a seed: scene, launch and interference that stress the protocol. The same seed gives the
+// same world on every machine.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 
 namespace aurasim::lab {
 
-/// In this program's precision, which the launch file names; of all else the seed decides.
+/// The launch file names this program's precision. The seed determines everything else.
 World random_world(std::uint64_t seed);
 
 }  // namespace aurasim::lab

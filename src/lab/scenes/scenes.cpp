@@ -97,7 +97,7 @@ std::string shown_rules(const ScenesPlan& plan) {
   return rules.dump(1) + "\n";
 }
 
-/// Seeds of other ranges may be there already: of the same rules.
+/// Checks that the folder's seeds were run by the same rules. Their range may differ.
 void agree_on_rules(const ScenesPlan& plan, const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
   const std::filesystem::path file = directory / "campaign.json";
@@ -119,7 +119,7 @@ std::map<std::uint64_t, SeedRow> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
-/// Gives out the seeds that are missing and appends their rows.
+/// Hands out the missing seeds and appends their rows.
 class SeedQueue {
  public:
   SeedQueue(const ScenesPlan& plan, const std::filesystem::path& file, const std::function<void(const Progress&)>& show)
@@ -181,7 +181,7 @@ void write_readme(const Shrunk& shrunk, const TrialRules& rules, std::uint64_t s
       << "runs it in virtual time. `aurasim launch launch.yaml` runs it on real nodes (without interference.json).\n";
 }
 
-/// Files that nobody can read are that seed's failure, not the end of all others.
+/// Outcome of a seed's world. Files that cannot be read count as this seed's failure, so that the other seeds go on.
 std::optional<WorldOutcome> outcome_in(const std::filesystem::path& folder, const TrialRules& rules, std::uint64_t seed,
                                        const std::atomic<bool>& stop) {
   try {
@@ -193,7 +193,7 @@ std::optional<WorldOutcome> outcome_in(const std::filesystem::path& folder, cons
   }
 }
 
-/// The folder stays if the seed fails, and if the process does not come back from it.
+/// Runs one seed. Its folder stays if the seed fails, or if the process crashes in it.
 std::optional<SeedRow> run_seed(const ScenesPlan& plan, std::uint64_t seed, const std::filesystem::path& directory,
                                 const std::atomic<bool>& stop) {
   const World world = random_world(seed);

@@ -1,4 +1,4 @@
-// Random worlds by the hundred: each seed's world on its regions and on one node, and what came of it.
+// Runs many random worlds: each seed's world on its regions and on one node, and compares them.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ namespace aurasim::lab {
 struct ScenesPlan {
   std::uint64_t first = 1, last = 200;  ///< seeds
   TrialRules rules;
-  double shrink_s = 60;  ///< for each failing seed; 0: they stay as they are
-  bool keep = false;     ///< the files of those that do not fail, too
+  double shrink_s = 60;  ///< time to shrink each failing seed's world, seconds; 0: not shrunk
+  bool keep = false;     ///< keep the files of seeds that do not fail, too
 };
 
 /// Runs the seeds that DIR/seeds.csv lacks, on `threads` threads, and appends a row as each ends. The worlds of those
@@ -27,7 +27,8 @@ struct ScenesPlan {
 bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
                 const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
 
-/// Sums over the plan's seeds that have been run, also as DIR/summary.json; `failed_seeds` names those that fail.
+/// Sums over the plan's seeds that have been run; also written to DIR/summary.json. `failed_seeds` lists those that
+/// failed.
 nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -37,7 +37,7 @@ constexpr Part kOrders = {&World::interference, "orders"}, kPrograms = {&World::
                kPrototypes = {&World::scene, "prototypes"}, kShapes = {&World::scene, "shapes"},
                kMaterials = {&World::scene, "materials"};
 
-/// The entries of a list, or of a map, but for [begin, end).
+/// The entries of a list or a map without those in [begin, end).
 Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
   Json rest = entries.is_array() ? Json::array() : Json::object();
   std::size_t at = 0;
@@ -52,7 +52,7 @@ Json without_entries(const Json& entries, std::size_t begin, std::size_t end) {
   return rest;
 }
 
-/// Of joints that are not there any more.
+/// Removes the followers of joints that were left out.
 void let_followers_go(Json& joints) {
   std::set<std::string> names;
   for (const Json& joint : joints) names.insert(joint["name"].get<std::string>());
@@ -78,7 +78,7 @@ void drop_joints_without_bodies(World& world) {
   let_followers_go(joints);
 }
 
-/// What programs say of joints or statics (`list`, each setpoint with the name as `key`) that are not there any more.
+/// Removes setpoints of joints or statics that were left out. `list`: list of setpoints; `key`: key with the name.
 void drop_words_without(const char* list, const char* key, World& world) {
   if (!world.interference.contains("programs")) return;
   std::set<std::string> names;
@@ -92,7 +92,7 @@ void drop_words_without(const char* list, const char* key, World& world) {
   }
 }
 
-/// Left out bit by bit, and kept out if the world still fails.
+/// Leaves out parts of the world step by step, as long as the world still fails.
 class Shrinker {
  public:
   Shrinker(const World& world, const WorldOutcome& failure, const TrialRules& rules, std::uint64_t seed,
@@ -107,7 +107,7 @@ class Shrinker {
 
   bool time_is_up() const { return stop_ || Clock::now() >= end_; }
 
-  /// True when the world still fails so, and is the best from now on.
+  /// Tries a world. True if it still fails in the same way; then it is the best world so far.
   bool accept(World world) {
     if (time_is_up()) return false;
     ++best_.trials;
@@ -118,7 +118,7 @@ class Shrinker {
     try {
       outcome = run_world(directory_, rules, seed_, stop_);
     } catch (const std::exception&) {
-      return false;  // no world any more: something refers to what was left out
+      return false;  // invalid world: something refers to a part that was left out
     }
     if (!outcome || !fails_like(*outcome, failure_)) return false;
     best_.world = std::move(world);
@@ -127,7 +127,7 @@ class Shrinker {
     return true;
   }
 
-  /// Chunks of a half, a quarter and so on, down to single entries.
+  /// Leaves out chunks of a half, a quarter and so on, down to single entries.
   bool thin_out(const Part& part) {
     bool any = false;
     for (std::size_t chunk = part.size_in(best_.world); chunk > 0; chunk /= 2) {
@@ -164,7 +164,7 @@ class Shrinker {
   Shrunk best_;
 };
 
-/// Each alone, in this order: what is left says what the failure needs.
+/// Makes settings plain, one at a time, in this order. The remaining ones show what the failure needs.
 void make_plain(Shrinker& shrinker) {
   const auto try_world = [&](auto&& change) {
     World plainer = shrinker.best().world;

@@ -1,5 +1,5 @@
-// A world as files that everybody can run: DIR/launch.yaml, DIR/scene.yaml and the meshes that it names, as `aurasim
-// launch DIR/launch.yaml` takes them; and DIR/interference.json for what a launch file cannot say (interference.h).
+// A world as files: DIR/launch.yaml, DIR/scene.yaml and the meshes that it names, as `aurasim launch DIR/launch.yaml`
+// takes them. DIR/interference.json has what a launch file cannot contain (interference.h).
 #pragma once
 
 #include <filesystem>

@@ -20,7 +20,8 @@
 namespace aurasim::lab {
 namespace {
 
-/// Frames and messages together take less than K steps, so that nobody waits for long; on a bad network some do.
+/// Sets delays so that frame and message together take less than K steps and no node waits for long. On a bad network
+/// some do.
 void set_network(ClusterRules& rules, bool bad, std::uint64_t seed) {
   const double step_s = rules.aura.step_s, whole_s = step_s * rules.aura.lookahead;
   rules.seed = seed;
@@ -35,7 +36,7 @@ void set_network(ClusterRules& rules, bool bad, std::uint64_t seed) {
   rules.network.keep_order = seed % 2 == 0;
 }
 
-/// Each time some of the nodes on one side, and all others on the other.
+/// Adds partitions of the network. Each has some nodes on one side, and all others on the other.
 void add_partitions(ClusterRules& rules, std::size_t regions, core::Step steps, std::uint64_t seed) {
   constexpr int kPartitions = 3;
   constexpr double kLongest_s = 2;
@@ -44,7 +45,7 @@ void add_partitions(ClusterRules& rules, std::size_t regions, core::Step steps, 
   for (int i = 0; i < kPartitions; ++i) {
     const double from_s = uniform(static_cast<double>(steps) * rules.aura.step_s),
                  until_s = from_s + uniform(kLongest_s);
-    const std::uint64_t side = 1 + random() % ((std::uint64_t{1} << regions) - 2);  // neither none nor all
+    const std::uint64_t side = 1 + random() % ((std::uint64_t{1} << regions) - 2);  // at least one node, and not all
     for (std::uint32_t a = 0; a < regions; ++a) {
       for (std::uint32_t b = a + 1; b < regions; ++b) {
         if ((side >> a & 1) == (side >> b & 1)) continue;
@@ -68,7 +69,7 @@ void count_faults(const VirtualCluster& cluster, WorldOutcome& outcome) {
   outcome.span = cluster.violations(core::ViolationKind::kSpan);
 }
 
-/// As near to a square as it gets, over the same ground.
+/// A map for `nodes` nodes over the area of `like`, as near to a square grid as possible.
 core::RegionMap map_of(int nodes, const core::RegionMap& like) {
   const core::Rectangle first = like.region(core::RegionId{0});
   const double cell_m = std::clamp(std::min(first.x1 - first.x0, first.y1 - first.y0), 4.0, 30.0);
@@ -77,7 +78,7 @@ core::RegionMap map_of(int nodes, const core::RegionMap& like) {
   return core::RegionMap::grid(rows, static_cast<std::size_t>(nodes) / rows, cell_m, cell_m);
 }
 
-/// A saved world goes on with the bits that it would have had. False when `stop` became true.
+/// Checks that a saved world goes on with the same bits. False when `stop` became true.
 bool compare_loaded(const config::Launch& launch, const ClusterRules& cluster_rules, const core::WorldCut& world,
                     const std::vector<std::uint64_t>& wanted, const Interference& given, const TrialRules& rules,
                     const std::atomic<bool>& stop, WorldOutcome& outcome) {
@@ -96,7 +97,7 @@ bool compare_loaded(const config::Launch& launch, const ClusterRules& cluster_ru
   return true;
 }
 
-/// False when `stop` became true.
+/// Compares the run on the map's regions with that on one node. False when `stop` became true.
 bool compare_runs(const config::Launch& launch, Interference interference, const TrialRules& rules, std::uint64_t seed,
                   const std::atomic<bool>& stop, WorldOutcome& outcome) {
   ClusterRules cluster_rules = launch_rules(launch, rules.setup_of);

@@ -31,7 +31,7 @@ struct ReachAlong {
   }
 };
 
-/// Of the point above the plane, m.
+/// Height of the point above the plane, metres.
 double height_above(const core::Plane& plane, const core::Pose& pose, const Vec3& p_W) {
   return plane.normal.normalized().dot(pose.q_WB.conjugate() * (p_W - pose.p_WB)) - plane.offset;
 }
@@ -73,8 +73,8 @@ Overlaps::Placed Overlaps::placed_static(std::size_t index) const {
   return {core::PrototypeId{static_cast<std::uint32_t>(first_static_ + index)}, scene_.statics[index].pose};
 }
 
-/// By how much they would have to part along n (a unit vector from a to b). The least of all n is how deep they are in
-/// each other, so each n is an upper bound.
+/// Distance by which the shapes would have to part along n, a unit vector from a to b. The overlap is the least value
+/// over all n, so each n gives an upper bound.
 double Overlaps::depth_along(const Placed& a, const Placed& b, const Vec3& n_W) const {
   const double reach_a = std::visit(ReachAlong{a.pose.q_WB.conjugate() * n_W}, shape_of(a.prototype));
   const double reach_b = std::visit(ReachAlong{b.pose.q_WB.conjugate() * -n_W}, shape_of(b.prototype));

@@ -1,4 +1,4 @@
-// How deep bodies are in each other and in what does not move, by their real shapes.
+// Measures how deep bodies overlap each other and statics, by their real shapes.
 #pragma once
 
 #include <memory>
@@ -13,14 +13,14 @@ namespace aurasim::lab {
 
 class Overlaps {
  public:
-  /// Shapes are those that a SpeedScene may have; others are refused with std::invalid_argument when they are met.
+  /// Supports the shapes that a SpeedScene may have. The measurements throw std::invalid_argument for others.
   explicit Overlaps(const core::Scene& scene);
 
-  /// Deepest that two bodies are in each other, m; 0 where none are. Those that a joint holds together do not count.
+  /// Deepest overlap of two bodies, metres; 0 if there is none. Bodies that a joint connects do not count.
   double between_bodies(std::span<const core::BodyRecord> bodies) const;
-  /// Deepest that a body is in a static, m; 0 where none is.
+  /// Deepest overlap of a body with a static, metres; 0 if there is none.
   double with_statics(std::span<const core::BodyRecord> bodies) const;
-  /// All of it is: nothing brings it back.
+  /// True if the whole body is inside a static, so that no contact can push it out.
   bool is_inside_a_static(const core::BodyRecord& body) const;
 
  private:

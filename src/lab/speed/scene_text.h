@@ -19,11 +19,11 @@
 
 namespace aurasim::lab {
 
-/// Throws std::invalid_argument for a scene with something that the text has no word for.
+/// The scene as text. Throws std::invalid_argument for a scene with something that the format cannot express.
 std::string scene_text(const SpeedScene& scene);
 void write_scene_text(const SpeedScene& scene, const std::filesystem::path& file);
 
-/// The same scene, to the last bit. Throws std::runtime_error, "file:line: ...".
+/// Reads the same scene to the last bit. Throws std::runtime_error, "file:line: ...".
 SpeedScene read_scene_text(const std::filesystem::path& file);
 
 }  // namespace aurasim::lab

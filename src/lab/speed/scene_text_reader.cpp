@@ -57,7 +57,7 @@ class TextReader {
     const Vec3 p_WB = vec3();
     return {p_WB, quat()};
   }
-  /// Of something that stands further up.
+  /// Reads the index of an item that stands further up.
   std::uint32_t index(const char* of, std::size_t count) {
     const auto value = next<std::uint32_t>(of);
     if (value >= count) complain(fmt::format("found {} {}, allowed: 0 to {}", of, value, static_cast<long>(count) - 1));

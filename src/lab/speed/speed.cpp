@@ -26,7 +26,7 @@ double steady_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The same in tests/bench/peers/driver.h.
+/// Number of late steps (SpeedRun::late_steps). tests/bench/peers/driver.h has the same formula.
 core::Step late_steps_of(const SpeedScene& scene) { return std::min<core::Step>(5 * scene.step_hz, scene.steps / 4); }
 
 SpeedSettings settings_of(const std::string& name, int substeps, int iterations, int friction_directions,
@@ -52,7 +52,7 @@ SpeedSettings settings_named(const std::string& name, const std::string& solver)
   throw std::invalid_argument("there are no settings \"" + name + "\"");
 }
 
-/// What we compute in; other engines' runs stand beside ours in one table, and some compute in single.
+/// Precision of our runs. Other engines' runs are in the same table, and some compute in single precision.
 constexpr const char* kPrecision = "double";
 
 void append_row(const SpeedRun& run, const std::filesystem::path& file) {

@@ -1,6 +1,6 @@
 // The speed experiment: the scenes of docs/speed.md in one world, without nodes and protocol, as other engines run them
 // (scripts/peers.sh). The results lie in one folder, ours and theirs:
-//   scenes/SCENE.txt                             what all of them compute (scene_text.h)
+//   scenes/SCENE.txt                             the scenes for all engines (scene_text.h)
 //   runs.csv                                     a row for each run: how long its steps took
 //   states/SCENE.ENGINE.PRECISION.THREADS.txt    some states of the latest run (states.h)
 //   errors.csv                                   what is wrong with those states (speed_errors.h)
@@ -29,7 +29,7 @@ const std::vector<SpeedSettings>& speed_settings();
 struct SpeedPlan {
   std::vector<std::string> scenes;                   ///< none: every scene
   std::vector<std::string> settings = {"balanced"};  ///< names of speed_settings()
-  std::string solver;                                ///< instead of theirs; or empty
+  std::string solver;                                ///< solver that replaces that of the settings; or empty
   int threads = 1;
   SceneSize size = SceneSize::kWhole;
   int repeats = 1;  ///< 0: only the scenes are written
@@ -41,19 +41,19 @@ struct SpeedRun {
   std::string engine;  ///< "aurasim-" and the settings
   int threads = 1;
   core::Step steps = 0;
-  double body_steps = 0;  ///< sum over the steps of the bodies that are there
+  double body_steps = 0;  ///< number of bodies, summed over the steps
   double cpu_ms = 0;
-  core::Step late_steps = 0;  ///< the last 5 s, or the last quarter of a short run
+  core::Step late_steps = 0;  ///< number of steps in the last 5 s, or in the last quarter of a short run
   double late_cpu_ms = 0;
   double wall_ms = 0;
   double late_wall_ms = 0;
 };
 
-/// Writes the states to `states` while it runs.
+/// Runs one scene, and writes its states to `states` meanwhile.
 SpeedRun run_speed(const SpeedScene& scene, const SpeedSettings& settings, std::ostream& states);
 
-/// Everything of the plan, by turns, into `directory`, whose runs.csv goes on. `next` is called before each run with
-/// the share done; false from it ends the experiment.
+/// Runs the plan, its scenes and settings in turn, and appends to runs.csv in `directory`. `next` is called before each
+/// run with the share done; false from it ends the experiment.
 std::vector<SpeedRun> run_speed(const SpeedPlan& plan, const std::filesystem::path& directory,
                                 const std::function<bool(double share)>& next);
 

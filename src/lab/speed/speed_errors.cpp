@@ -43,7 +43,7 @@ core::Pose carried_frame(const core::JointSpec& joint, const core::BodyRecord& f
   return {now.p_WB + turn * (joint.X_WJ.p_WB - first.p_WB), core::Quat(turn) * joint.X_WJ.q_WB};
 }
 
-/// How far a hinge is from all that it may do: the angle between its two axes, or that over its limits.
+/// Error of a hinge in radians: the angle between its two axes, or the angle beyond its limits.
 double wrong_turn(const core::HingeJoint& hinge, const core::Pose& of_a, const core::Pose& of_b) {
   const core::Mat3 R_BA = (of_b.q_WB.conjugate() * of_a.q_WB).toRotationMatrix();
   const double off_axis = std::acos(std::clamp(R_BA(2, 2), -1.0, 1.0));

@@ -1,4 +1,4 @@
-// What is wrong with the states that a run has left: one measure for all engines.
+// Errors of the states that a run has written, by the same measures for all engines.
 #pragma once
 
 #include <filesystem>

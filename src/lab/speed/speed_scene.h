@@ -14,10 +14,10 @@ struct SpeedScene {
   std::string name;
   int step_hz = 60;
   core::Step steps = 0;
-  core::Step states_every = 0;  ///< of these the errors are told: states so many steps apart, the last one among them
-  double fallen_m = 0.5;        ///< a body that is lower than at first by more has fallen
+  core::Step states_every = 0;  ///< steps between the states that errors are computed of; the last state is one of them
+  double fallen_m = 0.5;        ///< a body that has sunk by more than this since its birth has fallen
   core::Scene scene;            ///< ids are 0, 1, 2 ..., in order of birth; all prototypes may sleep, or none
-  std::vector<core::Step> births;  ///< as scene.bodies: the first state in which the body is there, as it is there
+  std::vector<core::Step> births;  ///< for each of scene.bodies, the state in which it appears
 };
 
 enum class SceneSize {

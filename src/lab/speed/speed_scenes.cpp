@@ -42,7 +42,7 @@ class Dice {
   std::mt19937_64 random_{kSeed};
 };
 
-/// Puts scenes together of which all has one material.
+/// Builds scenes in which all bodies have one material.
 class Stage {
  public:
   Stage(const std::string& name, core::Step steps, double friction_of_pair, double restitution = 0) {
@@ -191,7 +191,7 @@ void widen_stairs(core::Scene& scene, int lanes, int in_a_lane) {
   }
 }
 
-/// Its damping differs from engine to engine, and so do the springs of its hips.
+/// Removes damping and the springs of the hips, because engines define them differently.
 void leave_out_what_differs(core::Scene& scene) {
   for (core::Material& material : scene.materials) material.linear_damping = material.angular_damping = 0;
   for (core::Prototype& prototype : scene.prototypes) prototype.can_sleep = false;
@@ -239,7 +239,7 @@ SpeedScene ragdolls_on_stairs(bool quick) {
   return all;
 }
 
-/// Those of the stability experiment.
+/// Card houses as in the stability experiment.
 SpeedScene many_card_houses(bool quick) {
   const int count = quick ? 2 : 40, in_a_row = 8;
   SpeedScene all;

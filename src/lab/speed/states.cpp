@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kHead = "state ";
 constexpr int kNumbers = 13;
 
-/// False if they are not as many as a body has.
+/// Reads a body's numbers. False if their count is wrong.
 bool read_body(const char* text, const SpeedScene& all, core::BodyRecord& body) {
   char* end = nullptr;
   const unsigned long long id = std::strtoull(text, &end, 10);

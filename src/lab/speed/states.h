@@ -1,4 +1,4 @@
-// What a run has left of a scene: the states of which errors are told. A text: "state STEP", then a line for each body,
+// States that a run has written, for computing errors. Text format: "state STEP", then a line for each body,
 //   ID P(3) Q(4, w x y z) V(3) W(3)
 #pragma once
 

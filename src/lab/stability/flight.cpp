@@ -51,7 +51,7 @@ Vec3 momentum(const core::BodyRecord& body, const Vec3& inertia) {
   return body.R_WB * inertia.cwiseProduct(body.R_WB.transpose() * body.w_WB);
 }
 
-/// 0.1 x 0.4 x 0.9 m, 10 kg; drifts over the border.
+/// A spinning box of 0.1 x 0.4 x 0.9 m, 10 kg, that drifts over the border.
 Case dzhanibekov() {
   const Vec3 inertia(0.97 / 1.2, 0.82 / 1.2, 0.17 / 1.2);
   const Vec3 w0(0.1, 5, 0.1);

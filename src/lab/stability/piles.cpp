@@ -98,7 +98,7 @@ double deepest_overlap(std::span<const core::BodyRecord> balls, double radius_m)
   return deepest;
 }
 
-/// Elastic, without friction.
+/// Elastic balls without friction.
 Case balls() {
   constexpr int kBalls = 666, kAcross = 9;
   constexpr double kRadius = 0.3, kApart = 0.8;

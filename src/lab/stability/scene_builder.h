@@ -14,13 +14,14 @@ class SceneBuilder {
  public:
   explicit SceneBuilder(const std::string& name, const core::Vec3& gravity = {0, 0, -kGravity});
 
-  /// Of everything that follows. Bullet multiplies those of two bodies: these are the products of two alike.
+  /// Material of all bodies and statics added after this. Bullet multiplies the values of two bodies, so the arguments
+  /// are products for two bodies of this material.
   SceneBuilder& material(double friction_of_pair, double restitution_of_pair = 0);
   core::BodyId body(const core::Shape& shape, double mass_kg, const core::Vec3& p_W,
                     const core::Vec3& v_W = core::Vec3::Zero(), const core::Vec3& w_W = core::Vec3::Zero(),
                     const core::Quat& q_WB = core::Quat::Identity());
   SceneBuilder& fixed(const core::Shape& shape, const core::Pose& pose = {});
-  /// z = 0.
+  /// Adds the plane z = 0.
   SceneBuilder& ground() { return fixed(core::Plane{}); }
   SceneBuilder& joint(const core::JointKind& kind, core::BodyId a, std::optional<core::BodyId> b,
                       const core::Pose& X_WJ);

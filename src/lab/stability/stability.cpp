@@ -8,7 +8,7 @@
 namespace aurasim::lab {
 namespace {
 
-/// What has to stand for a minute.
+/// Cases that have to stand for a minute.
 constexpr const char* kStanding[] = {"stack_20", "card_house", "pyramid", "mass_ratio_100"};
 
 struct Planned {

@@ -15,7 +15,7 @@ struct StabilityPlan {
   std::vector<std::string> cases;  ///< none: every case
   std::vector<int> step_hz = {60, 120, 240, 1000};
   bool presets = true;     ///< each case also with every preset, at 60 steps per second
-  double longest_s = 1e9;  ///< cases are cut to this
+  double longest_s = 1e9;  ///< longest time of a case, simulated seconds
   double standing_s = 60;  ///< how long piles have to stand with the preset `balanced`; 0: left out
 };
 
@@ -25,11 +25,11 @@ struct StabilityRow {
   RunRules rules;
   MeasuredRun one;
   MeasuredRun two;
-  std::string preset;        ///< or empty
+  std::string preset;        ///< name of the preset, or empty
   bool is_standing = false;  ///< the long run in which piles have to stand
 
   bool same_bits() const { return one.hash == two.hash; }
-  /// -1 if there is none.
+  /// First state with different bits; -1 if there is none.
   core::Step first_difference() const;
 };
 
@@ -42,7 +42,7 @@ RunRules preset_rules(const std::string& preset);
 using StabilityProgress = std::function<bool(double share, const std::string& next)>;
 std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const StabilityProgress& progress);
 
-/// stability.csv and summary.json; returns what has to hold.
+/// Writes stability.csv and summary.json; returns the requirements.
 std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab
