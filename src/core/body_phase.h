@@ -1,4 +1,5 @@
-// The state machine of a body in Aura Projection (thesis section 4.4): not where it is, but how it is treated.
+// The state machine of a body in Aura Projection (thesis section 4.4). A phase is not the place of a body, but how the
+// node treats it.
 #pragma once
 
 #include <cstdint>

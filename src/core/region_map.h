@@ -56,7 +56,7 @@ class RegionMap {
   /// Smallest side of any region before the outermost were extended. Infinite for one region. Metres.
   double narrowest_m() const { return narrowest_m_; }
 
-  /// Equal for equal maps and nothing else (64-bit hash of the rectangles).
+  /// 64-bit hash of the rectangles: equal for equal maps.
   std::uint64_t version() const;
 
  private:
