@@ -18,7 +18,8 @@ Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance) {
   return path;
 }
 
-/// The one reach: how far apart two bodies can be that come together. By the drift of the own one.
+/// The reach from which all distances follow: the largest distance from which two bodies can come together. The range
+/// is evaluated at the drift of the own body.
 Range Aura::reach(const Steps& steps, double other_drift_m_s) const {
   const Range own = span(steps.own);
   const Range other = span(steps.other);

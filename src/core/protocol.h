@@ -69,7 +69,7 @@ struct ProtocolCounters {
 struct Continuation {
   OrderLog orders;
   AlarmLog alarms;
-  RankClaimer claimer;  ///< of the cut
+  RankClaimer claimer;  ///< the state that it had in the cut
   ViolationLog violations;
   ProtocolCounters counters;
   std::vector<RegionId> dead;

@@ -20,8 +20,8 @@ struct Push {
   double momentum_kg_m_s = 0;
 
   /// The push that a body of this speed gives to a body that it hits: at most (1 + restitution) of its momentum, shared
-  /// with that one. An aura allows for `uncertainty` times its stated speed off the path. So speeds are stated 1 /
-  /// `uncertainty` times too large.
+  /// with that one. An aura allows for `uncertainty` times its stated speed off the path. So the stated speed is the
+  /// possible one divided by `uncertainty`.
   static Push of(double speed_m_s, const BodyTraits& traits, double uncertainty);
 
   double speed_with(double more_kg) const {

@@ -98,7 +98,7 @@ class RankClaimer {
   int lookahead_;
   Step shuffle_steps_;
   RankClaims claims_;
-  bool claimed_ = false;  ///< ever
+  bool claimed_ = false;  ///< a claim has been made
   Step last_large_ = 0;   ///< last state in which the largest cluster was nearly as large as claimed
   Step alone_ = 0;        ///< last state without a large cluster of another region here
   Step last_guests_ = 0;  ///< last state with such a cluster
