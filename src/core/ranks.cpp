@@ -28,7 +28,7 @@ std::uint8_t weight_of(std::size_t bodies) {
   return weight;
 }
 
-/// A hash that is the same on every machine (splitmix64, Steele et al. 2014).
+/// A hash that is the same on every machine and gives no two inputs one value (splitmix64, Steele et al. 2014).
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ull;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;

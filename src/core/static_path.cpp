@@ -6,8 +6,8 @@
 namespace aurasim::core {
 namespace {
 
-/// Rotation at `share` of the angle between two rotations, on the shorter way. Bisects until chord and arc do not
-/// differ.
+/// Rotation at `share` of the angle between two rotations, on the shorter way. Halves the angle kHalves times and
+/// interpolates on the rest's chord, which hardly differs from its arc.
 Quat turned(Quat from, Quat to, double share) {
   constexpr int kHalves = 10;
   if (from.dot(to) < 0) to.coeffs() = -to.coeffs();
