@@ -41,8 +41,8 @@ class JointTable {
   void forget();
 
   /// Replaces the drive of a hinge or slider from the next step on, until it breaks. Hand-offs of its bodies carry the
-  /// drive. Does nothing for other joints and for joints without a body here. Numbers are clamped to +-1e12 and NaN
-  /// counts as 0; max_effort: as infinite.
+  /// drive. Does nothing for other joints and for joints without a body here. Numbers are clamped to +-1e12, and NaN
+  /// counts as 0. A max_effort that is NaN, negative or beyond 1e12 counts as infinite.
   void drive(core::JointId id, const core::JointDrive& drive);
   /// Gives the joint its drive of the scene back, from the next step on.
   void let_go(core::JointId id);
