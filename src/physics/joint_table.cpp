@@ -170,7 +170,7 @@ void JointTable::disconnect(const core::ClusterState& leaving, BodyTable& bodies
 void JointTable::measure_again(Entry& entry, double since_s) {
   JointAxes& axes = entry.axes;
   const JointMotion now = measure(axes, entry.constraint->getRigidBodyA(), entry.constraint->getRigidBodyB());
-  if (!std::isfinite(now.position) || !std::isfinite(now.speed)) return;  // of what is breaking down
+  if (!std::isfinite(now.position) || !std::isfinite(now.speed)) return;  // a body of it is breaking down
   if (axes.own == 5u && since_s > 0) {
     axes.turns_rad = kTurn_rad * std::round((axes.position + since_s * now.speed - now.position) / kTurn_rad);
   }
@@ -198,7 +198,7 @@ void JointTable::follow() {
     const Entry& leader = entries_[core::value_of(follower.coupling.leader)];
     const btTypedConstraint& joint = *leader.constraint;
     const JointMotion now = measure(leader.axes, joint.getRigidBodyA(), joint.getRigidBodyB());
-    if (!std::isfinite(now.position) || !std::isfinite(now.speed)) continue;  // of what is breaking down
+    if (!std::isfinite(now.position) || !std::isfinite(now.speed)) continue;  // a body of it is breaking down
     axes.lead = follower.coupling.ratio * (now.position + leader.axes.turns_rad);
     axes.lead_speed = follower.coupling.ratio * now.speed;
   }
