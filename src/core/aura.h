@@ -17,7 +17,7 @@ enum class AuraKind : std::uint8_t {
   kSwept,   ///< real shapes on predicted paths, a top speed for each body
 };
 
-/// What all nodes of a run agree on about auras.
+/// Rules of auras. All nodes of a run have to have the same.
 struct AuraRules {
   AuraKind kind = AuraKind::kSwept;
   double step_s = 1.0 / 60;   ///< T_P

@@ -10,7 +10,7 @@ namespace aurasim::core {
 enum class Phase : std::uint8_t {
   kInjected,              ///< received or created, not yet looked at
   kHostRegion,            ///< far from every boundary: nothing is published
-  kIntersectingBoundary,  ///< in a zone: projects its aura
+  kIntersectingBoundary,  ///< near another region (Aura::zone): projects its aura
   kBoundaryTraversed,     ///< wholly outside its host's region: projects its aura, goes home as soon as it is an island
   kSent,                  ///< handed over, and out of this host's world
 };
@@ -28,7 +28,7 @@ inline constexpr int kPhaseEvents = 5;
 /// The phase after `event`, or nothing where the thesis has no such transition.
 std::optional<Phase> next_phase(Phase phase, PhaseEvent event);
 
-/// In which phases a body's aura is with the other regions.
+/// Does a body in this phase project its aura?
 constexpr bool projects(Phase phase) {
   return phase == Phase::kIntersectingBoundary || phase == Phase::kBoundaryTraversed;
 }

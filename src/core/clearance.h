@@ -11,7 +11,7 @@ namespace aurasim::core {
 /// Properties that decide how much of a push a body passes on.
 struct BodyTraits {
   double mass_kg = 1;
-  double restitution = 1;  ///< of its material, 0 to 1
+  double restitution = 1;  ///< restitution of its material, 0 to 1
 };
 
 /// Distance between the real shapes of two bodies. Implemented by physics/ (Bullet's GJK).

@@ -53,7 +53,7 @@ using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, 
 
 struct Command {
   std::uint64_t request = 0;  ///< random number of the request; copies of the command carry the same
-  Step at_step = 0;           ///< not before this state; 0: as soon as possible
+  Step at_step = 0;           ///< the earliest state of its effect; 0: as soon as possible
   Ask ask;
 };
 

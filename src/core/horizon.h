@@ -28,7 +28,8 @@ constexpr int meeting(int lookahead, int hops) { return hops * lookahead; }
 /// Bodies of one host that may touch within so many steps have to move together. A node that pulls one of them acts
 /// upon an aura that is K states old. The state in which the body arrives is looked at again, hence the - 1.
 constexpr int linking(int lookahead, int hops) { return (hops + 1) * lookahead - 1; }
-/// Others act upon our auras when these are K states old, and look as far ahead as a meeting.
+/// Our bodies have to be announced so many steps before they may meet others: nodes act upon our auras when these are K
+/// states old, and look as far ahead as meeting().
 constexpr int announcing(int lookahead, int hops) { return meeting(lookahead, hops) + lookahead; }
 /// The lookahead with which hosts are assigned in state 0. For the first 2K steps no node has received anything, and
 /// what is decided after them takes effect 2K later.

@@ -264,7 +264,7 @@ void InterestMatching::notice_again(std::uint32_t own) {
 /// Finds pairs of a foreign and an own body that may meet. Such bodies have been noticed before, because meetings reach
 /// less far than notice.
 void InterestMatching::find_pairs(const ForeignBlock& block) {
-  const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
+  const double drift = 1 + aura_.rules().uncertainty;  // upper bound of Aura::drift_m_s() for each m/s of top speed
   take_ranges(block, [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };

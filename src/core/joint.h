@@ -24,7 +24,7 @@ struct JointLimits {
 };
 
 struct JointMotor {
-  double speed = 0;        ///< of a: rad/s or m/s
+  double speed = 0;        ///< target speed of a: rad/s or m/s
   double max_impulse = 0;  ///< impulse in 1/240 s: N m s or N s
 };
 
@@ -62,7 +62,7 @@ struct JointResistance {
 struct JointMotion {
   double position = 0;
   double speed = 0;
-  double effort = 0;  ///< of its drive or motor, in the last substep
+  double effort = 0;  ///< effort of its drive or motor in the last substep
 };
 
 /// Couples the drive of a hinge or slider to another joint of its mechanism, the leader. The drive's targets become its
@@ -113,7 +113,7 @@ struct SpringJoint {
 
 using JointKind = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, SpringJoint>;
 
-/// Of hinges and sliders, which have one axis of their own; nothing of others.
+/// A member of a hinge or slider, given as pointers to member; a default value for other kinds of joints.
 template <class Part>
 Part part_of(const JointKind& kind, Part HingeJoint::*of_hinge, Part SliderJoint::*of_slider) {
   if (const auto* hinge = std::get_if<HingeJoint>(&kind)) return hinge->*of_hinge;
@@ -126,7 +126,7 @@ inline std::optional<JointDrive> drive_of(const JointKind& kind) {
 inline std::optional<JointCoupling> coupling_of(const JointKind& kind) {
   return part_of(kind, &HingeJoint::follows, &SliderJoint::follows);
 }
-/// Of a hinge or slider.
+/// Sets the coupling of a hinge or slider; does nothing for other kinds.
 inline void couple(JointKind& kind, const JointCoupling& coupling) {
   if (auto* hinge = std::get_if<HingeJoint>(&kind)) hinge->follows = coupling;
   if (auto* slider = std::get_if<SliderJoint>(&kind)) slider->follows = coupling;

@@ -1,5 +1,6 @@
-// Who owns which part of the x-y plane. Regions are rectangles with vertical boundaries; the outermost reach to
-// infinity, so that every point has exactly one owner (half-open: a point on a boundary belongs to the higher side).
+// The region map: which region owns which part of the x-y plane. Regions are rectangles with vertical boundaries; the
+// outermost reach to infinity, so that every point has exactly one owner (half-open: a point on a boundary belongs to
+// the higher side).
 #pragma once
 
 #include <cstdint>

@@ -50,7 +50,7 @@ using ConvexShape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull>;
 
 struct CompoundPart {
   ConvexShape shape;
-  Pose pose;  ///< of the part in the compound's frame; the origin is the centre of mass
+  Pose pose;  ///< pose of the part in the compound's frame, whose origin is the centre of mass
   /// material of the part's surface, index in Scene::materials; nothing: the body's
   std::optional<std::uint32_t> material{};
 };
@@ -75,7 +75,7 @@ struct NamedShape {
   Shape shape;
 };
 
-/// What bodies of one kind share. A body's PrototypeId is the index in Scene::prototypes.
+/// Properties that bodies of one kind share. A body's PrototypeId is the index in Scene::prototypes.
 struct Prototype {
   std::string name;
   std::uint32_t shape = 0;     ///< index in Scene::shapes
@@ -129,7 +129,7 @@ struct Injector {
   std::string name;
   std::uint64_t seed = 1;
   BodyId first_id{};             ///< body i has id first_id + i
-  std::uint64_t max_bodies = 0;  ///< at most this many
+  std::uint64_t max_bodies = 0;  ///< number of bodies that it creates in all, at most
   double rate_per_s = 1;
   double start_s = 0;
   Vec3 volume_min = Vec3::Zero();

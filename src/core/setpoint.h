@@ -95,7 +95,7 @@ enum class OnSilence : std::uint8_t {
   kLast,  ///< all its setpoints stay in effect
 };
 
-/// What all nodes of a run agree on about setpoints.
+/// Rules for setpoints. All nodes of a run have to have the same.
 struct ControlRules {
   LateSetpoint late = LateSetpoint::kNextState;
   OnSilence on_silence = OnSilence::kHold;

@@ -32,7 +32,7 @@ std::vector<core::Vec3> points_of(const json& numbers) {
   return points;
 }
 
-/// What a mesh becomes: a hull, hulls in a compound, or triangles (config/meshes.h).
+/// JSON of the shape that a mesh becomes: a hull, hulls in a compound, or triangles (config/meshes.h).
 struct ToJson {
   json operator()(const core::ConvexHull& hull) const { return {{"points", to_json(hull.points)}}; }
   json operator()(const core::TriangleMesh& mesh) const {

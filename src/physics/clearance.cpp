@@ -22,7 +22,7 @@ using core::Vec3;
 /// A body's shape is one part or, for a compound, several.
 struct Part {
   std::unique_ptr<btConvexShape> shape;
-  Pose pose;          ///< in the body's frame
+  Pose pose;          ///< pose of the part in the body's frame
   double radius = 0;  ///< bounding sphere around the part's own origin
 };
 

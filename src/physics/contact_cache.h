@@ -38,7 +38,7 @@ inline constexpr std::size_t kLocalPointB = 3;
 void write_point(const btManifoldPoint& point, double* row);
 btManifoldPoint read_point(const double* row);
 
-/// Which children of two compounds a manifold is about; -1 where a body is no compound.
+/// The children of two compounds that a manifold is between; -1 where a body is no compound.
 struct Parts {
   int part0 = -1;
   int part1 = -1;

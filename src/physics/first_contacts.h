@@ -20,8 +20,8 @@ struct FirstContact {
   int body0 = 0;
   int body1 = 0;
   double penetration_m = 0;            ///< overlap at the deepest point
-  double relative_speed_m_s = 0;       ///< at that point
-  btVector3 p_O = btVector3(0, 0, 0);  ///< in Bullet's frame
+  double relative_speed_m_s = 0;       ///< relative speed at the deepest point
+  btVector3 p_O = btVector3(0, 0, 0);  ///< the deepest point in Bullet's frame
 };
 
 /// Keeps its notes in two fields of the manifolds that Bullet does not use: m_companionIdA is the substep in which the

@@ -16,7 +16,7 @@ struct JointAxes {
   struct Axis {
     bool is_held = false;  ///< held between low and high, m or rad
     double low = 0, high = 0;
-    double stiffness = 0, damping = 0, rest = 0;  ///< as core::SpringAxis
+    double stiffness = 0, damping = 0, rest = 0;  ///< see core::SpringAxis
   };
 
   core::JointFrame frames;
@@ -26,7 +26,7 @@ struct JointAxes {
   double motor_rad_s = 0;    ///< target speed of the motor, of a
   double motor_impulse = 0;  ///< N m s in a substep, at most
   double break_impulse = 0;  ///< N s or N m s in a substep
-  double ball_damping = 0;   ///< as core::BallJoint
+  double ball_damping = 0;   ///< see core::BallJoint::damping
 
   // Only for hinges and sliders:
   std::optional<std::size_t> own;  ///< the axis that the joint leaves free: 2 or 5

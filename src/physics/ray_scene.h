@@ -17,8 +17,8 @@ namespace aurasim::physics {
 
 /// Rays from one point.
 struct RayFan {
-  core::Pose X_WS;                         ///< of the sensor's frame S
-  std::span<const core::Vec3> directions;  ///< in S, of length 1
+  core::Pose X_WS;                         ///< pose of the sensor's frame S
+  std::span<const core::Vec3> directions;  ///< unit vectors in S
   double range_m = 0;
   std::optional<core::BodyId> carrier;  ///< the body that carries the sensor; its rays pass through it
 };

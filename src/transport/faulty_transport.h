@@ -1,4 +1,4 @@
-// What a bad network does to one message, from a seed: the same seed gives the same run.
+// Simulates the faults of a bad network for each message, from a seed: the same seed gives the same run.
 #pragma once
 
 #include <cstdint>

@@ -55,7 +55,7 @@ class SoftJoints {
   soft::Real h_s_;
   std::vector<Joint> joints_;
   std::vector<unsigned> kinds_;  ///< the different values of Joint::what, ascending
-  SoftLayout layout_;            ///< by kind
+  SoftLayout layout_;            ///< the kind is the index in kinds_
   std::vector<soft::JointBlock> blocks_;
 };
 

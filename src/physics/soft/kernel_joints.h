@@ -32,7 +32,8 @@ AURASIM_INLINE Lanes arc_tangent(const Lanes& y, const Lanes& x) {
 /// Rotates a symmetric matrix by the turn `t`.
 AURASIM_INLINE void turn_inertia(const Lanes (&m)[6], const Turned& t, Lanes (&to)[6]) {
   const Lanes zero{};
-  Vec rows[3] = {{all(1), zero, zero}, {zero, all(1), zero}, {zero, zero, all(1)}};  // of the turn
+  // rows of the turn's rotation matrix
+  Vec rows[3] = {{all(1), zero, zero}, {zero, all(1), zero}, {zero, zero, all(1)}};
   const Turned back{t.dp, mul(all(-1), t.q), t.q_w};
   for (Vec& row : rows) row = add(row, turn_of(back, row));
   const Vec x = mul(m, rows[0]), y = mul(m, rows[1]), z = mul(m, rows[2]);

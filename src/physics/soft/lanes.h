@@ -46,8 +46,8 @@ struct Substep {
 /// moves.
 struct alignas(64) Block {
   struct Point {
-    Lanes r_a[3], r_b[3];         ///< from the centres of mass, at the start of the step, m
-    Lanes gap;                    ///< at the start of the step, m; negative: overlap
+    Lanes r_a[3], r_b[3];         ///< the point from the centres of mass, at the start of the step, m
+    Lanes gap;                    ///< distance at the start of the step, m; negative: overlap
     Lanes mass;                   ///< along the normal, kg
     Lanes impulse, most_impulse;  ///< N s; most_impulse: the largest of any substep
     Lanes approach;               ///< along the normal at the start of the step, m/s; negative: they come closer
@@ -101,7 +101,7 @@ struct alignas(64) JointBlock {
   struct Pull {
     Lanes position, drift, stiffness, steady, give, most;
     Lanes pull;     ///< N s or N m s
-    Lanes impulse;  ///< in this substep so far
+    Lanes impulse;  ///< impulse in this substep so far
   };
 
   std::int32_t a[kLanes], b[kLanes];             ///< movers; 0 never moves
@@ -110,7 +110,7 @@ struct alignas(64) JointBlock {
   Lanes r_a[3], r_b[3];                          ///< J in a and b from the centres of mass, at the start of the step, m
   Lanes frame_a[3][3], frame_b[3][3];            ///< axes of J in a and b at the start of the step
   Lanes apart[3];                                ///< J in a from J in b at the start of the step, m
-  Lanes motor_rad_s, motor_impulse;              ///< of a; N m s in a substep
+  Lanes motor_rad_s, motor_impulse;              ///< target speed of a; most impulse, N m s in a substep
   Lanes breaks;                                  ///< break impulse in a substep, N s or N m s
   Lanes took;                                    ///< largest impulse of the substeps before
   Lanes whole;                                   ///< 1: whole; 0: broken

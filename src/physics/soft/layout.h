@@ -56,7 +56,7 @@ class SoftLayout {
   std::size_t kinds_ = 1;
   std::vector<Entry> entries_;       ///< in the order of add()
   std::vector<std::uint64_t> used_;  ///< by mover: bits of its colours
-  std::vector<std::uint32_t> next_;  ///< by colour and kind
+  std::vector<std::uint32_t> next_;  ///< by colour and kind: next free place
   std::vector<Run> runs_;
 };
 

@@ -22,8 +22,9 @@ using soft::Real;
 /// for contacts, and card houses fall. Under a load of many times the weight of one body only the first counts. Springs
 /// of statics are twice as stiff.
 constexpr double kHertzOfSubsteps = 0.25, kHertzOfSteps = 1.5;
-constexpr Real kLight = 2, kHeavy = 10;  ///< times the weight
-constexpr Real kDamping = 2;             ///< damping over critical damping: with 3 piles sway, with 1 cards wander
+/// load, in weights of the lighter body, up to which both shares count, and from which on only the first does
+constexpr Real kLight = 2, kHeavy = 10;
+constexpr Real kDamping = 2;  ///< damping over critical damping: with 3 piles sway, with 1 cards wander
 /// Bodies that approach more slowly do not bounce.
 constexpr Real kRestSpeed_m_s = Real(0.5);
 constexpr int kBounceSweeps = 8;  ///< several sweeps, because the points of a face share a bounce

@@ -15,7 +15,7 @@ namespace aurasim::physics {
 /// Contact points of two bodies with one normal, at the start of a step.
 struct SoftPatch {
   struct Point {
-    soft::Real r_a[3] = {}, r_b[3] = {};  ///< from the centres of mass, m
+    soft::Real r_a[3] = {}, r_b[3] = {};  ///< the point from the centres of mass, m
     soft::Real gap = 0;                   ///< m; negative: overlap
     soft::Real impulse = 0;               ///< impulse of the last substep, N s
   };
