@@ -102,7 +102,7 @@ struct JointRecord {
   std::uint32_t value_count = 0;
 };
 
-/// Doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
+/// Number of doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
 inline constexpr std::size_t kContactPointDoubles = 41;
 
 /// Bodies that move together, with everything that physics remembers about them.

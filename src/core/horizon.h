@@ -44,7 +44,7 @@ constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
 /// A state is checked so many states later. Auras of other nodes arrive K states later. A cluster that joins late makes
 /// up its states after K, and they are published K - 1 later.
 constexpr Step check(int lookahead) { return 2 * lookahead - 1; }
-/// States between two cuts.
+/// Number of states from one cut to the next.
 inline constexpr Step kBetweenCuts = 30;
 /// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
 /// host through at most kMostHops pulls, and each is decided one state after its cause is known.

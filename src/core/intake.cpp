@@ -213,8 +213,8 @@ std::vector<RegionId> Intake::missing(Step n) const {
   return regions;
 }
 
-/// Stamps up to this one take effect in state `n`: exactly K steps late in deterministic mode, else as soon as they
-/// are here, but never before the state that they describe.
+/// Messages with stamps up to the returned one take effect in state `n`: exactly K steps late in deterministic mode,
+/// else as soon as they are here, but never before the state that they describe.
 Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
 std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen, Joining joining) {

@@ -127,7 +127,7 @@ struct Refusal {
   std::uint32_t redo = 0;
 };
 
-/// Messages that a transport delivered since the last receive(), in order of arrival.
+/// Messages that a transport delivered since the last Transport::take(), in order of arrival.
 struct Inbox {
   std::vector<AuraBatch> auras;
   std::vector<HandOff> hand_offs;

@@ -75,7 +75,7 @@ Vec3 uniform_in(std::mt19937_64& generator, const Vec3& low, const Vec3& high) {
   return drawn;
 }
 
-/// K. Shoemake, Uniform random rotations, Graphics Gems III (1992).
+/// Uniformly distributed rotation (K. Shoemake, Uniform random rotations, Graphics Gems III, 1992).
 Quat uniform_rotation(std::mt19937_64& generator) {
   const double u = uniform(generator);
   const double angle_1 = 2 * std::numbers::pi * uniform(generator);

@@ -50,7 +50,7 @@ using ConvexShape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull>;
 
 struct CompoundPart {
   ConvexShape shape;
-  Pose pose;  ///< pose of the part in the compound's frame, whose origin is the centre of mass
+  Pose pose;  ///< pose in the compound's frame, whose origin is the centre of mass
   /// material of the part's surface, index in Scene::materials; nothing: the body's
   std::optional<std::uint32_t> material{};
 };
@@ -117,7 +117,7 @@ struct StaticBody {
   std::string name;
   std::uint32_t shape = 0;
   std::uint32_t material = 0;
-  Pose pose;  ///< at the start
+  Pose pose;  ///< pose at the start
   std::optional<StaticPath> path = {};
   Vec3 belt_S = Vec3::Zero();  ///< velocity of its surface along itself, as of a conveyor, m/s in the axes of S
 

@@ -23,7 +23,7 @@ std::string text_of(const core::Vec3& v) {
 
 }  // namespace
 
-/// Written so that NaN is out of bounds.
+/// Comparisons are written so that NaN counts as out of bounds.
 bool has_broken_down(const btRigidBody& body) {
   const core::Vec3 p_WB = from_bullet(body.getWorldTransform().getOrigin());
   const bool is_sound = p_WB.cwiseAbs().sum() <= kFarthestBody_m &&

@@ -19,7 +19,7 @@ namespace {
 using core::Pose;
 using core::Vec3;
 
-/// A body's shape is one part or, for a compound, several.
+/// A convex part of a body's shape. A compound has several, other shapes have one.
 struct Part {
   std::unique_ptr<btConvexShape> shape;
   Pose pose;          ///< pose of the part in the body's frame

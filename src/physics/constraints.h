@@ -1,4 +1,4 @@
-// The scene's joints as Bullet's constraints.
+// Makes Bullet's constraints of the scene's joints.
 #pragma once
 
 #include <memory>

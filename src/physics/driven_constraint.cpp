@@ -11,7 +11,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Share of an overshoot of a limit that is undone in a substep.
+/// Share of the overshoot beyond a joint's limit that is undone in a substep.
 constexpr double kErrorReduction = 0.2;
 /// Least `give` of a constant effort, which otherwise would not yield at all: the share by which it falls at 1 rad/s or
 /// 1 m/s.

@@ -23,7 +23,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Makes a body awake for as long as this lives: Bullet does not look at pairs of sleepers.
+/// Keeps a body awake during its own lifetime, because Bullet skips pairs of sleepers.
 class Awake {
  public:
   explicit Awake(btCollisionObject& body) : body_(body), state_(body.getActivationState()) {

@@ -15,7 +15,7 @@
 
 namespace aurasim::physics {
 
-/// Rays from one point.
+/// Rays of a sensor, all from one point.
 struct RayFan {
   core::Pose X_WS;                         ///< pose of the sensor's frame S
   std::span<const core::Vec3> directions;  ///< unit vectors in S

@@ -13,7 +13,7 @@ class btStridingMeshInterface;
 
 namespace aurasim::physics {
 
-/// Bullet rounds shapes by a margin, so that it seldom has to deal with shapes that really overlap.
+/// Bullet's collision margin. Bullet rounds shapes by it, so that it seldom has to handle shapes that really overlap.
 enum class Margin {
   kInside,  ///< the surface is that of the scene with rounded edges; for simulating
   kNone,    ///< the exact shape; for measuring

@@ -20,7 +20,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Half of the shortest side of the box around the shape, m: Bullet sweeps a ball that fits into it.
+/// Half of the shortest side of the shape's bounding box, m: radius of the ball that Bullet sweeps for the body.
 btScalar half_thickness(const btCollisionShape& shape) {
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);

@@ -53,7 +53,7 @@ class SoftIslands {
     kSleeps = 1,
     kSlept = 2,
     kMoves = 4,  ///< it moves in the step
-    kKept = 8,   ///< its island is known since the step before
+    kKept = 8,   ///< it sleeps, and the touches of its island are known
   };
 
   /// Call when the touches of sleepers may have changed.

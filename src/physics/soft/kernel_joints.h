@@ -1,4 +1,4 @@
-// The joints' part of soft/kernel.h.
+// The part of soft/kernel.h that solves joints.
 #pragma once
 
 #include "physics/soft/kernel_drives.h"

@@ -1,4 +1,4 @@
-// The part of soft/kernel.h that moves bodies on.
+// The part of soft/kernel.h that integrates the poses of bodies.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"

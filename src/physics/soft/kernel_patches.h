@@ -1,4 +1,4 @@
-// The contacts' part of soft/kernel.h.
+// The part of soft/kernel.h that solves contacts, in patches.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -25,7 +25,7 @@ void warm_start(const Block* blocks, std::size_t count, int points, Mover* mover
   }
 }
 
-/// Friction about the normal.
+/// Solves the friction that resists a twist about the normal.
 AURASIM_INLINE void rub_twist(Block& block, Pair& p, const Lanes& pressed) {
   const Vec n = load(block.normal);
   const Lanes most = pressed * (block.friction * block.lever_m + block.spinning_m);

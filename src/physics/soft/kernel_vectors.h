@@ -41,7 +41,7 @@ AURASIM_INLINE Lanes root(Lanes a) {
 /// Factor that limits an impulse of this length to `most`.
 AURASIM_INLINE Lanes share(const Lanes& length, const Lanes& most) { return length > most ? most / length : all(1); }
 
-/// Rows become columns: element i of row k becomes element k of row i.
+/// Transposes in place: element i of row k becomes element k of row i.
 AURASIM_INLINE void transpose(Lanes (&rows)[kLanes]) {
   static_assert(kLanes == 8);
   Lanes pairs[kLanes], fours[kLanes];

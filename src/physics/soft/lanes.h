@@ -31,7 +31,7 @@ struct alignas(64) Mover {
 /// Inertia of kLanes movers in a row of which some tumble: their spin changes while nothing acts on them.
 struct alignas(64) Tumblers {
   Lanes start[4];        ///< x, y, z, w: the body's frame at the start of the step
-  Lanes inertia[3];      ///< about its axes, kg m^2; 0: it turns evenly
+  Lanes inertia[3];      ///< about the body's axes, kg m^2; 0: it turns evenly
   Lanes inv_inertia[3];  ///< 1/(kg m^2); 0: it turns evenly
   bool any;              ///< some mover of the row tumbles
 };
@@ -48,9 +48,9 @@ struct alignas(64) Block {
   struct Point {
     Lanes r_a[3], r_b[3];         ///< the point from the centres of mass, at the start of the step, m
     Lanes gap;                    ///< distance at the start of the step, m; negative: overlap
-    Lanes mass;                   ///< along the normal, kg
+    Lanes mass;                   ///< effective mass along the normal, kg
     Lanes impulse, most_impulse;  ///< N s; most_impulse: the largest of any substep
-    Lanes approach;               ///< along the normal at the start of the step, m/s; negative: they come closer
+    Lanes approach;               ///< speed along the normal at the start of the step, m/s; negative: approaching
   };
 
   std::int32_t a[kLanes], b[kLanes];         ///< movers; 0 never moves, negative: moving statics

@@ -22,7 +22,7 @@ struct SoftPatch {
 
   btPersistentManifold* manifold = nullptr;
   bool ahead = false;        ///< a contact ahead of time: the manifold, if any, does not have the points
-  bool has_pressed = false;  ///< ahead of time: the two have touched in the step
+  bool has_pressed = false;  ///< for contacts ahead of time: the two bodies have touched in the step
   int a = 0, b = 0;          ///< user indices; those of statics are negative
   std::array<std::int8_t, soft::kMostPoints> of = {};  ///< indices of the points in the manifold
   std::int8_t count = 0;
@@ -35,7 +35,7 @@ struct SoftPatch {
 
 /// A manifold with a point, or with a contact ahead of time.
 struct SoftTouch {
-  btPersistentManifold* manifold = nullptr;  ///< ahead of time: may be null
+  btPersistentManifold* manifold = nullptr;  ///< may be null for a contact ahead of time
   int a = 0, b = 0;                          ///< user indices
   std::uint32_t slot_a = 0, slot_b = 0;
   Parts parts;
