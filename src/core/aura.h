@@ -28,12 +28,12 @@ struct AuraRules {
   double frame_s = 0.015;     ///< T_F
   double latency_s = 0.002;   ///< T_L
   double uncertainty = 0.5;   ///< U: share of its speed by which a body may leave its predicted path
-  /// contacts begin at a gap of 0.02 (physics/dispatcher.h); the rest covers shapes given to 1 mm
+  /// contacts begin at a gap of 0.02 (physics/dispatcher.h); the rest covers shapes given to 1 mm, with a reserve
   double contact_margin_m = 0.03;
   double reach_scale = 1;        ///< tests only: auras that are a little too small must fail
   double check_scale = 1;        ///< tests only: a check without its margin must miss something
   bool sweeps = false;           ///< physics also finds what a fast body meets between two looks for contacts
-  bool redo = false;             ///< states in which two bodies touched that two nodes hosted are computed again
+  bool redo = false;             ///< states in which bodies of two nodes touched are computed again
   Vec3 gravity = {0, 0, -9.81};  ///< m/s^2
 
   /// How often contacts are looked for in a step.
