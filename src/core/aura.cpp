@@ -18,7 +18,8 @@ Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance) {
   return path;
 }
 
-/// The one reach: how far apart two bodies can be that come together. By the drift of the own one.
+/// The reach from which all distances follow: the largest distance from which two bodies can come together. The range
+/// is evaluated at the drift of the own body.
 Range Aura::reach(const Steps& steps, double other_drift_m_s) const {
   const Range own = span(steps.own);
   const Range other = span(steps.other);
@@ -57,7 +58,7 @@ Pose Aura::ahead(const Path& path, double steps) const {
   if (!path.moves || k <= 0) return path.pose;
   const double t = k * rules_.step_s;
   const double h = rules_.looks_once ? 0 : rules_.step_s / rules_.substeps;
-  // Bullet integrates speed before place: m substeps of length h fall g h^2 m (m+1) / 2 = g t (t + h) / 2.
+  // Bullet integrates velocity before position: in t, m substeps of length h fall g h^2 m (m+1) / 2 = g t (t + h) / 2.
   Pose pose{path.pose.p_WB + path.v_WB * t + rules_.gravity * (0.5 * t * (t + h)), path.pose.q_WB};
   const double spin = path.w_WB.norm();
   if (spin > 1e-6) pose.q_WB = Quat(Eigen::AngleAxisd(spin * t, path.w_WB / spin)) * path.pose.q_WB;

@@ -5,7 +5,7 @@
 
 namespace aurasim::core {
 
-/// What an aura says of a body's state as such; how fast it may become is for the caller to say.
+/// The aura of a body in state `stamp`. The caller sets speed_m_s, the top speed that the body may come to have.
 inline AuraRecord aura_record(const BodyState& body, RegionId host, Step stamp) {
   AuraRecord aura;
   aura.id = body.id;

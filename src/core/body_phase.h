@@ -1,4 +1,5 @@
-// The state machine of a body in Aura Projection (thesis section 4.4): not where it is, but how it is treated.
+// The state machine of a body in Aura Projection (thesis section 4.4). A phase is not the place of a body, but how the
+// node treats it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@ namespace aurasim::core {
 enum class Phase : std::uint8_t {
   kInjected,              ///< received or created, not yet looked at
   kHostRegion,            ///< far from every boundary: nothing is published
-  kIntersectingBoundary,  ///< in a zone: projects its aura
+  kIntersectingBoundary,  ///< near another region (Aura::zone): projects its aura
   kBoundaryTraversed,     ///< wholly outside its host's region: projects its aura, goes home as soon as it is an island
   kSent,                  ///< handed over, and out of this host's world
 };
@@ -27,7 +28,7 @@ inline constexpr int kPhaseEvents = 5;
 /// The phase after `event`, or nothing where the thesis has no such transition.
 std::optional<Phase> next_phase(Phase phase, PhaseEvent event);
 
-/// In which phases a body's aura is with the other regions.
+/// Does a body in this phase project its aura?
 constexpr bool projects(Phase phase) {
   return phase == Phase::kIntersectingBoundary || phase == Phase::kBoundaryTraversed;
 }

@@ -22,7 +22,7 @@ struct Pose {
   Quat q_WB = Quat::Identity();
 };
 
-/// X_AC.
+/// Returns X_AC.
 inline Pose operator*(const Pose& X_AB, const Pose& X_BC) {
   return {X_AB.p_WB + X_AB.q_WB * X_BC.p_WB, (X_AB.q_WB * X_BC.q_WB).normalized()};
 }
@@ -33,12 +33,14 @@ struct BodyState {
   Epoch epoch = 0;
   PrototypeId prototype{};
   bool awake = true;
-  /// First state in which the body exists. Later than the snapshot's step for a body announced but not yet there.
+  /// First state in which the body exists. Later than the snapshot's step for a body that is announced and does not
+  /// exist yet.
   Step birth = 0;
   Pose pose;
   Vec3 v_WB = Vec3::Zero();  ///< m/s
   Vec3 w_WB = Vec3::Zero();  ///< rad/s
-  /// An order that is due soon changes the velocity of its surface by this much, m/s; such a body counts as awake.
+  /// By how much an order that is due soon changes the velocity of the body's surface, m/s. Such a body counts as
+  /// awake.
   double coming_kick_m_s = 0;
 };
 
@@ -48,13 +50,13 @@ struct Contact {
   std::uint32_t b = 0;
 };
 
-/// Null: it is not among them. `bodies` ascending by id.
+/// The body with this id, or null if `bodies` has none. `bodies` is ascending by id.
 inline const BodyState* find_body(const std::vector<BodyState>& bodies, BodyId id) {
   const auto place = std::ranges::lower_bound(bodies, id, {}, &BodyState::id);
   return place != bodies.end() && place->id == id ? &*place : nullptr;
 }
 
-/// All bodies of one node in state `step`, in ascending order of id; never changed after it was taken.
+/// All bodies of one node in state `step`, in ascending order of id. A snapshot is never changed after it was taken.
 struct Snapshot {
   Step step = 0;
   std::vector<BodyState> bodies;
@@ -62,22 +64,22 @@ struct Snapshot {
   std::vector<Contact> joints;    ///< pairs of bodies held together by a joint
 };
 
-/// Full dynamic state of one body: what has to travel for the next state to come out the same to the last bit.
-/// The rotation is a matrix because that is what Bullet integrates; a quaternion would round it.
+/// Full dynamic state of one body: all that a new host needs to compute the next state with the same bits. The rotation
+/// is a matrix because that is what Bullet integrates; a quaternion would round it.
 struct BodyRecord {
   BodyId id{};
   Epoch epoch = 0;
   PrototypeId prototype{};
   Step birth = 0;
   std::int32_t activation_state = 1;  ///< Bullet's: 1 active, 2 sleeping, 3 wants to sleep, 4 never sleeps, 5 disabled
-  double deactivation_time = 0;       ///< s below the sleeping thresholds
+  double deactivation_time = 0;       ///< how long it has been below the sleeping thresholds, s
   Vec3 p_WB = Vec3::Zero();
   Mat3 R_WB = Mat3::Identity();
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
 };
 
-/// The same body as the protocol sees it. Awake: neither sleeping (2) nor disabled (5).
+/// The body of a record as the protocol sees it. `awake` is true unless the body sleeps (2) or is disabled (5).
 BodyState state_of(const BodyRecord& record);
 
 /// Either end of a manifold: a body (>= 0, its id) or a static (< 0, -1 - its id).
@@ -100,7 +102,7 @@ struct JointRecord {
   std::uint32_t value_count = 0;
 };
 
-/// Doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
+/// Number of doubles in one row of ClusterState::points; the columns are listed in physics/contact_cache.h.
 inline constexpr std::size_t kContactPointDoubles = 41;
 
 /// Bodies that move together, with everything that physics remembers about them.
@@ -112,8 +114,8 @@ struct ClusterState {
   std::vector<double> joint_values;
 };
 
-/// Takes the bodies out that `unwanted` names, and the manifolds that have lost one of theirs. Joints stay: whether one
-/// is broken is known to each of its bodies.
+/// Removes the bodies for which unwanted(record) is true, and the manifolds of those bodies. Joint records stay,
+/// because each of a joint's bodies has to know whether it is broken.
 template <class Unwanted>
 void remove_bodies(ClusterState& cluster, Unwanted&& unwanted) {
   std::vector<BodyId> gone;

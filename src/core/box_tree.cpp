@@ -20,8 +20,8 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxe
   if (!boxes_.empty()) build(0, static_cast<std::uint32_t>(boxes_.size()));
 }
 
-/// Halves along the axis on which the boxes' middles are farthest apart. Middles in one place are told apart by their
-/// numbers, so that the tree is balanced there, too.
+/// Builds a node by halving along the axis on which the boxes' middles are farthest apart. Equal middles are ordered by
+/// their numbers, so that the tree is balanced there, too.
 std::uint32_t BoxTree::build(std::uint32_t begin, std::uint32_t end) {
   const auto at = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({boxes_[order_[begin]], begin, end, 0});

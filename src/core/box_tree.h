@@ -1,5 +1,5 @@
-// Boxes that do not move: which of them meet another one? A balanced tree, made in n log n steps and asked in log n for
-// the first that is found, wherever the boxes are: all in one place, too, where a grid would look at every pair.
+// Finds which of many boxes at rest meet a given box. A balanced tree: built in O(n log n), the first hit found in
+// O(log n). That holds even where all boxes lie in one place, where a grid would compare every pair.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,13 @@ class BoxTree {
     }
   };
 
-  /// Boxes are known by their places in the vector.
+  /// Later calls name a box by its index in `boxes`.
   explicit BoxTree(std::vector<Box> boxes);
 
   const Box& operator[](std::uint32_t i) const { return boxes_[i]; }
 
-  /// Calls `found(i)` for boxes that meet `box`, until it returns true, in an order that follows from the boxes alone.
-  /// Whether `found` has returned true.
+  /// Calls `found(i)` for boxes that meet `box`, until it returns true. The sequence of calls follows from the boxes
+  /// alone. Returns whether `found` has returned true.
   template <class Found>
   bool any(const Box& box, Found&& found) const {
     return !nodes_.empty() && any_below(0, box, found);
@@ -35,9 +35,9 @@ class BoxTree {
 
  private:
   struct Node {
-    Box box;                   ///< around all that is below
-    std::uint32_t begin = 0;   ///< of a leaf, in order_
-    std::uint32_t end = 0;     ///< 0: no leaf
+    Box box;                   ///< holds all boxes below this node
+    std::uint32_t begin = 0;   ///< leaf: its boxes are order_[begin, end)
+    std::uint32_t end = 0;     ///< 0: an inner node
     std::uint32_t second = 0;  ///< the second child; the first is behind its parent
   };
 

@@ -1,4 +1,4 @@
-// What core/ asks of physics/ about a body's kind.
+// What core/ asks physics/ about prototypes: distances between shapes, sizes, mass and restitution.
 #pragma once
 
 #include <limits>
@@ -8,30 +8,30 @@
 
 namespace aurasim::core {
 
-/// What decides how much of a push a body passes on.
+/// Properties that decide how much of a push a body passes on.
 struct BodyTraits {
   double mass_kg = 1;
-  double restitution = 1;  ///< of its material, 0 to 1
+  double restitution = 1;  ///< restitution of its material, 0 to 1
 };
 
-/// Distance between the real shapes of two bodies. Given to core/ by physics/ (Bullet's GJK).
+/// Distance between the real shapes of two bodies. Implemented by physics/ (Bullet's GJK).
 class ClearanceQuery {
  public:
   virtual ~ClearanceQuery() = default;
 
-  /// Metres between the surfaces, negative when they overlap; anything above `limit_m` may be answered with
-  /// any value above `limit_m`. Shapes without Bullet's collision margin grown on top of their stated size.
+  /// Metres between the surfaces, negative when they overlap; anything above `limit_m` may be answered with any value
+  /// above `limit_m`. Shapes have their stated size: Bullet's collision margin does not count.
   virtual double clearance(PrototypeId a, const Pose& pose_a, PrototypeId b, const Pose& pose_b,
                            double limit_m) const = 0;
 
   /// Radius of the sphere around the body's origin that holds its shape. Metres.
   virtual double bounding_radius(PrototypeId prototype) const = 0;
 
-  /// A body of which nothing is known passes on all that it gets.
+  /// Default: 1 kg and restitution 1, so that a body passes on all of a push.
   virtual BodyTraits traits(PrototypeId) const { return {}; }
 };
 
-/// Where every body is a point: reaches do not ask for shapes.
+/// Every body is a point and infinitely far from all others. For the reaches of auras that do not depend on shapes.
 class NoShapes final : public ClearanceQuery {
  public:
   double clearance(PrototypeId, const Pose&, PrototypeId, const Pose&, double) const override {

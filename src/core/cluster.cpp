@@ -40,7 +40,8 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   for (const Path& path : paths) traits_.push_back(traits_of(path.prototype));
   pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
   if (aura_.warns()) join(contacts, joints);
-  // Those near a boundary will be asked for. What is known before the index is built costs less than what comes later.
+  // Clusters near a boundary will be completed anyway. Speeds that are known before the index is built cost less than
+  // later raises.
   for (std::uint32_t i = 0; i < n; ++i) {
     if (regions[i] != 0) start_pushes(i);
   }
@@ -73,7 +74,7 @@ double Clusters::pushed_speed(std::uint32_t i) const {
   return aura_.calm_speed(paths_[i].moves || push > Push::kUnfelt_m_s) + push;
 }
 
-/// Those of the members of body i's cluster, as far as they have not been.
+/// Starts the pushes of all members of body i's cluster that have not been started.
 void Clusters::start_pushes(std::uint32_t i) {
   if (started_[i]) return;
   for_each_member(i, [this](std::uint32_t j) {
@@ -82,7 +83,7 @@ void Clusters::start_pushes(std::uint32_t i) {
   });
 }
 
-/// Whoever has become faster looks further.
+/// Spreads pushes. Bodies that became faster have to look further.
 void Clusters::take_raised() {
   pushes_.spread(raised_);
   for (const std::uint32_t i : raised_) {
@@ -104,7 +105,7 @@ void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
   most_hops_ = std::max(most_hops_, hops);
 }
 
-/// Before the cluster of body `i` gets so many.
+/// Call before the cluster of body `i` gets `hops`: notes its members as grown if that is more than before.
 void Clusters::note_more_hops(std::uint32_t i, int hops) {
   if (hops <= hops_[of(i)]) return;
   for_each_member(i, [this](std::uint32_t j) { grown_.push_back(j); });
@@ -120,7 +121,8 @@ bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
   return true;
 }
 
-/// The smaller one takes the label of the larger: each body's label changes at most log2(n) times.
+/// Unites two clusters. The smaller one takes the label of the larger, so each body's label changes at most log2(n)
+/// times.
 std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   const Contact link{a, b};
   a = of(a);
@@ -185,7 +187,7 @@ void Clusters::look_around(std::uint32_t i) {
   for (const std::uint32_t j : linked_) link(i, j);
 }
 
-/// The two may touch.
+/// Bodies i and j may touch: unites their clusters and lets pushes pass between them.
 void Clusters::link(std::uint32_t i, std::uint32_t j) {
   const std::uint32_t theirs = of(j);
   if (theirs != of(i)) {

@@ -1,6 +1,7 @@
 // Clusters: bodies of one host that must move together, because they touch, are jointed, or may touch on their
-// predicted paths. What may push a body decides how far its path is looked for others, and whom it may touch it may
-// push, so both grow until neither does. Only clusters that somebody asks for are completed.
+// predicted paths. A body's top speed, from all that may push it, decides how far around its path others are looked
+// for. Each body found there may push it in turn, so speeds and clusters grow until neither changes. Only clusters for
+// which complete() is called are completed.
 #pragma once
 
 #include <cstdint>
@@ -19,40 +20,41 @@ class Clusters {
  public:
   explicit Clusters(const Aura& aura) : aura_(aura) {}
 
-  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`.
-  /// `own_m_s` are Aura::own_speed_of each body; `regions[i]` has a bit for every other region in reach of body i.
-  /// Paths stay the caller's; their speed_m_s is kept up to date here. `hops_each`: how often a pull may have to come
-  /// through each region (Ranks::changing).
+  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `own_m_s` are
+  /// Aura::own_speed_of each body; `regions[i]` has a bit for every other region in reach of body i. The caller owns
+  /// `paths`; their speed_m_s is kept up to date here. `hops_each`: how often a pull may have to come through each
+  /// region (2 while Ranks::changing(), else 1).
   void begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
              std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each = 1);
 
-  /// Another region has a body near body i. False when that was known; otherwise the cluster has to be completed again.
+  /// Notes that `regions` (bits) have bodies near body i. Returns false if that was known; otherwise the cluster has to
+  /// be completed again.
   bool add_regions(std::uint32_t i, std::uint64_t regions);
 
   /// Completes the cluster of body `i`: no body outside it is linked to one inside.
   void complete(std::uint32_t i);
 
-  /// The cluster of a body, as the index of one of its members.
+  /// Label of the cluster of body i: the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
-  /// How fast it may leave its path, at most, while a message about it is under way, m/s.
+  /// Top speed at which body i may leave its path while a message about it is under way, m/s.
   double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
   /// Number of other regions through which a pull on this cluster can chain (docs/design.md, "Who leaves"): those
   /// in reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }
-  /// Bodies that turned out faster, or to have more hops, than they seemed since the last call; some more than once.
+  /// Replaces `grown` by the bodies whose speed or hops have grown since the last call; some appear more than once.
   void take_grown(std::vector<std::uint32_t>& grown) {
     grown.clear();
     std::swap(grown, grown_);
   }
-  /// Bodies of other clusters of ours that those of body i's may touch within `more_hops` more than clusters look
-  /// ahead, until `visit(index)` is true; whether it was.
+  /// Calls `visit(index)` for bodies of our other clusters that a member of body i's cluster may touch, looking
+  /// `more_hops` hops further ahead than clusters do, until `visit` returns true. Returns whether it has.
   template <class Visit>
   bool any_near(std::uint32_t i, int more_hops, Visit&& visit) const;
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
-  /// The pairs by which clusters came to be one: a tree of each cluster.
+  /// Pairs that joined clusters. The links of one cluster form a tree of its members.
   std::span<const Contact> links() const { return links_; }
   const NearIndex& near() const { return near_; }
 
@@ -92,15 +94,16 @@ class Clusters {
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
-  std::vector<std::uint8_t> started_;  ///< by body: its push is passed on
+  std::vector<std::uint8_t> started_;  ///< by body: pushes_.start() has been called for it
   std::vector<Contact> links_;
-  std::vector<double> asked_speed_;  ///< with which speed and hops a body last looked around
+  std::vector<double> asked_speed_;  ///< by body: its speed (and below its hops) at the last look_around()
   std::vector<int> asked_hops_;
-  std::priority_queue<std::pair<double, std::uint32_t>> to_ask_;  ///< fastest first: who is slower is pushed by them
+  /// fastest first, because fast bodies push slower ones
+  std::priority_queue<std::pair<double, std::uint32_t>> to_ask_;
   std::vector<std::uint32_t> linked_;
-  std::vector<std::uint32_t> raised_;  ///< whoever may have become faster
-  std::vector<BodyTraits> traits_;     ///< of the bodies
-  std::vector<BodyTraits> kinds_;      ///< by prototype, as far as asked for
+  std::vector<std::uint32_t> raised_;  ///< bodies that may have become faster
+  std::vector<BodyTraits> traits_;     ///< by body
+  std::vector<BodyTraits> kinds_;      ///< by prototype; filled by traits_of()
 };
 
 template <class Visit>

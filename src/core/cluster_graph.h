@@ -1,4 +1,4 @@
-// What holds bodies together on one node, for whoever draws it.
+// Why bodies of one node belong together: published for viewers, which draw it.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct ClusterGraph {
   Generation generation = 0;
   Step stamp = 0;
   std::uint64_t map_version = 0;
-  std::vector<BodyPair> links;     ///< that joined clusters: each cluster as a tree, as far as clusters were completed
-  std::vector<BodyPair> contacts;  ///< that touch, or are within Bullet's contact margin
+  std::vector<BodyPair> links;     ///< pairs that joined clusters: a tree of each cluster that was completed
+  std::vector<BodyPair> contacts;  ///< pairs that touch, or are within Bullet's contact margin
 };
 
 }  // namespace aurasim::core

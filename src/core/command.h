@@ -1,4 +1,4 @@
-// What clients ask for, before it has a place in time (core/order.h), and what is replied.
+// Commands: what clients ask for, before it is an order with a number and a state (core/order.h), and the replies.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,16 @@
 
 namespace aurasim::core {
 
-/// Prototypes and statics that clients may add: what names them can be received before they are.
+/// How many prototypes and statics clients may add. Messages may name one before its definition has been received, so
+/// ids up to this many beyond the scene's are valid.
 inline constexpr std::size_t kRoomForClients = 20'000;
 
 using ClientShape = std::variant<Sphere, Box, Capsule, Cylinder, MeshRef>;
 
 struct NewBody {
-  std::string prototype;             ///< name of one of the scene's, or empty:
-  std::optional<ClientShape> shape;  ///< a kind of its own
-  double mass_kg = 1;                ///< of that
+  std::string prototype;  ///< name of a prototype of the scene; empty: `shape` and `mass_kg` say what the body is
+  std::optional<ClientShape> shape;  ///< for a new prototype
+  double mass_kg = 1;                ///< of the new prototype
   Pose pose;
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
@@ -28,18 +29,19 @@ struct NewStatic {
   ClientShape shape;
   Pose pose;
 };
-/// A static goes evenly from where it is, and stays there.
+/// Moves a static evenly from its present pose to `to`, where it stays.
 struct SendStatic {
   StaticId id{};
   Pose to;
-  double duration_s = 0;  ///< at least one state
+  double duration_s = 0;  ///< rounded up to at least one state
 };
-/// At once, this many simulated seconds per second: of the clocks, so it is not an order.
+/// Sets how many simulated seconds pass per second. It takes effect at once and changes only clocks, so it is not an
+/// order.
 struct SetRate {
   double rate = 1;
 };
-/// What does the way from one point to another hit first? Each region that is named answers for itself; none named:
-/// all answer.
+/// Asks what the segment from one point to another hits first. Each region in `regions` replies for its own part of the
+/// world; if none is named, all reply.
 struct Ray {
   Vec3 from_W = Vec3::Zero();
   Vec3 to_W = Vec3::Zero();
@@ -50,8 +52,8 @@ using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, 
                          ChangeScene, Ray, Save, Load, SendStatic>;
 
 struct Command {
-  std::uint64_t request = 0;  ///< random; copies carry the same
-  Step at_step = 0;           ///< not before this state; 0: as soon as possible
+  std::uint64_t request = 0;  ///< random number of the request; copies of the command carry the same
+  Step at_step = 0;           ///< the earliest state of its effect; 0: as soon as possible
   Ask ask;
 };
 
@@ -59,11 +61,11 @@ enum class Outcome : std::uint8_t {
   kAccepted,  ///< takes effect at `at_step`
   kDone,      ///< has taken effect
   kRefused,   ///< text says why
-  kSeen,      ///< answer of one region: to a ray, or that its part of the world is saved
+  kSeen,      ///< reply of one region: what a ray hit, or that its part of the world is saved
 };
 
-/// Text of a reply kAccepted to a Save of a run that stands: the state that is saved is the present one. Whoever has
-/// asked tells that to the other nodes, by asking again with this state.
+/// Text of a reply kAccepted to a Save while the run is paused: the present state is saved. The client then sends the
+/// command again with this state, so that the other nodes save it, too.
 inline constexpr const char* kSavedAsItStands = "as it stands";
 
 struct CommandReply {

@@ -7,9 +7,9 @@
 namespace aurasim::core {
 namespace {
 
-/// Of a message for a later state.
+/// Messages for a state further ahead are refused.
 constexpr Step kFarthestAhead = 3600;
-/// Of all programs together, under way and remembered.
+/// Limit of the entries of all programs together, whether in effect or for later states.
 constexpr std::size_t kMostEntries = 4'000'000;
 constexpr std::size_t kMostClients = 1000;
 
@@ -24,7 +24,7 @@ Heard ControlLog::hear(const Setpoints& setpoints, Step computed, Step notice, s
   }
   const bool is_late = setpoints.at_step != 0 && setpoints.at_step <= computed;
   if (is_late && rules_.late == LateSetpoint::kDropped) {
-    note_word(setpoints.client, computed + 1);  // it is there all the same
+    note_word(setpoints.client, computed + 1);  // the message still shows that the program is alive
     return Heard::kLate;
   }
   const bool names_none = setpoints.at_step == 0;
@@ -90,7 +90,7 @@ std::vector<Setpoints> ControlLog::since(Step step) const {
   const auto of_joint = [&](const MessageStamp& stamp, JointId id, const std::optional<JointDrive>& drive) {
     message(stamp).joints.push_back({id, drive});
   };
-  // From the newest that is in effect by then.
+  // First the setpoints in effect in `step`, then all later ones.
   constexpr Step kEver = std::numeric_limits<Step>::max();
   bodies_.for_each(step, all, [&](const HeldOfBody& held) { of_body(held.stamp, held.key, held.value); });
   bodies_.for_each_later(step, kEver,

@@ -1,6 +1,5 @@
-// The setpoints of programs, as one node has heard them: what is in effect in which state. Every node hears all of
-// them, so a body's setpoints need not travel with it, and a state that is computed again, or made up later, has the
-// same.
+// The setpoints of programs that one node has received: which are in effect in which state. Every node receives all of
+// them, so hand-offs carry no setpoints. A state that is computed again or made up later has the same setpoints.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +16,7 @@ namespace aurasim::core {
 
 enum class Heard : std::uint8_t {
   kInTime,
-  kLate,     ///< its state had been computed; the rules say what becomes of it
+  kLate,     ///< its state had been computed; ControlRules::late says what becomes of it
   kRefused,  ///< too far ahead, too many, or a joint that is not there
 };
 
@@ -26,18 +25,19 @@ class ControlLog {
   void use(const ControlRules& rules) { rules_ = rules; }
   const ControlRules& rules() const { return rules_; }
 
-  /// `computed`: the newest state here. `notice`: so many states later what names no state takes effect.
+  /// Adds a received message. `computed`: the newest state computed here. `notice`: a message that names no state takes
+  /// effect so many states after it. `joint_count`: joints of the scene. Refused messages change nothing.
   Heard hear(const Setpoints& setpoints, Step computed, Step notice, std::size_t joint_count);
-  /// Takes effect in its state, whatever has been computed.
+  /// Adds a message that takes effect in its at_step, even if that state has been computed.
   void recall(const Setpoints& setpoints);
 
   bool empty() const { return bodies_.empty() && joints_.empty(); }
-  /// Quantities of bodies that programs have said something about.
+  /// Number of (body, quantity) pairs for which setpoints are remembered.
   std::size_t body_quantities() const { return bodies_.keys(); }
 
-  /// visit(id, quantity, value, is_new) for what is in effect on bodies in state `step`, ascending (id, quantity).
-  /// `is_new`: it was not in the state before. Then also for what is let go of, without value. Only for bodies that
-  /// is_wanted(id).
+  /// Calls visit(id, quantity, value, is_new) for each setpoint in effect on a body in state `step`, ascending (id,
+  /// quantity), if is_wanted(id). `is_new`: it was not in effect in the state before. A setpoint that ends in `step` is
+  /// visited once, without value.
   template <class IsWanted, class Visit>
   void for_each_body(Step step, IsWanted&& is_wanted, Visit&& visit) const {
     Silence silence;
@@ -48,7 +48,7 @@ class ControlLog {
                        [&](const auto& value, bool is_new) { visit(held.key.first, held.key.second, value, is_new); });
         });
   }
-  /// visit(quantity, value, is_new): likewise for one body.
+  /// Like for_each_body(), for one body: visit(quantity, value, is_new).
   template <class Visit>
   void for_each_of(BodyId id, Step step, Visit&& visit) const {
     Silence silence;
@@ -59,7 +59,7 @@ class ControlLog {
                        [&](const auto& value, bool is_new) { visit(held.key.second, value, is_new); });
         });
   }
-  /// visit(id, drive, is_new): likewise for joints.
+  /// Like for_each_body(), for all joints: visit(id, drive, is_new).
   template <class Visit>
   void for_each_joint(Step step, Visit&& visit) const {
     Silence silence;
@@ -69,8 +69,8 @@ class ControlLog {
           visit_effect(held, step, silence, [&](const auto& drive, bool is_new) { visit(held.key, drive, is_new); });
         });
   }
-  /// What is in effect on bodies in state `step`, and what is known to come up to state `last`: visit(id, quantity,
-  /// value), first the one, ascending (id, quantity), then each message.
+  /// Calls visit(id, quantity, value) for each setpoint in effect on a body in state `step`, ascending (id, quantity),
+  /// and then for each one that messages received so far bring up to state `last`.
   template <class IsWanted, class Visit>
   void for_each_ahead(Step step, Step last, IsWanted&& is_wanted, Visit&& visit) const {
     for_each_body(step, is_wanted, [&](BodyId id, Quantity quantity, const auto& value, bool) {
@@ -81,10 +81,9 @@ class ControlLog {
     });
   }
 
-  /// What is in effect from state `step` on, as messages for a node that knows nothing, in order.
+  /// All setpoints in effect in state `step` or later, as messages in order: enough for a node that has received none.
   std::vector<Setpoints> since(Step step) const;
-  /// States before this one are never computed again. To be called once a state: what is to be forgotten goes bit by
-  /// bit.
+  /// States before `step` are never computed again. Call once a state: each call forgets only a part of what is over.
   void forget_before(Step step);
 
  private:
@@ -100,8 +99,8 @@ class ControlLog {
   std::optional<Vec3> value_in_silence(const HeldOfBody& held) const;
   std::optional<JointDrive> value_in_silence(const HeldOfJoint& held) const;
 
-  /// Whether the client of the last entry was silent in a state and in the one before: mostly it is that of the next,
-  /// too.
+  /// Caches whether a client was silent in a state and in the one before. Consecutive entries mostly have the same
+  /// client.
   struct Silence {
     std::optional<std::uint64_t> client;
     bool now = false, before = false;
@@ -127,7 +126,7 @@ class ControlLog {
   ControlRules rules_;
   OfBodies bodies_;
   OfJoints joints_;
-  std::map<std::uint64_t, std::deque<Step>> words_;  ///< by client: states that it has said something for, ascending
+  std::map<std::uint64_t, std::deque<Step>> words_;  ///< by client: states for which it sent a message, ascending
 };
 
 }  // namespace aurasim::core

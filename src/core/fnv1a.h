@@ -1,4 +1,4 @@
-// The hash of Fowler, Noll and Vo, variant 1a, 64 bits: of octets, in their order. Not for secrets.
+// The hash of Fowler, Noll and Vo, variant 1a, 64 bits, over a sequence of octets. Not for secrets.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace aurasim::core {
 class Fnv1a {
  public:
   void add_octet(std::uint8_t octet) { hash_ = (hash_ ^ octet) * kPrime; }
-  /// Its eight octets, the lowest first.
+  /// Adds the eight octets of `word`, the lowest first.
   void add_word(std::uint64_t word) {
     for (int i = 0; i < 8; ++i, word >>= 8) add_octet(static_cast<std::uint8_t>(word));
   }
-  /// Without its length.
+  /// Adds the octets of `text`, without its length.
   void add_text(std::string_view text) {
     for (const char c : text) add_octet(static_cast<std::uint8_t>(c));
   }

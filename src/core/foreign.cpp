@@ -12,7 +12,7 @@ namespace {
 /// Side of a block, in mean radii: a few bodies wide, since what is near a block is compared with each of its bodies.
 constexpr double kBlockRadii = 8;
 
-/// 22 bits; what is farther out than that shares the last square, which is slower, never wrong.
+/// Index of a square along one axis, 22 bits. All that is farther out shares the outermost square: slower, never wrong.
 std::uint64_t square_along(double x, double side_m) {
   constexpr double kHalf = 1 << 21;
   const double square = std::floor(x / side_m);
@@ -40,7 +40,7 @@ void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura
   f.path.v_WB = aura.v_WB;
   f.path.w_WB = aura.w_WB;
   f.path.moves = !asleep;
-  // Asleep and unchanged in its source's last batch: as fresh as that batch. A ghost has been out of sight since.
+  // An aura of a sleeping body is as fresh as its source's last batch. A ghost's aura is as old as its stamp.
   f.path.age_steps =
       static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));

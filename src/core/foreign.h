@@ -1,4 +1,4 @@
-// What a node knows of the bodies of others, as of one state.
+// What a node knows in one state of the bodies that other nodes host.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct Foreign {
   Path path;
   RegionId host{};
   bool ghost = false;
-  bool born = true;  ///< in the state that its aura describes
+  bool born = true;  ///< it exists in the state that its aura describes
 };
 
-/// Some bodies of one host, near each other, all of them slow or all of them fast. They are asked about together: what
-/// is near one of them is mostly near all.
+/// Some bodies of one host, near each other, all of them slow or all of them fast. Neighbours are searched for the
+/// whole block at once, because a body near one of them is mostly near all.
 struct ForeignBlock {
   RegionId host{};
   std::span<const std::uint32_t> bodies;  ///< indices of ForeignBodies
@@ -32,16 +32,16 @@ struct ForeignBlock {
 class ForeignBodies {
  public:
   void clear();
-  /// What `aura` says of a body, seen in state `now`; the last batch of its source is of state `known`.
+  /// Adds the body of `aura`, as seen in state `now`. `known` is the stamp of the last batch of its source.
   void add(const AuraRecord& aura, Step known, Step now, const Aura& rules);
-  /// Call once after the last add() and before any question about who is near.
+  /// Call once after the last add() and before blocks(), near() or find().
   void build();
 
   std::size_t size() const { return bodies_.size(); }
   const Foreign& operator[](std::uint32_t i) const { return bodies_[i]; }
   std::span<const ForeignBlock> blocks() const { return blocks_; }
   const NearIndex& near() const { return near_; }
-  /// The index of a body; nothing if no aura tells of it.
+  /// The index of a body; nothing if no aura of it was added.
   std::optional<std::uint32_t> find(BodyId id) const;
   double oldest_steps() const { return oldest_steps_; }
   double most_blur_m() const { return most_blur_m_; }

@@ -1,5 +1,5 @@
-// Exactly once: who has sent which bodies, who has adopted them, and what happens when one of the two dies.
-// A hand-off is known by (source, destination, sequence); the epochs in it say which copy of a body is the valid one.
+// Ledgers that make each hand-off take effect exactly once, also when its sender or receiver dies. (source,
+// destination, sequence) identifies a hand-off; the epochs in it say which copy of a body is the valid one.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ class DepartureLedger {
   /// Numbers and keeps a hand-off; returns the kept copy.
   const HandOff& record(HandOff hand_off);
 
-  /// Forgets it. Returns false when nothing is open under that number (a second acknowledgement).
+  /// Forgets the hand-off. Returns false when none is open under that number (a second acknowledgement).
   bool acknowledge(RegionId destination, std::uint64_t sequence);
 
-  /// Appends copies of what has been open for `patience` steps or a multiple of it.
+  /// Appends copies of the hand-offs that are due to be sent again: open for a multiple of `patience` steps.
   void due_again(Step now, Step patience, std::vector<HandOff>& out) const;
 
-  /// Takes out everything still open towards a region (it died).
+  /// Removes and returns all open hand-offs to a region that died.
   std::vector<HandOff> take_open(RegionId destination);
 
   std::uint64_t last_sequence(RegionId destination) const;
@@ -41,10 +41,10 @@ class ArrivalLedger {
   /// True for the first copy of a hand-off from `source`.
   bool first_copy(RegionId source, std::uint64_t sequence);
 
-  /// All hand-offs from `source` numbered up to `sequence` have come.
+  /// Have all hand-offs from `source` numbered up to `sequence` arrived?
   bool has_all_up_to(RegionId source, std::uint64_t sequence) const;
 
-  /// Remembers who was adopted from whom, so that nobody takes those bodies back when their last host dies.
+  /// Remembers which bodies were adopted from `source`, so that nobody reclaims them when their previous host dies.
   void adopted(RegionId source, Step now, const ClusterState& cluster);
   void forget_adoptions_before(Step step);
   std::vector<BodyEpoch> adopted_from(RegionId source) const;

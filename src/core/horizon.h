@@ -1,6 +1,6 @@
 // Every horizon of the protocol in one place, in steps, by the lookahead K: how far ahead bodies are looked for, how
-// long before it counts something has to be known, and how long it is remembered. What a node knows of others is K
-// states old, and what it sends takes part in their world K states later: most of it follows from these two.
+// early something has to be known, and how long it is remembered. Most follow from two facts: what a node knows of
+// others is K states old, and what it sends takes effect in their worlds K states later.
 #pragma once
 
 #include "core/ids.h"
@@ -9,11 +9,11 @@ namespace aurasim::core::horizon {
 
 // Hops: the regions through which a chain of pulls can come (docs/design.md, "Who leaves").
 
-/// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead than that has
-/// made no difference in any run, and costs (docs/decisions/0006-hops.md).
+/// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead has made no
+/// difference in any run, and costs time (docs/decisions/0006-hops.md).
 inline constexpr int kMostHops = 3;
-/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead: that long, the
-/// others may act upon auras from before it left. So auras have to be known that much earlier, too.
+/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead. For that long,
+/// the others may act upon auras from before it left. So auras have to be announced K steps earlier, too.
 inline constexpr int kHomewardHops = 1;
 /// While ranks change, a chain of pulls may have to come all the way back: each region counts twice. For meetings one
 /// step less is enough (docs/decisions/0016-ranks.md).
@@ -22,68 +22,74 @@ inline constexpr int kFewerStepsWhileRanksChange = 1;
 
 // Looking ahead.
 
-/// A foreign body and one of ours that meet before then have to share a host: our hand-off takes part K states from
-/// now, and each further hop takes K more.
+/// A foreign body and one of ours that may meet within so many steps have to share a host. Our hand-off takes effect K
+/// states from now, and each further hop takes K more.
 constexpr int meeting(int lookahead, int hops) { return hops * lookahead; }
-/// Bodies of one host that may touch before then have to move together. Whoever pulls one of them acts upon an aura
-/// that is K states old; the state in which it arrives is looked at again.
+/// Bodies of one host that may touch within so many steps have to move together. A node that pulls one of them acts
+/// upon an aura that is K states old. The state in which the body arrives is looked at again, hence the - 1.
 constexpr int linking(int lookahead, int hops) { return (hops + 1) * lookahead - 1; }
-/// Others act upon our auras when these are K states old, and look as far ahead as a meeting.
+/// Our bodies have to be announced so many steps before they may meet others: nodes act upon our auras when these are K
+/// states old, and look as far ahead as meeting().
 constexpr int announcing(int lookahead, int hops) { return meeting(lookahead, hops) + lookahead; }
-/// The lookahead with which hosts are assigned in state 0: for the first 2K steps nobody has received anything, and
-/// what is decided then takes effect 2K later.
+/// The lookahead with which hosts are assigned in state 0. For the first 2K steps no node has received anything, and
+/// what is decided after them takes effect 2K later.
 constexpr int lookahead_at_start(int lookahead) { return 4 * lookahead; }
 
-/// Between an introduction and the state from which on the two listen to each other: both have received it, and have
-/// had half a second, at 60 steps a second, to find each other on the network.
+/// Steps between an introduction and the state from which on the two regions listen to each other. By then both have
+/// received it, and have had half a second (at 60 steps a second) to find each other on the network.
 constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
 
 // Checking, and computing again.
 
-/// A state is checked so many states later: the others' are here K states later, and whoever joins late has made up its
-/// states after K, and published them K - 1 later.
+/// A state is checked so many states later. Auras of other nodes arrive K states later. A cluster that joins late makes
+/// up its states after K, and they are published K - 1 later.
 constexpr Step check(int lookahead) { return 2 * lookahead - 1; }
-/// States between two cuts.
+/// Number of states from one cut to the next.
 inline constexpr Step kBetweenCuts = 30;
-/// A cut is so much older than the touch that it is to prevent: the pair comes to one host through at most so many
-/// pulls, each of which is decided a state after what it follows from is known.
+/// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
+/// host through at most kMostHops pulls, and each is decided one state after its cause is known.
 constexpr Step before_touch(int lookahead) { return 2 + kMostHops * (lookahead + 1); }
-/// So long after their touch a pair is held together: from then on contacts and auras tell.
+/// A redo keeps a pair on one host for so many states after its touch. After that, contacts and auras keep it together.
 constexpr Step together_after_touch(int lookahead) { return 2 * lookahead + 2; }
 
 // Remembering.
 
-/// A body just sent away stays a ghost until the first aura of its new host can have come: there and back.
+/// A body just handed over stays a ghost until the first aura of its new host can have arrived: K states there and K
+/// back.
 constexpr Step ghost(int lookahead) { return 2 * lookahead; }
-/// An aura is acted upon until it is K states old, and what follows takes effect K states later: until then it binds.
+/// What an aura promises has to hold for so many states: others act upon it until it is K states old, and what they
+/// decide takes effect K states later.
 constexpr Step promise(int lookahead) { return 2 * lookahead; }
-/// So many states in a row a cluster has to be an island before it goes home: all that was sent because of where it
-/// was before has arrived, and has been seen.
+/// A cluster has to be an island for so many states in a row before it goes home. By then all that was sent because of
+/// its earlier place has arrived and was looked at.
 constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
-/// So long a cluster does not go home before the one that was pulled to it has touched something. A pull comes early by
-/// at most the way that both may leave their paths, stated four times as fast as they are (Push::of), through kMostHops
-/// regions: 28 K states for two that come together at half of their speed.
+/// Steps for which a cluster that holds pulled bodies waits for one of them to touch something before it goes home. A
+/// pull comes early by at most the way that both may leave their paths, stated four times as fast as they are
+/// (Push::of), through kMostHops regions: 28 K states for two that come together at half of their speed.
 constexpr Step pull(int lookahead) { return 40 * lookahead; }
-/// A broken promise can spoil what is decided until its messages are replaced: aura, hand-off, and both looks ahead.
+/// For so many steps a broken promise can spoil decisions: until its auras and hand-offs are replaced, and both looks
+/// ahead are over.
 constexpr Step blame(int lookahead) { return 6 * lookahead + 2; }
-/// States that the collision watch keeps: those in which an arrival can have been under way.
+/// Number of past states that the collision watch keeps: those in which an arriving cluster can have been under way.
 constexpr Step under_way(int lookahead) { return 2 * lookahead + 2; }
 
-// Saying it early enough.
+// Announcing early enough.
 
-/// Steps before a body appears at which it is announced: long enough for every neighbour to have answered.
+/// A new body is announced so many steps before it appears: long enough for every neighbour to react.
 constexpr Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
-/// Between a command to a whole run and the state that it names: all nodes have received it, also those K ahead.
+/// Steps between a command to a whole run and the state that it names. By then all nodes have received it, also those
+/// that are K steps ahead.
 constexpr Step command_notice(int lookahead) { return 2 * lookahead + 1; }
-/// Steps between a claim and the state from which on it counts: everyone has received it, and has looked further ahead
-/// for as long as a pull can take.
+/// Steps between a claim of rank and the state from which on it counts. By then every node has received it, and has
+/// looked further ahead for as long as a pull can take.
 constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
-/// Before that state everyone looks further ahead: three pulls in a row, the longest chain
-/// (docs/decisions/0006-hops.md), and all of it has to be announced before.
+/// For so many steps before a claim of rank counts, every node looks further ahead: for three pulls in a row, the
+/// longest chain (docs/decisions/0006-hops.md), and for the auras that have to be announced before them.
 constexpr Step before_ranks_change(int lookahead) { return (kMostHops + 1) * lookahead + 1; }
-/// After it, the last bodies that went the old way may be under way for so many states.
+/// For so many states after a claim counts, the last bodies that moved by the old ranks may be under way.
 constexpr Step after_ranks_change(int lookahead) { return lookahead - 1; }
-/// Between two claims of one node: everybody remembers two, and is done with the first when the third is made.
+/// Steps between two claims of one node. Every node remembers two claims, and no longer needs the first when the third
+/// is made.
 constexpr Step between_claims(int lookahead) { return rank_notice(lookahead) + 2 * lookahead; }
 
 }  // namespace aurasim::core::horizon

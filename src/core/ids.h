@@ -17,7 +17,7 @@ enum class JointId : std::uint32_t {};
 using Step = std::int64_t;
 /// How often a body has changed host. The highest epoch owns the body.
 using Epoch = std::uint32_t;
-/// Counts resets of one run: messages of another generation are not of this world.
+/// Counts resets of one run. Messages of another generation are about another world and are refused.
 using Generation = std::uint32_t;
 
 template <class Id>

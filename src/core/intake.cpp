@@ -8,12 +8,14 @@
 namespace aurasim::core {
 namespace {
 
-/// Of what a neighbour has said last: what it says comes in order, so what is missing between will never come.
+/// A message further ahead of the neighbour's newest batch is refused. Batches arrive in order, so those missing in
+/// between will never arrive.
 constexpr Step kMostStatesAhead = 4096;
-/// Of the messages of one kind that are for later: a run begins its next generation within seconds.
+/// Most messages of one kind that are kept for a later generation or redo, which begins within seconds.
 constexpr std::ptrdiff_t kMostForLater = 10'000;
 
-/// Moves the messages that are for later, for another generation or another redo, to the front and cuts the rest off.
+/// Calls take(message) for the messages of this generation and redo or earlier ones. Keeps those of later ones in
+/// `messages`, up to kMostForLater.
 template <class Message, class Take>
 void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Take take) {
   auto kept = messages.begin();
@@ -28,7 +30,7 @@ void take_all(std::vector<Message>& messages, const IntakeSettings& settings, Ta
   messages.erase(std::min(kept, messages.begin() + std::min(std::ssize(messages), kMostForLater)), messages.end());
 }
 
-/// What each neighbour gives out, one after the other.
+/// Concatenates what each neighbour returns.
 template <class Row>
 std::vector<Row> take_from(std::vector<Neighbour>& neighbours, std::vector<Row> (Neighbour::*take)()) {
   std::vector<Row> all;
@@ -63,7 +65,7 @@ bool Intake::belongs(const Message& message, std::uint64_t map_version) {
   return false;
 }
 
-/// A region that has been introduced to us may have received that before us.
+/// Is it a message of a region that is not our neighbour yet? That region may have received our introduction before us.
 template <class Message>
 bool Intake::is_early(const Message& message) const {
   const bool is_region = value_of(message.source) < vicinity_.map.size() && message.source != vicinity_.self;
@@ -71,7 +73,7 @@ bool Intake::is_early(const Message& message) const {
          message.redo == settings_.redo && message.map_version == map_version_;
 }
 
-/// What nobody has asked for is not kept for ever.
+/// Drops early messages of regions that were never introduced to us.
 void Intake::forget_early(Step before) {
   std::erase_if(early_.auras, [before](const AuraBatch& batch) { return batch.stamp < before; });
   std::erase_if(early_.hand_offs, [before](const HandOff& hand_off) { return hand_off.stamp < before; });
@@ -129,13 +131,15 @@ void Intake::accept(HandOff& hand_off) {
   const bool waits = std::any_of(waiting_.begin(), waiting_.end(), [&](const HandOff& h) {
     return h.source == hand_off.source && h.sequence == hand_off.sequence;
   });
-  // A copy of one adopted long ago: its acknowledgement was lost. One that still waits has not been adopted.
+  // A copy of a hand-off adopted earlier, whose acknowledgement was lost. One that still waits has not been adopted, so
+  // it is not acknowledged.
   if (!waits) {
     acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence, settings_.redo});
   }
 }
 
-/// What it said is lost, and what it says later is of no use without it: to wait for it would be to wait for ever.
+/// Marks the source of a refused message dead. The message is lost and later ones are useless without it, so waiting
+/// for that neighbour would never end.
 void Intake::accept(const Refusal& refusal) {
   Neighbour* const neighbour = find(refusal.source);
   if (!neighbour || !neighbour->alive() || refusal.generation != settings_.generation) {
@@ -157,8 +161,8 @@ void Intake::mark_dead(Neighbour& neighbour) {
   for (HandOff& open : departures_.take_open(neighbour.id())) to_reclaim_.push_back(std::move(open));
 }
 
-/// What one neighbour holds for dead, all hold for dead: half a cluster may not wait for a region that the other half
-/// has given up.
+/// A region that one neighbour has marked dead is marked dead here. Otherwise half of the nodes would wait for a region
+/// that the other half has given up.
 void Intake::receive_deaths() {
   for (bool changed = true; changed;) {
     changed = false;
@@ -176,7 +180,7 @@ void Intake::receive_deaths() {
   }
 }
 
-/// The stamp up to which everything has to be here.
+/// The stamp up to which all messages have to be here before state `n` is computed.
 Step Intake::needed_for(Step n) const {
   return settings_.knows_start ? std::max(n - settings_.lookahead, settings_.start) : n - settings_.lookahead;
 }
@@ -209,8 +213,8 @@ std::vector<RegionId> Intake::missing(Step n) const {
   return regions;
 }
 
-/// Stamps up to this one take effect in state `n`: exactly K steps late in deterministic mode, else as soon as they
-/// are here, but never before the state that they describe.
+/// Messages with stamps up to the returned one take effect in state `n`: exactly K steps late in deterministic mode,
+/// else as soon as they are here, but never before the state that they describe.
 Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
 std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen, Joining joining) {
@@ -259,10 +263,10 @@ void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
       {source, hand_off.stamp, hand_off.sequence, hand_off.reason, reclaimed, std::move(hand_off.cluster)});
 }
 
-/// Bodies on their way to a dead region come back under a higher epoch. Before its death it may have adopted them and
-/// sent them on, without us hearing of it: so first every live neighbour that it could have sent them to has to know of
-/// the death (from then on it adopts nothing from there) and to claim what it did adopt. A neighbour of the dead region
-/// that is none of ours is out of reach of the same bodies.
+/// Takes back bodies on their way to a dead region, under a higher epoch. The region may have adopted them and sent
+/// them on before its death, unknown to us. So every live neighbour that it could have sent them to first has to know
+/// of the death (it then adopts nothing more from there), and to claim what it did adopt. Neighbours of the dead region
+/// that are not ours are out of reach of these bodies.
 void Intake::reclaim(Step n, ViolationLog& violations) {
   const auto all_know = [this](RegionId dead) {
     return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
@@ -281,7 +285,7 @@ void Intake::reclaim(Step n, ViolationLog& violations) {
                                                     [&](const Neighbour& q) { return claims(q.claims(), body); });
     });
     for (BodyRecord& body : hand_off.cluster.bodies) ++body.epoch;
-    // Nobody has guarded these bodies since they left.
+    // No node has published these bodies since they left, so others may have missed them.
     violations.add({ViolationKind::kLatency,
                     n,
                     hand_off.destination,

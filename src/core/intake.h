@@ -1,5 +1,5 @@
-// The receiving half of the protocol: sorts what arrives, says when the next state may be computed, which bodies join
-// before it, and what becomes of bodies that were on their way to a region that died.
+// The receiving half of the protocol. It sorts messages, decides when the next state may be computed and which bodies
+// join before it, and takes back bodies that were on their way to a region that died.
 #pragma once
 
 #include <cstdint>
@@ -21,73 +21,75 @@ struct IntakeSettings {
   std::uint32_t redo = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
-  Step start = 0;                     ///< the first state that anybody publishes
-  bool knows_start = false;           ///< what is published of it takes effect in the next: nothing is under way
+  Step start = 0;                     ///< the first state that any node publishes
+  bool knows_start = false;           ///< true: batches of `start` take effect in the next state instead of K later
   Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
 };
 
-/// A cluster that joins this node; its state is that of `stamp`.
+/// A cluster that joins this node, as it was in state `stamp`.
 struct Adoption {
   RegionId source{};
   Step stamp = 0;
   std::uint64_t sequence = 0;
   HandOffReason reason{};
-  bool reclaimed = false;  ///< it had been sent to a region that died before it acknowledged
+  bool reclaimed = false;  ///< this node had sent it to a region that died before it acknowledged
   ClusterState cluster;
 };
 
-/// Counted since the start.
+/// Counts since the start.
 struct IntakeCounters {
   std::uint64_t adopted = 0;    ///< bodies
   std::uint64_t reclaimed = 0;  ///< bodies
-  std::uint64_t copies = 0;     ///< messages that came again
-  std::uint64_t strangers = 0;  ///< messages of unknown, dead or differently configured senders
+  std::uint64_t copies = 0;     ///< duplicate messages
+  std::uint64_t strangers = 0;  ///< messages of non-neighbours: unknown, dead or differently configured senders
 };
 
-/// Who joins of those that have arrived.
+/// Which of the clusters that have arrived join.
 enum class Joining {
-  kInTime,  ///< who was handed over in a state that may take effect by now
-  kAll      ///< after the last state: where nodes do not wait for each other, a neighbour may have ended in a later one
+  kInTime,  ///< those handed over in a state that may take effect by now
+  kAll      ///< all. For after the last state: in free-running mode a neighbour may end in a later one
 };
 
 class Intake {
  public:
   Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures);
 
-  /// Takes in what arrived; messages of the next generation stay in `inbox`.
+  /// Takes the messages out of `inbox`. Those for a later generation or redo stay there.
   void accept(Inbox& inbox);
 
   bool ready(Step n) const;
   std::vector<RegionId> missing(Step n) const;
 
-  /// Lets messages take effect before state `n` is computed; who joins, in the order in which they join.
-  /// `seen` is told of each batch that takes effect.
+  /// Lets messages take effect before state `n` is computed. Returns the clusters that join, in the order in which they
+  /// join. Calls `seen(neighbour)` after each batch that takes effect.
   using Seen = std::function<void(const Neighbour&)>;
   std::vector<Adoption> receive(Step n, ViolationLog& violations, const Seen& seen = {},
                                 Joining joining = Joining::kInTime);
-  /// Is everything here that the neighbour has sent up to this state? True of a region that is no live neighbour.
+  /// Has everything arrived that the neighbour has sent up to state `until`? True for a region that is no live
+  /// neighbour.
   bool has_all(RegionId region, Step until) const;
 
   std::span<const Neighbour> neighbours() const { return neighbours_; }
   std::vector<RegionId> dead_regions() const;
   bool fenced() const { return fenced_; }
-  /// Messages of neighbours that were alive, refused; each neighbour has been held for dead since.
+  /// Refused messages of live neighbours. Each of these neighbours has been marked dead for it.
   const std::vector<Refusal>& refusals() const { return refusals_; }
-  /// Hand-offs that have come and do not take effect yet.
+  /// Hand-offs that have arrived and do not take effect yet.
   std::span<const HandOff> to_come() const { return waiting_; }
-  /// Bodies sent to a region that died, which may not be taken back yet.
+  /// Hand-offs to a region that died, whose bodies may not be taken back yet.
   const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
   const IntakeCounters& counters() const { return counters_; }
 
   /// Orders that took effect with the last receive(), by neighbour, each neighbour's in sequence.
   std::vector<Order> take_orders();
-  /// Likewise the alarms.
+  /// Alarms that took effect with the last receive(), by neighbour.
   std::vector<Alarm> take_alarms();
   std::vector<Neighbour::Introduced> take_introductions();
-  /// Another region is heard, from its state `begin` on.
+  /// Makes `region` a neighbour, which publishes from its state `begin` on.
   void listen_to(RegionId region, Step begin);
 
-  /// For the step's outbox: acknowledgements, deaths and claims. Acks are given out once, claims as long as useful.
+  /// Adds acknowledgements, deaths and claims of bodies to the step's outbox. Acknowledgements are given out once,
+  /// claims for as long as adoptions are remembered.
   void fill(Outbox& outbox, Step stamp);
 
  private:
@@ -115,11 +117,11 @@ class Intake {
   const Vicinity& vicinity_;
   std::uint64_t map_version_;
   std::vector<Neighbour> neighbours_;
-  Inbox early_;  ///< of regions that we do not listen to yet
+  Inbox early_;  ///< messages of regions that we do not listen to yet
   DepartureLedger& departures_;
   ArrivalLedger arrivals_;
   std::vector<HandOff> waiting_;     ///< received, not yet in effect
-  std::vector<HandOff> to_reclaim_;  ///< on their way to regions that died; taken back once every neighbour knows
+  std::vector<HandOff> to_reclaim_;  ///< to regions that died; taken back once every neighbour knows of the death
   std::vector<HandOffAck> acks_;
   std::vector<Adoption> adoptions_;
   std::vector<Refusal> refusals_;

@@ -1,4 +1,4 @@
-// What one observer wants to be told of a run: which bodies, in which states, and what besides where they are.
+// What one observer wants to receive of a run: which bodies, in which states, and whether also contacts and joints.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace aurasim::core {
 
-/// With sides along the world's axes, m; a point on a side is in it.
+/// A box with sides along the world's axes, metres. A point on a side is inside.
 struct WorldBox {
   Vec3 low = Vec3::Zero();
   Vec3 high = Vec3::Zero();
@@ -20,11 +20,11 @@ struct WorldBox {
 
 struct Interest {
   std::uint64_t client = 0;    ///< random number of the observer
-  std::uint64_t sequence = 1;  ///< of the client's interests, from 1: the highest counts
-  std::uint32_t every = 1;     ///< states whose number is a multiple of it; 0: those in which the run stands
-  bool contacts = false;       ///< of these bodies
-  bool joints = false;         ///< likewise
-  bool ended = false;          ///< it wants nothing any more
+  std::uint64_t sequence = 1;  ///< number of the client's interest, from 1: the highest replaces all others
+  std::uint32_t every = 1;     ///< wants states whose number is a multiple of it; 0: those in which the run is paused
+  bool contacts = false;       ///< wants the contacts of the wanted bodies
+  bool joints = false;         ///< wants the joints of the wanted bodies
+  bool ended = false;          ///< the observer wants nothing any more
   // A body is wanted for any of these reasons.
   bool all = false;
   std::vector<BodyId> bodies;           ///< ascending
@@ -32,11 +32,11 @@ struct Interest {
   std::vector<WorldBox> boxes;          ///< the body's origin is in one of them
 
   bool wants(BodyId id, PrototypeId prototype, const Vec3& p_WB) const;
-  /// In state `step` of a run that goes on.
+  /// Is state `step` of a run that goes on wanted?
   bool is_for(Step step) const { return every > 0 && step % every == 0; }
 };
 
-// So much one observer may ask for, and so many of them a node serves.
+// Limits of one interest, and of the number of observers of a node.
 inline constexpr std::size_t kMostWantedBodies = 100'000;
 inline constexpr std::size_t kMostWantedPrototypes = 10'000;
 inline constexpr std::size_t kMostWantedBoxes = 256;

@@ -18,7 +18,7 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
   return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
-/// Does `host`, if it is one of the `live`, get a cluster of ours that so far would go to `other`?
+/// Does a cluster of ours that so far would go to `other` go to `host` instead? False if `host` is not among `live`.
 bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live, const Ranks& ranks) {
   return host != other && std::binary_search(live.begin(), live.end(), host) && ranks.pulls(host) &&
          ranks.outranks(host, other);
@@ -68,7 +68,7 @@ void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const 
   for (const Neighbour& neighbour : neighbours) {
     if (!neighbour.alive()) continue;
     live_.push_back(neighbour.id());
-    // Before the first word of a neighbour, the promised top speed has to do.
+    // Before the first batch of a neighbour its top speed is unknown, so the promised one is used.
     const bool silent = neighbour.applied() < 0;
     others_top_speed_ = std::max(others_top_speed_, silent ? aura_.rules().top_speed_m_s : neighbour.top_speed_m_s());
     others_top_radius_ = std::max(others_top_radius_, neighbour.top_radius_m());
@@ -86,7 +86,7 @@ double InterestMatching::band(double speed_m_s, int hops) const {
   return aura_.zone(speed_m_s, hops, std::max(others_top_speed_, speed_m_s), others_top_radius_);
 }
 
-/// Which regions are in reach of each body. Where several are, pulls can chain, and the reach grows with them.
+/// Marks the regions in reach of each body. With several of them pulls can chain, so the reach grows with their number.
 void InterestMatching::mark_regions(int hops_each) {
   const auto n = paths_.size();
   regions_.assign(n, 0);
@@ -123,7 +123,8 @@ std::optional<std::uint32_t> InterestMatching::own_index(BodyId id) const {
   return static_cast<std::uint32_t>(found - ids_.begin());
 }
 
-/// Pairs that a redo brings together: of ours as if a joint held them, with others' as if their auras met.
+/// Applies the pairs that a redo brings together. Two of our bodies are treated as if a joint held them. One of ours
+/// and a foreign one are treated as if their auras met.
 void InterestMatching::bring_together(const Snapshot& snapshot) {
   joined_.assign(snapshot.joints.begin(), snapshot.joints.end());
   expecting_.clear();
@@ -142,13 +143,13 @@ void InterestMatching::bring_together(const Snapshot& snapshot) {
   }
 }
 
-/// Foreign auras and our bodies near them. A cluster that is completed here may turn out faster, and then reach
-/// further: whatever has grown is looked at again, until nothing does.
+/// Finds foreign auras and our bodies near them. A cluster that is completed here may turn out faster and then reach
+/// further. So bodies that have grown are looked at again until none grows.
 void InterestMatching::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
   for (const std::uint32_t i : expecting_) noticed_[i] = 1;
-  clusters_.take_grown(grown_);  // seen below as they are now
+  clusters_.take_grown(grown_);  // discard: all bodies are looked at below with their present speeds
   for (const ForeignBlock& block : foreign_.blocks()) {
     Progress::mark();
     notice(block);
@@ -191,7 +192,7 @@ void InterestMatching::take_ranges(const ForeignBlock& block, RangeOf&& range_of
   }
 }
 
-/// How far own bodies of at most so many m/s have to be looked for, after take_ranges().
+/// The widest range of the block at `speed_m_s`. Call after take_ranges().
 double InterestMatching::widest_range(double speed_m_s) const {
   double widest_m = 0;
   for (std::size_t most = ranges_each_ - 1; most < ranges_.size(); most += ranges_each_) {
@@ -200,13 +201,13 @@ double InterestMatching::widest_range(double speed_m_s) const {
   return widest_m;
 }
 
-/// Of the k-th body of the block, after take_ranges().
+/// Is `own` in range of the k-th body of the block? Call after take_ranges().
 bool InterestMatching::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
   const double range = ranges_[k * ranges_each_ + own.hops].at(own.speed_m_s);
   return is_within(foreign_[block.bodies[k]].path, own.p_WB, own.radius_m, range);
 }
 
-/// Which of our bodies have to be announced because of foreign ones? In a pile most of them are already.
+/// Finds our bodies that have to be announced because foreign ones are near. In a pile most of them are known already.
 void InterestMatching::notice(const ForeignBlock& block) {
   const std::uint64_t region = vicinity_.bit_of(block.host);
   const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
@@ -247,7 +248,7 @@ void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) c
   foreign_.near().for_each_near(path.pose.p_WB, path.radius_m, range, visit);
 }
 
-/// One of ours is faster, or has more hops, than when the foreign bodies noticed it.
+/// Looks again for foreign bodies near body `own`, which is faster or has more hops than before.
 void InterestMatching::notice_again(std::uint32_t own) {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
@@ -260,9 +261,10 @@ void InterestMatching::notice_again(std::uint32_t own) {
   });
 }
 
-/// Who may meet whom. Whoever does has been noticed: meeting looks less far.
+/// Finds pairs of a foreign and an own body that may meet. Such bodies have been noticed before, because meetings reach
+/// less far than notice.
 void InterestMatching::find_pairs(const ForeignBlock& block) {
-  const double drift = 1 + aura_.rules().uncertainty;  // at most, for each m/s that a body may become fast
+  const double drift = 1 + aura_.rules().uncertainty;  // upper bound of Aura::drift_m_s() for each m/s of top speed
   take_ranges(block, [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
@@ -287,7 +289,7 @@ void InterestMatching::judge(const Ranks& ranks) {
   for (const Pair& pair : together_pairs_) judge_touched(pair, ranks);
 }
 
-/// The host of a body that ours meets keeps it, or gets ours.
+/// Notes that an aura met the cluster of pair.own. The foreign body's host keeps that body, or our cluster goes to it.
 void InterestMatching::judge_touched(const Pair& pair, const Ranks& ranks) {
   const RegionId host = foreign_[pair.foreign].host;
   const std::uint32_t cluster = clusters_.of(pair.own);

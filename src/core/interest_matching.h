@@ -1,5 +1,5 @@
-// The matching half of the protocol (interest matching): which of our bodies belong together, which of them are touched
-// by auras from elsewhere, and which have to be announced. Looks at one state; remembers nothing but its buffers.
+// The matching half of the protocol (interest matching). Finds which of our bodies belong together, which foreign auras
+// they meet, and which have to be announced. Looks at one state, and keeps nothing from state to state but its buffers.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,14 @@ namespace aurasim::core {
 
 class InterestMatching {
  public:
-  /// A foreign body and one of ours that may meet: indices of foreign() and path().
+  /// A foreign body and one of ours that may meet, as indices of foreign() and path().
   struct Pair {
     std::uint32_t foreign;
     std::uint32_t own;
   };
 
-  /// `together`: pairs that share a host until their time, as if their auras met; a < b.
+  /// `together`: pairs, a < b, that are treated as if their auras met until TogetherPair::until, so that they share a
+  /// host.
   InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together = {});
 
   /// Looks at a state, given what the neighbours have published and our own ghosts (bodies just sent away).
@@ -43,8 +44,8 @@ class InterestMatching {
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
   bool touched(std::uint32_t i) const { return touched_[clusters_.of(i)] != 0; }
-  /// An aura from elsewhere may meet the cluster soon enough that another node could already be sending bodies here
-  /// because of it. Only known for bodies outside our region; whoever goes home then would pass them on the way.
+  /// A foreign aura may meet the cluster so soon that another node could already be sending bodies here because of it.
+  /// A cluster that goes home then would pass them on the way. Only known for bodies outside our region.
   bool expected(std::uint32_t i) const { return expected_[clusters_.of(i)] != 0; }
   /// The highest-ranked host among the auras that met the cluster and outrank us; our own region if there is none.
   RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
@@ -61,12 +62,12 @@ class InterestMatching {
   double top_radius() const { return clusters_.near().top_radius(); }
 
  private:
-  /// One of ours, as far as it matters to who is near it.
+  /// One of our bodies, with what a search for foreign bodies near it needs.
   struct Candidate {
     Vec3 p_WB;
     double radius_m;
-    double speed_m_s;  ///< for which ranges are asked
-    std::size_t hops;  ///< likewise
+    double speed_m_s;  ///< speed at which ranges are evaluated
+    std::size_t hops;  ///< hops at which ranges are evaluated
     std::uint32_t own;
   };
 
@@ -100,9 +101,9 @@ class InterestMatching {
   const Aura& aura_;
   const Vicinity& vicinity_;
   std::span<const TogetherPair> together_;
-  std::vector<Contact> joined_;           ///< joints, and pairs of ours that belong together
-  std::vector<std::uint32_t> expecting_;  ///< ours whose partner is to come to the same host
-  std::vector<Pair> together_pairs_;      ///< with those that others host
+  std::vector<Contact> joined_;           ///< our pairs that a joint or a redo holds together
+  std::vector<std::uint32_t> expecting_;  ///< our bodies whose partner in a together_ pair is to come to the same host
+  std::vector<Pair> together_pairs_;      ///< the together_ pairs of a foreign body and one of ours
   Clusters clusters_;
   std::vector<BodyId> ids_;
   std::vector<Path> paths_;
@@ -111,22 +112,22 @@ class InterestMatching {
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;
   std::vector<Pair> pairs_;
-  std::vector<Range> ranges_;          ///< of the foreign bodies of a block, by body and hops
-  std::size_t ranges_each_ = 0;        ///< of one of them
-  std::vector<Candidate> candidates_;  ///< ours that may be in range of a block
+  std::vector<Range> ranges_;          ///< by foreign body of the block, then by hops
+  std::size_t ranges_each_ = 0;        ///< entries of ranges_ for each body
+  std::vector<Candidate> candidates_;  ///< our bodies that may be in range of a block
   struct News {
     std::uint32_t own;
     std::uint64_t region;
   };
-  std::vector<News> news_;            ///< our bodies that have been noticed by a region, and did not know
-  std::vector<std::uint32_t> grown_;  ///< of our bodies, whose range has grown
+  std::vector<News> news_;            ///< our bodies and the regions newly found to have a body near them
+  std::vector<std::uint32_t> grown_;  ///< our bodies whose range has grown
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
   std::vector<std::uint64_t> noticed_by_;  ///< bits of regions
   std::vector<std::uint8_t> touched_;      ///< by cluster
   std::vector<std::uint8_t> expected_;     ///< by cluster
   std::vector<RegionId> pulled_to_;        ///< by cluster
-  int fewer_steps_ = 0;                    ///< how much less far than h K meetings are looked for
+  int fewer_steps_ = 0;                    ///< meetings are looked for h K minus so many steps ahead
   double widest_band_m_ = 0;               ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;

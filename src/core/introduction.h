@@ -15,11 +15,11 @@ struct Introduction {
   auto operator<=>(const Introduction&) const = default;
 };
 
-/// A region that another one listens to, and that listens to it.
+/// A region that listens to ours and that ours listens to, from state `since` on.
 struct Listened {
   RegionId region{};
   Step since = 0;
-  std::optional<RegionId> introduced_by;  ///< none: it is near, or had bodies near ours at the start
+  std::optional<RegionId> introduced_by;  ///< none: it is near ours, or had bodies near ours at the start
 
   bool operator==(const Listened&) const = default;
 };

@@ -7,7 +7,7 @@
 namespace aurasim::core {
 namespace {
 
-/// How far from a body regions may be that have to hear of it by the time that they can.
+/// Regions within this distance of a body have to know of it by the time that an introduction takes effect.
 double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) {
   const AuraRules& rules = aura.rules();
   const double steps = path.age_steps + static_cast<double>(horizon::introduction(rules.lookahead));
@@ -38,7 +38,7 @@ Introducer::Introducer(const Aura& aura, const Vicinity& vicinity)
 
 void Introducer::introduce(RegionId a, RegionId b) {
   if (a == b || vicinity_.are_near(a, b)) return;
-  if (!vicinity_.is_neighbour(a) || !vicinity_.is_neighbour(b)) return;  // they do not both hear us
+  if (!vicinity_.is_neighbour(a) || !vicinity_.is_neighbour(b)) return;  // one of the two does not listen to us
   found_.push_back({std::min(a, b), std::max(a, b)});
 }
 
@@ -68,7 +68,7 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
 
 std::vector<RegionId> related_at_start(const Aura& aura, const RegionMap& map, double neighbour_distance_m,
                                        RegionId self, const Snapshot& scene, std::span<const RegionId> hosts) {
-  std::vector<std::vector<RegionId>> hosts_near(map.size());  // by region: whose bodies are near it
+  std::vector<std::vector<RegionId>> hosts_near(map.size());  // by region: hosts of the bodies near it
   for (std::size_t i = 0; i < hosts.size(); ++i) {
     Path path = path_of(scene.bodies[i], scene.step, aura.clearance());
     path.speed_m_s = aura.speed_of(scene.bodies[i]);

@@ -1,6 +1,7 @@
 // Listening follows bodies (docs/design.md, "Who listens to whom"). Regions near each other always listen to each
-// other. Where a body may come to a region that does not listen to its host, the owner of the place, which hears both,
-// introduces them; so it does with two hosts whose bodies are over its territory. From an agreed state on they listen.
+// other. Where a body may come to a region that does not listen to its host, a node that listens to both introduces the
+// two. A node also introduces two hosts whose bodies are near its territory. Both listen to each other from an agreed
+// state on.
 #pragma once
 
 #include <span>
@@ -16,10 +17,11 @@ namespace aurasim::core {
 
 class Introducer {
  public:
-  /// Keeps references.
+  /// Keeps references to `aura` and `vicinity`.
   Introducer(const Aura& aura, const Vicinity& vicinity);
 
-  /// For the bodies of others, as far as we hear the hosts; ascending. Valid until the next call.
+  /// Introductions that the foreign bodies call for, between hosts that we listen to; ascending. Valid until the next
+  /// call.
   const std::vector<Introduction>& look(const ForeignBodies& foreign, double others_top_speed_m_s);
 
  private:
@@ -27,13 +29,13 @@ class Introducer {
 
   const Aura& aura_;
   const Vicinity& vicinity_;
-  bool all_are_near_;             ///< every region is near every other: nobody has to be introduced
+  bool all_are_near_;             ///< every region is near every other, so none has to be introduced
   std::vector<RegionId> guests_;  ///< hosts of bodies near our territory
   std::vector<Introduction> found_;
 };
 
-/// Who has to listen to whom when `hosts[i]` hosts body i of `scene`, besides those near each other: those that region
-/// `self` has to, ascending.
+/// Regions, ascending, that region `self` has to listen to at the start besides those near it, because of bodies near
+/// the same places. `hosts[i]` hosts body i of `scene`.
 std::vector<RegionId> related_at_start(const Aura& aura, const RegionMap& map, double neighbour_distance_m,
                                        RegionId self, const Snapshot& scene, std::span<const RegionId> hosts);
 

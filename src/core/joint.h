@@ -1,5 +1,6 @@
 // Joints between bodies of a scene, as plain data. J is the joint's frame, given in the world at the bodies' initial
-// poses; from then on it moves with each of the two bodies. "Of a": of body a relative to b, or to the world.
+// poses; from then on it moves with each of the two bodies. "Of a" means: of body a relative to body b, or to the world
+// if there is no b.
 #pragma once
 
 #include <array>
@@ -15,19 +16,20 @@
 
 namespace aurasim::core {
 
-/// Radians or metres, low <= high. Of hinges and of ways along an axis one of them may be infinite.
+/// Limits of a joint's coordinate, radians or metres, low <= high. For hinges and translations one of the two may be
+/// infinite.
 struct JointLimits {
   double low = 0;
   double high = 0;
 };
 
 struct JointMotor {
-  double speed = 0;        ///< of a: rad/s or m/s
-  double max_impulse = 0;  ///< in 1/240 s: N m s or N s
+  double speed = 0;        ///< target speed of a: rad/s or m/s
+  double max_impulse = 0;  ///< impulse in 1/240 s: N m s or N s
 };
 
-/// What drives the turn of a hinge or the way of a slider: effort = stiffness (position - q) + damping (speed - dq/dt)
-/// + effort, at most max_effort either way. Solved implicitly, so stiff drives are stable. Units: rad or m, N m/rad or
+/// Drives a hinge or slider along its coordinate q: effort = stiffness (position - q) + damping (speed - dq/dt) +
+/// effort, at most max_effort either way. Solved implicitly, so stiff drives are stable. Units: rad or m, N m/rad or
 /// N/m, N m s/rad or N s/m, N m or N.
 struct JointDrive {
   double position = 0;
@@ -40,47 +42,48 @@ struct JointDrive {
   bool operator==(const JointDrive&) const = default;
 
   static constexpr std::size_t kNumbers = 6;
-  /// As above, in their order: as messages and records have them.
+  /// The six values in the order of their declaration, as in messages and records.
   std::array<double, kNumbers> numbers() const { return {position, speed, stiffness, damping, effort, max_effort}; }
   static JointDrive of(std::span<const double, kNumbers> n) { return {n[0], n[1], n[2], n[3], n[4], n[5]}; }
 };
 
-/// What a hinge or slider has of its own, whoever drives it; solved implicitly, too. Units as of a drive.
+/// Resistance of a hinge or slider itself, driven or not. Solved implicitly. Units as in JointDrive.
 struct JointResistance {
   double stiffness = 0;  ///< towards `rest`
   double rest = 0;
   double damping = 0;
-  double friction = 0;  ///< Coulomb's: an effort
+  double friction = 0;  ///< Coulomb friction, as an effort
 
   bool operator==(const JointResistance&) const = default;
 };
 
-/// Where a hinge or slider is, of a from b: 0 as the bodies are placed in the scene. Rad, rad/s, N m, or m, m/s, N.
+/// Coordinate of a hinge or slider, of a from b, and its rate; 0 is the placement of the scene. Units: rad, rad/s, N m,
+/// or m, m/s, N.
 struct JointMotion {
   double position = 0;
   double speed = 0;
-  double effort = 0;  ///< of its drive or motor, in the last substep
+  double effort = 0;  ///< effort of its drive or motor in the last substep
 };
 
-/// A hinge or slider whose drive strives for where another one of its mechanism is: for its own position and `ratio`
-/// times the leader's, and likewise for the speed. Nothing pushes back on the leader. While some joint between the two
-/// is gone, the drive rests; whoever drives the joint anew lets it go its own way.
+/// Couples the drive of a hinge or slider to another joint of its mechanism, the leader. The drive's targets become its
+/// own position plus `ratio` times the leader's position, and likewise for the speed. The leader feels no reaction.
+/// While a joint between the two is broken, the drive rests. A new setpoint for the joint ends the coupling.
 struct JointCoupling {
   JointId leader{};
   double ratio = 1;  ///< rad or m for each rad or m of the leader
 };
 
-/// Holds the two origins together; turns freely.
+/// Holds the origins of the two bodies' J frames together; rotation is free.
 struct BallJoint {
   double damping = 0;  ///< N m s/rad
 };
 
 /// Turns about the z axis of J.
 struct HingeJoint {
-  std::optional<JointLimits> limits;  ///< of the angle, which goes on beyond half a turn
+  std::optional<JointLimits> limits;  ///< limits of the angle, which counts on beyond half a turn
   std::optional<JointMotor> motor;
   JointResistance resistance = {};
-  std::optional<JointDrive> drive = {};       ///< without a motor
+  std::optional<JointDrive> drive = {};       ///< only without a motor
   std::optional<JointCoupling> follows = {};  ///< with a drive
 };
 
@@ -110,7 +113,7 @@ struct SpringJoint {
 
 using JointKind = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, SpringJoint>;
 
-/// Of hinges and sliders, which have one axis of their own; nothing of others.
+/// A member of a hinge or slider, given as pointers to member; a default value for other kinds of joints.
 template <class Part>
 Part part_of(const JointKind& kind, Part HingeJoint::*of_hinge, Part SliderJoint::*of_slider) {
   if (const auto* hinge = std::get_if<HingeJoint>(&kind)) return hinge->*of_hinge;
@@ -123,7 +126,7 @@ inline std::optional<JointDrive> drive_of(const JointKind& kind) {
 inline std::optional<JointCoupling> coupling_of(const JointKind& kind) {
   return part_of(kind, &HingeJoint::follows, &SliderJoint::follows);
 }
-/// Of a hinge or slider.
+/// Sets the coupling of a hinge or slider; does nothing for other kinds.
 inline void couple(JointKind& kind, const JointCoupling& coupling) {
   if (auto* hinge = std::get_if<HingeJoint>(&kind)) hinge->follows = coupling;
   if (auto* slider = std::get_if<SliderJoint>(&kind)) slider->follows = coupling;

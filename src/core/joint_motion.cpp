@@ -42,14 +42,15 @@ JointMotion joint_motion(const JointFrame& frame, int coordinate, const BodyStat
   if (coordinate < 3) {
     const Vec3 p_WJb = b.pose.p_WB + q_WB * frame.X_BJ.p_WB;
     const Vec3 apart = p_WJa - p_WJb;
-    // As seen from b, which turns.
+    // Relative to b, which turns.
     const Vec3 v_of_b = b.v_WB + b.w_WB.cross(Vec3(p_WJa - b.pose.p_WB));
     const Vec3 v_of_a = a.v_WB + a.w_WB.cross(arm_a);
     return {R_WJb.col(axis).dot(apart), R_WJb.col(axis).dot(Vec3(v_of_a - v_of_b))};
   }
   const Mat3 R_BA = R_WJb.transpose() * (q_WA * frame.X_AJ.q_WB).toRotationMatrix();
   const Eigen::Index next = (axis + 1) % 3, last = (axis + 2) % 3;
-  // About x: sine in row z, cosine in row y of the column of y; the others likewise.
+  // For the angle about x, the column of y holds the sine in row z and the cosine in row y. The other axes follow
+  // cyclically.
   const double angle = std::atan2(R_BA(last, next), R_BA(next, next));
   return {angle, R_WJb.col(axis).dot(Vec3(a.w_WB - b.w_WB))};
 }

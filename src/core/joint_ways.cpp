@@ -20,7 +20,7 @@ JointWays::JointWays(std::vector<JointEnds> joints) : joints_(std::move(joints))
   }
 }
 
-/// Breadth first, in order of ids.
+/// Breadth-first search, in order of ids, so the result is unique.
 std::vector<JointId> JointWays::way(JointId from, JointId to) const {
   if (from == to) return {};
   std::unordered_map<JointId, JointId> before = {{from, from}};

@@ -1,4 +1,4 @@
-// How joints hang together over the bodies that they bind.
+// The graph of joints: finds the joints that connect two joints of a mechanism.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace aurasim::core {
 
-/// What a joint binds: bodies, by any number that tells them apart. Nothing: the world.
+/// The two bodies of a joint, by any numbers that tell bodies apart. `b` empty: the world.
 struct JointEnds {
   std::uint64_t a = 0;
   std::optional<std::uint64_t> b;
@@ -22,16 +22,18 @@ std::vector<JointEnds> ends_of(std::span<const JointSpec> joints);
 
 class JointWays {
  public:
-  /// By JointId.
+  /// `joints` is indexed by JointId.
   explicit JointWays(std::vector<JointEnds> joints);
 
-  /// A shortest way over bodies, not over the world: the joints after `from` up to `to`, which is the last. Of several
-  /// always the same. Empty: there is none, or the two are one.
+  /// A shortest chain of joints that leads from `from` to `to` over bodies, not over the world. The result leaves out
+  /// `from` and ends with `to`. Of several shortest chains it is always the same one. Empty if there is none or `from`
+  /// is `to`.
   std::vector<JointId> way(JointId from, JointId to) const;
 
  private:
   std::vector<JointEnds> joints_;
-  std::unordered_map<std::uint64_t, std::vector<JointId>> joints_of_;  ///< of a body, ascending; asked only
+  /// by body, ascending; only looked up, never iterated
+  std::unordered_map<std::uint64_t, std::vector<JointId>> joints_of_;
 };
 
 }  // namespace aurasim::core

@@ -25,7 +25,7 @@ void Listening::add(std::span<const Listened> regions) {
   }
 }
 
-/// Both receive an introduction by the same state, since both hear who has made it.
+/// Both regions receive an introduction by the same state, because both listen to the node that made it.
 void Listening::receive() {
   for (const Neighbour::Introduced& introduced : intake_.take_introductions()) {
     const auto [a, b] = introduced.pair;
@@ -54,7 +54,8 @@ std::vector<RegionId> Listening::expected() const {
   return regions;
 }
 
-/// Where nodes receive messages as they come, the other one may not have received a later introduction.
+/// Leaves out introductions younger than K states: if messages take effect as they arrive, the other region may not
+/// have received them.
 std::vector<Listened> Listening::agreed(Step now) const {
   std::vector<Listened> all = all_;
   for (const Expected& expected : expected_) {

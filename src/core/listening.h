@@ -1,5 +1,5 @@
-// Whom a region listens to, and who listens to it: the same regions. Those that are near it, always, and others from an
-// agreed state on, because a third region has introduced the two (decisions/0003-listening-follows-bodies.md).
+// The regions that a region listens to; the same regions listen to it. Regions near it always do. Others do from an
+// agreed state on, after a third region has introduced the two (docs/decisions/0003-listening-follows-bodies.md).
 #pragma once
 
 #include <span>
@@ -12,21 +12,23 @@ namespace aurasim::core {
 
 class Listening {
  public:
-  /// Of state `start` on. `earlier`: what is known of a run that was put back. Keeps references.
+  /// Begins in state `start`. `earlier`: regions agreed on before a redo put the run back. Keeps references to
+  /// `vicinity` and `intake`.
   Listening(Vicinity& vicinity, Intake& intake, int lookahead, Step start, std::span<const Listened> earlier);
 
-  /// Before the first state: these, too.
+  /// Adds regions that listen from the start. Call before the first state.
   void add(std::span<const Listened> regions);
-  /// Those that neighbours have introduced to us in the batches that took effect since the last call.
+  /// Takes in the introductions of our region from batches that took effect since the last call.
   void receive();
-  /// True when there are any who listen from state `now` on: they are told of all our auras.
+  /// Adds the regions whose time has come in state `now`. Returns true if there are any; the next batch then has to be
+  /// full.
   bool begin(Step now);
 
-  /// By region, ascending.
+  /// All regions that listen now, besides those near us, ascending by region.
   std::span<const Listened> all() const { return all_; }
-  /// Those whose time has not come yet.
+  /// Introduced regions that do not listen yet.
   std::vector<RegionId> expected() const;
-  /// All of whom both sides know when state `now` is done, also those whose time has not come yet.
+  /// The regions of which both sides know when state `now` is done, also those that do not listen yet.
   std::vector<Listened> agreed(Step now) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace aurasim::core {
 
-/// The aura of rules.kind. `clearance` outlives it.
+/// Creates the aura of rules.kind. `clearance` has to outlive it.
 std::unique_ptr<const Aura> make_aura(const AuraRules& rules, const ClearanceQuery& clearance);
 
 }  // namespace aurasim::core

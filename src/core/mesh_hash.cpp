@@ -7,7 +7,8 @@
 namespace aurasim::core {
 namespace {
 
-/// As FNV-1a, by words of 64 bits instead of octets, as meshes have many; the shift brings high bits down.
+/// Like FNV-1a, but over words of 64 bits instead of octets, because meshes are large. The shift mixes high bits into
+/// low ones.
 class WordHash {
  public:
   void add(std::uint64_t word) {

@@ -1,4 +1,4 @@
-// What a mesh is called by: its content. Pure.
+// The hash by which messages name a mesh.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace aurasim::core {
 
-/// The same for the same bits of points and triangles, on every host. Who wants to can find two meshes of one hash: it
-/// tells mistakes and plain lies from the truth, not a forger with a computer.
+/// Hash of the bits of all points and triangles, the same on every host. It finds mistakes. It is not cryptographic:
+/// two meshes with one hash can be made on purpose.
 std::uint64_t content_hash(const TriangleMesh& mesh);
 
 }  // namespace aurasim::core

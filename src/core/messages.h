@@ -15,14 +15,15 @@
 
 namespace aurasim::core {
 
-/// Why an aura is in a batch, as bits.
+/// State of the body of an aura, as bits.
 enum AuraFlags : std::uint8_t {
-  kAuraAsleep = 1,  ///< does not move until the next update; its state is as fresh as its source's last batch
-  kAuraGhost = 2,   ///< handed to `host` at the aura's stamp; the source guards it until the new host can
+  /// the body does not move until the next update, so its state is as fresh as its source's last batch
+  kAuraAsleep = 1,
+  kAuraGhost = 2,  ///< handed over to `host` at the aura's stamp; the source publishes it until the new host can
   kAuraAll = 3,
 };
 
-/// One body that may meet bodies of other regions: where it is, how it moves, how fast its cluster can be.
+/// The aura of one body: where it is, how it moves, how fast it may become.
 struct AuraRecord {
   BodyId id{};
   Epoch epoch = 0;
@@ -32,7 +33,7 @@ struct AuraRecord {
   Step stamp = 0;  ///< the state this describes; equals the batch's stamp except for ghosts
   Step birth = 0;  ///< later than stamp: the body appears in that state; otherwise any earlier number
   Pose pose;
-  Vec3 v_WB = Vec3::Zero();  ///< these two for AuraKind::kSwept only
+  Vec3 v_WB = Vec3::Zero();  ///< v_WB and w_WB are used by AuraKind::kSwept, and with a redo
   Vec3 w_WB = Vec3::Zero();
   double speed_m_s = 0;  ///< top speed that it may come to have (core/aura.h)
 };
@@ -52,24 +53,27 @@ struct BodyEpoch {
 struct AuraBatch {
   RegionId source{};
   Generation generation = 0;
-  std::uint32_t redo = 0;  ///< how often this generation has been put back
+  std::uint32_t redo = 0;  ///< how often this generation has been put back by a redo
   Step stamp = 0;
   std::uint64_t map_version = 0;
-  bool full = false;  ///< `updates` is the whole set; forget what was known of this source
+  bool full = false;  ///< `updates` is the whole set: the receiver forgets what it knew of this source
   double top_speed_m_s = 0;
   double top_radius_m = 0;
-  /// Grows whenever the source breaks a promise, and in every step in which one stays so.
+  /// ViolationLog::warnings() of the source: grows with every broken promise, and in every step in which one stays
+  /// broken.
   std::uint64_t violations = 0;
-  RankClaims ranks;  ///< of the source
+  RankClaims ranks;  ///< rank claims of the source
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;
-  std::vector<RegionId> dead;               ///< regions that the source holds for dead
-  std::vector<BodyEpoch> claims;            ///< bodies adopted from regions now dead, so that nobody takes them back
-  std::vector<Order> orders;                ///< received since the last batch, in sequence
-  std::vector<Alarm> alarms;                ///< raised or received since the last batch
+  std::vector<RegionId> dead;  ///< regions that the source has marked dead
+  /// bodies that the source adopted from regions now dead, so that no other node reclaims them
+  std::vector<BodyEpoch> claims;
+  std::vector<Order> orders;                ///< orders that the source received since its last batch, in sequence
+  std::vector<Alarm> alarms;                ///< alarms that the source raised or received since its last batch
   std::vector<Introduction> introductions;  ///< regions that are to listen to each other, as of this state
-  /// States earlier than the stamp, made up for bodies that have joined late: for whoever checks those states.
+  /// Bodies in states before the stamp, which the source made up after they joined late. Used by the check of those
+  /// states.
   std::vector<AuraRecord> past;
 };
 
@@ -91,19 +95,19 @@ struct HandOff {
   ClusterState cluster;  ///< each body's epoch is already the new one
 };
 
-/// "I have adopted these": answers every copy of a hand-off. `source` is the region that adopted.
+/// Acknowledges a hand-off as adopted. Sent for every copy received. `source` is the region that adopted.
 struct HandOffAck {
   RegionId source{};
   RegionId destination{};
   Generation generation = 0;
   Step stamp = 0;
-  std::uint64_t sequence = 0;  ///< of the hand-off it answers
+  std::uint64_t sequence = 0;  ///< sequence of the hand-off that it acknowledges
   std::uint32_t redo = 0;
 };
 
 enum class PeerChange : std::uint8_t { kLost, kJoined };
 
-/// The transport's word that a neighbour's liveliness ended or came (back).
+/// Report of the transport that a neighbour's liveliness ended or began (again).
 struct PeerEvent {
   RegionId region{};
   PeerChange change = PeerChange::kLost;
@@ -112,18 +116,18 @@ struct PeerEvent {
 enum class MessageKind : std::uint8_t { kAura, kHandOff };
 const char* name_of(MessageKind kind);
 
-/// A message of this run and this map that the transport has turned down, for what it says. It will not come again as
-/// anything better.
+/// A message of this run and this map that the transport has refused because of its content. Sent again, it would be
+/// the same.
 struct Refusal {
   RegionId source{};
   Generation generation = 0;
   Step stamp = 0;
   MessageKind kind = MessageKind::kAura;
-  std::string_view why;  ///< a word that lives for ever
+  std::string_view why;  ///< the reason; points to a string with static lifetime
   std::uint32_t redo = 0;
 };
 
-/// What a transport delivered since the last look, in order of arrival.
+/// Messages that a transport delivered since the last Transport::take(), in order of arrival.
 struct Inbox {
   std::vector<AuraBatch> auras;
   std::vector<HandOff> hand_offs;
@@ -136,8 +140,8 @@ struct Inbox {
 
 /// What one step of one node publishes. The aura batch goes to every neighbour, the rest to its destination.
 struct Outbox {
-  std::vector<RegionId> listeners;  ///< to whom the batch goes, ascending
-  std::vector<RegionId> expected;   ///< that will soon be listeners, too
+  std::vector<RegionId> listeners;  ///< regions to which the batch goes, ascending
+  std::vector<RegionId> expected;   ///< regions that will soon be listeners
   AuraBatch aura;
   std::vector<HandOff> hand_offs;
   std::vector<HandOffAck> acks;

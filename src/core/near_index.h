@@ -1,5 +1,5 @@
-// Which of a node's own bodies are near a place? Slow bodies, faster ones and very large ones are kept apart, so that
-// one fast or one large body does not widen every query.
+// Finds bodies near a place. Slow, faster and very large bodies are indexed apart, so that one fast or one large body
+// does not widen every query.
 #pragma once
 
 #include <algorithm>
@@ -20,10 +20,10 @@ class NearIndex {
   /// Bodies that can become no faster than this are slow (m/s).
   static constexpr double kSlow = 3.0;
 
-  /// Indexes `paths`, with their speeds as far as they are known.
+  /// Indexes `paths` with their present speed_m_s. A speed that grows later is passed to raise().
   void build(std::span<const Path> paths);
 
-  /// Body `i` at `p` turned out to be faster.
+  /// Raises the speed of body `i`, which is at `p`.
   void raise(std::uint32_t i, const Vec3& p, double before_m_s, double now_m_s) {
     top_speed_ = std::max(top_speed_, now_m_s);
     const std::size_t gear = gear_of(now_m_s);
@@ -35,7 +35,7 @@ class NearIndex {
   double top_radius() const { return top_radius_; }
 
   /// Calls `visit(index)` for at least every body whose bounding sphere comes within `range_at(its speed)` of the box
-  /// [lo, hi]. `range_at`: m, by m/s, never less for more. Some are visited twice.
+  /// [lo, hi]. `range_at` gives metres for m/s and must not fall as the speed grows. Some bodies are visited twice.
   template <class RangeAt, class Visit>
   void for_each_near(const Vec3& lo, const Vec3& hi, RangeAt&& range_at, Visit&& visit) const {
     for (const Gear& gear : gears_) {
@@ -46,7 +46,7 @@ class NearIndex {
     for (const std::uint32_t i : always_) visit(i);
   }
 
-  /// The same for the sphere of `radius_m` around `p`.
+  /// Like the other overload, for the sphere of `radius_m` around `p`.
   template <class RangeAt, class Visit>
   void for_each_near(const Vec3& p, double radius_m, RangeAt&& range_at, Visit&& visit) const {
     const Vec3 half = Vec3::Constant(radius_m);
@@ -54,7 +54,7 @@ class NearIndex {
   }
 
  private:
-  /// Bodies that can become about as fast as each other.
+  /// Bodies of one range of speeds.
   struct Gear {
     SpatialGrid grid;
     double top_m_s = 0;  ///< the fastest of them
@@ -68,7 +68,7 @@ class NearIndex {
   }
 
   std::array<Gear, kFastestOfGear.size()> gears_;
-  std::vector<std::uint32_t> always_;  ///< large
+  std::vector<std::uint32_t> always_;  ///< large bodies, visited in every query
   double small_radius_ = 0;            ///< largest radius of the bodies in the grids
   double top_speed_ = 0;
   double top_radius_ = 0;

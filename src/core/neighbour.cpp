@@ -30,7 +30,7 @@ void Neighbour::note_marks(const AuraBatch& batch) {
   for (const HandOffMark& mark : batch.hand_offs) {
     if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
   }
-  // News of a death may not wait for its turn: whoever waits for the dead would wait for ever.
+  // Deaths, ranks and claims count on arrival. A node that waits for a dead region would otherwise wait for ever.
   dead_ = batch.dead;
   ranks_ = batch.ranks;
   claims_ = batch.claims;

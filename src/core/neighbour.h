@@ -1,4 +1,4 @@
-// What one neighbour has published: its aura batches in order of stamp, and the auras that they add up to.
+// What one neighbour has published: its aura batches in order of stamp, and the set of auras that results from them.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace aurasim::core {
 
 class Neighbour {
  public:
-  /// `start`: the first state that it publishes.
+  /// `start`: the first state that the neighbour publishes.
   Neighbour(RegionId id, RegionId self, Step start = 0)
       : id_(id), self_(self), received_(start - 1), applied_(start - 1) {}
 
@@ -21,9 +21,9 @@ class Neighbour {
   /// Keeps a batch until its turn. False when it is a copy of one already seen.
   bool accept(AuraBatch batch);
 
-  /// Stamp up to which every batch has come; one before the start at first.
+  /// Stamp up to which every batch has arrived; start - 1 at first.
   Step received() const { return received_; }
-  /// Stamp of the newest batch that has taken effect, likewise.
+  /// Stamp of the newest batch that has taken effect; start - 1 at first.
   Step applied() const { return applied_; }
 
   /// Lets the received batches with stamp <= `last` take effect, in order.
@@ -42,19 +42,19 @@ class Neighbour {
     apply_until(last, [](const Neighbour&) {});
   }
 
-  /// Sequence of its last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
+  /// Sequence of the neighbour's last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
   std::uint64_t hand_offs_until(Step stamp) const;
 
-  /// It died: nothing that it published holds any longer.
+  /// Marks the neighbour dead and drops all that it has published.
   void mark_dead();
 
   const std::vector<AuraRecord>& auras() const { return auras_; }  ///< ascending id
-  /// Earlier states of bodies that have joined it late; of the last batch in effect.
+  /// AuraBatch::past of the last batch in effect: made-up states of bodies that joined the neighbour late.
   const std::vector<AuraRecord>& past() const { return past_; }
   double top_speed_m_s() const { return top_speed_m_s_; }
   double top_radius_m() const { return top_radius_m_; }
   std::uint64_t violations() const { return violations_; }
-  /// As far as received: claims count long after they are made.
+  /// Rank claims of the newest batch received, in effect or not: claims count long after they are made.
   const RankClaims& ranks() const { return ranks_; }
   bool holds_for_dead(RegionId region) const;
   const std::vector<RegionId>& dead() const { return dead_; }
@@ -79,12 +79,12 @@ class Neighbour {
   bool alive_ = true;
   Step received_;
   Step applied_;
-  std::vector<AuraBatch> waiting_;  ///< received, not yet in effect; ascending stamp, a few at most
+  std::vector<AuraBatch> waiting_;  ///< batches not yet in effect, ascending stamp, a few at most
   struct Mark {
     Step stamp;
     std::uint64_t last_sequence;
   };
-  std::vector<Mark> marks_;  ///< hand-offs to us, ascending stamp; of those in effect only the last is kept
+  std::vector<Mark> marks_;  ///< marks of hand-offs to us, ascending stamp; of those in effect only the last is kept
   std::vector<AuraRecord> auras_, merged_;
   double top_speed_m_s_ = 0;
   double top_radius_m_ = 0;

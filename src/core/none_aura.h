@@ -1,4 +1,4 @@
-// Without auras: the naive control, in which nobody is warned of anything, and what a redo makes of it.
+// The naive control without auras (NoneAura), and its variant for runs with a redo (BlindAura).
 #pragma once
 
 #include <limits>
@@ -20,12 +20,13 @@ class NoneAura final : public Aura {
 
  private:
   Steps steps(Question, int) const override { return {}; }
-  /// Nothing is near anything.
+  /// Minus infinity, so no body is within any range.
   Range span(double) const override { return {-std::numeric_limits<double>::infinity(), 0}; }
 };
 
-/// For computing again: others are told of what could touch theirs within a step or two, so that it can be checked, but
-/// nobody looks ahead. What touches moves together.
+/// The naive control where states can be computed again. Bodies that could touch foreign ones within a step or two are
+/// announced, so that the check finds the pairs that touched. There is no look ahead: only bodies that touch move
+/// together.
 class BlindAura final : public Aura {
  public:
   BlindAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
@@ -42,7 +43,7 @@ class BlindAura final : public Aura {
     if ((a.pose.p_WB - b.pose.p_WB).norm() > a.radius_m + b.radius_m + margin) return false;
     return clearance().clearance(a.prototype, a.pose, b.prototype, b.pose, margin) <= margin;
   }
-  /// A state to be seen, and another in which it happens; the age of what is known comes on top.
+  /// K + 2 steps: one until a state is seen, one in which the touch happens. The age of the known state is added.
   Steps steps(Question question, int) const override {
     const double k = rules().lookahead;
     return question == Question::kZone || question == Question::kNotice ? Steps{k + 2, k + 2} : Steps{0, 0};

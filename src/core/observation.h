@@ -1,5 +1,5 @@
-// What a node tells one observer (core/interest.h) of one state. Observers only watch: nothing that they receive, or do
-// not, changes what is computed.
+// What a node sends to one observer (core/interest.h) about one state. Observers only watch: nothing that they receive,
+// or fail to receive, changes what is computed.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace aurasim::core {
 
-/// Two bodies, or a body and a static, that have pressed on each other while a state was computed.
+/// Contact of two bodies, or of a body and a static, with an impulse while a state was computed.
 struct ContactImpulse {
-  ObjectRef a = 0;               ///< body; of two bodies the one with the lower id
-  ObjectRef b = 0;               ///< body or static
-  Vec3 p_W = Vec3::Zero();       ///< mean of the contact points, by their impulses
-  Vec3 normal_W = Vec3::Zero();  ///< from a to b, likewise; of length 1
-  double impulse_Ns = 0;         ///< along the normals, summed up over the step; > 0
+  ObjectRef a = 0;               ///< a body; if both are bodies, the one with the lower id
+  ObjectRef b = 0;               ///< a body or a static
+  Vec3 p_W = Vec3::Zero();       ///< mean of the contact points, weighted by their impulses
+  Vec3 normal_W = Vec3::Zero();  ///< weighted mean normal from a to b, of length 1
+  double impulse_Ns = 0;         ///< impulse along the normals, summed over the step; > 0
 };
 
 /// A joint with one coordinate (core/joint_motion.h).
@@ -28,16 +28,17 @@ struct JointState {
 };
 
 struct ObservedBody {
-  /// Its host is another region than the source: handed over to that one, and exactly so if `stale` is not set.
+  /// If row.host is not the source, the body was handed over to that region. Its values are those of the observed state
+  /// unless `stale` is set.
   ReplicaBody row;
-  bool stale = false;  ///< of the state in which it left, which is an earlier one
+  bool stale = false;  ///< row holds the earlier state in which the body left
 };
 
-/// What one region has of one state.
+/// What one region knows of one state.
 struct Observation {
   enum class Kind : std::uint8_t {
-    kHosted = 0,  ///< all that is wanted of what it hosts, or has handed over and nobody has published since
-    kMadeUp = 1   ///< of an earlier state, which it has made up for bodies that have joined late
+    kHosted = 0,  ///< wanted bodies that the source hosts, or has handed over and no other node has published since
+    kMadeUp = 1   ///< an earlier state, which the source made up for bodies that joined late
   };
 
   RegionId source{};
@@ -45,14 +46,14 @@ struct Observation {
   std::uint32_t redo = 0;
   Step stamp = 0;
   std::uint64_t map_version = 0;
-  std::uint64_t sequence = 1;  ///< of the interest that it answers
-  /// The state that the source has told this observer before. It tells none of those between the two, because the
-  /// observer takes no more; -1: not said.
+  std::uint64_t sequence = 1;  ///< sequence of the interest that it answers
+  /// The state of the source's previous observation for this observer. It sends none of the states between, because the
+  /// observer takes no more. -1: not stated.
   Step previous = -1;
   Kind kind = Kind::kHosted;
-  std::uint64_t scene_order = 0;  ///< sequence of the newest order that has changed the scene, as far as source knows
+  std::uint64_t scene_order = 0;     ///< sequence of the newest order known to the source that changed the scene
   std::vector<ObservedBody> bodies;  ///< ascending id
-  /// Bodies that were on their way lately, are accounted for here, and are not wanted. Ascending.
+  /// Bodies that were on their way lately, are known to the source now, and are not wanted. Ascending.
   std::vector<BodyId> outside;
   std::vector<JointState> joints;        ///< ascending id
   std::vector<ContactImpulse> contacts;  ///< ascending (a, b)

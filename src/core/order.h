@@ -1,5 +1,5 @@
-// What clients ask of the world, once it has its place in time: every node gets the same orders in the same sequence
-// and applies each one in the state that it names, so a run with orders is as repeatable as one without.
+// Orders: clients' commands with a number and a state. Every node receives the same orders in the same sequence and
+// executes each one in the state that it names, so a run with orders is as repeatable as one without.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace aurasim::core {
 
-/// Client bodies get ids from here on; scenes stay below.
+/// Bodies that clients add get ids from here on; ids of scenes are lower.
 inline constexpr std::uint64_t kFirstClientBody = 1'000'000'000;
 
 /// kDecomposition: each connected piece of the mesh is one convex part.
 enum class MeshUse : std::uint8_t { kHull, kDecomposition, kTriangles };
 
-/// A mesh that every node has by its content.
+/// A mesh, named by the hash of its content (core/mesh_hash.h). Every node has it.
 struct MeshRef {
   std::uint64_t hash = 0;
   MeshUse use = MeshUse::kHull;
@@ -30,16 +30,16 @@ struct MeshRef {
   bool operator==(const MeshRef&) const = default;
 };
 
-/// The scene's shapes get one more. Holds from when it is received.
+/// Appends a shape to the scene's. It can be used as soon as the order is received.
 struct DefineShape {
   std::variant<Sphere, Box, Capsule, Cylinder, MeshRef> shape;
 };
-/// The scene's prototypes get one more. Holds from when it is received.
+/// Appends a prototype to the scene's. It can be used as soon as the order is received.
 struct DefinePrototype {
   std::uint32_t shape = 0;
   double mass_kg = 1;
 };
-/// The body exists from the order's state on.
+/// Adds a body, which exists from the order's state on.
 struct Spawn {
   BodyId id{};
   PrototypeId prototype{};
@@ -58,13 +58,14 @@ struct RemoveBody {
 struct RemoveStatic {
   StaticId id{};
 };
-/// It goes evenly from where it is in the state before the order's to where it then stays, whatever its path was.
+/// Moves a static evenly from its pose in the state before the order's to `to`, where it stays. It leaves a path of its
+/// scene.
 struct MoveStatic {
   StaticId id{};
   Pose from, to;
-  Step states = 1;  ///< until it is there
+  Step states = 1;  ///< number of states until it is at `to`
 };
-/// Before the order's state is computed. Wakes the body.
+/// Impulse on a body just before the order's state is computed. Wakes the body.
 struct Impulse {
   BodyId id{};
   Vec3 J_W = Vec3::Zero();    ///< N s
@@ -76,8 +77,8 @@ struct SetVelocity {
   std::optional<Vec3> w_WB{};  ///< nothing: the spin stays
 };
 
-/// Once the order's state has been computed, all nodes take a new map and hand every body to its new host before they
-/// go on. One rectangle for each region.
+/// Once the order's state has been computed, all nodes take a new map and hand over every body to its new host before
+/// they go on. `boxes` has one rectangle for each region.
 struct Repartition {
   std::vector<Rectangle> boxes;
 };
@@ -89,15 +90,16 @@ struct ChangeScene {
 /// Once the order's state has been computed, all nodes go back to their cuts of state `cut` and compute on from there.
 struct Redo {
   Step cut = 0;
-  std::vector<TogetherPair> pairs;  ///< all that hold from then on
+  std::vector<TogetherPair> pairs;  ///< all pairs that share a host from then on
 };
 
-/// In the order's state every node takes its part of the world, and writes it into a file: this one, with the number of
-/// its region (src/cut/cut_file.h).
+/// In the order's state every node writes its part of the world into a file named `file`, with the number of its region
+/// (src/cut/cut_file.h).
 struct Save {
   std::string file;
 };
-/// Once the order's state has been computed, the run goes on from a saved world, which every node finds in its folder.
+/// Once the order's state has been computed, the run goes on from the saved world `file`, which every node finds in its
+/// folder.
 struct Load {
   std::string file;
 };
@@ -106,13 +108,13 @@ using Action = std::variant<DefineShape, DefinePrototype, Spawn, AddStatic, Remo
                             SetVelocity, Repartition, ChangeScene, Redo, Save, Load, MoveStatic>;
 
 struct Order {
-  std::uint64_t sequence = 0;  ///< 1, 2, ...: given by the one node that takes orders
-  std::uint64_t request = 0;   ///< the client's
+  std::uint64_t sequence = 0;  ///< 1, 2, ...: numbered by the lead
+  std::uint64_t request = 0;   ///< request number of the client's command
   Step at_step = 0;            ///< the first state that shows the effect
   Action action;
 };
 
-/// The body that an action, or what a client asks for, is about, if it is about one that should exist.
+/// The existing body that an action or a command is about; nothing if it is about none.
 template <class... Kinds>
 std::optional<BodyId> body_of(const std::variant<Kinds...>& what) {
   if (const auto* removal = std::get_if<RemoveBody>(&what)) return removal->id;
@@ -121,7 +123,7 @@ std::optional<BodyId> body_of(const std::variant<Kinds...>& what) {
   return {};
 }
 
-/// All nodes stop for it and begin anew, with another map, another scene or a saved world.
+/// Do all nodes stop for it and begin anew with another map, another scene or a saved world?
 template <class... Kinds>
 bool changes_the_run(const std::variant<Kinds...>& what) {
   return std::holds_alternative<Repartition>(what) || std::holds_alternative<ChangeScene>(what) ||

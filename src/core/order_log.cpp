@@ -7,7 +7,7 @@ namespace aurasim::core {
 
 namespace {
 
-/// Orders are as many as clients ask for in a second or two.
+/// More orders than clients send within a second or two, in which an order reaches all nodes.
 constexpr std::size_t kMostRecent = 4096;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Asking for memory before it is needed.
+// Requests memory before it is needed.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Counts the work that this process gets done, so that a long computation can be told from a hang. Core and physics
-// have no clock: they count, and who has a clock looks whether the count still grows (dds/liveliness_asserter.h).
+// have no clock, so they only count. dds/liveliness_asserter.h has a clock and watches whether the count grows.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 
 namespace aurasim::core {
 
-/// One count for the whole process: what lives or dies is a process. Any thread.
+/// One count for the whole process, because liveliness is that of a process. Any thread may call it.
 class Progress {
  public:
   /// Marks that a part of a computation is done. Between two marks there is work for a second at most, whatever the

@@ -10,15 +10,15 @@
 namespace aurasim::core {
 namespace {
 
-/// Is there anything in `now` that the others could not know from `published`?
+/// Does `now` hold anything that other nodes cannot derive from `published`?
 bool has_news(const AuraRecord& published, const AuraRecord& now) {
   const bool asleep = (now.flags & kAuraAsleep) != 0;
   return !asleep || published.flags != now.flags || published.speed_m_s != now.speed_m_s ||
          published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB;
 }
 
-/// What has been published lies all over the memory, and physics has been there since: waiting for it was most of its
-/// cost.
+/// Published auras are scattered in memory and no longer cached after physics has run. Without prefetch, waiting for
+/// them was most of the cost.
 constexpr std::size_t kPrefetchDistance = 8;
 
 }  // namespace
@@ -47,7 +47,7 @@ void Projection::follow(const Snapshot& snapshot) {
   for (; old != before_.end(); ++old) note_gone(*old);
 }
 
-/// Taken out by an order, or because another node has a higher epoch of it.
+/// Notes a projected body that left without a hand-off: an order removed it, or another node has a higher epoch of it.
 void Projection::note_gone(const Track& track) {
   if (track.projected() && track.phase != Phase::kSent) gone_.push_back(track.id);
 }
@@ -78,7 +78,7 @@ void Projection::move(Track& track, PhaseEvent event) {
 
 AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const {
   AuraRecord aura = aura_record(body, vicinity_.self, stamp);
-  if (!aura_.predicts() && !aura_.rules().redo) {  // the others ask for places and sizes only
+  if (!aura_.predicts() && !aura_.rules().redo) {  // other nodes use positions and sizes only
     aura.v_WB = aura.w_WB = Vec3::Zero();
   }
   aura.speed_m_s = clusters.speed(i);
@@ -145,7 +145,7 @@ void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& 
   batch.updates.push_back(ghost);
 }
 
-/// A body that came back and left again within 2K steps has two.
+/// Keeps only the newest ghost of each body. One that came back and left again within 2K steps has two.
 void Projection::keep_newest_ghosts() {
   std::sort(ghosts_.begin(), ghosts_.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id != b.id ? a.id < b.id : a.stamp > b.stamp; });
@@ -153,7 +153,8 @@ void Projection::keep_newest_ghosts() {
   ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end(), same), ghosts_.end());
 }
 
-/// A ghost is kept for 2K steps: until the first aura of the new host can have come. One that came back is no ghost.
+/// A ghost is kept for 2K steps: until the first aura of the new host can have come. A body that came back is no ghost
+/// any more.
 void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   keep_newest_ghosts();
   std::erase_if(ghosts_, [&](const AuraRecord& ghost) {
@@ -172,8 +173,8 @@ void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   });
 }
 
-/// After 2K steps the body has to be within what its aura promised then: the path, with or without its fall, plus U v
-/// age.
+/// Checks a promise after 2K steps. The body has to be on the path of its old aura, with or without the fall, within U
+/// v age.
 void Projection::check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
   if (!track.projected() || !aura_.predicts()) return;
   const AuraRecord& promise = track.published->promise;
@@ -206,7 +207,7 @@ void Projection::check_speed(Track& track, const BodyState& body, Step now, Viol
   track.too_fast = too_fast;
 }
 
-/// A body over a region that does not listen to us can be hit by bodies that we never hear of.
+/// Counts bodies over regions that do not listen to us: bodies of which we know nothing can hit them there.
 void Projection::check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations) {
   const Vec3& p = body.pose.p_WB;
   bool out = false;

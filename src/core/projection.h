@@ -1,5 +1,5 @@
 // The publishing half of the protocol: follows every body through the phases of thesis 4.4 and turns what changed into
-// aura creations (OBC), updates (OBU) and deletions (OBE). Checks that what was published came true.
+// aura creations (OBC), updates (OBU) and deletions (OBE). Checks that bodies are where their auras promised.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@
 
 namespace aurasim::core {
 
-/// What is remembered of a body that is hosted here.
+/// What the projection remembers of a body hosted here.
 struct Track {
   BodyId id{};
   Epoch epoch = 0;
   Phase phase = Phase::kInjected;
-  bool too_fast = false;     ///< already counted
-  bool out_of_span = false;  ///< already counted
-  Step island_since = -1;    ///< first of the states in a row in which its cluster was an island; -1: is none
+  bool too_fast = false;     ///< kSpeed violation already counted
+  bool out_of_span = false;  ///< kSpan violation already counted
+  Step island_since = -1;    ///< first of the consecutive states in which its cluster was an island; -1: is none
   struct Published {
     AuraRecord newest;
-    AuraRecord promise;  ///< an older one, kept until what it promised can be checked
+    AuraRecord promise;  ///< an older aura, kept until its promise can be checked
   };
-  std::unique_ptr<Published> published;  ///< its auras, while the other regions have one
+  std::unique_ptr<Published> published;  ///< its auras while the body projects
   bool projected() const { return published != nullptr; }
 };
 
-/// Counted since the start; one per aura and message.
+/// Auras in batches, counted since the start.
 struct ProjectionCounters {
   std::uint64_t created = 0;
   std::uint64_t updated = 0;
@@ -44,21 +44,22 @@ class Projection {
  public:
   Projection(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity) {}
 
-  /// Lines the tracks up with the bodies of a state: new bodies start as kInjected.
+  /// Matches the tracks to the bodies of a state. New bodies start as kInjected.
   void follow(const Snapshot& snapshot);
 
   Track& track(std::uint32_t i) { return tracks_[i]; }
-  /// Nothing if the body is not hosted here (as of the last state).
+  /// The track of a body; null if it was not hosted here in the last state.
   const Track* find(BodyId id) const;
 
-  /// Moves every body to the phase that its place asks for.
+  /// Moves every body to the phase that follows from its place.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
-  /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: all that are projected.
+  /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: writes all projected auras,
+  /// not only changed ones.
   void publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch, ViolationLog& violations,
                bool full);
 
-  /// Body i leaves for `destination`: the others keep its last aura, as a ghost, for 2K steps.
+  /// Body i leaves for `destination`. Its last aura stays published as a ghost for 2K steps.
   void depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination, PhaseEvent why,
               AuraBatch& batch);
 
@@ -81,9 +82,9 @@ class Projection {
   const Aura& aura_;
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
-  std::vector<BodyId> ids_;             ///< of tracks_, close together: for looking them up
+  std::vector<BodyId> ids_;             ///< ids of tracks_, in one array for fast look-up
   std::vector<AuraRecord> ghosts_;
-  std::vector<BodyId> gone_;  ///< projected in the last state, not hosted any longer, not sent either
+  std::vector<BodyId> gone_;  ///< projected in the last state, no longer hosted, and not handed over
   std::size_t projecting_ = 0;
   ProjectionCounters counters_;
 };

@@ -73,13 +73,14 @@ const Changes& Protocol::receive(Step n, Joining joining) {
   receive_violations();
   orders_.receive(intake_.take_orders());
   alarms_.receive(intake_.take_alarms());
-  if (settings_.sync != SyncMode::kFreeRunning) listening_.receive();  // no state is agreed there
+  if (settings_.sync != SyncMode::kFreeRunning) listening_.receive();  // in free-running mode regions agree on no state
   changes_.orders = orders_.take_news();
   for (Order& order : changes_.orders) apply_late(order, n);
   return changes_;
 }
 
-/// The highest epoch owns: a copy of what is here already is refused, an older one here gives way.
+/// The copy with the highest epoch is the valid one. An arriving copy of a body that is here is refused unless its
+/// epoch is higher; then the one here is let go.
 void Protocol::take_if_newer(Adoption& adoption) {
   remove_bodies(adoption.cluster, [this](const BodyRecord& body) {
     const Track* here = projection_.find(body.id);
@@ -99,7 +100,8 @@ void Protocol::take_if_newer(Adoption& adoption) {
   changes_.adoptions.push_back(std::move(adoption));
 }
 
-/// A pair that goes home together after the pull, and meets only there, has changed host twice for one contact.
+/// Marks bodies that wait for a touch after a pull. If the pair went home first and met only there, it would change
+/// host twice for one contact.
 void Protocol::note_who_waits(const Snapshot& snapshot) {
   waits_.assign(snapshot.bodies.size(), 0);
   std::erase_if(pulled_, [&](Pulled& pulled) {
@@ -193,14 +195,14 @@ void Protocol::decide(const Snapshot& snapshot) {
   send_home(snapshot);
 }
 
-/// Two thirds of body i's cluster, or more, are outside our region.
+/// Are two thirds or more of body i's cluster outside our region?
 bool Protocol::is_abroad(std::uint32_t i) const {
   std::size_t outside = 0;
   matching_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += matching_.outside(j) ? 1 : 0; });
   return 3 * outside >= 2 * matching_.clusters().size(i);
 }
 
-/// AC before BT: a touched cluster is never an island.
+/// Decides AC before BT, because a cluster that an aura has met is never an island.
 void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
   const RegionId pulled_to = matching_.pulled_to(i);
   if (pulled_to != vicinity_.self) {
@@ -211,7 +213,7 @@ void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Who would be met by a body that stays here would be pulled back at once.
+/// Sends home the clusters that no body that stays here may meet. Others would be pulled back at once.
 void Protocol::send_home(const Snapshot& snapshot) {
   if (homing_.empty()) return;
   const Clusters& clusters = matching_.clusters();
@@ -238,7 +240,7 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Has the cluster of body i been an island, with nobody in it that waits, for 2K+1 states in a row?
+/// Has the cluster of body i been an island, without a body that waits for a touch, for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
   bool island = !matching_.touched(i) && !matching_.expected(i);
   if (island) {
@@ -335,8 +337,8 @@ void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRe
   }
 }
 
-/// An alarm is raised when its state is checked, goes to the node that gives orders, and what that orders goes round.
-/// After a redo, alarms that still stand go round anew.
+/// An alarm is raised when its state is checked. It travels to the lead, whose order of a redo then travels to all
+/// nodes. After a redo, alarms that still stand are published anew.
 Step Protocol::confirmed_but_for_alarms() const {
   const Step now = outbox_.aura.stamp;
   const Step there_and_back = 2 * round() + 2;
@@ -353,7 +355,8 @@ Step Protocol::confirmed() const {
 
 Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + round(); }
 
-/// Where nodes wait for each other only what is computed again if need be can come after its time.
+/// Counts an order that arrived after its state as a violation, and executes it now. Late moves of statics do not count
+/// where states are computed again.
 void Protocol::apply_late(Order& order, Step n) {
   if (order.at_step >= n || (computes_again() && std::holds_alternative<MoveStatic>(order.action))) return;
   violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});

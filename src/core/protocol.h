@@ -1,6 +1,6 @@
-// Aura Projection on one node: what it receives from its neighbours, what it publishes, which bodies go where.
-// No clock, thread, socket or physics in here: time, messages and snapshots are passed in, so a whole cluster of
-// nodes can run inside one test. One step of a node (docs/design.md, "One step"):
+// Aura Projection on one node: decides what it publishes and which bodies change host, from what its neighbours
+// publish. No clock, thread, socket or physics in here: time, messages and snapshots are passed in, so a whole cluster
+// of nodes can run inside one test. One step of a node (docs/design.md, "One step"):
 //   receive(n)         ->  bodies to adopt or to let go          [physics computes state n]
 //   observe(snapshot)  ->  auras, clusters, bodies to release    [physics takes them out]
 //   hand_over(...)     ->  hand-offs in the outbox
@@ -36,39 +36,40 @@ struct ProtocolSettings {
   SyncMode sync = SyncMode::kBounded;
   AuraRules aura;
   double neighbour_distance_m = 0;     ///< regions at most this far apart listen to each other
-  Step start = 0;                      ///< the first state that it looks at
-  std::uint64_t last_order = 0;        ///< orders up to this one have been received
+  Step start = 0;                      ///< the first state that is passed to observe()
+  std::uint64_t last_order = 0;        ///< orders up to this sequence have been received
   Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
   Step shuffle_ranks_steps = 0;        ///< tests only: another rank every so many steps
   std::vector<TogetherPair> together;  ///< a < b, ascending
-  std::vector<Listened> related;       ///< besides those near us, those that listen from the start
+  std::vector<Listened> related;       ///< regions, besides those near us, that listen from the start
 };
 
 struct Changes {
   std::vector<Adoption> adoptions;  ///< in the order in which they join
-  std::vector<BodyId> let_go;       ///< another node has a higher epoch of these: take them out first
-  std::vector<Order> orders;        ///< received since the last step, in sequence; before anything else
+  std::vector<BodyId> let_go;       ///< bodies of which another node has a higher epoch: take them out first
+  std::vector<Order> orders;  ///< orders received since the last step, in sequence; execute them before anything else
 };
 
-/// A cluster that has to leave: release it from physics and give it to hand_over().
+/// A cluster that has to leave. The caller releases it from physics and passes it to hand_over().
 struct Departure {
   RegionId destination{};
   HandOffReason reason{};
   std::vector<BodyId> bodies;  ///< ascending
 };
 
-/// Bodies, counted since the start.
+/// Counts of bodies since the start.
 struct ProtocolCounters {
   std::uint64_t handed_over = 0;
   std::uint64_t let_go = 0;
-  std::uint64_t stale_arrivals = 0;  ///< refused: here already, with the same or a higher epoch
+  /// arrivals refused, because the body is here already with the same or a higher epoch
+  std::uint64_t stale_arrivals = 0;
 };
 
-/// What a protocol hands on to the one that takes over after a redo.
+/// State that outlives a redo: the next Protocol takes over with it.
 struct Continuation {
   OrderLog orders;
   AlarmLog alarms;
-  RankClaimer claimer;  ///< of the cut
+  RankClaimer claimer;  ///< the state that it had in the cut
   ViolationLog violations;
   ProtocolCounters counters;
   std::vector<RegionId> dead;
@@ -77,9 +78,9 @@ struct Continuation {
 
 class Protocol {
  public:
-  /// `map` and `clearance` outlive the protocol.
+  /// `map` and `clearance` have to outlive the protocol.
   Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance);
-  /// After a redo, in the state of the cut.
+  /// Begins after a redo, in the state of the cut.
   Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
            Continuation continuation);
   Protocol(const Protocol&) = delete;
@@ -88,73 +89,73 @@ class Protocol {
   const Vicinity& vicinity() const { return vicinity_; }
   const Aura& aura() const { return *aura_; }
 
-  /// Before the first state: these regions listen to us, too, and we to them.
+  /// Adds regions that listen to us and that we listen to. Call before the first state.
   void listen_to(std::span<const Listened> regions) { listening_.add(regions); }
   std::span<const Listened> listens_to() const { return listening_.all(); }
 
-  /// Takes in what arrived, at any time; messages of a later generation stay in `inbox`.
+  /// Takes the messages out of `inbox`, at any time. Those of a later generation stay there.
   void accept(Inbox& inbox) { intake_.accept(inbox); }
 
-  /// May state `n` be computed? In kFreeRunning always; otherwise when every live neighbour's batch of stamp n - K,
-  /// and the hand-offs up to it, are here.
+  /// May state `n` be computed? In kFreeRunning always. Otherwise when every live neighbour's batch of stamp n - K has
+  /// arrived, and its hand-offs up to that stamp.
   bool ready(Step n) const { return intake_.ready(n); }
   /// The live neighbours that keep state `n` waiting.
   std::vector<RegionId> missing(Step n) const { return intake_.missing(n); }
 
-  /// What changes before state `n` is computed. Valid until the next call.
+  /// Lets messages take effect. Returns what changes before state `n` is computed; valid until the next call.
   const Changes& receive(Step n, Joining joining = Joining::kInTime);
 
-  /// Looks at a state and says who has to leave. Valid until the next call.
+  /// Looks at a state. Returns the clusters that have to leave; valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);
 
-  /// Numbers an order of our own and publishes it with the next step; receive() gives it out like those of others. Only
-  /// on the one node that takes orders.
+  /// Numbers an order and publishes it with the next step. receive() returns it like orders of others. Only for the
+  /// lead, which numbers all orders.
   const Order& announce(Order order) { return orders_.announce(std::move(order)); }
   std::uint64_t last_order() const { return orders_.last(); }
-  /// Orders that receive() has not given out yet.
+  /// Orders that receive() has not returned yet.
   std::span<const Order> orders_to_come() const { return orders_.news(); }
-  /// The earliest state in which an order announced now can take effect: all nodes know of it, and of the body
-  /// that it brings or the kick that it gives, before.
+  /// The earliest state in which an order announced now can take effect. Before it, all nodes have received the order
+  /// and know of the body that it adds or the kick that it gives.
   Step earliest_effect() const;
-  /// Likewise for what is no body's business: all nodes know of it.
+  /// Like earliest_effect(), for orders that add or move no body: before that state all nodes have received the order.
   Step earliest_agreement() const;
 
-  /// A state that bodies which have joined have made up; `nth` of the adoptions of this step.
+  /// Call for each state that an adopted cluster, the `nth` of this step, has made up.
   void note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
-  /// The newest state that no alarm can come to question any more; with AuraRules::redo only.
+  /// The newest confirmed state: no alarm can question it any more. With AuraRules::redo only.
   Step confirmed() const;
-  /// Likewise, as if no alarm stood.
+  /// Like confirmed(), but ignores the alarms that stand now.
   Step confirmed_but_for_alarms() const;
   const AlarmLog& alarms() const { return alarms_; }
-  /// A node has died: what it hosted cannot be computed again. Alarms are no longer waited for, but a redo that has
-  /// been ordered is executed by all.
+  /// Call when a node has died: what it hosted cannot be computed again. Alarms then lead to no redo, but all nodes
+  /// still execute a redo that has been ordered.
   void give_up_alarms() { alarms_given_up_ = true; }
   bool alarms_given_up() const { return alarms_given_up_; }
-  /// What is found to be wrong is computed again.
+  /// Are states that the check finds wrong computed again?
   bool computes_again() const { return aura_->rules().redo && !alarms_given_up_; }
-  /// A program's word has come so many states after its own, and the run goes back over states that somebody else may
-  /// have computed with it.
+  /// Counts a setpoint message that arrived `late` states after its own state, when states are computed again that
+  /// another node may have computed with it.
   void report_late_word(Step step, Step late) {
     violations_.add({ViolationKind::kLatency, step, vicinity_.self, {}, static_cast<double>(late), 0});
   }
-  /// State `step` was computed with a static that was elsewhere than it was to be.
+  /// Raises an alarm: state `step` was computed with a static at the wrong place.
   void doubt(Step step) { alarms_.raise(step, kNobody, kNobodyElse); }
-  /// States that a message needs at most to reach every node.
+  /// Number of states that a message needs at most to reach every node.
   Step round() const { return hops_across_ * aura_->rules().lookahead; }
   const RankClaimer& claimer() const { return claimer_; }
-  /// After a redo, by this order.
+  /// The state to pass to the next Protocol after the redo of this order. `claimer`: as it was in the cut.
   Continuation continuation(const Order& redo, const RankClaimer& claimer) const;
 
-  /// The physics of a departure; once for each, in order.
+  /// Hands over the cluster of a departure, as released from physics. Call once for each departure, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
 
-  /// What the step publishes: complete after the last hand_over().
+  /// What the step publishes. Complete after the last hand_over().
   const Outbox& outbox() const { return outbox_; }
 
-  /// The node's clock says that computing `step` took `frame_s`.
+  /// Reports that computing `step` took `frame_s` of wall-clock time. Longer than T_F counts as a violation.
   void report_frame(Step step, double frame_s);
 
-  /// Some neighbour holds this node for dead: it has to stop, its bodies have other hosts.
+  /// A neighbour has marked this node dead. It has to stop, because its bodies have other hosts.
   bool fenced() const { return intake_.fenced(); }
 
   const Intake& intake() const { return intake_; }
@@ -163,9 +164,9 @@ class Protocol {
   const DepartureLedger& departures() const { return departures_; }
   const ProtocolCounters& counters() const { return counters_; }
   const ViolationLog& violations() const { return violations_; }
-  /// Newest step at which this node, or a neighbour by its own word, broke a promise.
+  /// Newest step in which this node broke a promise, or a neighbour reported that it broke one.
   Step last_violation_step() const { return last_violation_step_; }
-  /// Bodies of the largest cluster near a boundary in the last state.
+  /// Number of bodies in the largest cluster near a boundary in the last state.
   std::size_t largest_cluster() const { return largest_cluster_; }
 
  private:
@@ -202,23 +203,23 @@ class Protocol {
   Listening listening_;
   Introducer introducer_;
   bool alarms_given_up_ = false;
-  bool full_ = false;  ///< somebody listens to us for the first time
+  bool full_ = false;  ///< a region listens to us for the first time, so the batch has to be full
   AlarmLog alarms_;
   StateCheck check_;
-  std::vector<AuraRecord> past_;  ///< to publish with the next batch
+  std::vector<AuraRecord> past_;  ///< AuraBatch::past of the next batch
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;
   std::vector<std::uint32_t> homing_;    ///< a body of each cluster that is to go home
   std::vector<std::uint8_t> goes_home_;  ///< by cluster
-  /// Came here by a pull, and has touched nothing since.
+  /// A body that came here by a pull and has touched nothing since.
   struct Pulled {
     BodyId id{};
-    Step until = 0;       ///< it is waited for
+    Step until = 0;       ///< its cluster waits for a touch until this state
     std::uint32_t i = 0;  ///< its place in the snapshot
   };
   std::vector<Pulled> pulled_;
-  std::vector<std::uint8_t> waits_;  ///< by body: one of pulled_
+  std::vector<std::uint8_t> waits_;  ///< by body: it is in pulled_
   Outbox outbox_;
   ProtocolCounters counters_;
   ViolationLog violations_;
@@ -228,8 +229,8 @@ class Protocol {
   std::size_t largest_guest_ = 0;  ///< RankClaimer::LargeClusters::guests
 };
 
-/// Who hosts which body in state 0, the same on every node: clusters of the whole scene, each on the lowest region
-/// that owns the centre of one of its members. `bodies` ascending by id; returns one region per body.
+/// The host of each body in state 0, the same on every node. Each cluster of the whole scene gets the lowest region
+/// that owns the centre of one of its members. Returns one region per body of `scene`.
 std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules, const ClearanceQuery& clearance,
                                    const Snapshot& scene);
 

@@ -11,9 +11,10 @@ Push Push::of(double speed_m_s, const BodyTraits& traits, double uncertainty) {
   return {most_m_s, traits.mass_kg * most_m_s};
 }
 
-// One over the speed is linear in the mass that is dragged along: who is not slower at both ends is nowhere slower.
+// 1 / speed is linear in the dragged mass. So a push that is not slower at both ends of the range of masses is nowhere
+// slower.
 bool Push::covers(const Push& other) const {
-  constexpr double kNearly = 1 - 1e-9;  // so that rounding does not make news of what is known
+  constexpr double kNearly = 1 - 1e-9;  // so that rounding does not count as a change
   if (other.speed_m_s <= kUnfelt_m_s) return true;
   if (speed_m_s < kNearly * other.speed_m_s) return false;
   if (momentum_kg_m_s >= kNearly * other.momentum_kg_m_s) return true;
@@ -59,7 +60,7 @@ void Pushes::spread(std::vector<std::uint32_t>& raised) {
     const auto [fast_m_s, i] = to_do_.top();
     to_do_.pop();
     Progress::mark();
-    if (fast_m_s < speed(i)) continue;  // it has become faster since, and is there again
+    if (fast_m_s < speed(i)) continue;  // outdated: the body became faster and is in the queue again
     for (std::uint32_t at = first_link_[i]; at != kNone; at = links_[at].next) {
       const std::uint32_t to = links_[at].to;
       const Push coming = along(i, links_[at]);

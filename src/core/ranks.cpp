@@ -8,14 +8,14 @@
 namespace aurasim::core {
 namespace {
 
-/// Each step of weight is twice as many bodies. Whoever is below another node takes its place with four times as many:
-/// two clusters that are about as large do not change places each time one of them grows.
+/// Each step of weight means twice as many bodies. A lower node overtakes a higher one with four times as many bodies.
+/// So two clusters of about the same size do not change ranks each time one of them grows.
 constexpr int kMuchMore = 2;
-/// So many steps without a cluster of a quarter of its size, and the claim is given up.
+/// A claim is given up after so many steps without a cluster of at least a quarter of the claimed size.
 constexpr Step kPatience = 1200;
-/// Guests may stay so many steps.
+/// A node yields once a large cluster of another region has stayed for so many steps.
 constexpr Step kHospitality = 10;
-/// Once they are gone, whoever has yielded to them waits until their host has claimed, or for so long.
+/// After that cluster has gone, a node that has yielded waits until its new host has claimed, at most so many steps.
 constexpr Step kHumility = 120;
 
 std::size_t least_bodies(std::uint8_t weight) {
@@ -28,7 +28,7 @@ std::uint8_t weight_of(std::size_t bodies) {
   return weight;
 }
 
-/// The same on every machine; no two runs, steps and regions alike (splitmix64, Steele et al. 2014).
+/// A hash that is the same on every machine and gives no two inputs one value (splitmix64, Steele et al. 2014).
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ull;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -53,7 +53,8 @@ const RankClaim& Ranks::claim(const Node& node, Step n) const {
   return n >= node.claims.next.stamp + horizon::rank_notice(lookahead_) ? node.claims.next : node.claims.held;
 }
 
-/// Of equal weights the older claim is higher: two clusters of one size do not change places all the time.
+/// Does a rank higher than b in state n? With equal weights the older claim ranks higher, so that two clusters of one
+/// size do not change ranks all the time.
 bool Ranks::outranks(const Node& a, const Node& b, Step n) const {
   const RankClaim& of_a = claim(a, n);
   const RankClaim& of_b = claim(b, n);
@@ -112,8 +113,9 @@ std::uint8_t RankClaimer::wanted_weight(Step now, const LargeClusters& large, co
   return first || weight >= others + kMuchMore ? weight : claimed;
 }
 
-/// Not where K is larger than one: the wider look while ranks change then joins the guests with the cluster at home,
-/// and all of it goes to the other node, where most of it is a guest again (docs/decisions/0016-ranks.md).
+/// Should our node yield to the home of a large foreign cluster? Never where K > 1: the wider look while ranks change
+/// then joins that cluster with the one at home, and all of it goes to the other node, where most of it is foreign
+/// again (docs/decisions/0016-ranks.md).
 bool RankClaimer::yields(Step now, std::size_t guests, const Ranks& ranks) {
   const bool has_guests = lookahead_ == 1 && guests >= kLeastBodies;
   (has_guests ? last_guests_ : alone_) = now;
@@ -124,7 +126,7 @@ bool RankClaimer::yields(Step now, std::size_t guests, const Ranks& ranks) {
 void RankClaimer::reconsider(Step now, const LargeClusters& large, const Ranks& ranks) {
   const std::uint8_t weight = wanted_weight(now, large, ranks);
   if (weight == claims_.next.weight) return;
-  // One change at a time: everybody remembers two claims.
+  // One change at a time, because every node remembers only two claims.
   if (claimed_ && now < claims_.next.stamp + horizon::between_claims(lookahead_)) return;
   claims_ = {claims_.next, {weight, now}};
   claimed_ = true;

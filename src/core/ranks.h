@@ -1,7 +1,7 @@
-// Of two hosts whose bodies may meet, the one that ranks higher keeps its own and gets the other's. The thesis ranks by
-// region alone; here a node whose bodies hang together in a large cluster ranks higher, because moving that costs more
-// than moving what it meets (docs/decisions/0016-ranks.md). Ranks are claimed long before they count, so that all nodes
-// change them in the same state.
+// Ranks: of two hosts whose bodies may meet, the higher one keeps its own and gets the other's. The thesis ranks by
+// region alone. Here a node with a large cluster ranks higher, because moving that cluster costs more than moving what
+// it meets (docs/decisions/0016-ranks.md). A claim is made long before it counts, so that all nodes change ranks in the
+// same state.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 namespace aurasim::core {
 
 struct RankClaim {
-  /// Of a node that yields: it hosts a large cluster of somebody else's region, which can only go home to a higher
-  /// node.
+  /// Weight of a node that yields. It hosts a large cluster that lies in another region and can only go home to a
+  /// higher node.
   static constexpr std::uint8_t kYields = 0;
-  /// Of a node that claims nothing.
+  /// Weight of a node that claims nothing.
   static constexpr std::uint8_t kNothing = 1;
 
   std::uint8_t weight = kNothing;
-  Step stamp = 0;  ///< when it was made
+  Step stamp = 0;  ///< state in which the claim was made
 
   bool operator==(const RankClaim&) const = default;
 };
@@ -36,20 +36,20 @@ class Ranks {
  public:
   explicit Ranks(int lookahead) : lookahead_(lookahead) {}
 
-  /// Starts state `now` of node `self`; then one add() for each that is alive.
+  /// Starts state `now` of node `self`. Then call add() for each live neighbour.
   void begin(Step now, RegionId self, const RankClaims& claims);
   void add(RegionId region, const RankClaims& claims) { nodes_.push_back({region, claims}); }
 
-  /// Bodies of ours go to `host` if they may meet one of its bodies. Not for K - 1 states after it came to outrank us:
-  /// the last bodies that it sent us may still be under way.
+  /// Do bodies of ours that may meet one of `host`'s bodies go to it? False for K - 1 states after it came to outrank
+  /// us, because the last bodies that it sent us may still be under way.
   bool pulls(RegionId host) const;
-  /// Of two that pull, bodies go to the higher one.
+  /// Does `a` rank higher than `b` now? Of two hosts that pull, bodies go to the higher one.
   bool outranks(RegionId a, RegionId b) const { return outranks(a, b, now_); }
-  /// Two of the nodes are about to change places, or just have: a pull that begins now may have to wait, and to come
-  /// all the way back. So it has to begin earlier.
+  /// Are two of the nodes about to change ranks, or have they just done so? A pull that begins now may have to wait and
+  /// to come all the way back, so pulls have to begin earlier.
   bool changing() const;
 
-  /// Once all claims that have been made count: are we the highest?
+  /// Will our node rank highest once all claims made so far count?
   bool on_top() const;
   /// The largest weight that another node has claimed last.
   std::uint8_t most_of_others() const;
@@ -67,7 +67,7 @@ class Ranks {
 
   int lookahead_;
   Step now_ = 0;
-  std::vector<Node> nodes_;  ///< ours first
+  std::vector<Node> nodes_;  ///< our node first
 };
 
 /// What a node claims for itself.
@@ -75,19 +75,19 @@ class RankClaimer {
  public:
   /// The largest clusters of a node, in bodies.
   struct LargeClusters {
-    std::size_t near = 0;    ///< others could pull it
-    std::size_t guests = 0;  ///< most of it is outside our region
+    std::size_t near = 0;    ///< largest cluster that other nodes could pull
+    std::size_t guests = 0;  ///< largest cluster that lies mostly outside our region
   };
-  /// Smaller ones do not count.
+  /// Smaller clusters do not count as large.
   static constexpr std::size_t kLeastBodies = 256;
 
-  /// `shuffle_steps` > 0, tests only: another weight every so many steps, whatever the clusters are.
+  /// `shuffle_steps` > 0, tests only: claims another weight every so many steps, whatever the clusters are.
   RankClaimer(RegionId self, int lookahead, Step shuffle_steps)
       : self_(self), lookahead_(lookahead), shuffle_steps_(shuffle_steps) {}
 
   const RankClaims& claims() const { return claims_; }
-  /// Claims anew if our clusters ask for it: if they are much larger than what anyone who is above us has claimed.
-  /// Where K = 1, yields if a large cluster of guests stays.
+  /// Makes a new claim if our largest cluster is much larger than what the nodes above us have claimed. Where K = 1,
+  /// yields if a large cluster of another region stays here.
   void reconsider(Step now, const LargeClusters& large, const Ranks& ranks);
 
  private:
@@ -98,10 +98,10 @@ class RankClaimer {
   int lookahead_;
   Step shuffle_steps_;
   RankClaims claims_;
-  bool claimed_ = false;  ///< ever
-  Step last_large_ = 0;   ///< when the largest cluster last was nearly as large as claimed
-  Step alone_ = 0;        ///< when no large cluster of guests was here last
-  Step last_guests_ = 0;  ///< when one was
+  bool claimed_ = false;  ///< a claim has been made
+  Step last_large_ = 0;   ///< last state in which the largest cluster was nearly as large as claimed
+  Step alone_ = 0;        ///< last state without a large cluster of another region here
+  Step last_guests_ = 0;  ///< last state with such a cluster
 };
 
 }  // namespace aurasim::core

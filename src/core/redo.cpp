@@ -6,7 +6,7 @@
 namespace aurasim::core {
 namespace {
 
-/// One redo brings so many pairs together; the rest is found again if it still touches.
+/// One redo brings at most so many pairs together. Other pairs are found again if they still touch.
 constexpr std::size_t kMostStanding = 4096;
 
 bool same_pair(const Alarm& x, const Alarm& y) { return x.a == y.a && x.b == y.b; }
@@ -24,7 +24,7 @@ void AlarmLog::receive(std::span<const Alarm> alarms) {
   }
 }
 
-/// Of a pair the earliest alarm is passed on, and later ones are nothing new.
+/// Keeps and publishes the earliest alarm of each pair; later ones are ignored.
 void AlarmLog::add(const Alarm& alarm) {
   const auto known =
       std::find_if(standing_.begin(), standing_.end(), [&](const Alarm& other) { return same_pair(alarm, other); });
@@ -41,7 +41,7 @@ void AlarmLog::add(const Alarm& alarm) {
 
 std::vector<Alarm> AlarmLog::take_to_publish() { return std::exchange(to_publish_, {}); }
 
-/// Has no redo since gone back to before the alarm's state?
+/// Does the alarm still stand, because no redo since it was raised went back to before its state?
 bool AlarmLog::stands(const Alarm& alarm) const {
   return alarm.redo <= redo() &&
          std::all_of(bases_.begin() + alarm.redo, bases_.end(), [&](Step base) { return base >= alarm.step; });
@@ -50,7 +50,7 @@ bool AlarmLog::stands(const Alarm& alarm) const {
 void AlarmLog::put_back(Step base) {
   bases_.push_back(base);
   std::erase_if(standing_, [this](const Alarm& alarm) { return !stands(alarm); });
-  to_publish_ = standing_;  // messages from before the redo are not taken any more
+  to_publish_ = standing_;  // nodes no longer accept messages from before the redo
 }
 
 }  // namespace aurasim::core

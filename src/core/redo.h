@@ -1,6 +1,6 @@
-// What leads to a redo (docs/design.md, "Checked, and computed again"): two bodies of two hosts were found to have
-// touched, or a static to have been elsewhere than it was to be, so what has been computed since may be wrong. All
-// nodes go back to a cut from before, bring the two to one host in time, and go on from there.
+// Alarms, which lead to a redo (docs/design.md, "Checked, and computed again"). Two bodies of two hosts were found to
+// have touched, or a static was in the wrong place, so later states may be wrong. All nodes go back to an earlier cut,
+// bring the two bodies to one host in time, and compute on from there.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace aurasim::core {
 
 /// Two bodies, a < b, may have had a contact while state `step` was computed, each on a host of its own.
 struct Alarm {
-  std::uint32_t redo = 0;  ///< how often the run had been put back when it was raised
+  std::uint32_t redo = 0;  ///< number of redos before the alarm was raised
   Step step = 0;
   BodyId a{};
   BodyId b{};
 };
 
-/// In an alarm that is about no pair: a static was elsewhere than it was ordered to be. Ids that no body has.
+/// Ids of no body, for an alarm about a static that was not where it was ordered to be.
 inline constexpr BodyId kNobody{(std::uint64_t{1} << 63) - 2}, kNobodyElse{(std::uint64_t{1} << 63) - 1};
 
 inline bool is_about_a_pair(const Alarm& alarm) { return alarm.a != kNobody; }
@@ -31,16 +31,16 @@ struct TogetherPair {
   Step until = 0;
 };
 
-/// The alarms of a run: every node publishes each once, in its next batch, so after as many hops as two regions can be
-/// apart everybody knows them. Survives a redo.
+/// The alarms of a run: every node publishes each alarm once, in its next batch. So all nodes have it after as many
+/// hops as two regions can be apart. The log survives a redo.
 class AlarmLog {
  public:
-  /// Our own. Once for each pair between two redos.
+  /// Adds an alarm of our own; at most one for each pair between two redos.
   void raise(Step step, BodyId a, BodyId b);
   void receive(std::span<const Alarm> alarms);
   std::vector<Alarm> take_to_publish();
 
-  /// The run has been put back to state `base`: later states are computed anew, earlier alarms still hold.
+  /// Call after a redo that went back to state `base`. Alarms about later states are dropped, earlier ones still stand.
   void put_back(Step base);
   std::uint32_t redo() const { return static_cast<std::uint32_t>(bases_.size()); }
 
@@ -51,7 +51,7 @@ class AlarmLog {
   bool stands(const Alarm& alarm) const;
   void add(const Alarm& alarm);
 
-  std::vector<Step> bases_;  ///< of each redo so far
+  std::vector<Step> bases_;  ///< state of the cut of each redo so far
   std::vector<Alarm> standing_;
   std::vector<Alarm> to_publish_;
 };

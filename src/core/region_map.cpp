@@ -46,7 +46,8 @@ void check_boxes(const std::vector<Rectangle>& boxes) {
   }
 }
 
-/// Without overlaps, the boxes tile their hull exactly when every cell of the grid of their edges has an owner.
+/// Throws unless the boxes fill their hull. If none overlap, they do exactly when every cell of the grid of their edges
+/// has an owner.
 void check_no_gap(const std::vector<Rectangle>& boxes, const Rectangle& hull) {
   std::set<double> xs, ys;
   for (const Rectangle& b : boxes) {
@@ -143,7 +144,7 @@ RegionId RegionMap::owner(double x, double y) const {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     if (regions_[i].contains(x, y)) return RegionId{static_cast<std::uint32_t>(i)};
   }
-  return RegionId{0};  // not a number: any owner is as good as another, as long as there is exactly one
+  return RegionId{0};  // NaN: any region will do, as long as there is exactly one owner
 }
 
 std::vector<RegionId> RegionMap::neighbours(RegionId id, double distance_m) const {

@@ -1,5 +1,6 @@
-// Who owns which part of the x-y plane. Regions are rectangles with vertical boundaries; the outermost reach to
-// infinity, so that every point has exactly one owner (half-open: a point on a boundary belongs to the higher side).
+// The region map: which region owns which part of the x-y plane. Regions are rectangles with vertical boundaries; the
+// outermost reach to infinity, so that every point has exactly one owner (half-open: a point on a boundary belongs to
+// the higher side).
 #pragma once
 
 #include <cstdint>
@@ -56,7 +57,7 @@ class RegionMap {
   /// Smallest side of any region before the outermost were extended. Infinite for one region. Metres.
   double narrowest_m() const { return narrowest_m_; }
 
-  /// Equal for equal maps and nothing else (64-bit hash of the rectangles).
+  /// 64-bit hash of the rectangles: equal for equal maps.
   std::uint64_t version() const;
 
  private:

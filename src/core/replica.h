@@ -1,5 +1,5 @@
 // What a node publishes for observers: which bodies it hosts, where they are, and where those that left went. Observers
-// only watch: nothing that they receive, or do not, changes what is computed.
+// only watch: nothing that they receive, or fail to receive, changes what is computed.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace aurasim::core {
 
-/// One body as its host, or the host that has just sent it away, saw it last.
+/// State of one body, published by its host, or by the host that has just handed it over.
 struct ReplicaBody {
   BodyId id{};
   Epoch epoch = 0;
-  RegionId host{};  ///< other than the source: handed to that region under this epoch, and perhaps still on its way
+  RegionId host{};  ///< if not the source: handed over to that region under this epoch, and perhaps still on its way
   PrototypeId prototype{};
   bool asleep = false;
   Vec3 p_WB = Vec3::Zero();
@@ -23,7 +23,7 @@ struct ReplicaBody {
   Eigen::Vector3f w_WB = Eigen::Vector3f::Zero();  ///< rad/s
 };
 
-/// `host`: of `body`, as told.
+/// The row of `body`. `host`: the region that hosts it.
 inline ReplicaBody replica_body(const BodyState& body, RegionId host) {
   return {.id = body.id,
           .epoch = body.epoch,
@@ -36,20 +36,20 @@ inline ReplicaBody replica_body(const BodyState& body, RegionId host) {
           .w_WB = body.w_WB.cast<float>()};
 }
 
-/// A body that is no more. Whoever claims it with a higher epoch knows better.
+/// A body that its host no longer has. A row with a higher epoch overrides it.
 struct RemovedBody {
   BodyId id{};
   Epoch epoch = 0;
 };
 
-/// What changed at one source since its last tick, or (a key frame) all that there is.
+/// What changed at one source since its last tick, or, in a key frame, all bodies of the source.
 struct Replica {
   RegionId source{};
   Generation generation = 0;
   Step stamp = 0;
   std::uint64_t map_version = 0;
-  /// Counts the ticks that the source has published in this generation, from 1; a number that is left out was lost. A
-  /// key frame has the number of the tick with which it was published.
+  /// Number of the tick within the generation, from 1. A gap means a lost tick. A key frame has the number of the tick
+  /// with which it was published.
   std::uint64_t sequence = 0;
   bool key_frame = false;
   std::vector<ReplicaBody> bodies;  ///< ascending id

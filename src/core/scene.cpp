@@ -24,8 +24,8 @@ double farthest_corner(const Vec3& half_extents, const Pose& pose) {
   return radius;
 }
 
-/// The farthest point of the rim is straight away from the origin, so only the end's height along the axis and its
-/// distance from the axis count.
+/// Distance from the frame's origin to the farthest point of a cylinder's rims. That point is straight away from the
+/// origin, so only the end's height along the axis and the axis's distance from the origin count.
 double farthest_rim(double radius, double height, const Pose& pose) {
   const Vec3 axis = pose.q_WB * Vec3::UnitZ();
   double farthest = 0;
@@ -66,7 +66,7 @@ std::mt19937_64 generator_of(std::uint64_t seed, std::uint64_t index) {
   return std::mt19937_64(sequence);
 }
 
-/// Uniform in [0, 1). By hand, because the standard leaves the algorithm of its distributions open.
+/// Uniform in [0, 1). Written by hand, because the C++ standard leaves the algorithm of its distributions open.
 double uniform(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-53; }
 
 Vec3 uniform_in(std::mt19937_64& generator, const Vec3& low, const Vec3& high) {
@@ -75,7 +75,7 @@ Vec3 uniform_in(std::mt19937_64& generator, const Vec3& low, const Vec3& high) {
   return drawn;
 }
 
-/// K. Shoemake, Uniform random rotations, Graphics Gems III (1992).
+/// Uniformly distributed rotation (K. Shoemake, Uniform random rotations, Graphics Gems III, 1992).
 Quat uniform_rotation(std::mt19937_64& generator) {
   const double u = uniform(generator);
   const double angle_1 = 2 * std::numbers::pi * uniform(generator);
@@ -89,8 +89,8 @@ bool has_bodies(const Injector& injector) {
   return injector.max_bodies > 0 && injector.rate_per_s > 0 && !injector.prototypes.empty();
 }
 
-/// Never falls as the index grows, because no rounding of a growing number does. A time that is a whole number of
-/// steps but for rounding counts as that number.
+/// State in which body `index` is born. It never falls as the index grows, because rounding is monotonic. A time that
+/// is a whole number of steps up to rounding counts as that number.
 Step birth_step(const Injector& injector, std::uint64_t index, double step_s) {
   constexpr double kRounding = 1e-9;
   const double time_s = injector.start_s + (static_cast<double>(index) + 1) / injector.rate_per_s;
@@ -156,7 +156,7 @@ std::optional<BodyRecord> injected_body(const Injector& injector, std::uint64_t 
 
 std::uint64_t injected_count(const Injector& injector, Step step, double step_s) {
   if (!has_bodies(injector)) return 0;
-  std::uint64_t born = 0;  // every index below is born, none from `unborn` on is
+  std::uint64_t born = 0;  // bisection: indices below `born` are born, those from `unborn` on are not
   std::uint64_t unborn = injector.max_bodies;
   while (born < unborn) {
     const std::uint64_t middle = born + (unborn - born) / 2;

@@ -1,5 +1,5 @@
-// What a world is made of, as plain data: read by config/, built by physics/, counted by core/.
-// Lengths in metres, masses in kilograms, angles in radians, times in seconds.
+// A scene as plain data: read by config/, built by physics/, counted by core/. Lengths in metres, masses in kilograms,
+// angles in radians, times in seconds.
 #pragma once
 
 #include <array>
@@ -50,8 +50,9 @@ using ConvexShape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull>;
 
 struct CompoundPart {
   ConvexShape shape;
-  Pose pose;                                ///< of the part in the compound's frame; the origin is the centre of mass
-  std::optional<std::uint32_t> material{};  ///< index into Scene::materials: of its surface; nothing: the body's
+  Pose pose;  ///< pose in the compound's frame, whose origin is the centre of mass
+  /// material of the part's surface, index in Scene::materials; nothing: the body's
+  std::optional<std::uint32_t> material{};
 };
 struct Compound {
   std::vector<CompoundPart> parts;
@@ -74,19 +75,20 @@ struct NamedShape {
   Shape shape;
 };
 
-/// What bodies of one kind share. A body's PrototypeId is the index in Scene::prototypes.
+/// Properties that bodies of one kind share. A body's PrototypeId is the index in Scene::prototypes.
 struct Prototype {
   std::string name;
   std::uint32_t shape = 0;     ///< index in Scene::shapes
   std::uint32_t material = 0;  ///< index in Scene::materials
   double mass_kg = 1;
   bool can_sleep = true;
-  /// Moments of inertia about the centre of mass along the axes of the body, kg m^2. Nothing: of mass spread evenly.
+  /// Moments of inertia about the centre of mass along the axes of the body, kg m^2. Nothing: computed for mass spread
+  /// evenly.
   std::optional<Vec3> inertia = {};
   bool collides = true;  ///< false: it touches nothing, and rays pass through it; joints move it
 };
 
-/// A body that is there in state 0.
+/// A body that exists in state 0.
 struct InitialBody {
   BodyId id{};
   PrototypeId prototype{};
@@ -95,37 +97,39 @@ struct InitialBody {
   Vec3 w_WB = Vec3::Zero();
 };
 
-/// Where a static is at a time; `X_SP`: seen from where it stands at the start, S.
+/// Pose of a static at a time, X_SP, relative to its pose S at the start.
 struct PathStop {
   double at_s = 0;
   Pose X_SP;
 };
 
-/// From where a static stands in state 0 straight from stop to stop, on the shorter turn.
+/// The path of a static: from its pose in state 0 straight from stop to stop, with the shorter turn.
 struct StaticPath {
   std::vector<PathStop> stops;  ///< at least one; ascending at_s > 0
-  bool repeats = false;         ///< from the start again after the last stop, which is there; else it stays there
-  bool smooth = true;           ///< it rests at each stop, and its speed has no jumps; else it is even between two
+  /// true: starts again after the last stop, which has to be the start; false: stays at the last stop
+  bool repeats = false;
+  /// true: rests at each stop, and its speed has no jumps; false: constant speed between two stops
+  bool smooth = true;
 };
 
-/// Nothing moves it; the same on every node. Its StaticId is the index in Scene::statics.
+/// A static: contacts never move it, and it is the same on every node. Its StaticId is the index in Scene::statics.
 struct StaticBody {
   std::string name;
   std::uint32_t shape = 0;
   std::uint32_t material = 0;
-  Pose pose;  ///< at the start
+  Pose pose;  ///< pose at the start
   std::optional<StaticPath> path = {};
-  Vec3 belt_S = Vec3::Zero();  ///< m/s, in its axes: the surface runs so along itself, as a conveyor's does
+  Vec3 belt_S = Vec3::Zero();  ///< velocity of its surface along itself, as of a conveyor, m/s in the axes of S
 
   bool moves() const { return path.has_value() || !belt_S.isZero(); }
 };
 
-/// Creates bodies from a seeded sequence: body i is the same on every node, whoever creates it.
+/// Creates bodies from a seeded sequence: body i is the same whichever node creates it.
 struct Injector {
   std::string name;
   std::uint64_t seed = 1;
   BodyId first_id{};             ///< body i has id first_id + i
-  std::uint64_t max_bodies = 0;  ///< at most this many
+  std::uint64_t max_bodies = 0;  ///< number of bodies that it creates in all, at most
   double rate_per_s = 1;
   double start_s = 0;
   Vec3 volume_min = Vec3::Zero();
@@ -133,7 +137,7 @@ struct Injector {
   Vec3 velocity_min = Vec3::Zero();
   Vec3 velocity_max = Vec3::Zero();
   bool random_orientation = false;
-  std::vector<PrototypeId> prototypes;  ///< one is drawn for each body
+  std::vector<PrototypeId> prototypes;  ///< one of them is drawn for each body
 };
 
 struct Scene {
@@ -151,13 +155,14 @@ struct Scene {
 /// Radius of the smallest sphere around the origin of the shape's frame that holds the shape. Infinite for a plane.
 double bounding_radius(const Shape& shape);
 
-/// Null if the scene has no such body in state 0.
+/// The body with this id, or null if the scene has no such body in state 0.
 const InitialBody* find_body(const Scene& scene, BodyId id);
 
-/// By its name; nothing: the scene has none of it.
+/// The static of this name; nothing if the scene has none.
 std::optional<StaticId> find_static(const Scene& scene, std::string_view name);
 
-/// Pairs that joints of the scene hold together, of which both bodies are in `bodies` (ascending by id).
+/// Pairs of `bodies` (ascending by id) that joints of the scene hold together, as indices into it. Joints with a body
+/// outside `bodies` are left out.
 std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies);
 
 /// The record of a body of state 0, epoch 0.

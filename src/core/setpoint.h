@@ -1,4 +1,4 @@
-// What a program wants of bodies and joints from a state on, until it says otherwise
+// Setpoints: values that a program sets for bodies and joints from a state on, until its next message about them
 // (docs/decisions/0026-setpoints.md).
 #pragma once
 
@@ -13,51 +13,53 @@
 
 namespace aurasim::core {
 
-/// Of a body, in the world's frame but for the last.
+/// Quantities of a body that programs can set, in the world's frame except kDriving.
 enum class Quantity : std::uint8_t {
   kForce,     ///< N, at the centre of mass
   kTorque,    ///< N m
-  kVelocity,  ///< m/s: the body has it before each state is computed
-  kSpin,      ///< rad/s: likewise
-  /// Likewise, of a mobile base: m/s ahead and to the left, rad/s about the vertical; ahead is where the body's x axis
-  /// points on the ground (docs/ros2.md). How it rises, falls and tilts is left to gravity and contacts.
+  kVelocity,  ///< m/s; set before each state is computed
+  kSpin,      ///< rad/s; set before each state is computed
+  /// Velocity of a mobile base, set before each state is computed: m/s ahead, m/s to the left, rad/s about the
+  /// vertical. Ahead is the body's x axis projected on the ground (docs/ros2.md). Gravity and contacts decide how it
+  /// rises, falls and tilts.
   kDriving,
 };
 inline constexpr int kQuantities = 5;
 
-/// What can be told by itself.
+/// The smallest unit of a body setpoint: one quantity of one body.
 using BodyKey = std::pair<BodyId, Quantity>;
 
 struct BodySetpoint {
   BodyId id{};
   Quantity quantity{};
-  std::optional<Vec3> value;  ///< nothing: lets go of it
+  std::optional<Vec3> value;  ///< nothing: the setpoint ends
 };
 
 struct JointSetpoint {
   JointId id{};
-  std::optional<JointDrive> drive;  ///< nothing: the joint has the scene's own again
+  std::optional<JointDrive> drive;  ///< nothing: the joint gets its drive of the scene back
 };
 
-/// Where a static goes: evenly, from where it is in the state before, and then it stays there.
+/// Moves a static evenly from its pose in the state before to `to`, where it stays.
 struct StaticSetpoint {
   StaticId id{};
   Pose to;
-  Step states = 1;  ///< until it is there: 1: in the first state that shows the effect
+  Step states = 1;  ///< number of states until it is at `to`; 1: it is there in the first state that shows the effect
 };
 
-/// All that one program says for one state. Without entries: it is still there, and what it has said goes on.
+/// One message of a program, for one state. Without entries it only shows that the program is alive, and its setpoints
+/// stay in effect.
 struct Setpoints {
-  std::uint64_t client = 0;    ///< random number of the program; kRecordedClient: it is read from a record
-  std::uint64_t sequence = 0;  ///< 1, 2, ...: of two for one state the later one counts
+  std::uint64_t client = 0;    ///< random number of the program; kRecordedClient: read from a record
+  std::uint64_t sequence = 0;  ///< 1, 2, ...; of two messages for one state the one with the higher number counts
   Generation generation = 0;
-  Step at_step = 0;  ///< the first state that shows the effect; 0: as soon as all can know of it in time
+  Step at_step = 0;  ///< the first state that shows the effect; 0: as soon as all nodes can receive it in time
   std::vector<BodySetpoint> bodies;
   std::vector<JointSetpoint> joints;
   std::vector<StaticSetpoint> statics = {};
 };
 
-/// A message of one program on topic control, by its number.
+/// Identifies a message of one program on topic control.
 struct ProgramWord {
   std::uint64_t program = 0;  ///< Setpoints::client
   std::uint64_t number = 0;   ///< Setpoints::sequence; 0: no message
@@ -65,10 +67,10 @@ struct ProgramWord {
   bool operator==(const ProgramWord&) const = default;
 };
 
-/// Never falls silent.
+/// Setpoints::client of recorded messages. It never counts as silent.
 inline constexpr std::uint64_t kRecordedClient = 0;
 
-/// What has been in effect on a body or joint from a state on, where it was hosted.
+/// A setpoint that took effect in state `step`, as noted by the host of its body or joint.
 struct BodyEffect {
   Step step = 0;
   BodySetpoint setpoint;
@@ -83,21 +85,21 @@ struct StaticEffect {
   StaticSetpoint setpoint;
 };
 
-/// For a state that has been computed already.
+/// What happens to a setpoint for a state that has been computed already.
 enum class LateSetpoint : std::uint8_t { kNextState, kDropped };
 
-/// What becomes of the setpoints of a program that says nothing any more.
+/// What happens to the setpoints of a program that sends no messages any more.
 enum class OnSilence : std::uint8_t {
-  kHold,  ///< stop: no force, torque or effort, no speed; drives keep their positions
-  kZero,  ///< let go of everything
-  kLast,  ///< as if it went on
+  kHold,  ///< stop: force, torque, effort and speed become 0; drives keep their positions
+  kZero,  ///< all its setpoints end
+  kLast,  ///< all its setpoints stay in effect
 };
 
-/// What all nodes of a run agree on about setpoints.
+/// Rules for setpoints. All nodes of a run have to have the same.
 struct ControlRules {
   LateSetpoint late = LateSetpoint::kNextState;
   OnSilence on_silence = OnSilence::kHold;
-  Step silence = 30;  ///< states without a word of it after which a program has fallen silent
+  Step silence = 30;  ///< a program counts as silent after so many states without a message
 };
 
 }  // namespace aurasim::core

@@ -8,10 +8,10 @@
 namespace aurasim::core {
 namespace {
 
-/// Parts in which rows are looked at for what is over.
+/// Each forget_before() tests one of so many parts of the rows for setpoints that are over.
 constexpr std::size_t kParts = 30;
 
-/// Ascending key; of two with one key the last one.
+/// Sorts by key, and keeps the last of several entries with one key.
 template <class List>
 void put_in_order(List& said) {
   const auto key_of = &List::value_type::key;
@@ -22,7 +22,7 @@ void put_in_order(List& said) {
   said.erase(rest.begin(), rest.end());
 }
 
-/// Of one part of them after the other.
+/// Erases rows with is_over(row) in one part of `rows`, which begins at `next`. Moves `next` to the following part.
 template <class Rows, class IsOver>
 void erase_part(Rows& rows, std::size_t& next, const IsOver& is_over) {
   if (next >= rows.size()) next = 0;

@@ -1,6 +1,6 @@
-// What has been said of many bodies, or of many joints, and for which states. Messages stay whole and in order, and the
-// newest state that was asked for is laid out: when all are told something in every state, each look goes through
-// memory from front to back, of a thousand as of one.
+// The setpoints of many bodies, or of many joints, by state. Messages stay whole and in order. The values of the newest
+// state that was asked for are kept in one sorted array. So a look at a state reads memory from front to back, also
+// where every body gets a setpoint in every state.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace aurasim::core {
 
-/// Of two messages about the same, the later one counts.
+/// Sort key of messages. Of two messages about the same key, the one with the higher stamp counts.
 struct MessageStamp {
   Step from = 0;  ///< the first state that shows the effect
   std::uint64_t client = 0;
@@ -24,8 +24,8 @@ struct MessageStamp {
   auto operator<=>(const MessageStamp&) const = default;
 };
 
-/// Of a list in the order of its states the first that is later than `step`. Mostly it is asked for the newest ones, so
-/// it is looked for from the end: a search through all of them would touch memory that nobody else does.
+/// The first entry of `list`, ascending by state, that is later than `step`. Looks from the end first, because most
+/// calls ask for the newest states: a binary search through the whole list would touch memory that is not in the cache.
 template <class List, class StepOf>
 auto first_later(const List& list, Step step, StepOf step_of) {
   constexpr int kNewest = 16;
@@ -42,31 +42,31 @@ class SetpointHistory {
  public:
   struct Said {
     Key key{};
-    std::optional<Value> value;  ///< nothing: lets go of it
+    std::optional<Value> value;  ///< nothing: the setpoint ends
   };
-  /// What was said last of one, by some state.
+  /// The last setpoint of a key up to some state.
   struct Held {
     Key key{};
     MessageStamp stamp;
     std::optional<Value> value;
   };
 
-  /// `said`: in any order; of two with one key the last one counts.
+  /// Adds a message. `said` may be in any order; of two entries with one key the last one counts.
   void add(const MessageStamp& stamp, std::vector<Said> said);
 
   bool empty() const { return messages_.empty() && held_.empty(); }
-  /// All that is remembered.
+  /// Number of entries remembered.
   std::size_t size() const { return said_ + held_.size(); }
-  /// Of how many something has been said.
+  /// Number of keys that have a setpoint in the newest state asked for.
   std::size_t keys() const { return newest_.size(); }
 
-  /// visit(Held) by state `step`, ascending key, of those that is_wanted(key).
+  /// Calls visit(Held) for the last setpoint up to state `step` of each key with is_wanted(key), ascending key.
   template <class IsWanted, class Visit>
   void for_each(Step step, IsWanted&& is_wanted, Visit&& visit) const {
     go_to(step);
     visit_rows(newest_.begin(), newest_.end(), step, is_wanted, visit);
   }
-  /// visit(Held) by state `step`, ascending key, from `first` on as long as is_one(key).
+  /// Like for_each(), for the keys from `first` on as long as is_one(key).
   template <class IsOne, class Visit>
   void for_each_from(const Key& first, Step step, IsOne&& is_one, Visit&& visit) const {
     go_to(step);
@@ -75,7 +75,7 @@ class SetpointHistory {
     const auto all = [](const Key&) { return true; };
     visit_rows(begin, end, step, all, visit);
   }
-  /// visit(stamp, Said) for what states later than `step` show first, in order.
+  /// Calls visit(stamp, Said) for each entry whose effect begins after `step` and not after `last`, in order.
   template <class Visit>
   void for_each_later(Step step, Step last, Visit&& visit) const {
     for (auto message = later_than(step); message != messages_.end() && message->stamp.from <= last; ++message) {
@@ -83,8 +83,8 @@ class SetpointHistory {
     }
   }
 
-  /// States before this one are not asked for any more. To be called once a state: it forgets messages of two states,
-  /// and looks at some of those of whom nothing is in effect.
+  /// States before `step` are not asked for any more. Call once a state: each call forgets the messages of up to two
+  /// states, and some of the rows whose setpoint has ended.
   void forget_before(Step step);
 
  private:
@@ -100,12 +100,12 @@ class SetpointHistory {
   }
   void go_to(Step step) const;
   static void put(Rows& rows, const MessageStamp& stamp, const std::vector<Said>& said);
-  /// What was said of it last before the message `later`; nothing: nothing was.
+  /// The last setpoint of `key` before the message `later`; nothing if there is none.
   std::optional<Held> before(const Key& key, typename Messages::const_iterator later) const;
   template <class IsWanted, class Visit>
   void visit_rows(typename Rows::const_iterator begin, typename Rows::const_iterator end, Step step,
                   const IsWanted& is_wanted, const Visit& visit) const {
-    std::optional<typename Messages::const_iterator> later;  // a state that was computed before is asked for
+    std::optional<typename Messages::const_iterator> later;  // needed only if an earlier state is asked for again
     for (auto row = begin; row != end; ++row) {
       if (!is_wanted(row->key)) continue;
       if (row->stamp.from <= step) {
@@ -118,14 +118,14 @@ class SetpointHistory {
   }
 
   Messages messages_;  ///< ascending stamp
-  Rows held_;          ///< ascending key: before the first message that is remembered
-  /// Ascending key: by the newest state that was asked for. It runs along, so that asking changes no answer; but one
-  /// thread at a time.
+  Rows held_;          ///< the last setpoints before the first message remembered, ascending key
+  /// The last setpoints up to state asked_, ascending key. A cache: queries move it forward and their answers do not
+  /// depend on it. Hence only one thread at a time may ask.
   mutable Rows newest_;
   mutable Step asked_ = std::numeric_limits<Step>::min();
-  std::size_t said_ = 0;       ///< entries of messages_
-  std::size_t next_row_ = 0;   ///< of newest_, to be looked at next for what is over
-  std::size_t next_held_ = 0;  ///< likewise
+  std::size_t said_ = 0;       ///< number of entries in messages_
+  std::size_t next_row_ = 0;   ///< row of newest_ to test next for a setpoint that is over
+  std::size_t next_held_ = 0;  ///< row of held_ to test next
 };
 
 }  // namespace aurasim::core

@@ -1,6 +1,6 @@
-// Points in square columns: which bodies may be within a box? Worlds are wider than they are high, so a column holds
-// few points. The columns of a row lie side by side in a hash table, so a row of the box is one stretch of memory,
-// without a look-up for each column. Rebuilt each step, without allocation once warm.
+// Finds the points within a box. Space is divided into square vertical columns. Worlds are wider than they are high, so
+// a column holds few points. The columns of a row lie side by side in a hash table, so a row of the box is one stretch
+// of memory, without a look-up for each column. Rebuilt each step, without allocation once warm.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@ namespace aurasim::core {
 
 class SpatialGrid {
  public:
-  /// Forgets everything; columns of `cell_m`.
+  /// Removes all points and sets the side of the columns, metres.
   void clear(double cell_m);
 
   void add(std::uint32_t index, const Vec3& p);
 
-  /// Sorts what was added into columns, of which there are enough for `most` points. Call once before any query.
+  /// Sorts the added points into columns. The hash table has room for `most` points. Call once before any query.
   void build(std::size_t most = 0);
 
   /// Adds a point after build().
@@ -34,7 +34,8 @@ class SpatialGrid {
     const std::int64_t first = along(lo.x()), last = along(hi.x());
     const std::int64_t begin = along(lo.y()), columns = along(hi.y()) - begin + 1;
     const double cells = double(last - first + 1) * double(columns);
-    if (columns > mask_ || cells > 4.0 * static_cast<double>(points_.size()) + 64) {  // larger than the world
+    // the box is larger than the world
+    if (columns > mask_ || cells > 4.0 * static_cast<double>(points_.size()) + 64) {
       for (const Point& point : points_) visit_if(box.holds(point), point, visit);
       for (const Late& late : late_) visit_if(box.holds(late.point), late.point, visit);
       return;
@@ -57,9 +58,9 @@ class SpatialGrid {
   };
   struct Late {
     Point point;
-    std::uint32_t next;  ///< of the same bucket, in late_
+    std::uint32_t next;  ///< next point of the same bucket, in late_; kNone: the last
   };
-  /// Written so that a height that is not a number is inside: slower, never wrong.
+  /// Comparisons are written so that a coordinate that is NaN counts as inside: slower, never wrong.
   struct Box {
     Vec3 lo, hi;
     bool holds(const Point& p) const {
@@ -69,7 +70,7 @@ class SpatialGrid {
   };
   static constexpr std::uint32_t kNone = ~0u;
 
-  /// Row or column. Far out (or not a number) everything shares the last one: slower, never wrong.
+  /// Row or column of a coordinate. All far coordinates, and NaN, share the outermost one: slower, never wrong.
   std::int64_t along(double x) const {
     constexpr double kFar = 1e9;
     const double c = x * per_m_;
@@ -90,7 +91,7 @@ class SpatialGrid {
     if (inside) visit(point.index);
   }
 
-  /// Those of one row in buckets [from, to).
+  /// Visits the points of `row` within `box` in buckets [from, to).
   template <class Visit>
   void visit_buckets(std::uint32_t from, std::uint32_t to, std::int64_t row, const Box& box, Visit& visit) const {
     for (std::uint32_t i = starts_[from]; i < starts_[to]; ++i) {
@@ -107,10 +108,10 @@ class SpatialGrid {
   std::uint32_t mask_ = 0;
   std::vector<Point> points_;
   std::vector<Point> sorted_;
-  std::vector<std::uint32_t> buckets_;  ///< of points_
+  std::vector<std::uint32_t> buckets_;  ///< by point of points_: its bucket
   std::vector<std::uint32_t> starts_;
   std::vector<Late> late_;
-  std::vector<std::uint32_t> late_heads_;  ///< by bucket, once there is any
+  std::vector<std::uint32_t> late_heads_;  ///< by bucket; empty until insert() is called
 };
 
 }  // namespace aurasim::core

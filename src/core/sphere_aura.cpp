@@ -17,7 +17,7 @@ bool SphereAura::linked(const Path& a, const Path& b, int hops) const {
   return spheres_within(a, b, cluster_reach(hops));
 }
 
-/// Until its new host's first aura has come, it is guarded like one of ours.
+/// A ghost counts like one of our bodies until the first aura of its new host has arrived.
 bool SphereAura::meets_ghost(const Path& ghost, const Path& own, int hops, int) const {
   return linked(ghost, own, hops);
 }
@@ -28,7 +28,7 @@ Aura::Steps SphereAura::steps(Question question, int hops) const {
       return meeting_steps(hops);
     case Question::kNotice:
       return notice_steps(hops);
-    case Question::kMeeting:  // also with ghosts
+    case Question::kMeeting:  // also covers ghosts, which use the distance of links
       return reach(hops) > cluster_reach(hops) ? meeting_steps(hops) : link_steps(hops);
     case Question::kLink:
       break;
@@ -40,26 +40,27 @@ Range SphereAura::span(double steps) const {
   return {rules().reach_scale * steps * rules().step_s * rules().top_speed_m_s, 0};
 }
 
-/// With S instants in a step at which contacts may be found the last (S-1)/S of a step counts, for both bodies; so does
-/// every further hop that a pull can chain through.
+/// Adds to both bodies' steps the last (S-1)/S of a step, for S instants at which contacts may be found, and K for
+/// every hop beyond the first.
 Aura::Steps TightAura::chained(double own, double other, int hops) const {
   const double more = 1.0 * (rules().instants() - 1) / rules().instants() + 1.0 * (hops - 1) * rules().lookahead;
   return {own + more, other + more};
 }
 
-/// Found when it is K states old, acted upon K states later, except for the state of the last look, which was clear.
+/// The foreign body is seen when its state is K steps old, and the hand-off takes effect K steps later. One step less,
+/// because the last look found nothing.
 Aura::Steps TightAura::meeting_steps(int hops) const {
   const int k = rules().lookahead;
   return chained(k - 1, 2 * k - 1, hops);
 }
 
-/// It was seen K steps late, and its host needs K more.
+/// The other node sees our body K steps late, and its host needs K more than for a meeting.
 Aura::Steps TightAura::notice_steps(int hops) const {
   const int k = rules().lookahead;
   return chained(2 * k - 1, 3 * k - 1, hops);
 }
 
-/// Both go the way of a foreign body that meets one of ours.
+/// Both bodies may move for as long as a foreign body before it meets one of ours.
 Aura::Steps TightAura::link_steps(int hops) const {
   const int k = rules().lookahead;
   return chained(2 * k - 1, 2 * k - 2, hops);

@@ -1,4 +1,4 @@
-// Auras of which all that is known is one top speed V: bounding spheres, and a table of distances in V T_P.
+// Auras that rely only on one top speed V: bounding spheres, and a table of distances in units of V T_P.
 #pragma once
 
 #include "core/aura.h"

@@ -12,14 +12,14 @@
 namespace aurasim::core {
 namespace {
 
-/// Worlds of clusters that make up states alone: no region has such a number.
+/// World numbers from here on are for clusters that make up states alone; no region has such a number.
 constexpr std::uint32_t kFirstLonely = 1U << 31U;
 
-/// The way of the others' bodies through a step, as the speed at which it is covered: the near index takes apart what
-/// is slower and faster than NearIndex::kSlow, here 0.1 m.
+/// Turns the length of a body's way through a step into a speed for the near index. NearIndex::kSlow then separates
+/// ways shorter and longer than 0.1 m.
 constexpr double kWays_per_s = 30;
 
-/// Most of them are.
+/// Sorts by id. Most lists are sorted already, so that is tested first.
 template <class Bodies>
 void sort_by_id(Bodies& bodies) {
   using Body = typename Bodies::value_type;
@@ -28,7 +28,8 @@ void sort_by_id(Bodies& bodies) {
   std::ranges::inplace_merge(bodies, tail, {}, &Body::id);
 }
 
-/// How far a way of at most `longest` between two points `apart` from each other can leave the straight line.
+/// How far a path of length `longest` between two points can leave the straight line, if they are `apart` from each
+/// other.
 double bulge(double longest, double apart) {
   return longest > apart ? 0.5 * std::sqrt(longest * longest - apart * apart) : 0;
 }
@@ -96,8 +97,8 @@ void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
   while (!states_.empty() && states_.front().step < checked_) states_.pop_front();
 }
 
-/// A body that has just begun to be announced was far from everybody else's a state ago: it came straight, more or
-/// less.
+/// The motion of a body through the step that ends in `now`. Without `before`, its announcement has just begun: it was
+/// far from foreign bodies a state ago, so a straight way is assumed.
 StateCheck::Motion StateCheck::motion(const Sighting& now, const Sighting* before) const {
   const double step_s = aura_.rules().step_s;
   Motion motion{now.path, now.path, 0};
@@ -118,7 +119,7 @@ StateCheck::Motion StateCheck::motion(const Sighting& now, const Sighting* befor
   return motion;
 }
 
-/// When `share` of the step is over, 0 to 1: straight ahead, turning as it did at the start.
+/// Pose after a `share`, 0 to 1, of the step: on the straight way, with the spin of the start.
 Pose StateCheck::pose(const Motion& motion, double share) const {
   const Pose& from = motion.at_start.pose;
   Pose pose{from.p_WB + share * (motion.at_end.pose.p_WB - from.p_WB), from.q_WB};
@@ -130,7 +131,7 @@ Pose StateCheck::pose(const Motion& motion, double share) const {
   return pose;
 }
 
-/// As motion(), but for what takes time to work out.
+/// The sphere that holds motion(now, before), without the costly computations.
 StateCheck::Way StateCheck::way(const Sighting& now, const Sighting* before) const {
   const double step_s = aura_.rules().step_s;
   const Path& end = now.path;
@@ -162,7 +163,7 @@ void StateCheck::gather_ways(const State& before, const State& after) {
     for (const Sighting& now : bodies) {
       while (old != same.end() && old->id < now.id) ++old;
       const Sighting* known = old != same.end() && old->id == now.id ? &*old : nullptr;
-      if (!known) {  // it may have changed hosts
+      if (!known) {  // the body may have changed host, so it is looked up in the other list
         const auto found = std::ranges::lower_bound(other, now.id, {}, &Sighting::id);
         if (found != other.end() && found->id == now.id) known = &*found;
       }
@@ -182,8 +183,8 @@ void StateCheck::gather_ways(const State& before, const State& after) {
   near_.build(middles_);
 }
 
-/// Physics moves a body ahead by a substep and looks what is in its way: where that was, or already is after the
-/// substep.
+/// Could continuous collision detection stop `moving` at `other`? Physics moves a body ahead by a substep and tests
+/// what is in its way, at that one's pose before or after the substep.
 bool StateCheck::sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const {
   if (!moving.at_end.moves && !moving.at_start.moves) return false;
   const double half = 0.5 / aura_.rules().looks();
@@ -213,8 +214,8 @@ bool StateCheck::meet_on(const Pose& a, const Pose& b, const Motion& of_a, const
   }
 }
 
-/// Physics looks how two bodies go on from the start of the step, straight and without turning: as they fly there, or,
-/// if they have been kicked since, as they fly at the end.
+/// Could a contact ahead of time (physics/soft/ahead.h) begin? Physics extrapolates two bodies from the start of the
+/// step, straight and without turning, with their velocities there; if they were kicked, with those at the end.
 bool StateCheck::meet_ahead(const Motion& a, const Motion& b, double allowed_m) const {
   const double step_s = aura_.rules().step_s;
   const Vec3 fall = 0.5 * step_s * step_s * aura_.rules().gravity;
@@ -230,7 +231,7 @@ bool StateCheck::meet_ahead(const Motion& a, const Motion& b, double allowed_m) 
   return (way - way_at_end).norm() > allowed_m && meet_on(at, bt, a, b, way_at_end, allowed_m);
 }
 
-/// Contacts are looked for at the start of each substep.
+/// May two bodies have touched during the step? Physics looks for contacts at the start of each substep.
 bool StateCheck::touch(const Motion& a, const Motion& b) const {
   const int substeps = aura_.rules().looks();
   const double margin = aura_.rules().contact_margin_m * aura_.rules().check_scale;
@@ -248,7 +249,7 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
   return false;
 }
 
-/// With those of the others from `from` on.
+/// Compares `one` with the ways in others_ from index `from` on.
 void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double margin_m) {
   Progress::mark();
   const double range = margin_m + one.reach_m;
@@ -265,7 +266,7 @@ void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double 
 }
 
 void StateCheck::check(Step step) {
-  state(step);  // so that neither of the two below is inserted, which would move the other
+  state(step);  // inserts both states first, because an insertion below would invalidate a reference
   State& before = state(step - 1);
   State& after = state(step);
   for (State* each : {&before, &after}) sort_by_id(each->others);

@@ -1,6 +1,6 @@
-// The check (docs/design.md, "Checked, and computed again"): has every pair of bodies that touched while a state was
-// computed been in one world? A node looks at its own bodies and at all that it has been told of those of others, in
-// the states that they were in, K states late. Errs to one side: a pair too many is named, none too few.
+// The check (docs/design.md, "Checked, and computed again"): was every pair of bodies that touched while a state was
+// computed in one world? A node compares its own bodies with all published foreign bodies, state by state, K states
+// late. It errs on the safe side: it may report a pair too many, none too few.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,20 @@ class InterestMatching;
 
 class StateCheck {
  public:
-  /// States from `start` on. Keeps references.
+  /// Checks states from `start` on. Keeps references to `aura` and `vicinity`.
   StateCheck(const Aura& aura, const Vicinity& vicinity, Step start);
 
-  /// What a neighbour has published of the state applied(), and of earlier ones.
+  /// Adds what a neighbour has published about the state applied(), and about earlier ones.
   void take(const Neighbour& neighbour);
-  /// Our bodies in a state, those that others have to know of.
+  /// Adds our bodies of a state that have to be announced.
   void take_own(const Snapshot& snapshot, const InterestMatching& matching);
-  /// A state that one of ours has made up alone, as the `nth` cluster that has joined: it was in no world with others.
+  /// Adds a state that one of our bodies made up alone, as part of the `nth` cluster that joined. It shared no world
+  /// with other bodies.
   void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
 
-  /// Looks at all states that everything is known of, when state `now` is complete.
+  /// Checks all states for which everything has been received, when state `now` is complete.
   void look(Step now, std::span<const Neighbour> neighbours);
-  /// Pairs found by the last look(), a < b, with the state in whose computation they may have touched.
+  /// Pairs, a < b, that the last look() found, each with the state in whose computation they may have touched.
   std::span<const Alarm> found() const { return found_; }
   /// The last state that has been looked at.
   Step checked() const { return checked_; }
@@ -43,25 +44,25 @@ class StateCheck {
     BodyId id{};
     std::uint32_t world = 0;
     Path path;
-    bool born = true;  ///< false: it is only announced, and nothing can touch it yet
+    bool born = true;  ///< false: it is only announced and nothing can touch it yet
   };
   struct State {
     Step step = 0;
     std::vector<Sighting> own;
-    std::vector<Sighting> others;  ///< of other worlds
+    std::vector<Sighting> others;  ///< bodies of other worlds
   };
-  /// Where a body has been during a step: within `reach_m` of `middle`, with all that belongs to it. Cheaper than a
-  /// Motion, and larger.
+  /// A sphere of `reach_m` around `middle` that holds all of a body throughout a step. Cheaper than a Motion, and
+  /// larger.
   struct Way {
     const Sighting* now = nullptr;
-    const Sighting* before = nullptr;  ///< a state ago; none: it has only just begun to be announced
+    const Sighting* before = nullptr;  ///< a state earlier; null: its announcement has just begun
     Vec3 middle = Vec3::Zero();
     double reach_m = 0;
   };
   /// A body on its way through one step.
   struct Motion {
     Path at_start, at_end;
-    double stray_m = 0;  ///< its surface may be this far off the straight way in between
+    double stray_m = 0;  ///< how far its surface may be off the straight way in between
   };
 
   State& state(Step step);
@@ -82,10 +83,10 @@ class StateCheck {
   const Vicinity& vicinity_;
   Step checked_;
   std::deque<State> states_;
-  std::vector<Way> own_, others_;  ///< in the step that is looked at
-  std::vector<Path> middles_;      ///< of others_, for finding who is near
+  std::vector<Way> own_, others_;  ///< ways in the step that is being checked
+  std::vector<Path> middles_;      ///< middles of others_, indexed by near_
   NearIndex near_;
-  Step step_ = 0;  ///< that is looked at
+  Step step_ = 0;  ///< the step that is being checked
   std::vector<Alarm> found_;
 };
 

@@ -71,7 +71,7 @@ StaticMoves StaticMoves::ordered(StaticId id) const {
   StaticMoves certain;
   const auto known = moves_.find(id);
   if (known == moves_.end()) return certain;
-  std::vector<Move> ends;  // newest first
+  std::vector<Move> ends;  // ordered moves of the static, newest first
   for (auto one = known->second.rbegin(); one != known->second.rend(); ++one) {
     if (!one->is_ordered) continue;
     ends.push_back(*one);
@@ -130,7 +130,7 @@ PlannedMove planned(const StaticSetpoint& wanted, Step at_step, const StaticMove
 }
 
 void forget_moves_before(Step step, std::vector<Order>& orders) {
-  std::map<StaticId, std::uint64_t> newest;  // sequence of the one that is in effect then
+  std::map<StaticId, std::uint64_t> newest;  // by static: sequence of its newest move before `step`
   for (const Order& order : orders) {
     const auto* const move = std::get_if<MoveStatic>(&order.action);
     if (move != nullptr && order.at_step < step) newest[move->id] = order.sequence;

@@ -1,5 +1,5 @@
-// Where statics are that have been told to move, and those that their scene moves (core/static_path.h). What is ordered
-// (MoveStatic) is certain; what a program has said (core/setpoint.h) is expected until its order is here
+// Poses of statics that orders or programs move, or whose scene moves them (core/static_path.h). A move that is ordered
+// (MoveStatic) is certain. One that a program has sent (core/setpoint.h) is expected until its order has been received
 // (docs/decisions/0030-a-word-before-its-order.md).
 #pragma once
 
@@ -19,34 +19,35 @@ namespace aurasim::core {
 
 class StaticMoves {
  public:
-  /// Ordered: takes effect from state `at_step` on. Of the orders about one static those that come later begin no
-  /// earlier. Returns the first state that is another one by it: nothing where it was expected as it is.
+  /// Adds an ordered move, in effect from state `at_step` on. Later orders about the same static begin no earlier.
+  /// Returns the first state that it changes; nothing where the move was expected just so.
   std::optional<Step> add(const MoveStatic& move, Step at_step, std::uint64_t request);
-  /// Said: takes effect as if its order were here, unless it is.
+  /// Adds the move of a program's message. It takes effect as if it were ordered; ignored if its order has been
+  /// received.
   void expect(const MoveStatic& move, Step at_step, std::uint64_t request);
-  /// What was expected for states before this one has not been ordered, and does not count. Returns the first state
-  /// that is another one by it.
+  /// Drops moves that were expected for states before `before` and have not been ordered. Returns the first state that
+  /// this changes.
   std::optional<Step> give_up_expected(Step before);
 
-  /// In a state; states are step_s apart.
+  /// Pose of the static in state `step`; states are step_s apart.
   Pose pose(const StaticBody& body, StaticId id, Step step, double step_s) const;
-  /// Where its newest move begins; 0: it has none.
+  /// State in which the newest move of a static begins; 0 if it has none.
   Step newest(StaticId id) const;
-  /// visit(id), ascending, for those that have been told to move.
+  /// Calls visit(id), ascending, for each static that has moves.
   template <class Visit>
   void for_each(Visit&& visit) const {
     for (const auto& [id, moves] : moves_) visit(id);
   }
-  /// visit(move) for those that begin in a state, ascending id.
+  /// Calls visit(move) for each move that begins in state `step`, ascending id.
   template <class Visit>
   void for_each_from(Step step, Visit&& visit) const {
     for (const auto& [id, moves] : moves_) {
       for (const Move& one : std::ranges::equal_range(moves, step, {}, &Move::at_step)) visit(one.move);
     }
   }
-  /// Of one static, without what is only expected: what says where it is from before its newest order on.
+  /// The ordered moves of one static: those that decide its pose from just before its newest order on.
   StaticMoves ordered(StaticId id) const;
-  /// Of states before this one nobody asks.
+  /// States before `step` are not asked for any more.
   void forget_before(Step step);
 
  private:
@@ -58,24 +59,24 @@ class StaticMoves {
   };
   void insert(Move move);
 
-  std::map<StaticId, std::vector<Move>> moves_;  ///< each ascending at_step
+  std::map<StaticId, std::vector<Move>> moves_;  ///< by static, ascending at_step
   std::size_t expected_ = 0;
 };
 
-/// Can an order say it? Its place is not too far out, its rotation of length 1, and it is there some time.
+/// Can the setpoint become an order? Its place is not too far out, its rotation has length 1, and its number of states
+/// is in range.
 bool is_sound(const StaticSetpoint& wanted);
 
 struct PlannedMove {
   Step at_step = 0;
   MoveStatic move;
 };
-/// What is wanted of a static, after the moves that are known: no earlier than the newest of them, from where it is by
-/// then, and no faster than a static may be.
+/// The move that a setpoint becomes, given the known moves: it begins no earlier than the newest of them, from the pose
+/// by then, and is no faster than a static may be.
 PlannedMove planned(const StaticSetpoint& wanted, Step at_step, const StaticMoves& known, const StaticBody& body,
                     double step_s);
 
-/// From the orders of a run: the moves that are over before `step`, and that later ones of the same static have
-/// replaced. Nobody who joins has to know of them.
+/// Removes from `orders` the moves of statics before `step` that later moves of the same static have replaced.
 void forget_moves_before(Step step, std::vector<Order>& orders);
 
 }  // namespace aurasim::core

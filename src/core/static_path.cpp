@@ -6,7 +6,8 @@
 namespace aurasim::core {
 namespace {
 
-/// On the shorter way, by a share of the angle: by halves, as far as a chord differs from its arc.
+/// Rotation at `share` of the angle between two rotations, on the shorter way. Halves the angle kHalves times and
+/// interpolates on the rest's chord, which hardly differs from its arc.
 Quat turned(Quat from, Quat to, double share) {
   constexpr int kHalves = 10;
   if (from.dot(to) < 0) to.coeffs() = -to.coeffs();
@@ -18,7 +19,7 @@ Quat turned(Quat from, Quat to, double share) {
   return Quat(Eigen::Vector4d((1 - share) * from.coeffs() + share * to.coeffs()).normalized());
 }
 
-/// In the frame of the static at the start.
+/// Pose on the path at time t_s, in the frame S of the static at the start.
 Pose along(const StaticPath& path, double t_s) {
   const double ends_s = path.stops.back().at_s;
   if (path.repeats) t_s -= std::floor(t_s / ends_s) * ends_s;
@@ -42,7 +43,7 @@ Pose pose_at(const StaticBody& body, double t_s) {
 
 Twist twist_between(const Pose& before, const Pose& after, double duration_s) {
   const Quat turn = after.q_WB * before.q_WB.conjugate();
-  const Vec3 sine = (turn.w() < 0 ? -1 : 1) * turn.vec();  // of half the angle
+  const Vec3 sine = (turn.w() < 0 ? -1 : 1) * turn.vec();  // sine of half the angle, times the axis
   const double square = sine.squaredNorm();
   const double arc = 1 + square / 6 * (1 + square * 9 / 20 * (1 + square * 25 / 42 * (1 + square * 49 / 72)));
   return {(after.p_WB - before.p_WB) / duration_s, 2 * arc / duration_s * sine};

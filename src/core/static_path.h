@@ -1,5 +1,5 @@
-// Statics that move as their scene says: lifts, gates, turntables. Where they are follows from the time alone, so every
-// node knows it, and nothing is told.
+// Statics that move along a path of their scene: lifts, gates, turntables. Their poses follow from the time alone, so
+// no messages are needed.
 #pragma once
 
 #include "core/body_state.h"
@@ -7,13 +7,16 @@
 
 namespace aurasim::core {
 
-/// In the time t_s >= 0. The same bits on every machine: it is computed by what IEEE 754 rounds.
+/// Pose of the static at time t_s >= 0. The same bits on every machine: uses only operations that IEEE 754 defines
+/// exactly.
 Pose pose_at(const StaticBody& body, double t_s);
 
-/// On the straight way and the shorter turn from one to the other, by a share from 0 to 1. Likewise the same bits.
+/// Pose on the straight way and the shorter turn between two poses, at `share` from 0 to 1. The same bits on every
+/// machine.
 Pose pose_between(const Pose& from, const Pose& to, double share);
 
-/// Of one that goes from `before` to `after` in `duration_s`, evenly: m/s of its origin and rad/s, in the world.
+/// Velocity of the origin (m/s) and spin (rad/s) in the world, of a static that goes evenly from `before` to `after` in
+/// `duration_s`.
 struct Twist {
   Vec3 v_W = Vec3::Zero();
   Vec3 w_W = Vec3::Zero();

@@ -17,7 +17,8 @@ double SweptAura::calm_speed(bool awake) const { return awake ? kSpeedFloor : kR
 
 double SweptAura::own_speed_of(const BodyState& body) const {
   if (!body.awake) return 0;
-  // A kick that nobody else can foresee takes the body off its path by the kick's speed, of which U covers a share.
+  // Other nodes cannot foresee a kick. It takes the body off its path at the kick's speed, and an aura allows only for
+  // U times its stated speed. So the kick counts as much larger.
   const double share = std::clamp(rules().uncertainty, 0.1, 1.0);
   return body.v_WB.norm() + body.coming_kick_m_s / share;
 }
@@ -67,9 +68,9 @@ bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) cons
   const int instants = rules().instants();
   const double spread = rules().uncertainty * rules().step_s;
   const double last = horizon_steps;
-  // Of the way between two instants, where physics looks ahead.
+  // Where physics looks ahead, half of the relative way between two instants is added.
   const double half_way = rules().looks_ahead() ? 0.5 * rules().step_s * (a.v_WB - b.v_WB).norm() / instants : 0;
-  // The clearance shrinks at most this fast, in metres per step.
+  // Upper bound of how fast the clearance shrinks, in metres per step.
   const double oldest = std::max(a.age_steps, b.age_steps);
   const double fall = gravity_m_s2() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules().step_s;
   const double closing =
@@ -83,7 +84,8 @@ bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) cons
     }
     const Pose at = ahead(a, k);
     const Pose bt = ahead(b, k);
-    // One of them may stand on something and not fall as its path says. If both do, that makes no difference.
+    // One of the two may stand on something and not fall as its path assumes. If both stand, their distance is the
+    // same.
     const double unfallen = drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
     const double allowed =
         rules().reach_scale * (rules().contact_margin_m + half_way + a.blur_m + b.blur_m + unfallen +

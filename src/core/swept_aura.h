@@ -1,5 +1,5 @@
-// The aura that asks the question itself: can the real shapes touch, on the paths that the bodies are expected to take,
-// and as far off them as each of them may come (docs/design.md, "Swept auras")?
+// The aura that tests the real shapes: can they touch on the predicted paths, or as far off them as each body may come
+// (docs/design.md, "Swept auras")?
 #pragma once
 
 #include "core/aura.h"
@@ -23,7 +23,7 @@ class SweptAura final : public Aura {
   double unfallen_m(double steps) const override { return drop_m(steps); }
   bool paths_meet(const Path& a, const Path& b, int horizon_steps) const;
   double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
-  double last_instant(int horizon_steps) const;  ///< at which paths_meet() looks, in steps from now
+  double last_instant(int horizon_steps) const;  ///< the last instant that paths_meet() tests, in steps from now
 };
 
 }  // namespace aurasim::core

@@ -6,8 +6,8 @@
 namespace aurasim::core {
 
 enum class SyncMode : std::uint8_t {
-  kFreeRunning,    ///< never waits
-  kBounded,        ///< at most K steps apart
+  kFreeRunning,    ///< nodes never wait
+  kBounded,        ///< nodes wait so that neighbours are at most K steps apart
   kDeterministic,  ///< kBounded, and messages take effect at fixed states
 };
 

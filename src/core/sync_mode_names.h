@@ -1,4 +1,4 @@
-// The ways of nodes to wait for each other, as launch files and results call them.
+// Names of the sync modes in launch files and results.
 #pragma once
 
 #include <array>

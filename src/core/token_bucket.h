@@ -1,4 +1,4 @@
-// How much somebody may still do: fills at a rate up to a burst. Pure: time is passed in.
+// Token bucket for rate limits: fills at a rate up to a burst. Has no clock: time is passed in.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@ namespace aurasim::core {
 
 class TokenBucket {
  public:
-  using Time = std::chrono::nanoseconds;  ///< of any clock that does not go back
+  using Time = std::chrono::nanoseconds;  ///< time of any monotonic clock
 
-  /// Full at first. `per_s`: tokens a second.
+  /// Starts full. `per_s`: tokens per second; `burst`: most tokens that it holds.
   TokenBucket(double per_s, double burst, Time now = {}) : per_s_(per_s), burst_(burst), level_(burst), filled_(now) {}
 
-  /// False, and nothing is taken, when less than `amount` is there.
+  /// Takes `amount` tokens. Returns false and takes nothing if there are fewer.
   bool take(double amount, Time now) {
     fill(now);
     if (level_ < amount) return false;
@@ -21,7 +21,7 @@ class TokenBucket {
     return true;
   }
 
-  /// Takes one token even when none is there. Returns how long to wait until it would have been there; zero: it was.
+  /// Takes one token even if none is left. Returns how long to wait until it would have been there; 0 if it was.
   Time charge(Time now) {
     fill(now);
     level_ -= 1;

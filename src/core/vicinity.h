@@ -1,5 +1,4 @@
-// A region and those that listen to it: always those that are near, and others as bodies ask for it
-// (core/introductions.h).
+// A region and its neighbours: always the regions near it, and others once they are introduced (core/introductions.h).
 #pragma once
 
 #include <cstdint>
@@ -17,18 +16,19 @@ struct Vicinity {
   double neighbour_distance_m;
   std::vector<RegionId> neighbours;  ///< ascending
 
-  /// From now on this one, too.
+  /// Makes region `id` a neighbour.
   void listen_to(RegionId id);
 
   const Rectangle& home() const { return map.region(self); }
-  /// Bits of the neighbours whose territory is at most `distance_m` from `p`. With more than 64 some share one.
+  /// Bits of the neighbours whose territory is at most `distance_m` from `p`. With more than 64 neighbours some share a
+  /// bit.
   std::uint64_t within(const Vec3& p, double distance_m) const;
   /// No other region's territory is within `distance_m` of `p`.
   bool deep_inside(const Vec3& p, double distance_m) const;
   bool is_neighbour(RegionId id) const;
-  /// Are two regions so near to each other that they always listen?
+  /// Are two regions so near to each other that they always listen to each other?
   bool are_near(RegionId a, RegionId b) const;
-  /// The bit of one neighbour; 0 for ourselves and for regions that do not listen.
+  /// The bit of one neighbour; 0 for our own region and for non-neighbours.
   std::uint64_t bit_of(RegionId id) const;
 };
 

@@ -1,4 +1,5 @@
-// Broken promises: the world may be wrong, and the node knows it.
+// Violations: promises about speed, latency, frame time, path or span that did not hold, so that the world may be
+// wrong.
 #pragma once
 
 #include <array>
@@ -11,8 +12,8 @@ namespace aurasim::core {
 
 enum class ViolationKind : std::uint8_t {
   kSpeed,    ///< a body is faster than the promised V (value and allowed in m/s)
-  kLatency,  ///< a message took effect later than K steps after its stamp, or a program's word after its own (steps)
-  kFrame,    ///< a step took longer than T_F (s)
+  kLatency,  ///< a message took effect later than K steps after its stamp, or a setpoint after its own state (steps)
+  kFrame,    ///< computing a step took longer than T_F (s)
   kPromise,  ///< a body is not where its last aura promised it would be (m)
   kSpan,     ///< a body is near a region that does not listen to its host (m: distance between the two regions)
 };
@@ -21,13 +22,13 @@ inline constexpr int kViolationKinds = 5;
 struct Violation {
   ViolationKind kind{};
   Step step = 0;
-  RegionId region{};  ///< whose promise: the neighbour for kLatency, the reporting node otherwise
+  RegionId region{};  ///< the region that broke the promise: the neighbour for kLatency, the reporting node otherwise
   BodyId body{};      ///< for kSpeed, kPromise, kSpan
   double value = 0;
   double allowed = 0;
 };
 
-/// Counts all of them, and keeps the last few of the current step for the report.
+/// Counts all violations, and keeps the first 32 of the current step for the report.
 class ViolationLog {
  public:
   void start_step() { recent_.clear(); }
@@ -37,12 +38,13 @@ class ViolationLog {
     if (recent_.size() < 32) recent_.push_back(violation);
   }
 
-  /// A promise counted before is still broken at `step`: no new violation, but a new warning.
+  /// Notes that a promise whose violation was counted before is still broken at `step`: a new warning, but no new
+  /// violation.
   void still_broken(Step step) {
     ++repeated_;
     last_step_ = step;
   }
-  /// Grows with every violation, and in every step in which one goes on: who sees it unchanged knows of nothing new.
+  /// Grows with every violation, and in every step in which one goes on.
   std::uint64_t warnings() const { return total() + repeated_; }
 
   std::uint64_t count(ViolationKind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
@@ -51,7 +53,7 @@ class ViolationLog {
     for (const std::uint64_t c : counts_) sum += c;
     return sum;
   }
-  /// The step of the newest one; far in the past if there was none.
+  /// The step of the newest violation or warning; far in the past if there was none.
   Step last_step() const { return last_step_; }
   const std::vector<Violation>& recent() const { return recent_; }
 

@@ -9,7 +9,7 @@
 namespace aurasim::core {
 namespace {
 
-/// Records of bodies in ascending order, points and joint values as they come.
+/// Appends the records of `from`. Bodies stay in ascending order, points and joint values are appended.
 void append(ClusterState& to, const ClusterState& from) {
   const auto first_point = static_cast<std::uint32_t>(to.points.size() / kContactPointDoubles);
   const auto first_value = static_cast<std::uint32_t>(to.joint_values.size());
@@ -26,7 +26,8 @@ void append(ClusterState& to, const ClusterState& from) {
   to.joint_values.insert(to.joint_values.end(), from.joint_values.begin(), from.joint_values.end());
 }
 
-/// Of several regions, each of which knows a beginning of the same sequence, with the same left out.
+/// Unites the orders of several regions. Each region knows a beginning of the same sequence, with the same orders left
+/// out.
 void append(std::vector<Order>& to, const std::vector<Order>& from) {
   to.insert(to.end(), from.begin(), from.end());
   std::ranges::sort(to, {}, &Order::sequence);
@@ -46,7 +47,8 @@ void append(std::vector<SavedMesh>& to, std::vector<SavedMesh> from) {
   }
 }
 
-/// Of several nodes, all of which hear the same; where one has heard it too late for its state, others may not have.
+/// Unites the setpoints of several nodes, which all receive the same messages. A message may be late on one node and in
+/// time on another, so at_step may differ.
 void append(std::vector<Setpoints>& to, const std::vector<Setpoints>& from) {
   const auto place = [](const Setpoints& one) { return std::tuple(one.client, one.sequence, one.at_step); };
   to.insert(to.end(), from.begin(), from.end());
@@ -90,7 +92,7 @@ WorldCut merge(std::vector<WorldCut> parts) {
     whole.last_order = std::max(whole.last_order, part->last_order);
   }
   std::ranges::sort(whole.bodies.bodies, {}, &BodyRecord::id);
-  // Of two compounds there are several, in an order of their own.
+  // Stable, because two compounds have several manifolds, whose order counts.
   std::ranges::stable_sort(whole.bodies.manifolds, {},
                            [](const ManifoldRecord& m) { return std::pair(m.object0, m.object1); });
   refuse_twins(whole);

@@ -18,18 +18,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kMagic[] = "AURACUT2";  // the last is the number of the format
+constexpr char kMagic[] = "AURACUT2";  // the last character is the number of the format
 constexpr std::size_t kMagicBytes = 8, kFormatAt = 7;
 constexpr int kLevel = 3;
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some ten million contact points
-constexpr std::size_t kMostGrowth = 200;                   // times; equal piles come to 50
+constexpr std::size_t kMostGrowth = 200;  // decompressed size over compressed size; equal piles reach 50
 constexpr std::size_t kMostOfHeader = 64 << 10;
 constexpr std::size_t kOrdersAtOnce = 1000;
-/// States for which a cluster may have been under way, or for which births may be known ahead: many times what the
-/// largest lookahead makes of it. A world is computed through the first, state by state, before its run begins.
+/// Most states for which a cluster may have been under way, or for which births may be known ahead: many times more
+/// than with the largest lookahead. A run computes clusters under way through these states before it begins.
 constexpr core::Step kMostStatesBetween = 10'000;
 
-/// What follows the header, each with its length.
+/// Types of the pieces after the header. Each piece is stored with its length.
 enum class Piece : std::uint8_t { kEnd, kBodies, kUnderWay, kOrders, kShape, kMesh, kSetpoints };
 
 void put_number(std::string& out, std::uint32_t number) {
@@ -88,7 +88,8 @@ std::string compressed(const std::string& bytes) {
   return out;
 }
 
-/// However large it says that it is, memory is taken only for what comes. Not more than is `enough`.
+/// Decompresses at most `enough` bytes. Takes memory only for bytes that are really there, whatever size the frame
+/// claims.
 std::string decompressed(std::string_view bytes, std::size_t enough = kMostBytes + 1) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, 27);
@@ -127,7 +128,7 @@ json header_of(const SavedWorld& world) {
           {"bodies", core::body_count(world.cut)}};
 }
 
-/// A number of another kind would be made into one of this kind.
+/// Reads a whole number up to `most`. Checks its type, because the JSON library would convert other numbers.
 std::uint64_t whole(const json& header, const char* key,
                     std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
   const json& number = header.at(key);
@@ -242,7 +243,7 @@ std::string encode(const SavedWorld& world) {
 
 namespace {
 
-/// What comes after it.
+/// The bytes after the magic number. Checks type and format.
 std::string_view after_magic(const std::string& bytes) {
   if (bytes.size() < kMagicBytes || std::memcmp(bytes.data(), kMagic, kFormatAt) != 0) {
     throw BadCut("this is no saved world");

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("{}: {}", file.string(), what));
 }
 
-/// Until it is on the disk.
+/// Writes a file and waits until it is on the disk.
 void write_through(const fs::path& file, const std::string& bytes) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) fail(file, std::strerror(errno));
@@ -40,11 +40,11 @@ void write_through(const fs::path& file, const std::string& bytes) {
   fail(file, std::strerror(error));
 }
 
-/// The new name of a file is on the disk, too.
+/// Waits until the names of files in a folder are on the disk.
 void sync_folder(const fs::path& folder) {
   const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
-  ::fsync(fd);  // some file systems cannot
+  ::fsync(fd);  // the result is ignored: some file systems cannot do it
   ::close(fd);
 }
 
@@ -54,7 +54,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Of one world?
+/// Are both identities of one world, computed by one program?
 bool same(const Identity& a, const Identity& b) { return a.world == b.world && a.program == b.program; }
 
 std::string words(const Identity& identity) {

@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kHalfWritten = ".new";  // as write_cut calls it
+constexpr std::string_view kHalfWritten = ".new";  // extension of the name under which write_cut() writes
 constexpr std::string_view kPart = ".part-", kOf = "-of-";
-constexpr std::size_t kDigits = 16;  // of a save's number
+constexpr std::size_t kDigits = 16;  // digits of a save's number in a name
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text, int base) {
@@ -26,14 +26,14 @@ std::optional<Number> number_in(std::string_view text, int base) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
-/// A file that is called like a world or a part of one, and what its header says.
+/// A file with the name of a world or of a part, and its header.
 struct Found {
   fs::path file;
   std::string world;
   SavedWorld header;
 };
 
-/// Those that belong together.
+/// Files with the same key are parts of one world.
 using Key = std::tuple<std::string, std::uint64_t, core::Step, std::uint32_t>;
 
 Key key_of(const Found& found) { return {found.world, found.header.save, found.header.cut.step, found.header.parts}; }
@@ -63,7 +63,7 @@ void add(const fs::path& file, Contents& contents) {
   }
 }
 
-/// Of all worlds, or of one.
+/// The files in a folder that belong to `world`, or to any world if it is empty.
 Contents contents_of(const fs::path& folder, const std::string& world = {}) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -79,7 +79,7 @@ Contents contents_of(const fs::path& folder, const std::string& world = {}) {
   return contents;
 }
 
-/// All parts, each once.
+/// Is each part there exactly once?
 bool is_whole(const std::vector<Found>& parts) {
   std::vector<std::uint32_t> there;
   for (const Found& one : parts) there.push_back(one.header.part);
@@ -116,7 +116,7 @@ PartStore::Listing listing_of(const fs::path& folder, const Contents& contents) 
   return listing;
 }
 
-/// No world of `file` is whole. Throws BadCut.
+/// Throws BadCut for `file`, of which no world has all parts. The text says what is missing or unusable.
 [[noreturn]] void refuse_parts(const fs::path& file, const Contents& contents) {
   const std::vector<Found>* most = nullptr;
   for (const auto& [key, parts] : contents.worlds) {
@@ -131,7 +131,7 @@ PartStore::Listing listing_of(const fs::path& folder, const Contents& contents) 
   throw BadCut(fmt::format("{}: there is no such file, and no parts of it", file.string()));
 }
 
-/// Parts of this region, also half-written ones, whose name `is_meant`.
+/// Removes the files of part `part`, also half-written ones, whose name is_meant(name).
 template <class Predicate>
 void remove_parts(const fs::path& folder, std::uint32_t part, Predicate&& is_meant) {
   std::vector<fs::path> meant;
@@ -168,7 +168,7 @@ std::optional<PartName> part_name(const std::string& file_name) {
   PartName found{std::string(name.substr(0, part)), 0, *number, *parts};
   const std::size_t dot = found.world.rfind('.');
   if (dot == std::string::npos || found.world.size() - dot - 1 != kDigits)
-    return found;  // as older programs wrote them
+    return found;  // older programs wrote names without the number of the save
   if (const auto save = number_in<std::uint64_t>(std::string_view(found.world).substr(dot + 1), 16)) {
     found.save = *save;
     found.world.resize(dot);

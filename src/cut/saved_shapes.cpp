@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestShape = std::size_t{64} << 20U;  // text: twice the largest mesh
+constexpr std::size_t kLongestShape = std::size_t{64} << 20U;  // octets of JSON: twice those of the largest mesh
 
 json to_json(const std::vector<core::Vec3>& points) {
   json all = json::array();
@@ -32,7 +32,7 @@ std::vector<core::Vec3> points_of(const json& numbers) {
   return points;
 }
 
-/// What a mesh becomes: a hull, hulls in a compound, or triangles (config/meshes.h).
+/// JSON of the shape that a mesh becomes: a hull, hulls in a compound, or triangles (config/meshes.h).
 struct ToJson {
   json operator()(const core::ConvexHull& hull) const { return {{"points", to_json(hull.points)}}; }
   json operator()(const core::TriangleMesh& mesh) const {
@@ -51,7 +51,7 @@ struct ToJson {
     }
     return {{"parts", std::move(parts)}};
   }
-  /// A ball stands in for a mesh that was not there.
+  /// A sphere replaces a mesh that was missing.
   json operator()(const core::Sphere& sphere) const { return {{"radius", sphere.radius}}; }
   template <class Other>
   json operator()(const Other&) const {

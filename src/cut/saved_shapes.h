@@ -1,5 +1,5 @@
-// A shape that a client's mesh has become, as JSON with every bit of its numbers: what a scene file says of its own
-// need not be saved.
+// The shape that a client's mesh has become, as JSON with all bits of its numbers. Shapes of the scene file are not
+// saved.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace aurasim::cut {
 
 std::string encode_shape(const core::SavedShape& shape);
-/// Throws BadCut.
+/// Reads the JSON of encode_shape(). Throws BadCut.
 core::SavedShape decode_shape(std::string_view text);
 
 }  // namespace aurasim::cut

@@ -1,11 +1,12 @@
-// Waking a body up.
+// Wakes bodies up.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 namespace aurasim::physics {
 
-/// Also a body that had fallen asleep starts anew. One that is never to sleep stays so.
+/// Makes a body active and restarts its time below the sleeping thresholds. Bodies that never sleep and disabled bodies
+/// stay as they are.
 inline void awaken(btRigidBody& body) {
   if (body.getActivationState() == DISABLE_DEACTIVATION || body.getActivationState() == DISABLE_SIMULATION) return;
   body.forceActivationState(ACTIVE_TAG);

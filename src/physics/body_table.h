@@ -16,14 +16,14 @@ struct HostedBody {
   core::Epoch epoch = 0;
   core::PrototypeId prototype{};
   core::Step birth = 0;
-  bool born = false;                   ///< is in Bullet's world
-  std::unique_ptr<btRigidBody> rigid;  ///< its user index is the place in the table
+  bool born = false;                   ///< true: the body is in Bullet's world
+  std::unique_ptr<btRigidBody> rigid;  ///< its user index is its place in the table
 
   core::BodyRecord record() const;
   core::BodyState state() const;
 };
 
-/// Statics have negative user indices.
+/// Is it the user index of a static? Those are negative.
 inline bool is_static(int user_index) { return user_index < 0; }
 
 class BodyTable {
@@ -34,17 +34,17 @@ class BodyTable {
   const HostedBody& operator[](std::size_t index) const { return bodies_[index]; }
   std::size_t size() const { return bodies_.size(); }
 
-  /// Null if it is not here. Valid until bodies come or go.
+  /// The body with this id, or null if it is not here. Valid until bodies come or go.
   HostedBody* find(core::BodyId id);
   const HostedBody* find(core::BodyId id) const;
-  /// Of several in ascending order: without a search where nobody is in between. `near`: where the one before would be,
-  /// 0 for the first.
+  /// Like find(id), for a series of ascending ids: no search is needed where no other body lies between two of them.
+  /// `near` is 0 for the first call and is updated by each.
   HostedBody* find(core::BodyId id, std::size_t& near);
   const HostedBody* find(core::BodyId id, std::size_t& near) const;
 
-  /// None of them may be here yet.
+  /// Adds bodies. Precondition: none of them is here yet.
   void insert(std::vector<HostedBody> arrivals);
-  /// Destroys the bodies of which `leaving`, as long as the table, says so.
+  /// Destroys each body whose entry in `leaving` is true. `leaving` has one entry per body of the table.
   void erase(const std::vector<bool>& leaving);
 
  private:

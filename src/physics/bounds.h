@@ -1,4 +1,4 @@
-// Boxes around objects.
+// Axis-aligned boxes around objects.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -13,7 +13,7 @@ struct Bounds {
 
   void add(const Bounds& other) { low.setMin(other.low), high.setMax(other.high); }
   Bounds grown(btScalar by) const { return {low - btVector3(by, by, by), high + btVector3(by, by, by)}; }
-  /// Do they come within 10 cm of each other?
+  /// Do the two boxes come within 10 cm of each other?
   bool is_near(const Bounds& other) const {
     constexpr btScalar kNear = btScalar(0.1);
     for (int axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,7 @@ inline Bounds bounds_of(const btCollisionShape& shape, const btTransform& pose) 
 inline Bounds bounds_of(const btRigidBody& body) {
   return bounds_of(*body.getCollisionShape(), body.getWorldTransform());
 }
-/// Those of the broadphase hold the body's own.
+/// The broadphase's box of an object, which contains bounds_of(body).
 inline Bounds bounds_of(const btBroadphaseProxy& proxy) { return {proxy.m_aabbMin, proxy.m_aabbMax}; }
 
 }  // namespace aurasim::physics

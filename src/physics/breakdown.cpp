@@ -12,7 +12,7 @@ namespace {
 
 using namespace core::limits;
 
-/// Nine entries of at most 1: not finite if one of them is not.
+/// A sum over the nine entries of a rotation, which are at most 1: not finite if an entry is not.
 btScalar sum(const btMatrix3x3& R) { return R[0].dot(R[0]) + R[1].dot(R[1]) + R[2].dot(R[2]); }
 
 std::string text_of(const core::Vec3& v) {
@@ -23,7 +23,7 @@ std::string text_of(const core::Vec3& v) {
 
 }  // namespace
 
-/// Written so that NaN is out of bounds.
+/// Comparisons are written so that NaN counts as out of bounds.
 bool has_broken_down(const btRigidBody& body) {
   const core::Vec3 p_WB = from_bullet(body.getWorldTransform().getOrigin());
   const bool is_sound = p_WB.cwiseAbs().sum() <= kFarthestBody_m &&

@@ -1,4 +1,4 @@
-// Bodies that no world can bear any more: not a number, or out of all bounds (core/limits.h).
+// Finds bodies that have broken down: their state has NaN, or is beyond core/limits.h.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@ class btRigidBody;
 
 namespace aurasim::physics {
 
-/// Cheap: asked of every body in every state.
+/// Has the body broken down? Cheap, because it is called for every body in every state.
 bool has_broken_down(const btRigidBody& body);
 
-/// What is wrong with a body that has broken down, and its state.
+/// Text that says what is wrong with a body that has broken down, with its state.
 std::string fault_of(const btRigidBody& body);
 
 }  // namespace aurasim::physics

@@ -1,4 +1,4 @@
-// Between Eigen, which the rest of the program uses, and Bullet. Both compute in double: nothing is rounded.
+// Conversions between Eigen, which the rest of the program uses, and Bullet.
 #pragma once
 
 #include <LinearMath/btTransform.h>

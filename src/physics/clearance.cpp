@@ -19,16 +19,16 @@ namespace {
 using core::Pose;
 using core::Vec3;
 
-/// A body's shape is one part or, for a compound, several.
+/// A convex part of a body's shape. A compound has several, other shapes have one.
 struct Part {
   std::unique_ptr<btConvexShape> shape;
-  Pose pose;          ///< in the body's frame
-  double radius = 0;  ///< of the sphere around the part's own origin
+  Pose pose;          ///< pose of the part in the body's frame
+  double radius = 0;  ///< bounding sphere around the part's own origin
 };
 
 struct ConvexParts {
   std::vector<Part> parts;
-  double radius = 0;  ///< of the sphere around the body's origin
+  double radius = 0;  ///< bounding sphere around the body's origin
 };
 
 struct MakeParts {
@@ -61,8 +61,8 @@ btVector3 farthest(const Part& part, const btTransform& X, const btVector3& dire
   return X(part.shape->localGetSupportVertexWithoutMarginNonVirtual(direction * X.getBasis()));
 }
 
-/// The two are at least this far apart, maybe more: a few steps of Gilbert's algorithm (1966) towards the nearest
-/// points of the two, stopped once a plane between them is as wide as `enough_m`. Most pairs need no more.
+/// A lower bound of the distance of two parts: a few steps of Gilbert's algorithm (1966) towards their nearest points.
+/// Stops once the bound exceeds `enough_m`. Most pairs need no exact distance.
 double apart_at_least(const Part& a, const btTransform& X_A, const Part& b, const btTransform& X_B, double enough_m) {
   constexpr int kSteps = 4;
   const btScalar margins = a.shape->getMarginNonVirtual() + b.shape->getMarginNonVirtual();
@@ -81,7 +81,8 @@ double apart_at_least(const Part& a, const btTransform& X_A, const Part& b, cons
   return static_cast<double>(widest);
 }
 
-/// Poses are relative to A's origin, so that single precision loses nothing far out.
+/// Distance of two parts by GJK; `if_undecided` if that fails. Poses are relative to A's origin, so that single
+/// precision loses nothing far from the world's origin.
 double distance(const Part& a, const btTransform& X_A, const Part& b, const btTransform& X_B, double if_undecided) {
   btVoronoiSimplexSolver simplex;
   btGjkEpaPenetrationDepthSolver penetration;
@@ -144,8 +145,8 @@ class Query : public core::ClearanceQuery {
     return apart > limit_m ? apart : distance(a, X_A, b, X_B, spheres_apart);
   }
 
-  /// Made when first asked for: a scene may get more prototypes. One that it has not is a point: no sound neighbour
-  /// speaks of it.
+  /// The parts of a prototype, made when first asked for, because a scene may get more prototypes. An unknown prototype
+  /// counts as a point; only a faulty neighbour could name one.
   const ConvexParts& of(core::PrototypeId prototype) const {
     static const ConvexParts kPoint{};
     if (core::value_of(prototype) >= scene_.prototypes.size()) return kPoint;
@@ -157,7 +158,7 @@ class Query : public core::ClearanceQuery {
   }
 
   const core::Scene& scene_;
-  mutable std::deque<ConvexParts> prototypes_;  // references to entries stay good
+  mutable std::deque<ConvexParts> prototypes_;  // deque: references to entries stay valid
 };
 
 }  // namespace

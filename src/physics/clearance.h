@@ -1,5 +1,5 @@
-// Distances between the scene's shapes as they are, without Bullet's margins: boxes, cylinders and hulls are built
-// without one, and the radius of spheres and capsules, which is a margin to Bullet, belongs to the shape.
+// Distances between the scene's shapes without Bullet's margins. Boxes, cylinders and hulls are built without a margin.
+// The radius of spheres and capsules, which Bullet treats as a margin, belongs to the shape.
 #pragma once
 
 #include <memory>

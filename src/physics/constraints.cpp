@@ -20,7 +20,7 @@ using core::Pose;
 using core::Quat;
 using core::Vec3;
 
-/// Bullet's sliders slide along x.
+/// Turns J so that its x axis is the joint's z axis, because Bullet's sliders slide along x.
 btTransform with_x_along_z(const Pose& X_BJ) {
   const Quat z_to_x(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitY()));
   return to_bullet(Pose{X_BJ.p_WB, X_BJ.q_WB * z_to_x});
@@ -41,7 +41,7 @@ class Maker {
                                                              to_bullet(frames_.X_BJ));
     constexpr btScalar kSoftness = btScalar(0.9);
     constexpr btScalar kBias = btScalar(0.3);
-    constexpr btScalar kBounce = 0;  // Bullet's default, 1, makes every joint a rattle
+    constexpr btScalar kBounce = 0;  // with Bullet's default, 1, every joint rattles at its limits
     if (joint.limits && is_within_half_a_turn(*joint.limits)) {
       hinge->setLimit(scalar(joint.limits->low), scalar(joint.limits->high), kSoftness, kBias, kBounce);
     }
@@ -65,7 +65,8 @@ class Maker {
     return std::make_unique<btFixedConstraint>(a_, b_, to_bullet(frames_.X_AJ), to_bullet(frames_.X_BJ));
   }
 
-  /// Bullet measures where its second body is from its first, and how its first has turned from its second.
+  /// Bullet measures the position of its second body relative to its first, but the rotation of its first relative to
+  /// its second.
   std::unique_ptr<btTypedConstraint> operator()(const core::SpringJoint& joint) const {
     auto spring = std::make_unique<btGeneric6DofSpring2Constraint>(b_, a_, to_bullet(frames_.X_BJ),
                                                                    to_bullet(frames_.X_AJ), RO_ZYX);
@@ -73,7 +74,7 @@ class Maker {
       const core::SpringAxis& axis = joint.axes[static_cast<std::size_t>(i)];
       const core::JointLimits of_a = axis.limits.value_or(core::JointLimits{1, -1});  // low > high: free
       const core::JointLimits limits = i >= 3 && axis.limits ? core::JointLimits{-of_a.high, -of_a.low} : of_a;
-      constexpr double kFarthest = 1e9;  // Bullet multiplies by how far it is
+      constexpr double kFarthest = 1e9;  // limits are kept finite, because Bullet multiplies by them
       spring->setLimit(i, scalar(std::max(limits.low, -kFarthest)), scalar(std::min(limits.high, kFarthest)));
       if (axis.stiffness == 0 && axis.damping == 0) continue;
       spring->enableSpring(i, true);
@@ -89,7 +90,7 @@ class Maker {
   btRigidBody& a_;
   btRigidBody& b_;
   double substep_s_;
-  double times_;  ///< the impulses of kImpulseTime_s
+  double times_;  ///< factor from impulses in kImpulseTime_s to those in a substep
 };
 
 }  // namespace

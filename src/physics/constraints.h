@@ -1,4 +1,4 @@
-// The scene's joints as Bullet's constraints.
+// Makes Bullet's constraints of the scene's joints.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,10 @@ class btTypedConstraint;
 
 namespace aurasim::physics {
 
-/// With the joint's JointAxes as user pointer, before it is solved. `b` is a body without mass at the origin if the
-/// joint holds on to the world. Nothing of Bullet's constraints outlives a substep but whether they are enabled: rows
-/// start from impulse 0 in every solve, angles and positions are measured anew from the poses. How strong motors are
-/// and what joints bear follows from the scene alone: as the impulses that it names in kImpulseTime_s, so in a substep
-/// of `substep_s` by its share of that.
+/// Makes the constraint of a joint. The caller sets the joint's JointAxes as its user pointer before it is solved. If
+/// the joint holds on to the world, `b` is a body without mass at the origin. Of a constraint's state only "enabled"
+/// outlives a substep: rows start from impulse 0 in every solve, and angles and positions are measured anew. The scene
+/// gives the impulses of motors and of breaking joints for kImpulseTime_s; they are scaled to `substep_s`.
 std::unique_ptr<btTypedConstraint> make_constraint(const core::JointSpec& joint, const core::JointFrame& frames,
                                                    btRigidBody& a, btRigidBody& b, double substep_s);
 

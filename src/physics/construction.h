@@ -1,4 +1,4 @@
-// What Bullet makes bodies and statics of.
+// Bullet's construction info of bodies and statics.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>

@@ -57,7 +57,7 @@ const btCollisionObject& object_of(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
 }
 
-/// `parts` are in the pair's order, the result in the manifold's own.
+/// Appends the manifolds of an algorithm. `parts` are in the pair's order, those in `result` in the manifold's own.
 void append(btCollisionAlgorithm* algorithm, const btCollisionObject& object0, Parts parts,
             std::vector<PartManifold>& result) {
   if (algorithm == nullptr) return;

@@ -1,5 +1,5 @@
-// What Bullet remembers about a contact, as numbers: exact both ways, so that a contact goes on in another world as if
-// nothing had happened.
+// The contact cache, what Bullet remembers of a contact, as rows of numbers. The conversion is exact both ways, so a
+// contact goes on in another world with the same bits.
 //
 // Columns of one row (world frame, metres, newton seconds; A is the manifold's body0, B its body1):
 //    0- 2  point on A in A's frame                28  applied impulse, along the normal
@@ -38,7 +38,7 @@ inline constexpr std::size_t kLocalPointB = 3;
 void write_point(const btManifoldPoint& point, double* row);
 btManifoldPoint read_point(const double* row);
 
-/// Which children of two compounds a manifold is about; -1 where a body is no compound.
+/// The children of two compounds that a manifold is between; -1 where a body is no compound.
 struct Parts {
   int part0 = -1;
   int part1 = -1;
@@ -46,9 +46,9 @@ struct Parts {
   auto operator<=>(const Parts&) const = default;
 };
 
-/// Of a manifold with at least one point.
+/// The parts of a manifold with at least one point.
 Parts parts_of(const btPersistentManifold& manifold);
-/// The same from a row of the first point.
+/// Like parts_of(manifold), from the row of its first point. `compound0`, `compound1`: whether each body is a compound.
 Parts parts_of(const double* row, bool compound0, bool compound1);
 
 struct PartManifold {
@@ -56,18 +56,18 @@ struct PartManifold {
   Parts parts;
 };
 
-/// All manifolds of a pair, empty ones too, in the order of its children. A pair of compounds has one for each pair
-/// of children whose bounds overlap.
+/// Sets `result` to all manifolds of a pair, empty ones too, in the order of its children. A pair of compounds has one
+/// for each pair of children whose bounds overlap.
 void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result);
 
-/// A manifold of at least one point and what it is between.
+/// A manifold of at least one point, and its two objects.
 struct KeyedManifold {
   core::ObjectRef object0 = 0;
   core::ObjectRef object1 = 0;
   const btPersistentManifold* manifold = nullptr;
 };
 
-/// Puts the manifolds into the cluster, in the order of objects and parts.
+/// Appends the records of the manifolds to the cluster, in the order of objects and parts.
 void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster);
 
 }  // namespace aurasim::physics

@@ -1,5 +1,5 @@
-// What presses on what, summed up over a step, for observers: only while somebody wants to know. Looks on: no bit of
-// what is computed hangs on it.
+// Contact impulses between objects, summed over a step, for observers. Only computed while an observer wants them. No
+// bit of the simulation depends on it.
 #pragma once
 
 #include <map>
@@ -16,24 +16,25 @@ namespace aurasim::physics {
 /// Sums over the contact points of two objects.
 struct ContactSum {
   double impulse = 0;         ///< N s
-  btVector3 p{0, 0, 0};       ///< in Bullet's frame, times the impulse
-  btVector3 normal{0, 0, 0};  ///< from the first to the second, likewise
+  btVector3 p{0, 0, 0};       ///< sum of contact points times their impulses, in Bullet's frame
+  btVector3 normal{0, 0, 0};  ///< sum of normals, from the first object to the second, times their impulses
 };
 
 class ContactImpulses {
  public:
-  /// From the next step on.
+  /// Switches the sums on or off, from the next step on.
   void want(bool wanted) { wanted_ = wanted; }
   bool wanted() const { return wanted_; }
 
-  /// Before a step.
+  /// Call before each step.
   void clear() { sums_.clear(); }
-  /// User indices of the two, a point where they press, the normal from a to b, and how much.
+  /// Adds an impulse (N s) between the objects with user indices `a` and `b`, at point `p`. `normal` points from a to
+  /// b.
   void add(int a, int b, const btVector3& p, const btVector3& normal, double impulse);
-  /// After a solver's substep: what Bullet has left in the manifolds of those who are awake.
+  /// Call after each substep of Bullet's solver: adds the impulses that it left in the manifolds of awake bodies.
   void look(std::span<btPersistentManifold* const> manifolds);
 
-  /// By the user indices of the two: the higher one first, for statics' are negative.
+  /// Sums by the user indices of the two objects, the higher one first. Indices of statics are negative.
   const std::map<std::pair<int, int>, ContactSum>& sums() const { return sums_; }
 
  private:

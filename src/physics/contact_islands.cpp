@@ -17,7 +17,7 @@ namespace {
 
 bool is_asleep(const btCollisionObject& object) { return object.getActivationState() == ISLAND_SLEEPING; }
 
-/// Two user indices in one number, in the order of (index0, index1); statics' are negative.
+/// Packs two user indices into one number, which sorts like (index0, index1). Indices of statics are negative.
 std::uint64_t both_indices(const btPersistentManifold& manifold) {
   const auto shifted = [](const btCollisionObject* object) {
     return static_cast<std::uint32_t>(std::int64_t{object->getUserIndex()} - std::numeric_limits<std::int32_t>::min());
@@ -47,7 +47,8 @@ void ContactIslands::updateActivationState(btCollisionWorld* world, btDispatcher
   });
 }
 
-/// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
+/// Puts an island to sleep or wakes it, as Bullet does. It sleeps when no body in it is active; one active body keeps
+/// all others awake.
 void ContactIslands::settle(btCollisionWorld& world, int first, int last) {
   btCollisionObjectArray& objects = world.getCollisionObjectArray();
   const auto body = [&](int element) -> btCollisionObject& {

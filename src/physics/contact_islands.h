@@ -1,5 +1,5 @@
-// Which bodies are solved and fall asleep together, and in which order the solver sees their contacts and joints.
-// Neither may depend on what else is in the world.
+// Contact islands: bodies that are solved and fall asleep together, and the order of their contacts and joints for the
+// solver. Neither may depend on what else is in the world.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,10 @@ struct btContactSolverInfo;
 
 namespace aurasim::physics {
 
-/// Differs from Bullet's in four ways. Islands are joined by contacts, not by overlapping bounds, which remember the
-/// past. The manifolds of an island are in the order of the bodies' user indices, then of their parts, its joints in
-/// that of their user types. Islands are
-/// never solved in one batch with others, because the solver stops early on the error of the whole batch. Nothing is
-/// allocated once warm.
+/// Differs from Bullet's manager in four ways. (1) Islands are joined by contacts, not by overlapping bounds, which
+/// depend on the past. (2) The manifolds of an island are ordered by the bodies' user indices, then by their parts; its
+/// joints by their user types. (3) Each island is solved alone, because the solver stops early on the error of a whole
+/// batch. (4) Nothing is allocated once warm.
 ///
 /// A body's user index grows with its id; a static's is negative.
 class ContactIslands : public btSimulationIslandManager {
@@ -34,10 +33,10 @@ class ContactIslands : public btSimulationIslandManager {
              const btContactSolverInfo& info);
 
  private:
-  /// Sorted before the solver sees it.
+  /// A manifold with its sort key.
   struct Entry {
     int island;
-    std::uint64_t bodies;  ///< body0 and body1
+    std::uint64_t bodies;  ///< user indices of body0 and body1, packed into one key
     Parts parts;
     btPersistentManifold* manifold;
   };
@@ -56,9 +55,9 @@ class ContactIslands : public btSimulationIslandManager {
   int end_of_island(int first);
 
   std::vector<Entry> entries_;
-  std::vector<btPersistentManifold*> manifolds_;  ///< as entries_
+  std::vector<btPersistentManifold*> manifolds_;  ///< by entry of entries_
   std::vector<JointEntry> joint_entries_;
-  std::vector<btTypedConstraint*> joints_;  ///< as joint_entries_
+  std::vector<btTypedConstraint*> joints_;  ///< by entry of joint_entries_
   std::vector<btCollisionObject*> island_;
   std::vector<btCollisionObject*> lonely_;  ///< awake bodies without any contact or joint
 };

@@ -8,14 +8,15 @@
 namespace aurasim::physics {
 namespace {
 
-/// Written into the filter mask of bodies that have no pairs any more; nobody reads it as a filter after that.
+/// Marks bodies whose pairs are being removed. Written into their filter mask, which is not read as a filter after
+/// that.
 constexpr int kLeaving = 0;
 
 bool is_leaving(const btBroadphaseProxy& proxy) { return proxy.m_collisionFilterMask == kLeaving; }
 
 }  // namespace
 
-/// The narrow phase, which takes no pair out.
+/// Walks over all pairs for the narrow phase, which removes no pair.
 void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher*, const btDispatcherInfo&) {
   btBroadphasePairArray& pairs = getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {

@@ -1,4 +1,4 @@
-// Bullet's pairs of near bodies, with a quick way through them, and out of them for many bodies at once.
+// Bullet's cache of pairs of near bodies, with a faster walk over all pairs, and fast removal of many bodies at once.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace aurasim::physics {
 
-/// Bullet walks over all pairs twice for each body that leaves. A cluster leaves in one walk instead.
+/// Bullet's cache walks over all pairs twice for each body that leaves. Here a whole cluster leaves in one walk.
 class ContactPairs : public btHashedOverlappingPairCache {
  public:
-  /// Forgets every pair of these bodies, with its contacts. They must leave the broadphase next.
+  /// Removes all pairs of these bodies with their contacts. The caller must then remove the bodies from the broadphase.
   void remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher);
 
   using btHashedOverlappingPairCache::processAllOverlappingPairs;
@@ -22,7 +22,7 @@ class ContactPairs : public btHashedOverlappingPairCache {
   void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
  private:
-  btManifoldArray manifolds_;  ///< of a pair that comes next
+  btManifoldArray manifolds_;  ///< scratch: manifolds of a pair that is prefetched
 };
 
 }  // namespace aurasim::physics

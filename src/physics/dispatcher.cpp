@@ -21,7 +21,8 @@ bool is_plane(const btBroadphaseProxy& proxy) {
   return object->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
 }
 
-/// Bullet looks for more corners on a plane while it knows fewer than four, and counts those that have slid away.
+/// Drops points that have slid away. Bullet looks for more corners on a plane only while a manifold has fewer than four
+/// points, and it would count these.
 void drop_stale_points(btCollisionAlgorithm& algorithm) {
   btManifoldArray manifolds;
   algorithm.getAllContactManifolds(manifolds);
@@ -31,8 +32,8 @@ void drop_stale_points(btCollisionAlgorithm& algorithm) {
   }
 }
 
-/// The broadphase keeps pairs whose bounds were near once; how long differs from world to world. Here a pair lives
-/// exactly as long as its bounds of this substep overlap.
+/// Drops the contacts of pairs whose bounds do not overlap in this substep. The broadphase keeps pairs that were near
+/// once, for times that differ from world to world.
 void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   if (bounds_overlap(*pair.m_pProxy0, *pair.m_pProxy1)) {
     const bool with_plane = is_plane(*pair.m_pProxy0) || is_plane(*pair.m_pProxy1);

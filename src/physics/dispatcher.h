@@ -1,5 +1,5 @@
-// Bullet's narrow phase with its memory of the past taken out: what a pair does depends on the two bodies and on their
-// contact cache only, not on how long the pair has been known to this world.
+// Bullet's narrow phase without memory of the past: the contacts of a pair depend only on the two bodies and their
+// contact cache, not on how long the pair has been known to this world.
 #pragma once
 
 #include <mutex>
@@ -8,11 +8,11 @@
 
 namespace aurasim::physics {
 
-/// Contacts begin and end at this gap at the latest, however large the bodies (Bullet's grow with the shape). The
-/// auras count on it. Metres.
+/// Largest gap of a contact, metres. It is the same for bodies of all sizes (Bullet's own grows with the shape),
+/// because auras rely on it.
 inline constexpr double kContactMargin = 0.02;
 
-/// Several threads may tell the contacts of different pairs at the same time.
+/// Several threads may compute the contacts of different pairs at the same time.
 class Dispatcher : public btCollisionDispatcher {
  public:
   explicit Dispatcher(btCollisionConfiguration& configuration);

@@ -11,14 +11,15 @@
 namespace aurasim::physics {
 namespace {
 
-/// Share of an overshoot of a limit that is undone in a substep.
+/// Share of the overshoot beyond a joint's limit that is undone in a substep.
 constexpr double kErrorReduction = 0.2;
-/// An effort that no motion lessens gives a little all the same: so much of it at 1 rad/s or 1 m/s.
+/// Least `give` of a constant effort, which otherwise would not yield at all: the share by which it falls at 1 rad/s or
+/// 1 m/s.
 constexpr double kLeastGive = 1e-9;
 
 bool has_spring(const JointAxes& joint) { return joint.resistance.stiffness > 0 || joint.resistance.damping > 0; }
 
-/// The limits that Bullet does not hold.
+/// The limits of a hinge that Bullet cannot enforce; null if there are none.
 const JointAxes::Axis* wide_turn(const JointAxes& joint) {
   if (joint.own != 5u) return nullptr;
   const JointAxes::Axis& turn = joint.axes[5];
@@ -29,9 +30,9 @@ class Rows {
  public:
   Rows(btTypedConstraint::btConstraintInfo2& info, int first) : info_(info), row_(first) {}
 
-  /// The next row is about this axis, of a from b.
+  /// Makes the next row act about this axis, on a relative to b.
   void turn(const btVector3& axis) { set(info_.m_J1angularAxis, axis), set(info_.m_J2angularAxis, -axis); }
-  /// Or along it, by impulses at these arms from the centres of mass.
+  /// Makes the next row act along this axis, by impulses at arms `r_a`, `r_b` from the centres of mass.
   void slide(const btVector3& axis, const btVector3& r_a, const btVector3& r_b) {
     set(info_.m_J1linearAxis, axis), set(info_.m_J2linearAxis, -axis);
     set(info_.m_J1angularAxis, r_a.cross(axis)), set(info_.m_J2angularAxis, axis.cross(r_b));
@@ -61,7 +62,7 @@ class Rows {
   int row_;
 };
 
-/// As contacts are: the nearer one.
+/// Adds a row that keeps the joint within the nearer limit, one-sided as a contact.
 void push_off_limits(const JointAxes::Axis& limits, double position, double substep_s, Rows& rows) {
   const double above = position - limits.low, below = limits.high - position;
   const bool at_low = above < below;

@@ -1,4 +1,4 @@
-// Bullet's joints with what drives and resists them (core/joint.h), as rows of their own.
+// Adds drives and resistances (core/joint.h) to Bullet's joints, as rows of their own.
 #pragma once
 
 #include <utility>
@@ -10,17 +10,17 @@
 
 namespace aurasim::physics {
 
-/// Whether Bullet, which knows a hinge's angle only within half a turn, can hold these limits itself.
+/// Can Bullet enforce these limits of a hinge itself? It knows the angle only within half a turn.
 bool is_within_half_a_turn(const core::JointLimits& limits);
 
-/// How many rows a joint has beyond Bullet's.
+/// Number of rows that a joint has beyond Bullet's.
 int own_rows(const JointAxes& joint);
-/// Writes them from row `first` on, the drive's last.
+/// Writes the own rows of a joint from row `first` on, that of the drive last.
 void write_own_rows(const JointAxes& joint, double substep_s, const btRigidBody& a, const btRigidBody& b, int first,
                     btTypedConstraint::btConstraintInfo2& info);
 
-/// Bullet has no rows that give: one that should, by `give` (ImplicitPull), comes from getInfo2() with -give as its
-/// cfm. This makes the row that Bullet's solver then solves rightly.
+/// Prepares a row that yields by `give` (ImplicitPull), which Bullet does not support. getInfo2() marks such a row with
+/// cfm = -give. This converts it to one that Bullet's solver solves correctly.
 void let_give(btSolverConstraint& row);
 
 template <class Joint>
@@ -32,7 +32,7 @@ class Driven final : public Joint {
 
   void getInfo1(btTypedConstraint::btConstraintInfo1* info) override {
     if constexpr (std::is_same_v<Joint, btHingeConstraint>) {
-      this->enableMotor(axes().has_motor && !axes().drive);  // until the drive is let go of
+      this->enableMotor(axes().has_motor && !axes().drive);  // while a drive is set, it replaces the motor
     }
     Joint::getInfo1(info);
     rows_of_bullet_ = info->m_numConstraintRows;

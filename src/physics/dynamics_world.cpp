@@ -23,7 +23,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Makes a body awake for as long as this lives: Bullet does not look at pairs of sleepers.
+/// Keeps a body awake during its own lifetime, because Bullet skips pairs of sleepers.
 class Awake {
  public:
   explicit Awake(btCollisionObject& body) : body_(body), state_(body.getActivationState()) {
@@ -38,7 +38,8 @@ class Awake {
   int state_;
 };
 
-/// What tells the contacts of a new pair. For boxes and spheres it has a manifold from the beginning.
+/// Gives a new pair the algorithm that computes its contacts. For boxes and spheres the algorithm has a manifold from
+/// the beginning.
 void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
   auto& object0 = *static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
   auto& object1 = *static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
@@ -70,14 +71,15 @@ struct DynamicsWorld::Bullet {
   ContactImpulses contact_impulses;
   std::vector<btRigidBody*> moving_statics;
   std::unique_ptr<btDiscreteDynamicsWorld> world;
-  bool sums_itself;  ///< what presses
+  bool sums_itself;  ///< the soft step adds contact impulses itself
 };
 
 DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings)
     : bullet_(std::make_unique<Bullet>(settings)) {
-  bullet_->broadphase.m_cupdates = 10;  // per cent of the pairs are asked, in each look, whether they are still near
-  // One look finds one corner of a box on a plane, and slides lose it again in the next substep. Five looks, tilted
-  // every 72 degrees, find all four, however the box is turned; while it has four they are left out.
+  bullet_->broadphase.m_cupdates = 10;  // per cent of the pairs that each look tests for whether they are still near
+  // One query finds one corner of a box on a plane, and a sliding box loses it again in the next substep. Five tilted
+  // queries, 72 degrees apart, find all four corners however the box is turned. They are skipped while a manifold has
+  // four points.
   bullet_->configuration.setPlaneConvexMultipointIterations(/*numPerturbationIterations=*/5,
                                                             /*minimumPointsPerturbationThreshold=*/4);
   bullet_->world->setGravity(to_bullet(gravity));
@@ -98,12 +100,12 @@ void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
   bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
   bullet_->world->addRigidBody(&body);
   if (is_moving_static(body)) begin_moving(body);
-  if (!collides) {  // of no group, and with none; what has been paired with it is not any more
+  if (!collides) {  // leaves all collision groups, and removes pairs made on insertion
     btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
     proxy->m_collisionFilterGroup = proxy->m_collisionFilterMask = 0;
     bullet_->pairs.remove_pairs_of(std::span(&proxy, 1), bullet_->dispatcher);
   }
-  bullet_->world->updateSingleAabb(&body);  // with the margin: of a sleeper this is not done again
+  bullet_->world->updateSingleAabb(&body);  // includes the margin, because bounds of sleepers are not updated later
 }
 
 void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
@@ -149,7 +151,8 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
   if (pair == nullptr) return;
   if (pair->m_algorithm == nullptr) make_algorithm(*pair, bullet_->dispatcher);
   collect_manifolds(*pair, result);
-  // A look at the shapes would be most of the work of a hand-off. Of compounds, only some parts have their manifolds.
+  // Only compounds need a collision test, because not all of their parts have manifolds. For other pairs it would be
+  // most of the work of a hand-off.
   if (result.empty() || result.front().parts != Parts{}) {
     btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world->getDispatchInfo());
     collect_manifolds(*pair, result);

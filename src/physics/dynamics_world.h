@@ -1,5 +1,4 @@
-// A Bullet world that is set up for equal bits (docs/design.md, "The same bits"), and the few things that are done to
-// it.
+// A Bullet world that is set up for equal bits (docs/design.md, "The same bits"), behind a small interface.
 #pragma once
 
 #include <memory>
@@ -24,19 +23,19 @@ class DynamicsWorld {
   DynamicsWorld(const core::Vec3& gravity, const Settings& settings);
   ~DynamicsWorld();
 
-  /// `rank` > 0 is the same in every world and fixes which one of a pair is body0. Nothing else may depend on the
-  /// order of insertion, but insert in the order of ranks all the same. Unless it `collides`, it touches nothing.
+  /// Inserts a body. `rank` > 0 has to be the same in every world; it decides which body of a pair is body0. Insert
+  /// bodies in the order of ranks. `collides` false: the body touches nothing.
   void insert(btRigidBody& body, int rank, bool collides = true);
-  /// With all contacts.
+  /// Removes bodies with all their contacts.
   void remove(std::span<btRigidBody* const> bodies);
 
-  /// A static that is in the world is from now on one that moves (physics/moving_static.h).
+  /// Turns a static of this world into one that moves (physics/moving_static.h).
   void begin_moving(btRigidBody& fixed);
-  /// Of a static that goes to `until` in the next step: what it may meet on the way.
+  /// Widens the broadphase's bounds of a static that goes to `until` in the next step, so that they hold its way.
   void bound(btRigidBody& moving_static, const btTransform& until);
 
-  /// `order` fixes the order in which the solver sees the joints; the same in every world. Unless they collide, the
-  /// two bodies may not have contacts yet.
+  /// Inserts a joint. `order` has to be the same in every world; it decides the order in which the solver sees joints.
+  /// If `bodies_collide` is false, the two bodies must not have contacts yet.
   void connect(btTypedConstraint& joint, int order, bool bodies_collide);
   void disconnect(btTypedConstraint& joint);
 
@@ -44,11 +43,11 @@ class DynamicsWorld {
 
   std::span<btPersistentManifold* const> manifolds() const;
 
-  /// Makes the manifolds of a pair, even if both bodies sleep, and empties them. `result` names them; any that Bullet
-  /// does not make here would not outlive the next collision detection.
+  /// Makes the manifolds of a pair, even if both bodies sleep, empties them, and lists them in `result`. Others would
+  /// not outlive the next collision detection.
   void make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result);
 
-  /// Every object on the way that the callback does not turn down is shown to it.
+  /// Casts a ray and passes `hit` every object on the way that it does not reject.
   void cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const;
 
   FirstContacts& first_contacts();

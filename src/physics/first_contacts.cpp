@@ -70,7 +70,8 @@ bool FirstContacts::touched_before(const btPersistentManifold& manifold) const {
   return in_the_last_substep || since_an_earlier_one;
 }
 
-/// A pair with compounds has several manifolds; it is new if none of them touched before, and its deepest point counts.
+/// Reports the pair of a manifold if its contact is new. A pair with compounds has several manifolds: it is new if none
+/// of them touched before, and its deepest point counts.
 void FirstContacts::report_pair(const btPersistentManifold& manifold, btOverlappingPairCache& pairs) {
   auto* const proxy0 = const_cast<btBroadphaseProxy*>(manifold.getBody0()->getBroadphaseHandle());
   auto* const proxy1 = const_cast<btBroadphaseProxy*>(manifold.getBody1()->getBroadphaseHandle());

@@ -1,4 +1,4 @@
-// Which pairs of bodies have just come into contact, seen after collision detection and before the solver acts.
+// Finds pairs of bodies that have just come into contact, after collision detection and before the solver acts.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,32 @@ class btPersistentManifold;
 
 namespace aurasim::physics {
 
-/// Bodies are named by their user index.
+/// A first contact of two bodies, named by their user indices.
 struct FirstContact {
   int body0 = 0;
   int body1 = 0;
-  double penetration_m = 0;            ///< of the deepest point
-  double relative_speed_m_s = 0;       ///< at that point
-  btVector3 p_O = btVector3(0, 0, 0);  ///< in Bullet's frame
+  double penetration_m = 0;            ///< overlap at the deepest point
+  double relative_speed_m_s = 0;       ///< relative speed at the deepest point
+  btVector3 p_O = btVector3(0, 0, 0);  ///< the deepest point in Bullet's frame
 };
 
 /// Keeps its notes in two fields of the manifolds that Bullet does not use: m_companionIdA is the substep in which the
 /// manifold last had a point, m_companionIdB the first one of that unbroken time.
 class FirstContacts {
  public:
-  /// Call once per substep, between collision detection and solver, with all manifolds that may have a point, but those
-  /// of sleepers.
+  /// Call once per substep, between collision detection and solver, with all manifolds of awake bodies that may have a
+  /// point.
   void look(std::span<btPersistentManifold* const> manifolds, btOverlappingPairCache& pairs);
 
-  /// A contact that look() does not see: when it looks, the two have not met yet. If it sees them next time, they are
-  /// not new.
+  /// Adds a contact that begins after look() within the step (soft/ahead.h). It does not count as new again in the next
+  /// look().
   void add(const FirstContact& contact, const btBroadphasePair& pair);
 
-  /// A contact that has come with its cache from another world, or that was not shown as long as its bodies slept, is
-  /// not a new one if it is seen next time.
+  /// Marks a contact as known, so that the next look() does not report it: it came with its cache from another world,
+  /// or its bodies slept until now.
   void know(btPersistentManifold& manifold) const;
 
-  /// Since the last clear(), in order of substeps; a pair may be listed more than once.
+  /// First contacts since the last clear(), in order of substeps. A pair may be listed more than once.
   const std::vector<FirstContact>& found() const { return found_; }
   void clear() { found_.clear(); }
 
@@ -48,7 +48,7 @@ class FirstContacts {
   bool touched_before(const btPersistentManifold& manifold) const;
   void report_pair(const btPersistentManifold& manifold, btOverlappingPairCache& pairs);
 
-  std::uint32_t now_ = 2;  ///< substep; may wrap around
+  std::uint32_t now_ = 2;  ///< number of the substep; may wrap around
   std::vector<btPersistentManifold*> new_;
   std::vector<PartManifold> of_pair_;
   std::vector<FirstContact> found_;

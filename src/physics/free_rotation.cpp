@@ -16,7 +16,7 @@ struct Turning {
   core::Quat q_BB;
 };
 
-/// The flow of the kinetic energy of one axis alone: a turn about it. The tangent's series is exact enough: its last
+/// Turns about one axis: the flow of that axis's kinetic energy alone. The series of the tangent suffices: its last
 /// term is 1e-11 at kTurn.
 void turn(Turning& t, int axis, double inverse_inertia, double dt_s) {
   const double angle = t.momentum[axis] * inverse_inertia * dt_s;
@@ -57,7 +57,8 @@ Rotation rotate_freely(const Rotation& start, const core::Vec3& inertia, double 
 }
 
 bool turns_evenly(const core::Vec3& inertia) {
-  constexpr double kSame = 1e-6;  // share; inertia has been through single precision
+  // relative difference that counts as equal, because inertia was rounded to single precision
+  constexpr double kSame = 1e-6;
   return inertia.maxCoeff() - inertia.minCoeff() <= kSame * inertia.maxCoeff();
 }
 

@@ -9,7 +9,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Share of the way that is undone in a substep. From 0.2 to 0.4 piles stand alike.
+/// Share of the slip that is undone in a substep. Piles stand equally well from 0.2 to 0.4.
 constexpr btScalar kShare = btScalar(0.3);
 
 btManifoldPoint& point_of(const btSolverConstraint& contact) {
@@ -30,7 +30,7 @@ btScalar speed_of(btSolverBody& body, const btVector3& linear, const btVector3& 
          angular.dot(body.m_angularVelocity + body.m_externalTorqueImpulse + body.internalGetDeltaAngularVelocity());
 }
 
-/// Of the two surfaces along a row, with all impulses, m/s.
+/// Relative speed of the two surfaces along a row, with all impulses applied, m/s.
 btScalar speed_along(const btSolverConstraint& row, btAlignedObjectArray<btSolverBody>& bodies) {
   return speed_of(bodies[row.m_solverBodyIdA], row.m_contactNormal1, row.m_relpos1CrossNormal) +
          speed_of(bodies[row.m_solverBodyIdB], row.m_contactNormal2, row.m_relpos2CrossNormal);
@@ -38,7 +38,7 @@ btScalar speed_along(const btSolverConstraint& row, btAlignedObjectArray<btSolve
 
 }  // namespace
 
-/// The point's own directions turn with the sliding velocity.
+/// Uses its own two directions, because those of the contact point turn with the sliding velocity.
 void FrictionAnchors::pull_back(const ContactRows& rows, const btContactSolverInfo& info) {
   const btScalar per_s = kShare / info.m_timeStep;
   contacts_.resize(static_cast<std::size_t>(rows.contacts.size()));
@@ -58,7 +58,7 @@ void FrictionAnchors::measure(const ContactRows& rows, const btContactSolverInfo
   for (int i = 0; i < rows.contacts.size(); ++i) {
     Of& of = contacts_[static_cast<std::size_t>(i)];
     const btScalar limit = rows.contacts[i].m_friction * static_cast<btScalar>(rows.contacts[i].m_appliedImpulse);
-    if (!(limit > 0)) {  // nothing presses: forgotten
+    if (!(limit > 0)) {  // without pressure the slip is forgotten
       of.way.setZero();
       continue;
     }

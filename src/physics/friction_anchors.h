@@ -3,8 +3,8 @@
 //
 // A solver that stops after a few iterations leaves a little speed at every contact, always in the same direction where
 // a load leans. Bullet's friction looks at speeds only, so a pile that never sleeps walks away from under its load.
-// Bullet's own friction anchors keep the first point of contact, which stops balls that should roll; here the
-// way is counted from the speed at the contact, so that rolling adds nothing to it.
+// Bullet's own friction anchors keep the first point of contact, which stops balls that should roll. Here the way is
+// summed from the speed at the contact, so rolling adds nothing to it.
 #pragma once
 
 #include <vector>
@@ -17,32 +17,32 @@ struct btContactSolverInfo;
 
 namespace aurasim::physics {
 
-/// The rows of an island as Bullet's solver keeps them.
+/// The solver's rows of an island.
 struct ContactRows {
   btConstraintArray& contacts;
   btConstraintArray& friction;
   btAlignedObjectArray<btSolverBody>& bodies;
 };
 
-/// The way is kept in the contact points (contact_cache.h, columns 30 and 31), so it moves with a hand-off.
+/// The slip is kept in the contact points (contact_cache.h, columns 30 and 31), so a hand-off carries it.
 class FrictionAnchors {
  public:
-  /// Once the rows are made.
+  /// Adds the pull of the anchors. Call when the solver's rows are made.
   void pull_back(const ContactRows& rows, const btContactSolverInfo& info);
-  /// Once they are solved; the rows are still those of pull_back.
+  /// Measures how far contacts slid. Call when the rows are solved; they must still be those of pull_back().
   void measure(const ContactRows& rows, const btContactSolverInfo& info);
-  /// Once Bullet has written its results into the points.
+  /// Writes the slip into the contact points. Call when Bullet has written its results into them.
   void remember();
 
  private:
-  /// Of one contact: its way, and two directions across the normal that depend on nothing else.
+  /// Anchor of one contact: its slip `way`, and two directions across the normal that depend on the normal alone.
   struct Of {
     btManifoldPoint* point = nullptr;
     btVector3 first;
     btVector3 second;
     btVector3 way;
   };
-  std::vector<Of> contacts_;  ///< as ContactRows::contacts
+  std::vector<Of> contacts_;  ///< by row of ContactRows::contacts
 };
 
 }  // namespace aurasim::physics

@@ -18,7 +18,7 @@ std::size_t farthest(const Number* x, const Number* y, const Number* z, std::siz
 
 }  // namespace
 
-/// Bullet asks a shape of a type that it does not know by a virtual call.
+/// The type is one that Bullet does not know, so Bullet calls the virtual functions of this class.
 HullShape::HullShape(const btVector3* points, int count) {
   m_shapeType = CUSTOM_POLYHEDRAL_SHAPE_TYPE;
   const std::size_t filled =

@@ -1,4 +1,4 @@
-// Bullet's convex hull, whose farthest point is looked for in lanes: that is what hulls spend their time on.
+// Bullet's convex hull with a vectorised search for the farthest point, on which hulls spend most of their time.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace aurasim::physics {
 
-/// Same points, same bits as Bullet's. Not to be scaled.
+/// Gives the same bits as Bullet's hull of the same points. Must not be scaled.
 class HullShape final : public btConvexHullShape {
  public:
   HullShape(const btVector3* points, int count);
@@ -17,7 +17,7 @@ class HullShape final : public btConvexHullShape {
   const char* getName() const override { return "Hull"; }
 
  private:
-  std::array<std::vector<btScalar>, 3> coordinates_;  ///< x, y, z, filled up with the first point
+  std::array<std::vector<btScalar>, 3> coordinates_;  ///< x, y, z; padded with the first point to full lanes
 };
 
 }  // namespace aurasim::physics

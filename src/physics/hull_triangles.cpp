@@ -10,7 +10,7 @@ namespace {
 
 using core::Vec3;
 
-/// Below this share of the cube of its size a hull is flat: what Bullet computes of it is rounding.
+/// A hull with less volume than this share of its size cubed counts as flat: Bullet's result would be rounding errors.
 constexpr double kFlat = 1e-9;
 
 double size_of(const std::vector<Vec3>& points) {

@@ -1,4 +1,4 @@
-// The triangles around a convex hull: what a page draws and an exported model holds.
+// The surface of a convex hull as triangles, for the page and for exported models.
 #pragma once
 
 #include <array>

@@ -37,7 +37,7 @@ Moments moments(const core::Cylinder& s) {
   return centred(pi * s.radius * s.radius * s.height, Vec3(across, across, s.height * s.height / 12));
 }
 
-/// A cylinder and two half spheres, each with its centre of mass 3/8 r beyond the cylinder's end.
+/// Moments of a capsule: a cylinder and two half spheres, each with its centre of mass 3/8 r beyond the cylinder's end.
 Moments moments(const core::Capsule& s) {
   const double r = s.radius;
   const double half = s.height / 2;
@@ -49,7 +49,8 @@ Moments moments(const core::Capsule& s) {
   return result;
 }
 
-/// Of the tetrahedron with one corner in the origin; negative if a, b, c turn clockwise as seen from outside.
+/// Moments of the tetrahedron with corners a, b, c and the origin. Negative if a, b, c turn clockwise as seen from
+/// outside.
 Moments moments_of_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double volume = a.dot(b.cross(c)) / 6;
   const Vec3 sum = a + b + c;

@@ -1,5 +1,5 @@
-// Inertia of solid bodies of even density. Bullet's own functions take a capsule, a cylinder, a hull or a compound for
-// the box around it, which turns a long cylinder up to 1.3 times too slowly.
+// Inertia of solid bodies of even density. Bullet's own functions use the bounding box of a capsule, cylinder, hull or
+// compound, so that a long cylinder turns up to 1.3 times too slowly.
 #pragma once
 
 #include "core/scene.h"
@@ -11,7 +11,7 @@ namespace aurasim::physics {
 /// like the sphere around it. Throws std::invalid_argument for planes and triangle meshes.
 core::Vec3 inertia_diagonal(const core::Shape& shape, double mass_kg);
 
-/// Its own, or else that of mass spread evenly over its shape.
+/// Moments of inertia of a prototype, kg m^2: Prototype::inertia, or else those of mass spread evenly over its shape.
 core::Vec3 inertia_of(const core::Prototype& prototype, const core::Scene& scene);
 
 }  // namespace aurasim::physics

@@ -68,7 +68,7 @@ class Maker {
   }
 
   JointAxes& joint_;
-  double times_;  ///< the impulses of kImpulseTime_s
+  double times_;  ///< factor from impulses in kImpulseTime_s to those in a substep
 };
 
 }  // namespace
@@ -93,7 +93,7 @@ bool JointAxes::counts_turns() const {
   return is_wide || resistance.stiffness > 0 || (drive && drive->stiffness > 0);
 }
 
-/// The leader is where it will be when a substep ends, as `give` has it of the joint itself.
+/// Uses the leader's position at the end of each substep, as `give` does for the joint itself.
 ImplicitPull drive_pull_of(const JointAxes& joint, double substep_s) {
   const core::JointDrive& drive = *joint.drive;
   const double drift = substep_s * joint.lead_speed;

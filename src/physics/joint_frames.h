@@ -1,4 +1,4 @@
-// Where joints are in their bodies.
+// The frames of joints in their bodies.
 #pragma once
 
 #include "core/joint_motion.h"
@@ -6,11 +6,11 @@
 
 namespace aurasim::physics {
 
-/// The impulses of motors and those that break joints are those of so long a time.
+/// Impulses of motors and of breaking joints are given for this time.
 inline constexpr double kImpulseTime_s = 1.0 / 240;
 
-/// Where the joint is in a's frame and in b's; without b, in the world's frame. Throws std::invalid_argument if the
-/// scene does not have the joint's bodies, or if both are one body.
+/// The pose of the joint's frame J in a's frame and in b's; without b, in the world's frame. Throws
+/// std::invalid_argument if the scene does not have the joint's bodies, or if both are one body.
 core::JointFrame frames_of(const core::JointSpec& joint, const core::Scene& scene);
 
 }  // namespace aurasim::physics

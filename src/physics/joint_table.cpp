@@ -14,16 +14,17 @@
 namespace aurasim::physics {
 namespace {
 
-// Columns of a joint's values: whether it is broken, and the impulse of its last solve (N s or N m s), which Bullet
-// reports but does not start from. If they are not 0, or what comes after them is there: how often a hinge has turned,
-// and the last impulse of its drive. If it is not the scene that says it: the drive; max_effort is -1 if infinite.
+// Columns of a joint's values. Always: whether it is broken, and the impulse of its last solve (N s or N m s), which
+// Bullet reports but does not start from. Next, if not 0 or if later columns follow: the turns of a hinge, and the last
+// impulse of its drive. Last, if the drive is not that of the scene: the drive; an infinite max_effort is written as
+// -1.
 constexpr std::size_t kBroken = 0;
 constexpr std::size_t kImpulse = 1;
 constexpr std::size_t kTurns = 2;
 constexpr std::size_t kDriveImpulse = 3;
 constexpr std::size_t kDrive = 4;
 constexpr std::size_t kFewValues = 2, kMoreValues = 4, kAllValues = 10;
-constexpr double kLargest = 1e12;  ///< of a drive
+constexpr double kLargest = 1e12;  ///< largest number of a drive
 
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 
@@ -157,28 +158,31 @@ void JointTable::disconnect(const core::ClusterState& leaving, BodyTable& bodies
       const core::JointSpec& joint = scene_->joints[core::value_of(id)];
       Entry& entry = entries_[core::value_of(id)];
       if (entry.constraint) disconnect(entry, world);
-      if (!stays(joint.a) && !(joint.b && stays(*joint.b))) forget(id);  // for others to know
+      // its bodies are gone; the hand-off carries its state
+      if (!stays(joint.a) && !(joint.b && stays(*joint.b))) forget(id);
     }
   }
   std::erase_if(connected_, [this](core::JointId id) { return !entries_[core::value_of(id)].constraint; });
 }
 
-/// A hinge is where its angle says, give or take whole turns: in the turn that is nearest to where its speed takes it.
+/// Measures a joint. The angle of a hinge is known up to whole turns: the turn nearest to where its speed takes it is
+/// assumed.
 void JointTable::measure_again(Entry& entry, double since_s) {
   JointAxes& axes = entry.axes;
   const JointMotion now = measure(axes, entry.constraint->getRigidBodyA(), entry.constraint->getRigidBodyB());
-  if (!std::isfinite(now.position) || !std::isfinite(now.speed)) return;  // of what is breaking down
+  if (!std::isfinite(now.position) || !std::isfinite(now.speed)) return;  // a body of it is breaking down
   if (axes.own == 5u && since_s > 0) {
     axes.turns_rad = kTurn_rad * std::round((axes.position + since_s * now.speed - now.position) / kTurn_rad);
   }
   axes.position = now.position + axes.turns_rad;
   entry.speed = now.speed;
-  if (is_soft_) return;  // which has told
+  if (is_soft_) return;  // the soft step has set the impulse
   const bool is_pushed = axes.drive ? axes.is_driven() : axes.has_motor;
   axes.drive_impulse = is_pushed ? static_cast<double>(entry.constraint->internalGetAppliedImpulse()) : 0;
 }
 
-/// Only bodies and joints that go together wherever they go decide about it.
+/// Updates the targets of coupled joints. They depend only on bodies and joints of one cluster, so hand-offs change no
+/// bit.
 void JointTable::follow() {
   for (const Follower& follower : followers_) {
     Entry& entry = entries_[core::value_of(follower.joint)];
@@ -194,7 +198,7 @@ void JointTable::follow() {
     const Entry& leader = entries_[core::value_of(follower.coupling.leader)];
     const btTypedConstraint& joint = *leader.constraint;
     const JointMotion now = measure(leader.axes, joint.getRigidBodyA(), joint.getRigidBodyB());
-    if (!std::isfinite(now.position) || !std::isfinite(now.speed)) continue;  // of what is breaking down
+    if (!std::isfinite(now.position) || !std::isfinite(now.speed)) continue;  // a body of it is breaking down
     axes.lead = follower.coupling.ratio * (now.position + leader.axes.turns_rad);
     axes.lead_speed = follower.coupling.ratio * now.speed;
   }

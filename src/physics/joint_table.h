@@ -1,5 +1,5 @@
-// The joints of one world. A joint is in Bullet while all its bodies are here and it is whole; what is known of it
-// travels with each of its bodies.
+// The joints of one world. A joint is in Bullet's world while all its bodies are here and it is not broken. A hand-off
+// of each of its bodies carries its state.
 #pragma once
 
 #include <cstdint>
@@ -24,37 +24,37 @@ using core::JointMotion;
 
 class JointTable {
  public:
-  /// The scene outlives the table; so do the body table and the world that its functions are given, always the same.
+  /// The scene has to outlive the table. All calls have to pass the same body table and the same world.
   JointTable(const core::Scene& scene, const Settings& settings);
 
-  /// What a cluster that has just come says about its joints. Before connect().
+  /// Takes the joint states of a cluster that has just joined. Call before connect().
   void restore(const core::ClusterState& cluster, const BodyTable& bodies);
-  /// Puts the joints of a body in, as far as its other body is here.
+  /// Inserts the joints of a body whose other body is here.
   void connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world);
-  /// Takes the joints of bodies out that are about to leave.
+  /// Removes the joints of bodies that are about to leave.
   void disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world);
-  /// Before each look: joints that follow others learn where those are.
+  /// Updates coupled joints with the positions of their leaders. Call before each look for contacts.
   void follow();
-  /// After it: joints that broke in it are gone for good, and hinges are seen to turn.
+  /// Call after a look's substeps: removes joints that broke in them for good, and counts the turns of hinges.
   void finish_look(DynamicsWorld& world);
-  /// While there are no bodies: those that come say what is known of their joints.
+  /// Resets all joints. Only while there are no bodies: clusters that join bring the states of their joints.
   void forget();
 
-  /// From the next step on, instead of what has driven the joint so far, for as long as it is not broken; it goes with
-  /// the bodies wherever they go. For hinges and sliders of bodies that are here; of other joints nothing is done.
-  /// Numbers beyond 1e12 either way count as that, no number as 0; max_effort as infinite.
+  /// Replaces the drive of a hinge or slider from the next step on, until it breaks. Hand-offs of its bodies carry the
+  /// drive. Does nothing for other joints and for joints without a body here. Numbers are clamped to +-1e12, and NaN
+  /// counts as 0. A max_effort that is NaN, negative or beyond 1e12 counts as infinite.
   void drive(core::JointId id, const core::JointDrive& drive);
-  /// Likewise: as the scene says again.
+  /// Gives the joint its drive of the scene back, from the next step on.
   void let_go(core::JointId id);
-  /// Of a hinge or slider that holds bodies here. How often a hinge has turned is counted from the start on; one that
-  /// turns by more than half a turn in a step beyond what its speed says is seen wrongly.
+  /// Motion of a hinge or slider that holds bodies here; nothing for others. Whole turns of a hinge are counted from
+  /// the start. The count is wrong if it turns by more than half a turn per step beyond what its speed predicts.
   std::optional<JointMotion> motion(core::JointId id) const;
 
-  /// Adds the joints of the cluster's bodies to it, in order of id. Returns how many of them, being whole, also hold a
-  /// body that is here and not in the cluster.
+  /// Appends the states of the joints of the cluster's bodies to it, in order of id. Returns the number of unbroken
+  /// joints that also hold a body here outside the cluster.
   std::uint64_t append_to(core::ClusterState& cluster) const;
 
-  /// Pairs of bodies that are held together here, by place in the table, in order.
+  /// Lists the pairs of bodies that joints hold together here, by place in the table, in order.
   void list_pairs(const BodyTable& bodies, std::vector<core::Contact>& pairs) const;
 
  private:
@@ -62,14 +62,14 @@ class JointTable {
     JointAxes axes;
     std::unique_ptr<btTypedConstraint> constraint;
     bool broken = false;
-    bool driven_anew = false;  ///< not by what the scene says
-    double speed = 0;          ///< of a hinge or slider, as the bodies are
+    bool driven_anew = false;  ///< its drive is not that of the scene
+    double speed = 0;          ///< present speed of a hinge or slider
   };
 
   struct Follower {
     core::JointId joint{};
     core::JointCoupling coupling;
-    std::vector<core::JointId> way;  ///< to its leader, which is the last
+    std::vector<core::JointId> way;  ///< joints from this one to its leader, which is the last
   };
 
   const std::vector<core::JointId>& joints_of(core::BodyId body) const;
@@ -84,11 +84,11 @@ class JointTable {
   double substep_s_;
   double look_s_;
   bool is_soft_;
-  std::vector<Entry> entries_;                                              ///< as Scene::joints
-  std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< asked by id only
+  std::vector<Entry> entries_;                                              ///< by joint of Scene::joints
+  std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< only looked up by id, never iterated
   std::vector<core::JointId> connected_;                                    ///< ascending
   std::vector<Follower> followers_;                                         ///< ascending
-  std::unique_ptr<btRigidBody> ground_;  ///< what joints to the world hold on to; in no world
+  std::unique_ptr<btRigidBody> ground_;  ///< second body of joints to the world; in no Bullet world
 };
 
 }  // namespace aurasim::physics

@@ -12,7 +12,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Bullet's bound.
+/// Clamps a combined friction to the bounds that Bullet uses.
 btScalar as_bullet_bounds(btScalar friction) { return std::clamp(friction, btScalar(-10), btScalar(10)); }
 
 const PartSurfaces* surfaces_of(const btCollisionObject& object) {
@@ -20,7 +20,7 @@ const PartSurfaces* surfaces_of(const btCollisionObject& object) {
   return shape.isCompound() ? static_cast<const PartSurfaces*>(shape.getUserPointer()) : nullptr;
 }
 
-/// Bullet asks for every point that it adds or finds again; the indices are those of compounds' parts.
+/// Bullet's callback for every point that it adds or finds again. The last index of each object is that of its part.
 bool tell_surface(btManifoldPoint& point, const btCollisionObjectWrapper* a, int /*part_id*/, int part_of_a,
                   const btCollisionObjectWrapper* b, int /*part_id*/, int part_of_b) {
   const Surface both =
@@ -29,7 +29,7 @@ bool tell_surface(btManifoldPoint& point, const btCollisionObjectWrapper* a, int
   point.m_combinedRollingFriction = both.rolling_friction;
   point.m_combinedSpinningFriction = both.spinning_friction;
   point.m_combinedRestitution = both.restitution;
-  return true;  // Bullet ignores it
+  return true;  // Bullet ignores the result
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ std::unique_ptr<const PartSurfaces> part_surfaces_of(const core::Compound& compo
 }
 
 void set_part_surfaces(btCompoundShape& shape, const PartSurfaces* surfaces) {
-  shape.setUserPointer(const_cast<PartSurfaces*>(surfaces));  // read only: surfaces_of()
+  shape.setUserPointer(const_cast<PartSurfaces*>(surfaces));  // only read, by surfaces_of()
 }
 
 void use_part_surfaces(btCollisionObject& object) {

@@ -1,5 +1,5 @@
-// Surfaces of bodies of which parts have materials of their own: a rubber foot of a steel leg. Bullet combines those of
-// two whole bodies; where a new point touches such a body, it is told what the two parts have.
+// Surfaces of bodies whose parts have materials of their own, such as a rubber foot of a steel leg. Bullet combines the
+// surfaces of two whole bodies. Here a new contact point of such a body gets the surfaces of the two parts.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class btCompoundShape;
 
 namespace aurasim::physics {
 
-/// Of a material, or of a point at which two of them touch.
+/// Surface properties of a material, or of a contact point of two materials.
 struct Surface {
   btScalar friction = 0;
   btScalar rolling_friction = 0;   ///< m
@@ -25,22 +25,23 @@ struct Surface {
 
 Surface surface_of(const core::Material& material);
 
-/// As Bullet combines those of two whole bodies (btManifoldResult).
+/// Combines two surfaces as Bullet does (btManifoldResult).
 Surface combined(const Surface& a, const Surface& b);
 
-/// By part of a compound; nothing: the body's.
+/// By part of a compound; nothing: the part has the surface of the body.
 using PartSurfaces = std::vector<std::optional<Surface>>;
 
-/// Null: no part has a material of its own.
+/// The surfaces of a compound's parts; null if no part has a material of its own.
 std::unique_ptr<const PartSurfaces> part_surfaces_of(const core::Compound& compound, const core::Scene& scene);
 
-/// `surfaces` outlive the shape. Null: it has none.
+/// Attaches part surfaces to a shape; null for none. `surfaces` have to outlive the shape.
 void set_part_surfaces(btCompoundShape& shape, const PartSurfaces* surfaces);
 
-/// For objects of which parts have surfaces of their own: its new points of contact have them from now on.
+/// Makes new contact points of the object use its parts' surfaces.
 void use_part_surfaces(btCollisionObject& object);
 
-/// `part`: of its compound; if it has none, or the part none of its own, the object's.
+/// Surface of part `part` of the object's compound. That of the object if it is no compound, or if the part has no
+/// surface of its own.
 Surface surface_at(const btCollisionObject& object, int part);
 
 }  // namespace aurasim::physics

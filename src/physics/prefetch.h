@@ -1,5 +1,5 @@
-// Bodies, pairs and contacts lie all over the memory, and the loops over them mostly waited for it. Now they ask for
-// what comes next while they work on what came before.
+// Prefetches bodies, pairs and contacts, which are scattered in memory: loops over them mostly waited for it. A loop
+// now requests later objects while it works on the present one.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@
 
 namespace aurasim::physics {
 
-/// So many objects ahead; their parts half as many. 8 to 16 do alike.
+/// Objects are prefetched so many iterations ahead, their parts half as many. 8 to 16 are equally fast.
 inline constexpr int kPrefetchDistance = 16;
 
 using core::prefetch;
 
-/// What a manifold is between and how many points it has: all of it but the points.
+/// Prefetches a manifold except its points: its bodies and the number of points.
 inline void prefetch_head(const btPersistentManifold& manifold) {
   const auto* const end = reinterpret_cast<const char*>(&manifold + 1);
   const auto* const points_end = reinterpret_cast<const char*>(&manifold.getContactPoint(0) + MANIFOLD_CACHE_SIZE);
   prefetch(points_end, static_cast<std::size_t>(end - points_end));
 }
 
-/// Of a manifold whose head is here.
+/// Prefetches the points of a manifold whose head has been prefetched.
 inline void prefetch_points(const btPersistentManifold& manifold) {
   const int count = manifold.getNumContacts();
   if (count > 0) prefetch(&manifold.getContactPoint(0), static_cast<std::size_t>(count) * sizeof(btManifoldPoint));
@@ -40,25 +40,26 @@ inline void prefetch_pair(const btBroadphasePair& pair) {
   if (pair.m_algorithm != nullptr) prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm));
 }
 
-/// Where a body is and how it moves, and what resists.
+/// Prefetches pose, velocities and inertia of a body.
 inline void prefetch_motion(const btRigidBody& body) {
   prefetch(&body.getWorldTransform(), sizeof(btTransform));
-  prefetch(&body.getInvInertiaTensorWorld(), sizeof(btMatrix3x3) + 3 * sizeof(btVector3));  // the speeds come next
+  // the velocities follow in memory
+  prefetch(&body.getInvInertiaTensorWorld(), sizeof(btMatrix3x3) + 3 * sizeof(btVector3));
 }
 
-/// What an object is, whether it sleeps, and its user indices.
+/// Prefetches type, activation state and user indices of an object.
 inline void prefetch_flags(const btCollisionObject& object) {
-  constexpr std::size_t kFlags = 240, kSome = 128;  // so far before the end
+  constexpr std::size_t kFlags = 240, kSome = 128;  // octets before the end of the object, and their number
   prefetch(reinterpret_cast<const char*>(&object + 1) - kFlags, kSome);
 }
 
-/// With where it is; not what Bullet keeps for frames in between.
+/// Prefetches pose and flags of an object, without Bullet's fields for interpolation.
 inline void prefetch_object(const btCollisionObject& object) {
   prefetch(&object.getWorldTransform(), sizeof(btTransform));
   prefetch_flags(object);
 }
 
-/// Of a pair that is here itself.
+/// Prefetches objects and manifolds of a pair that has been prefetched itself.
 inline void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
   prefetch_object(*static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject));
   prefetch_object(*static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject));
@@ -68,7 +69,7 @@ inline void prefetch_parts(const btBroadphasePair& pair, btManifoldArray& manifo
   for (int i = 0; i < manifolds.size(); ++i) prefetch_head(*manifolds[i]);
 }
 
-/// Calls `visit(manifold)` for each that has a point.
+/// Calls `visit(manifold)` for each manifold that has a point.
 template <class Visit>
 void for_each_touching(std::span<btPersistentManifold* const> manifolds, Visit&& visit) {
   for (std::size_t i = 0; i < manifolds.size(); ++i) {

@@ -14,22 +14,23 @@
 namespace aurasim::physics {
 namespace {
 
-/// What a ray cannot meet is told by spheres, which are wider than they need be by this.
+/// Bounding spheres, which exclude targets that a ray cannot meet, are enlarged by this.
 constexpr double kSlack_m = 0.01;
 
-/// States for which it is remembered where statics were that orders have moved since.
+/// Past poses of statics that orders have moved are remembered for so many states.
 constexpr core::Step kRemembered = 600;
 
-/// Something on the way, with the sensor's origin as Bullet's.
+/// An object that rays may hit. The sensor's origin is Bullet's origin.
 struct Target {
   core::ObjectRef ref = 0;
   const btCollisionShape* shape = nullptr;
   btTransform pose;
-  core::Vec3 p = core::Vec3::Zero();  ///< of its origin
-  double radius_m = 0;                ///< around its origin; may be infinite
+  core::Vec3 p = core::Vec3::Zero();  ///< position of its origin
+  double radius_m = 0;                ///< bounding radius around its origin; may be infinite
 };
 
-/// Bullet leaves out what is as far as the nearest so far; here the lower reference is to win.
+/// Keeps the nearest hit. Of two at the same distance the lower ObjectRef wins; Bullet's own callback would keep the
+/// first.
 class Nearest final : public btCollisionWorld::RayResultCallback {
  public:
   core::ObjectRef testing = 0;
@@ -51,7 +52,7 @@ class Nearest final : public btCollisionWorld::RayResultCallback {
   }
 };
 
-/// Of a ray from the origin in a direction: may it meet the sphere before it has gone so far?
+/// May a ray from the origin in `direction` meet the target's bounding sphere within `farthest_m`?
 bool may_meet(const Target& target, const core::Vec3& direction, double farthest_m) {
   if (!std::isfinite(target.radius_m)) return true;
   const double radius = target.radius_m + kSlack_m;
@@ -83,7 +84,7 @@ class RayScene::Impl {
   double step_s;
   ShapeSet shapes;
   Timeline timeline;
-  std::vector<double> radii;  ///< as Scene::shapes
+  std::vector<double> radii;  ///< by shape of Scene::shapes
   double largest = 0;
 };
 
@@ -127,7 +128,7 @@ std::vector<Target> RayScene::Impl::targets(core::Step step, std::span<const Pla
 std::vector<RayHit> RayScene::cast(core::Step step, std::span<const PlacedBody> bodies, const RayFan& fan) const {
   const std::vector<Target> targets = impl_->targets(step, bodies, fan);
   const core::Quat q_WS = fan.X_WS.q_WB.normalized();
-  btCollisionObject object;  // Bullet's functions want one
+  btCollisionObject object;  // dummy that Bullet's functions require
   std::vector<RayHit> hits;
   hits.reserve(fan.directions.size());
   for (const core::Vec3& direction_S : fan.directions) {

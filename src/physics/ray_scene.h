@@ -1,5 +1,5 @@
-// A scene to cast rays at, for observers: its statics, and bodies wherever they are said to be. What a ray meets hangs
-// on these alone, not on who hosts whom.
+// A scene for ray casts by observers: its statics, and bodies at given poses. Hits depend on these alone, not on which
+// node hosts a body.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,12 @@
 
 namespace aurasim::physics {
 
-/// Rays from one point.
+/// Rays of a sensor, all from one point.
 struct RayFan {
-  core::Pose X_WS;                         ///< of the sensor's frame S
-  std::span<const core::Vec3> directions;  ///< in S, of length 1
+  core::Pose X_WS;                         ///< pose of the sensor's frame S
+  std::span<const core::Vec3> directions;  ///< unit vectors in S
   double range_m = 0;
-  std::optional<core::BodyId> carrier;  ///< which its rays go through
+  std::optional<core::BodyId> carrier;  ///< the body that carries the sensor; its rays pass through it
 };
 
 struct PlacedBody {
@@ -31,20 +31,20 @@ struct PlacedBody {
 
 class RayScene {
  public:
-  /// The scene outlives it, and may grow; its states are step_s apart. Throws std::invalid_argument for shapes that
-  /// Bullet cannot use.
+  /// The scene has to outlive the RayScene and may grow. States are step_s apart. Throws std::invalid_argument for
+  /// shapes that Bullet cannot use.
   RayScene(const core::Scene& scene, double step_s);
   ~RayScene();
 
-  /// An order about a static, or one that has defined a shape, prototype or static in the scene before. Throws
-  /// likewise.
+  /// Applies an order about a static, or one that has appended a shape, prototype or static to the scene. Throws
+  /// std::invalid_argument for shapes that Bullet cannot use.
   void add(const core::Order& order);
 
-  /// The nearest body or static on each way, in state `step`. Of two at the same distance the one with the lower
-  /// reference. `bodies`: all that are within the range; those of unknown prototypes are left out.
+  /// The nearest hit of each ray of `fan` in state `step`. Of two objects at the same distance the one with the lower
+  /// ObjectRef. `bodies` has to hold all bodies within the range; those of unknown prototypes are ignored.
   std::vector<RayHit> cast(core::Step step, std::span<const PlacedBody> bodies, const RayFan& fan) const;
 
-  /// Of the largest body that it knows, m.
+  /// Bounding radius of the largest prototype known, m.
   double largest_radius_m() const;
 
  private:

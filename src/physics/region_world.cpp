@@ -23,7 +23,7 @@ class RegionWorld::Impl {
   std::shared_ptr<ShapeSet> shapes;
   Simulation simulation;
   ScratchWorld scratch;
-  ScratchWorld ahead;              ///< of clusters that have not joined: what happens there is reported when they do
+  ScratchWorld ahead;  ///< for foresee(): clusters that have not joined, whose events are reported when they join
   std::vector<Collision> made_up;  ///< first contacts of clusters that caught up since the last step
   std::vector<Collision> collisions;
 };

@@ -1,4 +1,4 @@
-// What a world has to say besides the state of its bodies.
+// Results of a world besides the state of its bodies.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,18 @@ struct Collision {
   core::BodyId a{};     ///< a < b
   core::BodyId b{};
   double penetration_m = 0;       ///< positive: the shapes overlap
-  double relative_speed_m_s = 0;  ///< of the two bodies at the contact point, before the solver
+  double relative_speed_m_s = 0;  ///< relative speed at the contact point, before the solver acts
   core::Vec3 p_W = core::Vec3::Zero();
 };
 
-/// A body that was taken out: state `step` is the first without it.
+/// A body that was removed from the world; `step` is the first state without it.
 struct Removal {
   core::Step step = 0;
   core::BodyId body{};
-  std::string fault;  ///< what physics has made of it (core/limits.h); empty: an order took it out
+  std::string fault;  ///< how it broke down (core/limits.h); empty: an order removed it
 };
 
-/// A request that a body here has not obeyed.
+/// A request that was not executed on a body here.
 struct Declined {
   std::uint64_t request = 0;
   std::string why;
@@ -45,14 +45,14 @@ struct RayHit {
   double distance_m = 0;
 };
 
-/// What has pressed on what in a state that was made up in a scratch world.
+/// Contact impulses in a state that was made up in a scratch world.
 struct MadeUpContacts {
   core::Step step = 0;
   std::vector<core::ContactImpulse> contacts;  ///< ascending (a, b)
 };
 
-/// Tells a listener about states that were made up in a scratch world (docs/design.md, "The same bits"):
-/// the records of the cluster's bodies in state `step`, in ascending order of id.
+/// Receives each state that a scratch world made up (docs/design.md, "The same bits"). `bodies`: the records of the
+/// cluster's bodies in state `step`, in ascending order of id.
 using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
 
 }  // namespace aurasim::physics

@@ -1,4 +1,4 @@
-// Where bodies that arrive late make up the steps that they have missed.
+// A world in which clusters that arrive late make up the states that they have missed.
 #pragma once
 
 #include <memory>
@@ -10,18 +10,18 @@
 
 namespace aurasim::physics {
 
-/// Empty between two uses; made when it is first needed.
+/// It is empty between two uses, and its Simulation is created at the first use.
 class ScratchWorld {
  public:
   ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
                const Timeline& timeline);
 
-  /// The cluster, whose state is that of step `from`, in the state of step `to`. Contacts that begin on the way are
-  /// appended to `collisions`.
+  /// Simulates the cluster from state `from` to state `to` and returns it. Calls `caught_up` for each state. First
+  /// contacts on the way are appended to `collisions`.
   core::ClusterState catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                               const CatchUpListener& caught_up, std::vector<Collision>& collisions);
 
-  /// In states that are made up from now on.
+  /// Switches the sums of contact impulses on or off for states made up from now on.
   void watch_contacts(bool wanted) { watches_contacts_ = wanted; }
   std::vector<MadeUpContacts> take_contacts() { return std::exchange(contacts_, {}); }
 

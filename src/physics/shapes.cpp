@@ -30,7 +30,8 @@ std::unique_ptr<HullShape> exact_hull(const core::ConvexHull& shape, double marg
   return hull;
 }
 
-/// Bullet puts a hull's margin outside, so the faces are moved inwards by as much first.
+/// Makes a hull with its margin inside. Bullet puts the margin outside, so the faces are first moved inwards by as
+/// much.
 std::unique_ptr<HullShape> shrunken_hull(const core::ConvexHull& shape) {
   constexpr double kMargin = 0.04;             // m, Bullet's default
   constexpr double kShareOfInnerRadius = 0.1;  // as Bullet's safe margin of boxes
@@ -55,7 +56,8 @@ std::unique_ptr<btConvexShape> with_margin(std::unique_ptr<Rounded> shape, Margi
   return shape;
 }
 
-/// Spheres and capsules are a point and a segment with a margin: exact either way.
+/// Makes convex shapes. Bullet's spheres and capsules are a point and a segment with a margin, so they are exact with
+/// either Margin.
 struct MakeConvex {
   Margin margin;
 
@@ -93,7 +95,7 @@ std::unique_ptr<btConvexShape> make_convex(const core::ConvexShape& shape, Margi
   return std::visit(MakeConvex{margin}, shape);
 }
 
-/// A shape after what it points at, so that it dies first.
+/// A shape and what it points at. The shape is the last member, so that it is destroyed first.
 struct ShapeSet::Built {
   std::unique_ptr<btStridingMeshInterface> mesh;
   std::vector<std::unique_ptr<btConvexShape>> parts;
@@ -113,8 +115,8 @@ struct ShapeSet::Built::Make {
     return built;
   }
 
-  /// Without Bullet's tree over the parts: it culls by other boxes than those by which Bullet drops a part's contacts,
-  /// so a part's contacts would depend on when the pair met. That is, on hand-offs.
+  /// Built without Bullet's tree over the parts. The tree culls by other boxes than those by which Bullet drops a
+  /// part's contacts, so contacts would depend on when the pair met, and so on hand-offs.
   Built operator()(const core::Compound& s) const {
     Built built;
     auto compound =
@@ -129,7 +131,7 @@ struct ShapeSet::Built::Make {
     return built;
   }
 
-  /// A mesh has nothing inside to round, so its margin would lie on top: bodies would hover.
+  /// Built without margin: a mesh has no inside, so the margin would lie on top and bodies would hover.
   Built operator()(const core::TriangleMesh& s) const {
     if (s.triangles.empty()) throw std::invalid_argument("a triangle mesh without triangles");
     Built built;

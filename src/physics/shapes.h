@@ -1,4 +1,4 @@
-// The scene's shapes as Bullet's. Bodies and statics share them; they never change.
+// The scene's shapes as Bullet shapes. Bodies and statics share them, and they never change.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ class btStridingMeshInterface;
 
 namespace aurasim::physics {
 
-/// Bullet rounds shapes by a margin, so that it seldom has to deal with shapes that really overlap.
+/// Bullet's collision margin. Bullet rounds shapes by it, so that it seldom has to handle shapes that really overlap.
 enum class Margin {
-  kInside,  ///< the surface stays where the scene says, edges are rounded; for simulating
-  kNone,    ///< the shape as it is; for measuring
+  kInside,  ///< the surface is that of the scene with rounded edges; for simulating
+  kNone,    ///< the exact shape; for measuring
 };
 
 std::unique_ptr<btConvexShape> make_convex(const core::ConvexShape& shape, Margin margin);
@@ -26,7 +26,7 @@ class ShapeSet {
   /// Throws std::invalid_argument if a body's prototype has a shape that cannot move, or a mesh or hull is empty.
   explicit ShapeSet(const core::Scene& scene);
   ~ShapeSet();
-  /// What the scene has got since. As the constructor; with nothing done if it throws.
+  /// Adds shapes and prototypes that were appended to the scene. Throws like the constructor, with nothing done.
   void extend(const core::Scene& scene);
 
   btCollisionShape* shape(std::uint32_t index) const;
@@ -36,8 +36,8 @@ class ShapeSet {
  private:
   struct Built;
 
-  std::vector<Built> shapes_;         ///< as Scene::shapes
-  std::vector<core::Vec3> inertias_;  ///< as Scene::prototypes
+  std::vector<Built> shapes_;         ///< by shape of Scene::shapes
+  std::vector<core::Vec3> inertias_;  ///< by prototype of Scene::prototypes
 };
 
 }  // namespace aurasim::physics

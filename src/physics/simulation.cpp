@@ -20,7 +20,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Half of the shortest side of the box around the shape, m: Bullet sweeps a ball that fits into it.
+/// Half of the shortest side of the shape's bounding box, m: radius of the ball that Bullet sweeps for the body.
 btScalar half_thickness(const btCollisionShape& shape) {
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);
@@ -57,7 +57,7 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
 
 Simulation::~Simulation() = default;
 
-/// Statics come first, then bodies by id. There is room for statics that come later: ranks never change.
+/// Rank of a body: statics come first, then bodies by id. Ranks never change, so there is room for later statics.
 int Simulation::rank_of(core::BodyId id) const {
   const auto room = static_cast<std::uint64_t>(std::numeric_limits<int>::max()) - kRoomForStatics - 1;
   if (core::value_of(id) > room) {
@@ -130,7 +130,7 @@ void Simulation::join(const core::ClusterState& cluster) {
   restore_contacts(cluster);
 }
 
-/// Null for what is not here (any more).
+/// The body or static of a reference; null if it is not here.
 btRigidBody* Simulation::find_object(core::ObjectRef ref) {
   if (ref < 0) {
     const auto place = static_cast<std::size_t>(-1 - ref);
@@ -146,7 +146,8 @@ core::ObjectRef Simulation::ref_of(const btCollisionObject& object) const {
   return core::ref_of(table_[static_cast<std::size_t>(index)].id);
 }
 
-/// Two compounds may have manifolds in both orders, so records are grouped by pair first.
+/// Restores the contact caches of a cluster. Two compounds may have manifolds in both orders of the bodies, so records
+/// are grouped by pair first.
 void Simulation::restore_contacts(const core::ClusterState& cluster) {
   std::vector<std::uint32_t> order(cluster.manifolds.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -218,7 +219,7 @@ void Simulation::step() {
 void Simulation::collect_collisions() {
   collisions_.clear();
   for (const FirstContact& found : world_.first_contacts().found()) {
-    if (!std::isfinite(found.penetration_m + found.relative_speed_m_s)) continue;  // of what is breaking down
+    if (!std::isfinite(found.penetration_m + found.relative_speed_m_s)) continue;  // one of the bodies is breaking down
     const auto [a, b] = std::minmax(found.body0, found.body1);
     collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
                            found.penetration_m, found.relative_speed_m_s, from_bullet(found.p_O)});
@@ -259,13 +260,14 @@ const core::Snapshot& Simulation::snapshot() {
   return snapshot_;
 }
 
-/// Sorted by counting: the manifolds come in no order, and there are several for each body.
+/// Lists the contacts of the snapshot in order. Uses a counting sort, because manifolds come in no order and each body
+/// has several.
 void Simulation::list_contacts() {
   unsorted_contacts_.clear();
   contacts_before_.assign(table_.size() + 1, 0);
   for_each_touching(world_.manifolds(), [this](const btPersistentManifold& manifold) {
     const auto [a, b] = std::minmax({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex()});
-    if (is_static(a)) return;  // points are never farther than kContactMargin
+    if (is_static(a)) return;  // no test of distance: gaps of points never exceed kContactMargin
     unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     ++contacts_before_[static_cast<std::size_t>(a) + 1];
   });
@@ -275,7 +277,8 @@ void Simulation::list_contacts() {
   contacts.resize(unsorted_contacts_.size());
   for (const core::Contact& contact : unsorted_contacts_) contacts[contacts_before_[contact.a]++] = contact;
   std::size_t first = 0;
-  for (std::size_t a = 0; a < table_.size(); ++a) {  // each has by now grown to the end of its body's contacts
+  // each entry of contacts_before_ is now the end of its body's contacts
+  for (std::size_t a = 0; a < table_.size(); ++a) {
     const auto of_body = std::span(contacts).subspan(first, contacts_before_[a] - first);
     std::sort(of_body.begin(), of_body.end(), [](const auto& x, const auto& y) { return x.b < y.b; });
     first = contacts_before_[a];

@@ -1,4 +1,4 @@
-// Bodies in a Bullet world, as records in and out: what the world of a region and the scratch world have in common.
+// Simulates bodies in a Bullet world; records go in and out. Shared by the world of a region and the scratch world.
 #pragma once
 
 #include <cmath>
@@ -24,20 +24,20 @@
 
 namespace aurasim::physics {
 
-/// The functions mean what those of the same name mean in RegionWorld.
+/// Functions with the same name as in RegionWorld mean the same.
 class Simulation {
  public:
-  /// Scene and timeline outlive the simulation; both may grow.
+  /// `scene` and `timeline` have to outlive the simulation; both may grow.
   Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
              const Timeline& timeline);
   ~Simulation();
 
   core::Step step_number() const { return step_; }
-  /// Only while there are no bodies.
+  /// Sets the number of the present state. Only while there are no bodies.
   void start_at(core::Step step);
 
   void add(std::span<const core::BodyRecord> bodies);
-  /// As add, but with contacts. The cluster's state is that of step_number().
+  /// Like add(), but with the contact cache and joints. The cluster has to be in state step_number().
   void join(const core::ClusterState& cluster);
   core::ClusterState release(std::span<const core::BodyId> bodies);
   std::vector<core::ClusterState> release(std::span<const std::span<const core::BodyId>> clusters);
@@ -54,17 +54,17 @@ class Simulation {
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
   void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
-  /// Of the last step.
+  /// Contact impulses of the last step, if watched.
   const std::vector<core::ContactImpulse>& contact_impulses() const { return contact_impulses_; }
 
   std::vector<Removal> take_removed() { return std::exchange(removed_, {}); }
   std::vector<std::uint64_t> take_applied() { return std::exchange(applied_, {}); }
   std::vector<Declined> take_declined() { return std::exchange(declined_, {}); }
   std::uint64_t take_unbearable() { return std::exchange(unbearable_, 0); }
-  /// As RegionWorld's.
+  /// See RegionWorld::new_setpoints().
   const std::vector<core::BodySetpoint>& new_setpoints() const { return new_setpoints_; }
 
-  /// The nearest body or static on the way from `from_W` to `to_W`.
+  /// The nearest body or static on the segment from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
 
  private:
@@ -81,7 +81,7 @@ class Simulation {
   void note_moving_statics();
   void place_moving_statics();
   void start_moving_statics();
-  /// By a static that moves.
+  /// A push that a moving static may give.
   struct Shove {
     Bounds where;
     double speed_m_s;
@@ -94,9 +94,9 @@ class Simulation {
   void push();
   void stop_pushing();
   std::vector<double> coming_pushes() const;
-  /// m. Of a hull it is looked for.
+  /// Bounding radius of a body's shape, m. Expensive for hulls: all points are searched.
   double bounding_radius(const HostedBody& body) const;
-  /// States for which others go by what they are told now.
+  /// Number of states for which other nodes act upon the auras of the present state.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
@@ -116,12 +116,12 @@ class Simulation {
   Settings settings_;
   std::shared_ptr<const ShapeSet> shapes_;
   const Timeline& timeline_;
-  std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< as Scene::statics
-  std::vector<bool> static_is_in_;                     ///< the world, as Scene::statics
+  std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< by static of Scene::statics
+  std::vector<bool> static_is_in_;                     ///< by static of Scene::statics: it is in the Bullet world
   struct MovingStatic {
     std::uint32_t index;
     std::unique_ptr<Belt> belt;
-    bool goes = false;  ///< or has gone: else it has a belt alone
+    bool goes = false;  ///< it moves or has moved; false: it only has a belt
   };
   std::vector<MovingStatic> moving_statics_;  ///< ascending index
   BodyTable table_;
@@ -139,8 +139,8 @@ class Simulation {
     btRigidBody* body;
     btVector3 force, torque;  ///< N, N m
   };
-  std::vector<Push> pushed_;      ///< in the state that is computed
-  std::uint64_t unbearable_ = 0;  ///< setpoints that were not obeyed
+  std::vector<Push> pushed_;      ///< bodies with forces in the state that is being computed
+  std::uint64_t unbearable_ = 0;  ///< number of setpoints not applied
   std::vector<core::BodySetpoint> new_setpoints_;
 
   bool snapshot_is_fresh_ = false;
@@ -148,7 +148,7 @@ class Simulation {
   bool records_are_fresh_ = false;
   std::vector<core::BodyRecord> records_;
   std::vector<core::Contact> unsorted_contacts_;
-  std::vector<std::uint32_t> contacts_before_;  ///< for each body: contacts of all bodies before it
+  std::vector<std::uint32_t> contacts_before_;  ///< by body: number of contacts of all bodies before it
   std::vector<PartManifold> of_pair_;
 };
 

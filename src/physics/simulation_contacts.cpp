@@ -6,7 +6,7 @@
 
 namespace aurasim::physics {
 
-/// Before bodies come or go: the sums name them by their places.
+/// Call before bodies come or go, because the sums name bodies by their places.
 void Simulation::collect_contact_impulses() {
   contact_impulses_.clear();
   for (const auto& [objects, sum] : world_.contact_impulses().sums()) {

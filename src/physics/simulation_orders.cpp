@@ -1,4 +1,4 @@
-// What a simulation does with orders (core/order.h) when they are due.
+// Execution of orders (core/order.h) in a simulation when they are due.
 #include <algorithm>
 #include <cstdio>
 #include <variant>
@@ -20,8 +20,8 @@ btVector3 arm_of(const core::Impulse& impulse, const btRigidBody& body) {
   return to_bullet(*impulse.p_W) - body.getCenterOfMassPosition();
 }
 
-/// What a static does to bodies beside it when it comes or goes: it pushes those that it is put into out of itself, and
-/// lets those fall that rested on it.
+/// Speed (m/s) that bodies beside a static may gain when it is added or removed: it pushes overlapping bodies out, and
+/// bodies that rested on it fall.
 constexpr double kShove_m_s = 2;
 
 double fastest_spin(const Settings& settings) {
@@ -57,7 +57,7 @@ std::string more_than(double is, double allowed, const char* unit, const char* l
   return text;
 }
 
-/// Who is too fast already may be slowed down.
+/// Why an order may not change a body's motion so; empty if it may. A body that is too fast already may be slowed down.
 std::string problem_with(const Motion& after, const Motion& before, const Settings& settings) {
   const double spin_limit = fastest_spin(settings);
   const double v = after.v_WB.norm();
@@ -73,7 +73,7 @@ std::string problem_with(const Motion& after, const Motion& before, const Settin
 
 }  // namespace
 
-/// Before state `n` is computed.
+/// Executes the orders that are due just before state `n` is computed.
 void Simulation::apply_orders(core::Step n) {
   if (timeline_.statics_change()) show_statics(n);
   for (const core::Order& order : timeline_.due(n)) {
@@ -104,7 +104,8 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
-/// After state step_ has been computed. On every host alike: what a body comes to hangs on its island alone.
+/// Removes bodies that have broken down, after state step_ has been computed. Every host does the same, because a
+/// body's state depends on its island alone.
 void Simulation::take_out_what_broke() {
   std::vector<Removal> broken;
   for (const HostedBody& body : table_.bodies()) {
@@ -127,11 +128,11 @@ void Simulation::take_out(const Removal& removal) {
   });
   const std::uint64_t severed = severed_contacts_;
   release({&id, 1});
-  severed_contacts_ = severed;  // nothing was cut that should have gone along
+  severed_contacts_ = severed;  // the removed body's contacts do not count as severed
   removed_.push_back(removal);
 }
 
-/// How much an order that is still to come will change the velocity of the body's surface, m/s.
+/// Upper bound of how much orders that are still to come will change the velocity of the body's surface, m/s.
 double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const {
   if (!body.born) return 0;
   double kick = 0;
@@ -145,7 +146,7 @@ double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint
     if (const auto* impulse = std::get_if<core::Impulse>(&order.action)) {
       const btVector3 J = to_bullet(impulse->J_W);
       const btVector3 spin = rigid.getInvInertiaTensorWorld() * arm_of(*impulse, rigid).cross(J);
-      // More than that is not obeyed, unless the body is too fast already.
+      // Larger changes are declined, unless the body is too fast already.
       kick += std::min(static_cast<double>(J.length() * rigid.getInvMass()), 2 * settings_.top_speed_m_s) +
               radius * std::min(static_cast<double>(spin.length()), 2 * fastest_spin(settings_));
     } else if (const auto* velocity = std::get_if<core::SetVelocity>(&order.action)) {

@@ -1,4 +1,4 @@
-// How bodies leave a simulation, with everything that a hand-off has to carry.
+// Release of bodies from a simulation, with everything that a hand-off has to carry.
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -13,12 +13,12 @@
 namespace aurasim::physics {
 namespace {
 
-/// Of a body that is in none of the clusters that leave.
+/// Cluster number of a body that stays.
 constexpr std::uint32_t kStays = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-/// For each place in the table the cluster that its body is in, or kStays.
+/// By place in the table: the leaving cluster of the body, or kStays.
 std::vector<std::uint32_t> Simulation::membership(std::span<const std::span<const core::BodyId>> clusters) const {
   std::vector<std::uint32_t> cluster_at(table_.size(), kStays);
   for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster) {

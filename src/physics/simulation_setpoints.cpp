@@ -1,4 +1,4 @@
-// What a simulation does with the setpoints of programs (core/control_log.h), in each state that it computes.
+// Application of programs' setpoints (core/control_log.h) in each state that a simulation computes.
 #include <algorithm>
 #include <cmath>
 
@@ -9,26 +9,28 @@
 namespace aurasim::physics {
 namespace {
 
-/// So many times as many quantities are steered as there are bodies: then it is looked for theirs, one by one.
+/// If setpoints exist for more than this many times the number of bodies here, those of each body are looked up one by
+/// one.
 constexpr std::size_t kMany = 16;
 
-/// It neither changes the body nor keeps it awake.
+/// Does the setpoint neither change the body nor keep it awake?
 bool is_nothing(core::Quantity quantity, const std::optional<core::Vec3>& value) {
   const bool pushes = quantity == core::Quantity::kForce || quantity == core::Quantity::kTorque;
   return !value || (pushes && value->isZero());
 }
 
-/// How much of its speed a body may be given in a state; who is faster already may be slowed down.
+/// May a setpoint change a velocity from `before` to `after`? A body beyond the limit may be slowed down.
 bool bears(const core::Vec3& before, const core::Vec3& after, double limit) {
   return after.norm() <= std::max(limit, before.norm());
 }
 
-/// A body's velocity and spin, as a mobile base that drives has them.
+/// Velocity and spin of a mobile base that drives.
 struct Driven {
   core::Vec3 v_WB, w_WB;
 };
 
-/// Nothing: it stands on end, and ahead is nowhere on the ground.
+/// The motion for a setpoint kDriving. Nothing if the body's x axis is vertical, so that "ahead" has no direction on
+/// the ground.
 std::optional<Driven> driven(const btRigidBody& body, const core::Vec3& value) {
   constexpr double kFlat = 1e-6;
   const core::Vec3 x_W = from_bullet(body.getWorldTransform().getBasis().getColumn(0));
@@ -42,13 +44,13 @@ std::optional<Driven> driven(const btRigidBody& body, const core::Vec3& value) {
   return after;
 }
 
-/// How much what programs say will change a body's velocities, as far as its path does not tell: the most of all that.
+/// Largest changes of a body's velocities by setpoints that its predicted path does not hold.
 struct ComingPush {
   double linear_m_s = 0, turn_rad_s = 0;
 
   void note(const btRigidBody& body, core::Quantity quantity, const core::Vec3& value, double foresight_s) {
     switch (quantity) {
-      case core::Quantity::kForce:  // in the time t it comes t^2 / 2 off its path
+      case core::Quantity::kForce:  // an acceleration a takes it a t^2 / 2 off its path in the time t
         return note_linear(foresight_s / 2 * static_cast<double>(body.getInvMass()) * value.norm());
       case core::Quantity::kTorque:
         return note_turn(foresight_s / 2 *
@@ -65,7 +67,7 @@ struct ComingPush {
  private:
   void note_linear(double change_m_s) { linear_m_s = std::max(linear_m_s, change_m_s); }
   void note_turn(double change_rad_s) { turn_rad_s = std::max(turn_rad_s, change_rad_s); }
-  /// It goes on in a curve.
+  /// A base that drives and turns leaves its straight path.
   void note_driving(const btRigidBody& body, const core::Vec3& value, double foresight_s) {
     const std::optional<Driven> after = driven(body, value);
     if (!after) return;
@@ -77,7 +79,8 @@ struct ComingPush {
 
 }  // namespace
 
-/// Before state `n` is computed. Forces are noted; what would make a body too fast is not obeyed.
+/// Applies the setpoints of state `n` before it is computed. Forces are noted for push(). Setpoints that would make a
+/// body too fast are not applied.
 void Simulation::heed_setpoints(core::Step n) {
   pushed_.clear();
   new_setpoints_.clear();
@@ -155,7 +158,7 @@ bool Simulation::heed(btRigidBody& body, core::Quantity quantity, const core::Ve
   return false;
 }
 
-/// Bullet forgets forces after each of its steps.
+/// Applies the noted forces. Call before each of Bullet's steps, because Bullet clears forces after each.
 void Simulation::push() {
   for (const Push& push : pushed_) {
     push.body->clearForces();
@@ -169,8 +172,8 @@ void Simulation::stop_pushing() {
   pushed_.clear();
 }
 
-/// How much what programs say will change the velocity of each body's surface, m/s, as far as its path does not tell,
-/// by its place in the table. Empty: nobody says anything.
+/// By place in the table: how much setpoints will change the velocity of the body's surface beyond its predicted path,
+/// m/s. Empty if there are no setpoints.
 std::vector<double> Simulation::coming_pushes() const {
   const core::ControlLog& controls = timeline_.controls();
   if (controls.empty()) return {};

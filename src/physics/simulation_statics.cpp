@@ -1,4 +1,4 @@
-// The statics of a simulation: which stand in which state, and where those are that move.
+// The statics of a simulation: which exist in which state, and the poses of moving ones.
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,12 +12,12 @@
 namespace aurasim::physics {
 namespace {
 
-/// So much faster than what pushes it a body that bounces gets at most.
+/// A bouncing body becomes at most so many times as fast as the static that pushes it.
 constexpr double kBounced = 2;
 
 }  // namespace
 
-/// Those that the scene has got since the last time; not yet in the world.
+/// Makes the statics that were appended to the scene since the last call. They are not in the world yet.
 void Simulation::make_statics() {
   for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
     const core::StaticBody& body = scene_->statics[i];
@@ -45,15 +45,15 @@ void Simulation::make_moving(std::uint32_t index, bool goes) {
   if (static_is_in_[index]) world_.begin_moving(*statics_[index]);
 }
 
-/// Also those that have been told to since the last time.
+/// Makes statics movable that orders or programs have moved since the last call.
 void Simulation::note_moving_statics() {
-  if (!settings_.looks_once()) return;  // nobody sends them there: command_limits.cpp
+  if (!settings_.looks_once()) return;  // such moves are refused without the soft step: command_limits.cpp
   timeline_.moves().for_each([this](core::StaticId id) {
     if (core::value_of(id) < statics_.size()) make_moving(core::value_of(id), true);
   });
 }
 
-/// Puts in and takes out what stands in state `n`; wakes the bodies that it touches or that rested on it.
+/// Adds and removes statics so that the world has those of state `n`. Wakes bodies that touch or rested on them.
 void Simulation::show_statics(core::Step n) {
   make_statics();
   for (std::size_t i = 0; i < statics_.size(); ++i) {
@@ -76,7 +76,7 @@ void Simulation::wake_near(std::span<const Bounds> changing) {
     return std::ranges::any_of(changing, [&](const Bounds& there) { return of_body.is_near(there); });
   };
   for (HostedBody& body : table_.bodies()) {
-    if (!body.born || !is_near_any(bounds_of(*body.rigid->getBroadphaseProxy()))) continue;  // quick to see
+    if (!body.born || !is_near_any(bounds_of(*body.rigid->getBroadphaseProxy()))) continue;  // fast test first
     if (is_near_any(bounds_of(*body.rigid))) awaken(*body.rigid);
   }
   snapshot_is_fresh_ = records_are_fresh_ = false;
@@ -86,7 +86,7 @@ core::Pose Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
   return timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s);
 }
 
-/// In the present state.
+/// Places moving statics at their poses of the present state.
 void Simulation::place_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
@@ -97,7 +97,7 @@ void Simulation::place_moving_statics() {
   }
 }
 
-/// On the way to the next state. Whom they may push is awake.
+/// Gives moving statics the velocities that take them to the next state. Wakes bodies that they may push.
 void Simulation::start_moving_statics() {
   std::vector<Bounds> ways;
   note_moving_statics();
@@ -119,7 +119,7 @@ void Simulation::start_moving_statics() {
   if (!ways.empty()) wake_near(ways);
 }
 
-/// What may push whom for as long as others go by what they are told now.
+/// Pushes that moving statics may give during the states for which other nodes act upon the present auras (foreseen()).
 std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   std::vector<Shove> shoves;
   for (const MovingStatic& moving : moving_statics_) {
@@ -143,7 +143,7 @@ std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   return shoves;
 }
 
-/// How much they will change the velocity of the body's surface at most, m/s.
+/// Upper bound of how much `shoves` will change the velocity of the body's surface, m/s.
 double Simulation::coming_shove(const HostedBody& body, std::span<const Shove> shoves) const {
   if (!body.born || shoves.empty()) return 0;
   const btScalar way = body.rigid->getLinearVelocity().length() * btScalar(settings_.foresight_s);
@@ -154,7 +154,7 @@ double Simulation::coming_shove(const HostedBody& body, std::span<const Shove> s
     }
     return most;
   };
-  if (most_in(bounds_of(*body.rigid->getBroadphaseProxy()).grown(way)) == 0) return 0;  // quick to see
+  if (most_in(bounds_of(*body.rigid->getBroadphaseProxy()).grown(way)) == 0) return 0;  // fast test first
   return most_in(bounds_of(*body.rigid).grown(way));
 }
 

@@ -1,4 +1,4 @@
-// The solvers as launch files and results call them.
+// Names of the solvers in launch files and results.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ inline constexpr std::array<std::pair<Solver, std::string_view>, 2> kSolverNames
 
 inline std::string_view name_of(Solver solver) { return kSolverNames[static_cast<std::size_t>(solver)].second; }
 
-/// Throws std::invalid_argument if there is none of this name.
+/// The solver of this name. Throws std::invalid_argument if there is none.
 inline Solver solver_named(std::string_view name) {
   for (const auto& [solver, its_name] : kSolverNames) {
     if (its_name == name) return solver;

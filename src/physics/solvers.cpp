@@ -13,7 +13,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// How fast the gap of a contact opens, m/s: as the bodies are, and with the substep's forces.
+/// Speed at which the gap of a contact opens, m/s: now, and with the substep's forces applied.
 struct Opening {
   btScalar now = 0;
   btScalar with_forces = 0;
@@ -30,7 +30,8 @@ Opening opening_of(const btSolverConstraint& row, const btSolverBody& a, const b
   return {of_a.now + of_b.now, of_a.with_forces + of_b.with_forces};
 }
 
-/// Of contacts slower than Bullet's threshold nothing is changed: bodies come to rest as ever.
+/// Changes a row so that its contact bounces without gaining or losing energy. Contacts slower than Bullet's threshold
+/// are unchanged, so bodies come to rest as in Bullet.
 void let_bounce(btSolverConstraint& row, const btSolverBody& a, const btSolverBody& b,
                 const btContactSolverInfo& info) {
   const auto& point = *static_cast<const btManifoldPoint*>(row.m_originalContactPoint);
@@ -39,7 +40,7 @@ void let_bounce(btSolverConstraint& row, const btSolverBody& a, const btSolverBo
   if (opening.now > -info.m_restitutionVelocityThreshold) return;
   const btScalar gap = point.getDistance() + info.m_linearSlop;
   btScalar wanted = -gap / info.m_timeStep;
-  if (gap + opening.with_forces * info.m_timeStep <= 0) {  // they would touch
+  if (gap + opening.with_forces * info.m_timeStep <= 0) {  // they would touch within the substep
     const btScalar push = std::max(btScalar(0), -gap * info.m_erp2 / info.m_timeStep);
     wanted = std::max(-point.m_combinedRestitution * opening.now, push);
   }
@@ -59,7 +60,7 @@ class RefinedSolver final : public BulletSolver {
   }
 
   void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override {
-    // Bullet makes the rows of one manifold after the other.
+    // Makes the rows in groups, so that later manifolds can be prefetched.
     constexpr int kAtOnce = kPrefetchDistance / 2;
     for (int i = 0; i < count; i += kAtOnce) {
       for (int j = i + 2 * kAtOnce; j < std::min(i + 3 * kAtOnce, count); ++j) prefetch_head(*manifolds[j]);
@@ -82,8 +83,8 @@ class RefinedSolver final : public BulletSolver {
                                               joint_count, info, drawer);
   }
 
-  /// In parts: all iterations are one loop of Bullet's. Each part ends early where nothing changes any more, as the
-  /// whole would, so the bits are the same.
+  /// Runs Bullet's one loop of iterations in several parts. Each part ends early where nothing changes any more, as the
+  /// whole loop would, so the bits are the same.
   void solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject** bodies, int body_count,
                                                      btPersistentManifold** manifolds, int manifold_count,
                                                      btTypedConstraint** joints, int joint_count,

@@ -19,7 +19,7 @@
 namespace aurasim::physics {
 namespace {
 
-/// Bullet's world with our islands, and a look at the contacts before they are solved.
+/// Bullet's world with our islands. First contacts are noted before contacts are solved.
 class Stepper final : public btDiscreteDynamicsWorld {
  public:
   Stepper(const WorldParts& parts, const Settings& settings)
@@ -32,7 +32,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
     m_islandManager->~btSimulationIslandManager();
     btAlignedFree(m_islandManager);
     islands_ = new (btAlignedAlloc(sizeof(ContactIslands), 16)) ContactIslands;
-    m_islandManager = islands_;  // which Bullet destroys
+    m_islandManager = islands_;  // Bullet destroys it
   }
 
   void solveConstraints(btContactSolverInfo& info) override {
@@ -44,11 +44,11 @@ class Stepper final : public btDiscreteDynamicsWorld {
     m_constraintSolver->allSolved(info, nullptr);
   }
 
-  /// Bullet's contacts ahead of time live in no pair's cache, so no hand-off could carry them. Fast bodies are stopped
-  /// at what is in their way all the same.
+  /// Switched off: Bullet's predictive contacts are in no pair's cache, so hand-offs could not carry them. Continuous
+  /// collision detection still stops fast bodies.
   void createPredictiveContacts(btScalar) override {}
 
-  /// Bullet moves all bodies; those that do not turn evenly are then turned as they should.
+  /// Bullet moves all bodies. Those whose spin changes freely then get the rotation of free_rotation.h.
   void integrateTransforms(btScalar dt) override {
     if (sweeps_) sort_by_rank();
     tumbling_.clear();
@@ -68,8 +68,8 @@ class Stepper final : public btDiscreteDynamicsWorld {
   }
 
  private:
-  /// A fast body stops at others where they are at that moment: some have been moved already. Which, may not depend on
-  /// the order in which they came here.
+  /// Sorts bodies by rank before they are moved. A fast body stops at others where they are at that moment, moved
+  /// already or not. That may not depend on the order in which bodies arrived.
   void sort_by_rank() {
     const auto rank = [](const btRigidBody* body) { return body->getBroadphaseProxy()->m_uniqueId; };
     btRigidBody** const first = m_nonStaticRigidBodies.size() > 0 ? &m_nonStaticRigidBodies[0] : nullptr;

@@ -1,4 +1,4 @@
-// Bullet's own step, with what we do otherwise: collision detection and solver in every substep.
+// Bullet's own step with our changes: collision detection and solver run in every substep.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ class ContactImpulses;
 class FirstContacts;
 struct Settings;
 
-/// What a world works with; all of it outlives the world.
+/// The parts that a world uses; all have to outlive it.
 struct WorldParts {
   btDispatcher& dispatcher;
   btBroadphaseInterface& broadphase;

@@ -1,5 +1,5 @@
-// What orders and programs do to a world, and when: shared by a region's world and the scratch world in which late
-// bodies make up steps, so that both apply them alike.
+// Orders and setpoints of a world by the state in which they take effect. Shared by a region's world and the scratch
+// world, so that both apply them alike.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,24 @@ namespace aurasim::physics {
 
 class Timeline {
  public:
-  /// Statics and orders about bodies; others are nothing to physics. Of a static that is to move: the first state that
-  /// is another one by it (StaticMoves::add).
+  /// Adds an order about a static or a body; others are ignored. For a MoveStatic, returns the first state that it
+  /// changes (StaticMoves::add).
   std::optional<core::Step> add(const core::Order& order);
 
-  /// Is a static in the world while state `step` is computed, and in it?
+  /// Does a static exist while state `step` is computed, and in that state?
   bool stands(std::uint32_t static_index, core::Step step) const;
-  /// Any static that does not stand for ever?
+  /// Is there any static that is added or removed at some time?
   bool statics_change() const { return !lives_.empty(); }
 
-  /// Orders about bodies that are applied before state `step` is computed, in sequence.
+  /// Orders about bodies to be executed just before state `step` is computed, in sequence.
   std::span<const core::Order> due(core::Step step) const;
-  /// Those due later than `step`.
+  /// Orders about bodies that are due later than `step`.
   std::span<const core::Order> coming(core::Step step) const;
 
   const core::StaticMoves& moves() const { return moves_; }
   core::StaticMoves& moves() { return moves_; }
 
-  /// Statics that come or go later than `step`.
+  /// Statics that are added or removed later than `step`.
   std::vector<std::uint32_t> statics_coming(core::Step step) const;
 
   void forget_before(core::Step step);
@@ -49,7 +49,7 @@ class Timeline {
   };
   Life& life_of(std::uint32_t index);
 
-  std::vector<Life> lives_;          ///< of statics that come or go, ascending index
+  std::vector<Life> lives_;          ///< statics that are added or removed, ascending index
   std::vector<core::Order> orders_;  ///< ascending (at_step, sequence)
   core::StaticMoves moves_;
   core::ControlLog controls_;

@@ -1,4 +1,4 @@
-// What a bad network does to one message, from a seed: the same seed gives the same run.
+// Simulates the faults of a bad network for each message, from a seed: the same seed gives the same run.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@
 
 namespace aurasim::transport {
 
-/// Delivery is at least once, as from a reliable writer over a lossy link: what is lost is sent again later.
+/// Faults of a link. Delivery is at least once, as from a reliable writer over a lossy link: lost datagrams are sent
+/// again later.
 struct Faults {
   double latency_s = 0;
   double jitter_s = 0;           ///< uniform extra delay
   double loss = 0;               ///< probability that one datagram is lost
-  double resend_after_s = 0.01;  ///< until a lost one is sent again
-  double duplicate = 0;          ///< probability that a message comes twice
-  bool keep_order = true;        ///< per pair of regions; otherwise jitter may turn messages around
+  double resend_after_s = 0.01;  ///< time until a lost datagram is sent again
+  double duplicate = 0;          ///< probability that a message arrives twice
+  bool keep_order = true;        ///< keeps the order of messages of each pair of regions; false: jitter may change it
 };
 
 class FaultModel {
  public:
   FaultModel(const Faults& faults, std::uint64_t seed) : faults_(faults), random_(seed) {}
 
-  /// Nothing passes between `a` and `b` from `from_s` until `until_s`; what was sent meanwhile comes afterwards.
+  /// Cuts the link between `a` and `b` from `from_s` until `until_s`. Messages sent meanwhile arrive afterwards.
   void cut(core::RegionId a, core::RegionId b, double from_s, double until_s);
 
-  /// When a message sent at `now_s` arrives: one time, or two.
+  /// Times at which a message sent at `now_s` arrives: one, or two if it is duplicated. Seconds.
   std::vector<double> arrivals(core::RegionId from, core::RegionId to, double now_s);
 
  private:

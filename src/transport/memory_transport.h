@@ -1,5 +1,5 @@
-// A network inside one process, in virtual time: whole clusters of nodes run inside one test, thousands of times
-// faster than life. Faults come from a FaultModel (faulty_transport.h).
+// A network inside one process, in virtual time: many nodes run inside one test, thousands of times faster than real
+// time. Faults come from a FaultModel (faulty_transport.h).
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@ namespace aurasim::transport {
 
 class MemoryNetwork {
  public:
-  /// `listeners[r]`: the regions that hear region r's aura batches, until it names others (Outbox::listeners). Delays
-  /// are in seconds of virtual time.
+  /// `listeners[r]`: the regions that receive region r's aura batches, until it names others (Outbox::listeners). All
+  /// times are seconds of virtual time.
   MemoryNetwork(std::vector<std::vector<core::RegionId>> listeners, const Faults& faults, std::uint64_t seed);
   ~MemoryNetwork();
 
-  /// The transport of one region; lives as long as the network.
+  /// The transport of one region. Valid as long as the network.
   Transport& endpoint(core::RegionId region);
 
-  /// Messages that arrive until `now_s` can be taken from now on.
+  /// Sets the time. Messages that arrive until `now_s` can then be taken.
   void advance_to(double now_s);
   double now_s() const { return now_s_; }
-  /// When the next message arrives; infinite if none is under way.
+  /// Time at which the next message arrives; infinite if none is under way.
   double next_arrival_s() const;
 
-  /// What is sent from now on leaves this much later (the sender's frame time).
+  /// Delays the departure of all later messages by this time (the sender's frame time).
   void set_send_delay(double delay_s) { send_delay_s_ = delay_s; }
   double send_delay_s() const { return send_delay_s_; }
 
-  /// The region's process is gone: it sends and takes nothing more. What it sent before still arrives, but for the
-  /// messages not yet on the link; the others hear of its death `lease_s` later.
+  /// Ends the process of a region: it sends and takes nothing more. Messages that are on the link still arrive, those
+  /// before the link are lost. The other regions receive its death `lease_s` later.
   void crash(core::RegionId region, double lease_s);
 
   FaultModel& faults() { return faults_; }

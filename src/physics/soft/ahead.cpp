@@ -17,7 +17,7 @@ struct Hit : btCollisionWorld::ClosestConvexResultCallback {
     return ClosestConvexResultCallback::addSingleResult(found, in_world);
   }
 
-  int casts = -1;  ///< the part of a compound that is cast now
+  int casts = -1;  ///< part of a compound that is being cast; -1: none
   int part_of_cast = -1, part_of_target = -1;
 };
 

@@ -1,4 +1,4 @@
-// Contacts ahead of time: where two bodies that go on as they move now will touch within the step.
+// Contacts ahead of time: finds where two bodies will touch within the step if they move on as now.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,14 @@ class btCollisionObject;
 namespace aurasim::physics {
 
 struct SoftMeeting {
-  btVector3 until;               ///< of a as seen from b until they touch, m
-  btVector3 normal;              ///< there, from a to b
-  btVector3 r_a, r_b;            ///< of a point at which they touch, from the centres of mass, m
-  int part_a = -1, part_b = -1;  ///< of compounds: those that touch there
+  btVector3 until;               ///< way of a relative to b until they touch, m
+  btVector3 normal;              ///< normal at the touch, from a to b
+  btVector3 r_a, r_b;            ///< a point of the touch, from the centres of mass, m
+  int part_a = -1, part_b = -1;  ///< parts of compounds that touch; -1: no compound
 };
 
-/// `way` of a as seen from b in the step, m. None if they pass each other, or touch now. Turns are not looked at.
+/// The first touch of two bodies in a step. `way`: motion of a relative to b in the step, m. Nothing if they do not
+/// meet, or touch already. Rotation is ignored.
 std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCollisionObject& b, const btVector3& way);
 
 }  // namespace aurasim::physics

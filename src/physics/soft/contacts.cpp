@@ -27,18 +27,18 @@ namespace {
 
 using soft::Real;
 
-/// Cosine of the angle between normals that count as one.
+/// Normals whose angle has a larger cosine count as one.
 constexpr btScalar kSameNormal = btScalar(0.999);
-/// Who comes closer by less in a step is found when they touch, m.
+/// Bodies that approach by less in a step (m) get no contact ahead of time; they are found when they touch.
 constexpr btScalar kLongWay_m = btScalar(0.005);
-/// Bodies that will touch are looked at where they overlap by so much, m.
+/// Contacts ahead of time are computed at a pose where the bodies overlap by this, m.
 constexpr btScalar kOverlap_m = btScalar(0.002);
 
 const btCollisionObject& body_of(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
 }
 
-/// Of a pair that has a plane; its box has no bounds.
+/// Is the body clear of the plane? The plane's own bounds are infinite, so a test of bounds does not tell.
 bool is_above(const btBroadphaseProxy& body, const btCollisionObject& plane) {
   const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
   const btVector3 normal = plane.getWorldTransform().getBasis() * shape.getPlaneNormal();
@@ -58,7 +58,8 @@ bool bounds_overlap(const btBroadphasePair& pair) {
   return !is_plane(body_of(b)) || !is_above(a, body_of(b));
 }
 
-/// Of the two bodies. They are kept in a field of the pair that Bullet does not use: bodies are far away in memory.
+/// Slots of a pair's bodies. Kept in a field of the pair that Bullet does not use, because reading the bodies would
+/// miss the cache.
 struct Slots {
   std::uint32_t a, b;
 
@@ -87,7 +88,7 @@ void set_belt(SoftPatch& patch, const btCollisionObject& a, const btCollisionObj
   if (is_moving_static(a) || is_moving_static(b)) soft::from_bullet(belt_of(b) - belt_of(a), patch.belt);
 }
 
-/// Valid until the next call.
+/// The manifolds of a pair. Valid until the next call.
 btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& space) {
   space.resizeNoInitialize(0);
   if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(space);
@@ -137,7 +138,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
   }
 }
 
-/// Nobody else touches these pairs, so what is fetched ahead of time ends with them.
+/// Looks at pairs [first, last). Other threads work on the other pairs, so prefetching stops at `last`.
 void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, int last,
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
@@ -155,7 +156,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
     const Slots slots = slots_of(all[i]);
-    if (both_sleep(slots)) {  // they touch what they touched
+    if (both_sleep(slots)) {  // touches of sleepers are unchanged
       if (!knows_sleepers) collect_of_sleepers(list, all[i]);
       continue;
     }
@@ -206,7 +207,7 @@ void SoftContacts::look_ahead(List& list, btBroadphasePair& pair) {
   if (const std::optional<SoftMeeting> meeting = meeting_ahead(a, b, way)) list.will_meet.push_back({&pair, *meeting});
 }
 
-/// One of the two is put where they will touch for as long as their contacts are told there.
+/// Computes contacts ahead of time: moves one of the two bodies to where they will touch, and back afterwards.
 void SoftContacts::meet(const WillMeet& two, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePair& pair = *two.pair;
   const btVector3 shift = two.meeting.until + two.meeting.normal * kOverlap_m;
@@ -232,7 +233,7 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     read(list, touch, manifolds[i]->getBody0() == &a ? shift : -shift);
     manifolds[i]->clearManifold();
   }
-  if (list.patches.size() == first) {  // as they touch only just
+  if (list.patches.size() == first) {  // they touch so slightly that Bullet finds no point
     SoftTouch& touch = touches_.emplace_back();
     touch.ahead = true;
     touch.a = a.getUserIndex(), touch.b = b.getUserIndex(), touch.slot_a = slot_of(a), touch.slot_b = slot_of(b);
@@ -275,7 +276,7 @@ void SoftContacts::collect_of_sleepers(List& list, const btBroadphasePair& pair)
   }
 }
 
-/// Of two who slept until now, and who were not looked at since.
+/// Marks the contacts of two bodies that slept until now as known (FirstContacts::know).
 void SoftContacts::know_touches(List& list, const btBroadphasePair& pair) const {
   const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
@@ -283,7 +284,7 @@ void SoftContacts::know_touches(List& list, const btBroadphasePair& pair) const 
   }
 }
 
-/// The impulses of friction are the patch's. The oldest point has them longest.
+/// Reads the patches of a touch. Impulses of friction belong to the patch, and are taken from its oldest point.
 void SoftContacts::read(List& list, SoftTouch& touch, const btVector3& shift) {
   std::vector<SoftPatch>& patches = list.patches;
   const btPersistentManifold& manifold = *touch.manifold;

@@ -1,4 +1,5 @@
-// The narrow phase of the soft step, in one walk over the pairs of near bodies: what touches, in patches.
+// The narrow phase of the soft step: finds touching bodies, as patches of contact points, in one walk over the pairs of
+// near bodies.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +24,13 @@ class SoftIslands;
 struct SoftAhead {
   const btBroadphasePair* pair = nullptr;
   std::uint32_t first_patch = 0, patches = 0;  ///< SoftContacts::patches_of()
-  btVector3 p{0, 0, 0};                        ///< where they will touch, m
-  btVector3 v{0, 0, 0};                        ///< of the first as seen from the second, at the start of the step, m/s
+  btVector3 p{0, 0, 0};                        ///< where the bodies will touch, m
+  btVector3 v{0, 0, 0};  ///< velocity of the first relative to the second at the start of the step, m/s
 };
 
 class SoftContacts {
  public:
-  /// `ahead`: what will touch within the step has a contact, too.
+  /// `ahead`: also makes contacts of bodies that will touch within the step.
   SoftContacts(double step_s, bool ahead, int threads, const SoftIslands& islands, const FirstContacts& first_contacts)
       : step_s_(static_cast<btScalar>(step_s)),
         looks_ahead_(ahead),
@@ -38,23 +39,23 @@ class SoftContacts {
         first_contacts_(first_contacts),
         lists_(static_cast<std::size_t>(threads)) {}
 
-  /// Tells the contacts of all pairs of which one is awake. Others are not looked at if their islands are known.
+  /// Finds the contacts of all pairs with an awake body. Pairs of sleepers are skipped if their islands are known.
   void look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
             const btVector3& gravity);
-  /// Adds what those touch among themselves who have been woken since.
+  /// Adds the touches among bodies that have been woken since look().
   void add_woken(btOverlappingPairCache& pairs);
 
-  /// In a step, if nothing is in the way, m.
+  /// Way of an object in a step if it touches nothing, m.
   btVector3 way(const btCollisionObject& object, const btVector3& gravity) const;
 
-  /// In no order.
+  /// Touches with an awake body, in no order.
   std::span<const SoftTouch> touches() const { return touches_; }
-  /// Of those who sleep both, if their islands are not known. They have no patches.
+  /// Touches of two sleepers, if their islands are not known. They have no patches.
   std::span<const SoftTouch> touches_of_sleepers() const { return touches_of_sleepers_; }
   std::span<SoftPatch> patches_of(const SoftTouch& touch) {
     return std::span(lists_[touch.list].patches).subspan(touch.first_patch, touch.patches);
   }
-  /// Of bodies that both move.
+  /// Contacts ahead of time of two bodies, neither of them static.
   std::span<const SoftAhead> ahead() const { return ahead_; }
   std::span<const SoftPatch> patches_of(const SoftAhead& ahead) const {
     return std::span(lists_[0].patches).subspan(ahead.first_patch, ahead.patches);
@@ -65,7 +66,7 @@ class SoftContacts {
     btBroadphasePair* pair;
     SoftMeeting meeting;
   };
-  /// What one thread finds.
+  /// Results of one thread.
   struct alignas(64) List {
     btManifoldArray manifolds;
     std::vector<SoftTouch> touches, touches_of_sleepers;
@@ -82,7 +83,7 @@ class SoftContacts {
   void look_ahead(List& list, btBroadphasePair& pair);
   void meet(const WillMeet& two, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
   void collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift);
-  /// `shift`: so far has body0 been moved towards body1 to find the touch.
+  /// Reads the patches of a touch. `shift`: how far body0 was moved towards body1 to find the touch.
   void read(List& list, SoftTouch& touch, const btVector3& shift);
 
   btScalar step_s_;

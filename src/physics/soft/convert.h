@@ -1,4 +1,4 @@
-// Between Bullet's vectors and those of the soft step, and into its lanes.
+// Conversions between Bullet's vectors and those of the soft step, and into its lanes.
 #pragma once
 
 #include <LinearMath/btVector3.h>
@@ -13,7 +13,7 @@ inline void from_bullet(const btVector3& v, Real (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(v[i]);
 }
 
-/// A symmetric matrix, into one lane.
+/// Writes a symmetric matrix into one lane.
 inline void set(Lanes (&to)[6], int lane, const Real (&m)[6]) {
   for (int i = 0; i < 6; ++i) to[i][lane] = m[i];
 }

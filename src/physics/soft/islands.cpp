@@ -56,7 +56,7 @@ void SoftIslands::call(std::span<btRigidBody* const> bodies) {
   if (!knows_sleepers_) std::iota(parents_.begin(), parents_.end(), 0U);
 }
 
-/// The path behind it is halved.
+/// First slot of the island. Halves the path to it (union-find).
 std::uint32_t SoftIslands::island_of(std::uint32_t slot) {
   while (parents_[slot] != slot) slot = parents_[slot] = parents_[parents_[slot]];
   return slot;
@@ -69,7 +69,7 @@ void SoftIslands::unite(std::uint32_t a, std::uint32_t b) {
   parents_[std::max(one, other)] = std::min(one, other);
 }
 
-/// As Bullet does: an island sleeps when nobody in it is active; one active body keeps all others from sleeping.
+/// Islands sleep as in Bullet: when no body in them is active. One active body keeps all others awake.
 void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
                        std::span<btTypedConstraint* const> joints) {
   reaches_sleepers_ = false;
@@ -85,7 +85,7 @@ void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftT
   const bool knew = knows_sleepers_;
   knows_sleepers_ = true;
   put_to_sleep();
-  // Who have not met by now are not joined in their sleep.
+  // Contacts ahead of time between bodies that now sleep do not join their islands.
   const auto stay = [this](const SoftTouch& touch) { return !has(touch.slot_a, kMoves) && !has(touch.slot_b, kMoves); };
   if (std::ranges::any_of(touches, [&](const SoftTouch& touch) { return touch.ahead && stay(touch); })) {
     forget_sleepers();
@@ -120,7 +120,7 @@ void SoftIslands::wake() {
   for (btRigidBody* body : asleep_) {
     const std::uint32_t slot = slot_of(*body);
     if (is_active_[island_of(slot)] == 0) continue;
-    if (!is_asleep(*body)) {  // takes no part in the world at all, and is alone from now on
+    if (!is_asleep(*body)) {  // disabled: takes no part in the world and is alone from now on
       forget_sleepers();
       continue;
     }
@@ -132,7 +132,7 @@ void SoftIslands::wake() {
   }
 }
 
-/// By counting: they come in no order, and there are several for each body. Parts matter for compounds only.
+/// A counting sort, because touches come in no order and each body has several. Parts matter for compounds only.
 void SoftIslands::sort(std::span<const SoftTouch> touches) {
   const auto first_of = [](const SoftTouch& touch) { return std::min(touch.a, touch.b); };
   const auto last_of = [](const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); };
@@ -157,7 +157,8 @@ void SoftIslands::sort(std::span<const SoftTouch> touches) {
     return std::tie(x.a, x.parts) < std::tie(y.a, y.parts);
   };
   std::size_t first = 0;
-  for (std::size_t body = 0; body + 1 < ends_.size(); ++body) {  // each has by now grown to the end of its touches
+  // each entry of ends_ is now the end of its body's touches
+  for (std::size_t body = 0; body + 1 < ends_.size(); ++body) {
     std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(first),
               touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), before);
     first = ends_[body];

@@ -1,5 +1,5 @@
-// Which bodies of a soft step are awake, and their contacts and joints, each island's in an order that follows from the
-// island alone.
+// The islands of a soft step: finds the bodies that are awake, and sorts their contacts and joints in an order that
+// follows from each island alone.
 #pragma once
 
 #include <cstdint>
@@ -13,49 +13,50 @@ class btTypedConstraint;
 
 namespace aurasim::physics {
 
-/// Bodies that touch or are joined fall asleep together, and wake together. What sleepers touch stays as it is until
-/// one of them wakes, comes or goes, so a step asks each whether it still sleeps, and no more. A body's user index
-/// grows with its id; a static's is negative. Nothing is allocated once warm.
+/// Bodies that touch or are jointed fall asleep and wake together. The touches of sleepers stay until one of them
+/// wakes, arrives or leaves, so a step only tests whether each still sleeps. A body's user index grows with its id; a
+/// static's is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
-  /// A body that comes into the world gets a slot (its user index 3), which stays the same until it goes. 0: statics.
+  /// Gives a body that enters the world a slot (its user index 3), which stays the same until it leaves. Slot 0:
+  /// statics.
   void insert(btRigidBody& body);
   void remove(const btRigidBody& body);
 
-  /// At the start of a step: who is awake?
+  /// Finds the awake bodies at the start of a step.
   void call(std::span<btRigidBody* const> bodies);
-  /// When it was called, and when it was called in the step before. Statics always do.
+  /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.
   bool sleeps(std::uint32_t slot) const { return has(slot, kSleeps); }
   bool slept(std::uint32_t slot) const { return has(slot, kSlept); }
-  /// Which of them touch each other. If not, find() has to be shown it.
+  /// Are the touches of sleepers known? If not, find() has to get them as `of_sleepers`.
   bool knows_sleepers() const { return knows_sleepers_; }
 
   /// Puts islands to sleep or wakes them.
   void find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
             std::span<btTypedConstraint* const> joints);
   bool has_woken_any() const { return has_woken_any_; }
-  /// Of one that slept when it was called.
+  /// Did the body sleep at call(), and was it woken by find()?
   bool is_woken(std::uint32_t slot) const { return has(slot, kSleeps) && has(slot, kMoves); }
 
-  /// Those of bodies that are awake now.
+  /// Sorts the touches of bodies that are awake now.
   void sort(std::span<const SoftTouch> touches);
 
-  /// From call() on as it says, from find() on who moves in the step.
+  /// After call(): bodies that did not sleep. After find(): bodies that move in the step.
   std::span<btRigidBody* const> awake() const { return awake_; }
-  /// Of bodies that are awake, once sorted. Ordered by the bodies' user indices, then by their parts.
+  /// Touches of awake bodies, after sort(). Ordered by the bodies' user indices, then by their parts.
   std::span<const SoftTouch> touches() const { return touches_; }
-  /// Ordered by their user types.
+  /// Joints of awake bodies, ordered by their user types.
   std::span<btTypedConstraint* const> joints() const { return joints_; }
 
  private:
   enum State : std::uint8_t {
     kSleeps = 1,
     kSlept = 2,
-    kMoves = 4,  ///< in the step
-    kKept = 8,   ///< its island is known since the step before
+    kMoves = 4,  ///< it moves in the step
+    kKept = 8,   ///< it sleeps, and the touches of its island are known
   };
 
-  /// They may be connected in another way than before.
+  /// Call when the touches of sleepers may have changed.
   void forget_sleepers() { knows_sleepers_ = false; }
   bool has(std::uint32_t slot, State state) const { return (states_[slot] & state) != 0; }
   std::uint32_t island_of(std::uint32_t slot);
@@ -63,17 +64,17 @@ class SoftIslands {
   void put_to_sleep();
   void wake();
 
-  std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as all that follow
+  std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as the following vectors
   std::vector<std::uint32_t> parents_{0};
-  std::vector<std::uint8_t> is_active_{0};  ///< of an island's first: somebody in it does not want to sleep
+  std::vector<std::uint8_t> is_active_{0};  ///< by first slot of an island: a body of it does not want to sleep
   std::vector<std::uint32_t> free_;
   bool knows_sleepers_ = true;
-  bool reaches_sleepers_ = false;  ///< somebody who is awake
+  bool reaches_sleepers_ = false;  ///< an awake body touches a sleeper
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
-  std::vector<btRigidBody*> asleep_;  ///< when they were called
+  std::vector<btRigidBody*> asleep_;  ///< bodies that slept at call()
   std::vector<SoftTouch> touches_;
-  std::vector<std::uint32_t> ends_;  ///< of the touches of a body, by user index
+  std::vector<std::uint32_t> ends_;  ///< by user index: end of the body's touches
   std::vector<btTypedConstraint*> joints_;
 };
 

@@ -39,7 +39,8 @@ void set(Lanes (&to)[3], int lane, const btVector3& v) {
   for (int i = 0; i < 3; ++i) to[i][lane] = static_cast<Real>(v[i]);
 }
 
-/// Angles in a block are those without the whole turns that a joint has made by the start of the step.
+/// Writes a pull into one lane. Angles in blocks leave out the whole turns that a joint has made by the start of the
+/// step.
 void set(soft::JointBlock::Pull& to, int lane, const ImplicitPull& from, double turns_rad) {
   to.position[lane] = static_cast<Real>(from.position - turns_rad);
   to.drift[lane] = static_cast<Real>(from.drift);

@@ -6,10 +6,10 @@
 namespace aurasim::physics {
 namespace {
 
-/// Who has moved and turned less, as seen by the other, keeps contacts: m, rad.
+/// Contacts are kept if the bodies have moved and turned relative to each other by less, m and rad.
 constexpr btScalar kHardly_m = btScalar(2e-4), kHardly_rad = btScalar(2e-4);
 
-/// Of B in the frame of A.
+/// Position and rotation of B in the frame of A.
 struct Relative {
   btVector3 p, q;
 };

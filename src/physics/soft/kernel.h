@@ -1,4 +1,4 @@
-// The arithmetic that soft/lanes.h declares. For the files that compile it for one set of instructions, and no others.
+// The arithmetic that soft/lanes.h declares. Only for the files that compile it for one set of instructions each.
 #pragma once
 
 #include "physics/soft/kernel_joints.h"

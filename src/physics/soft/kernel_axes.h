@@ -1,4 +1,4 @@
-// What impulses along and about the axes of joints do. The joints' part of soft/kernel.h begins with it.
+// Impulses along and about the axes of joints. Included by the other joint parts of soft/kernel.h.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -20,7 +20,7 @@ AURASIM_INLINE Lanes mass_about(const JointBlock& block, const Vec& n) {
   return inverse(dot(n, add(mul(block.inv_inertia_a, n), mul(block.inv_inertia_b, n))));
 }
 
-/// An impulse on a, and against b.
+/// Applies an impulse to a, and its opposite to b.
 AURASIM_INLINE void push_axis(Pair& p, const JointBlock& block, int axis, const Vec& n, const Lanes& impulse) {
   if (axis < 3) {
     push(p, block, mul(-impulse, n), load(block.arm_a), load(block.arm_b));
@@ -29,7 +29,7 @@ AURASIM_INLINE void push_axis(Pair& p, const JointBlock& block, int axis, const 
   }
 }
 
-/// Of a from b.
+/// Speed of a relative to b along or about the axis.
 AURASIM_INLINE Lanes rate(const Pair& p, const JointBlock& block, int axis, const Vec& n) {
   if (axis < 3) return -dot(speed(p, load(block.arm_a), load(block.arm_b)), n);
   return dot(sub(p.w_a, p.w_b), n);

@@ -1,4 +1,4 @@
-// What drives and resists hinges and sliders, and damps balls: rows of their own, along the axis that is left.
+// Drives and resistances of hinges and sliders as rows along their free axis, and damping of ball joints.
 #pragma once
 
 #include "physics/soft/kernel_axes.h"
@@ -10,14 +10,14 @@ constexpr unsigned kOwnRows = kJointDrive | kJointSpring | kJointFriction;
 
 AURASIM_INLINE int own_axis(unsigned what) { return (what & kSlides) != 0 ? 2 : 5; }
 
-/// The angle, give or take whole turns, that is nearest to what it was. Exact where that is none.
+/// `angle` plus the number of whole turns that brings it nearest to `before`. Exact if that number is 0.
 AURASIM_INLINE Lanes nearest_turn(const Lanes& angle, const Lanes& before) {
   constexpr Real kTurn = Real(6.283185307179586), kRounds = Real(12582912);  // 1.5 * 2^23
   const Lanes turns = (before - angle) * all(1 / kTurn);
   return angle + kTurn * ((turns + kRounds) - kRounds);
 }
 
-/// What an impulse of 1 along or about an axis is: on a, and against b.
+/// An impulse of 1 along or about an axis, applied to a, and its opposite to b.
 struct Effect {
   Vec push, on_a, on_b;
 };
@@ -32,9 +32,9 @@ AURASIM_INLINE Effect without(const Effect& e, const Lanes& times, const Effect&
           sub(e.on_b, mul(times, other.on_b))};
 }
 
-/// What an impulse along the own axis does while the five held ones stay as fast as they are: they bear a share of it
-/// each, which follows from the matrix of all six by elimination, the own axis last. In one go, where sweeps over the
-/// axes would need the more of them, the farther the centres of mass are from the joint.
+/// Computes the effect of an impulse along the free axis while the speeds of the five held axes stay the same. The
+/// share that each held axis bears follows from the matrix of all six axes by elimination, the free one last. A direct
+/// solution, because sweeps over the axes converge the more slowly, the farther the centres of mass are from the joint.
 AURASIM_INLINE void look_at_own(JointBlock& block, unsigned what) {
   const int own = own_axis(what);
   Effect effects[6];
@@ -87,7 +87,7 @@ AURASIM_INLINE Lanes own_took_most(const JointBlock& block, unsigned what) {
   return (what & kJointFriction) != 0 ? max(most, abs(block.rubbed)) : most;
 }
 
-/// Where the joint stands as the substep begins decides about all of it.
+/// Starts a pull: the joint's position `x` at the start of the substep counts for all of it.
 AURASIM_INLINE void begin_pull(JointBlock::Pull& pull, const Lanes& x) {
   pull.pull = pull.stiffness * (pull.position - x) + pull.steady;
   pull.position = pull.position + pull.drift;
@@ -124,7 +124,7 @@ AURASIM_INLINE void solve_own(Pair& p, JointBlock& block, unsigned what) {
   if ((what & kJointFriction) != 0) solve_friction(p, block, axis);
 }
 
-/// Once a substep, implicitly about each axis of the world. Returns the largest impulse.
+/// Damps a ball joint once a substep, implicitly about each axis of the world. Returns the largest impulse.
 AURASIM_INLINE Lanes damp_ball(Pair& p, const JointBlock& block) {
   const Lanes zero{}, one = all(1);
   const Vec axes[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};

@@ -1,4 +1,4 @@
-// The joints' part of soft/kernel.h.
+// The part of soft/kernel.h that solves joints.
 #pragma once
 
 #include "physics/soft/kernel_drives.h"
@@ -12,7 +12,7 @@ constexpr Real kErrorReduction = Real(0.2);
 constexpr unsigned kSprings = kSpringAxis * 0b111111, kShifts = (kHeldAxis | kSpringAxis) * 0b111;
 constexpr unsigned kTurns = ((kHeldAxis | kSpringAxis) * 0b111000) | kJointMotor;
 
-/// By the polynomial of Cephes' atanf for arguments below tan(pi/8), to which it brings the others.
+/// atan2(y, x) by the polynomial of Cephes' atanf for arguments below tan(pi/8); other arguments are reduced to these.
 AURASIM_INLINE Lanes arc_tangent(const Lanes& y, const Lanes& x) {
   const Lanes along = abs(x), across = abs(y);
   const Lanes large = max(max(along, across), all(Real(1e-30))), small = min(along, across);
@@ -29,10 +29,11 @@ AURASIM_INLINE Lanes arc_tangent(const Lanes& y, const Lanes& x) {
   return y < Lanes{} ? -angle : angle;
 }
 
-/// A symmetric matrix, seen by what has turned.
+/// Rotates a symmetric matrix by the turn `t`.
 AURASIM_INLINE void turn_inertia(const Lanes (&m)[6], const Turned& t, Lanes (&to)[6]) {
   const Lanes zero{};
-  Vec rows[3] = {{all(1), zero, zero}, {zero, all(1), zero}, {zero, zero, all(1)}};  // of the turn
+  // rows of the turn's rotation matrix
+  Vec rows[3] = {{all(1), zero, zero}, {zero, all(1), zero}, {zero, zero, all(1)}};
   const Turned back{t.dp, mul(all(-1), t.q), t.q_w};
   for (Vec& row : rows) row = add(row, turn_of(back, row));
   const Vec x = mul(m, rows[0]), y = mul(m, rows[1]), z = mul(m, rows[2]);
@@ -40,7 +41,8 @@ AURASIM_INLINE void turn_inertia(const Lanes (&m)[6], const Turned& t, Lanes (&t
   to[3] = dot(rows[1], y), to[4] = dot(rows[1], z), to[5] = dot(rows[2], z);
 }
 
-/// Held axes go back; limits are as contacts are, the nearer one.
+/// Sets wanted speed and impulse bounds of an axis. A held axis is pulled back; of two limits the nearer one acts, like
+/// a contact.
 AURASIM_INLINE void aim(JointBlock::Axis& axis, const Lanes& most, Real h_s) {
   const Lanes zero{}, per_s = all(1 / h_s);
   const auto held = axis.low == axis.high;
@@ -53,7 +55,7 @@ AURASIM_INLINE void aim(JointBlock::Axis& axis, const Lanes& most, Real h_s) {
   axis.most = held | at_low ? most : zero;
 }
 
-/// The three angles, rad, and what an impulse about each acts about.
+/// The three angles, rad, and the axis about which an impulse on each angle acts.
 struct Angles {
   Lanes x[3];
   Vec n[3];
@@ -119,7 +121,8 @@ void look_at_joints(JointBlock* blocks, std::size_t count, unsigned what, const 
   }
 }
 
-/// A spring that is too stiff for the substep is as stiff as it can bear; so is a damper. Returns its impulse.
+/// Applies a spring with damper. Stiffness and damping are limited to what is stable in the substep. Returns the
+/// impulse.
 AURASIM_INLINE Lanes spring(Pair& p, const JointBlock& block, int axis, Real h_s) {
   const auto& spring = block.axes[axis];
   const Vec n = load(spring.n);
@@ -168,7 +171,7 @@ AURASIM_INLINE void solve_motor(Pair& p, JointBlock& block) {
   block.motor_took = total;
 }
 
-/// Points are held last: that is seen first.
+/// Solves translations last, because their errors are the most visible.
 void solve_joints(JointBlock* blocks, std::size_t count, unsigned what, Mover* movers) {
   for (std::size_t k = 0; k < count; ++k) {
     JointBlock& block = blocks[k];

@@ -1,4 +1,4 @@
-// The part of soft/kernel.h that moves bodies on.
+// The part of soft/kernel.h that integrates the poses of bodies.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -6,12 +6,12 @@
 namespace aurasim::physics::soft {
 namespace {
 
-/// Of any length.
+/// A quaternion of any length.
 struct Quaternion {
   Lanes v[3], w;
 };
 AURASIM_INLINE Vec vector_of(const Quaternion& q) { return load(q.v); }
-/// a after b.
+/// The rotation b followed by a.
 AURASIM_INLINE Quaternion mul(const Quaternion& a, const Quaternion& b) {
   const Vec u = vector_of(a), v = vector_of(b);
   const Vec w = add(add(mul(a.w, v), mul(b.w, u)), cross(u, v));
@@ -23,21 +23,21 @@ AURASIM_INLINE Quaternion normalized(const Quaternion& q) {
   const Lanes per_length = all(1) / root(dot(v, v) + q.w * q.w);
   return {{q.v[0] * per_length, q.v[1] * per_length, q.v[2] * per_length}, q.w * per_length};
 }
-/// q of length 1.
+/// Rotates r by q, which has length 1.
 AURASIM_INLINE Vec rotate(const Quaternion& q, const Vec& r) {
   const Vec u = vector_of(q);
   return add(r, mul(all(2), cross(u, add(cross(u, r), mul(q.w, r)))));
 }
 
-/// By the rotation vector w h_s, to the second order.
+/// Turns q by the rotation vector w h_s, to the second order.
 AURASIM_INLINE Quaternion turn_evenly(const Quaternion& q, const Vec& w, Real h_s) {
   const Vec v = vector_of(q), half = mul(all(h_s / 2), w);
   const Vec turned = add(v, add(mul(q.w, half), cross(half, v)));
   return normalized({{turned.x, turned.y, turned.z}, q.w - dot(half, v)});
 }
 
-/// As a chain of turns about the body's axes, each the flow of the kinetic energy of one of them alone
-/// (physics/free_rotation.h has the source).
+/// State of a free rotation, computed as a chain of turns about the body's axes, each the flow of one axis's kinetic
+/// energy alone (physics/free_rotation.h has the source).
 struct Chain {
   Lanes momentum[3];  ///< in the body's frame, N m s
   Quaternion q_WB;
@@ -46,7 +46,7 @@ AURASIM_INLINE void turn_about(Chain& c, int axis, const Lanes& inv_inertia, con
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;
   const Lanes angle = c.momentum[axis] * inv_inertia * h_s;
   const Lanes square = angle * angle;
-  const Lanes s = angle / 2 * (all(1) + square / 12 * (all(1) + square / 10));  // the tangent of the half
+  const Lanes s = angle / 2 * (all(1) + square / 12 * (all(1) + square / 10));  // tangent of half the angle
   const Lanes sine = 2 * s / (all(1) + s * s), cosine = all(1) - s * sine;
   const Lanes m_j = c.momentum[j], m_k = c.momentum[k];
   c.momentum[j] = cosine * m_j + sine * m_k;
@@ -61,7 +61,7 @@ struct Motion {
   Vec w;
 };
 
-/// Each lane in as many parts as it asks for.
+/// The free rotation in a substep, each lane in as many parts as its spin needs.
 AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, const Turns& turns) {
   const Quaternion start = {{t.start[0], t.start[1], t.start[2]}, t.start[3]};
   const Quaternion q_WB = mul(before.dq, start);
@@ -94,7 +94,8 @@ AURASIM_INLINE Motion tumble(const Motion& before, const Tumblers& t, Real h_s, 
           rotate(after, {t.inv_inertia[0] * m_B.x, t.inv_inertia[1] * m_B.y, t.inv_inertia[2] * m_B.z})};
 }
 
-/// Whoever touches something moves as fast as it is at the end of the substep, which keeps piles calm.
+/// Moves the bodies that touch something by their speeds at the end of the substep (semi-implicit), which keeps piles
+/// calm.
 void move(Mover* movers, const Tumblers* tumblers, std::size_t first_row, std::size_t last_row, Real h_s,
           const Turns& turns) {
   for (std::size_t row = first_row; row < last_row; ++row) {

@@ -1,4 +1,4 @@
-// The contacts' part of soft/kernel.h.
+// The part of soft/kernel.h that solves contacts, in patches.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -25,7 +25,7 @@ void warm_start(const Block* blocks, std::size_t count, int points, Mover* mover
   }
 }
 
-/// Friction about the normal.
+/// Solves the friction that resists a twist about the normal.
 AURASIM_INLINE void rub_twist(Block& block, Pair& p, const Lanes& pressed) {
   const Vec n = load(block.normal);
   const Lanes most = pressed * (block.friction * block.lever_m + block.spinning_m);
@@ -56,7 +56,7 @@ AURASIM_INLINE void rub(Block& block, Pair& p, const Lanes& pressed) {
   block.rub_2 = total_2;
 }
 
-/// Along the normal; returns the sum of the impulses.
+/// Solves the points along the normal. Returns the sum of their impulses.
 AURASIM_INLINE Lanes press(Block& block, Pair& p, int points, const Mover* movers, const Substep& substep) {
   const Lanes zero{};
   const Vec n = load(block.normal);
@@ -83,7 +83,8 @@ AURASIM_INLINE Lanes press(Block& block, Pair& p, int points, const Mover* mover
   return pressed;
 }
 
-/// Friction against the speed of a push would feed the swaying of a pile.
+/// Solves patches. No friction while overlaps are pushed apart: friction against the speed of a push would make piles
+/// sway.
 void solve(Block* blocks, std::size_t count, int points, Mover* movers, const Substep& substep) {
   for (std::size_t k = 0; k < count; ++k) {
     Block& block = blocks[k];

@@ -1,4 +1,4 @@
-// The part of soft/kernel.h that looks for the points of hulls.
+// The part of soft/kernel.h that finds the farthest points of hulls.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -19,7 +19,7 @@ struct Vectors<float> {
   using Places __attribute__((vector_size(32))) = int;
 };
 
-/// The farthest so far, and which it is.
+/// By lane: distance and index of the farthest point so far.
 template <class Number>
 struct Farthest {
   typename Vectors<Number>::Values far;

@@ -1,9 +1,9 @@
-// Vectors of lanes and pairs of bodies, for what soft/kernel.h includes.
+// Vectors of lanes and pairs of bodies, for the parts of soft/kernel.h.
 #pragma once
 
 #include "physics/soft/lanes.h"
 
-/// Else a call passes its vectors through memory.
+/// Without forced inlining, calls would pass vectors through memory.
 #define AURASIM_INLINE [[gnu::always_inline]] inline
 
 namespace aurasim::physics::soft {
@@ -12,7 +12,7 @@ namespace {
 struct Vec {
   Lanes x, y, z;
 };
-/// Of two bodies.
+/// Velocities of two bodies.
 struct Pair {
   Vec v_a, w_a, v_b, w_b;
 };
@@ -25,7 +25,7 @@ AURASIM_INLINE Lanes dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * 
 AURASIM_INLINE Vec cross(const Vec& a, const Vec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// A symmetric matrix, as in Block.
+/// Product with a symmetric matrix, stored as in Block.
 AURASIM_INLINE Vec mul(const Lanes (&m)[6], const Vec& a) {
   return {m[0] * a.x + m[1] * a.y + m[2] * a.z, m[1] * a.x + m[3] * a.y + m[4] * a.z,
           m[2] * a.x + m[4] * a.y + m[5] * a.z};
@@ -38,10 +38,10 @@ AURASIM_INLINE Lanes root(Lanes a) {
   for (int i = 0; i < kLanes; ++i) a[i] = root(a[i]);
   return a;
 }
-/// What scales an impulse of such a length down to `most`.
+/// Factor that limits an impulse of this length to `most`.
 AURASIM_INLINE Lanes share(const Lanes& length, const Lanes& most) { return length > most ? most / length : all(1); }
 
-/// Rows become columns: element i of row k becomes element k of row i.
+/// Transposes in place: element i of row k becomes element k of row i.
 AURASIM_INLINE void transpose(Lanes (&rows)[kLanes]) {
   static_assert(kLanes == 8);
   Lanes pairs[kLanes], fours[kLanes];
@@ -62,11 +62,11 @@ AURASIM_INLINE void transpose(Lanes (&rows)[kLanes]) {
 }
 
 static_assert(sizeof(Mover) == 2 * sizeof(Lanes) && __builtin_offsetof(Mover, dp) == sizeof(Lanes));
-/// The halves of movers, as columns: v and w; or dp and dq.
+/// One half of kLanes movers, as columns: v and w, or dp and dq.
 struct Half {
   Lanes columns[kLanes];
 };
-template <class Who>  // who(lane): which mover
+template <class Who>  // who(lane): index of the mover
 AURASIM_INLINE Half load_half(const Who& who, const Mover* movers, std::size_t half) {
   Half h;
   for (int i = 0; i < kLanes; ++i) {
@@ -75,7 +75,7 @@ AURASIM_INLINE Half load_half(const Who& who, const Mover* movers, std::size_t h
   transpose(h.columns);
   return h;
 }
-/// But not into the one that never moves, nor into statics that nothing moves.
+/// Writes a half into movers. Skips mover 0, which never moves, and those below, the moving statics.
 template <class Who>
 AURASIM_INLINE void store_half(Half h, const Who& who, Mover* movers, std::size_t half) {
   transpose(h.columns);
@@ -113,12 +113,12 @@ AURASIM_INLINE Turned turned(const Half& h) {
 AURASIM_INLINE Turned moved(const std::int32_t (&who)[kLanes], const Mover* movers) {
   return turned(load_half(those(who), movers, 1));
 }
-/// By how much the turn since the start of the step changes r.
+/// Change of the arm r by the turn since the start of the step.
 AURASIM_INLINE Vec turn_of(const Turned& t, const Vec& r) {
   const Vec c = add(cross(t.q, r), mul(t.q_w, r));
   return mul(all(2), cross(t.q, c));
 }
-/// How far a point at r from the centre has come since the start of the step.
+/// Displacement since the start of the step of a point at r from the centre.
 AURASIM_INLINE Vec way(const Turned& t, const Vec& r) { return add(t.dp, turn_of(t, r)); }
 AURASIM_INLINE Vec speed(const Pair& p, const Vec& r_a, const Vec& r_b) {
   return sub(add(p.v_b, cross(p.w_b, r_b)), add(p.v_a, cross(p.w_a, r_a)));

@@ -21,7 +21,7 @@ void SoftLayout::clear(std::size_t movers, std::size_t kinds) {
   used_.assign(movers, 0);
 }
 
-/// The first colour that is free. Without one it is solved by itself, after the others.
+/// Gives the entry the first free colour. If none is free, it is solved by itself, after the others.
 void SoftLayout::add(std::int32_t a, std::int32_t b, std::size_t kind) {
   const auto body_a = static_cast<std::size_t>(std::max(0, a)), body_b = static_cast<std::size_t>(std::max(0, b));
   const std::uint64_t free = ~(used_[body_a] | used_[body_b]) & (a > 0 && b > 0 ? kOfBodies : ~kOfBodies);
@@ -32,7 +32,7 @@ void SoftLayout::add(std::int32_t a, std::int32_t b, std::size_t kind) {
   entries_.push_back({a, b, static_cast<std::uint32_t>(colour * kinds_ + kind), 0});
 }
 
-/// By colour, then by kind, else as they came.
+/// Sorts by colour, then by kind; otherwise in the order of add().
 std::size_t SoftLayout::place() {
   next_.assign((kColours + 1) * kinds_, 0);
   for (const Entry& entry : entries_) ++next_[entry.kind];

@@ -1,5 +1,5 @@
-// What holds two bodies, in blocks of lanes: in colours, so that those of a colour share no body that moves, and within
-// a colour by kind.
+// Arranges patches or joints ("entries"), each between two bodies, in blocks of lanes. Entries of one colour share no
+// body that moves. Within a colour they are grouped by kind.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,24 @@ namespace aurasim::physics {
 
 class SoftLayout {
  public:
-  /// `kinds`: how many there are. Of bodies that are all movers below `movers`.
+  /// Starts anew. `movers`: number of movers; `kinds`: number of kinds of entries.
   void clear(std::size_t movers, std::size_t kinds);
-  /// Between two movers; 0 and below are statics. Those of an island in an order that follows from the island alone: so
-  /// do the colours. Those of statics have colours of their own, which come last: what cannot give way has the last
-  /// word.
+  /// Adds an entry between two movers; 0 and below are statics. The entries of an island have to come in an order that
+  /// follows from the island alone, and so do the colours. Entries with statics have colours of their own, which are
+  /// solved last, because statics cannot give way.
   void add(std::int32_t a, std::int32_t b, std::size_t kind);
-  /// Of all that were added. Returns the number of blocks.
+  /// Places all added entries in blocks. Returns the number of blocks.
   std::size_t place();
 
   std::size_t size() const { return entries_.size(); }
-  /// Of the i-th that was added.
+  /// Mover a of the i-th added entry.
   std::int32_t a(std::size_t i) const { return entries_[i].a; }
   std::int32_t b(std::size_t i) const { return entries_[i].b; }
   std::size_t block(std::size_t i) const;
   int lane(std::size_t i) const;
 
-  /// work(first block, blocks, kind), by each worker for its share; when it returns, all have done theirs.
+  /// Calls work(first block, number of blocks, kind) for this worker's share of each run. All workers have to call it;
+  /// it returns when all are done.
   template <class Work>
   void for_each_run(const soft::Worker& worker, Work&& work) const {
     for (const Run& run : runs_) {
@@ -48,14 +49,14 @@ class SoftLayout {
   /// Blocks of one colour and kind.
   struct Run {
     std::size_t first, count, kind;
-    bool in_order;  ///< they have no colour, and may share bodies
-    bool ends;      ///< its colour
+    bool in_order;  ///< no free colour was left: entries may share bodies
+    bool ends;      ///< the last run of its colour
   };
 
   std::size_t kinds_ = 1;
-  std::vector<Entry> entries_;       ///< as they came
-  std::vector<std::uint64_t> used_;  ///< colours, by mover
-  std::vector<std::uint32_t> next_;  ///< by colour and kind
+  std::vector<Entry> entries_;       ///< in the order of add()
+  std::vector<std::uint64_t> used_;  ///< by mover: bits of its colours
+  std::vector<std::uint32_t> next_;  ///< by colour and kind: next free place
   std::vector<Run> runs_;
 };
 

@@ -17,15 +17,17 @@ using soft::Lanes;
 using soft::Mover;
 using soft::Real;
 
-/// Springs, as a share of the substeps' rate: stiffer ones swing on their own; and of the steps' rate: stiffer ones
-/// undo all of an overlap before anybody looks again, and card houses fall. Not where both are pressed together by many
-/// times the weight of one: there only the former counts. Of statics twice as stiff.
+/// Frequencies of the contacts' springs, as shares of the substeps' rate and of the steps' rate; the lower one counts.
+/// Springs stiffer than the first would oscillate. Springs stiffer than the second undo an overlap before the next look
+/// for contacts, and card houses fall. Under a load of many times the weight of one body only the first counts. Springs
+/// of statics are twice as stiff.
 constexpr double kHertzOfSubsteps = 0.25, kHertzOfSteps = 1.5;
-constexpr Real kLight = 2, kHeavy = 10;  ///< times the weight
-constexpr Real kDamping = 2;             ///< times critical: with 3 piles sway, with 1 cards wander
-/// What comes closer at less than this does not bounce.
+/// load, in weights of the lighter body, up to which both shares count, and from which on only the first does
+constexpr Real kLight = 2, kHeavy = 10;
+constexpr Real kDamping = 2;  ///< damping over critical damping: with 3 piles sway, with 1 cards wander
+/// Bodies that approach more slowly do not bounce.
 constexpr Real kRestSpeed_m_s = Real(0.5);
-constexpr int kBounceSweeps = 8;  ///< the points of a face share a bounce
+constexpr int kBounceSweeps = 8;  ///< several sweeps, because the points of a face share a bounce
 
 struct Vec {
   Real x = 0, y = 0, z = 0;
@@ -36,7 +38,7 @@ Vec operator*(Real s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
 Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 Vec vec(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
-/// Symmetric, as in SoftInertia.
+/// Product with a symmetric matrix, stored as in SoftInertia.
 Vec mul(const Real (&m)[6], const Vec& a) {
   return {m[0] * a.x + m[1] * a.y + m[2] * a.z, m[1] * a.x + m[3] * a.y + m[4] * a.z,
           m[2] * a.x + m[4] * a.y + m[5] * a.z};
@@ -46,7 +48,7 @@ void set(Lanes (&to)[3], int lane, const Vec& v) { to[0][lane] = v.x, to[1][lane
 
 Real inverse(Real x) { return x > 0 ? 1 / x : 0; }
 
-/// A direction across a normal; the second is their cross product.
+/// The first direction across a normal. The second is the cross product of the two.
 Vec across(const Vec& n) {
   const Vec t = std::abs(n.z) > Real(0.7) ? Vec{0, -n.z, n.y} : Vec{-n.y, n.x, 0};
   return 1 / std::sqrt(dot(t, t)) * t;
@@ -64,13 +66,14 @@ struct Side {
   }
 };
 
-/// How fast the two come closer when the gap has closed, m/s, negative; `gained` by the fall until then, J/kg.
+/// Speed along the normal when the gap has closed, m/s; negative: approaching. `gained`: energy from the fall until
+/// then, J/kg.
 Real approach(Real opening_m_s, Real gained) {
   if (opening_m_s >= 0) return opening_m_s;
   return -std::sqrt(std::max(Real(0), opening_m_s * opening_m_s + 2 * gained));
 }
 
-/// Of a symmetric matrix; all 0 if there is none.
+/// Inverse of a symmetric matrix; all 0 if it has none.
 void invert(const Real (&m)[6], Real (&to)[6]) {
   const Real xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];
   const Real per_det = inverse(m[0] * xx + m[1] * xy + m[2] * xz);
@@ -93,7 +96,7 @@ SoftPatches::Stiffness::Stiffness(Real hertz, Real substep_s) {
   rate_per_s = omega / a, mass = b / (1 + b), impulse = 1 / (1 + b);
 }
 
-/// By how many times the weight of the lighter one the two were pressed together last.
+/// Load of a patch: the last impulses over the weight of the lighter body.
 Real SoftPatches::load(const SoftPatch& patch, Real inv_mass, Real gravity) const {
   Real pressed = 0;
   for (int i = 0; i < patch.count; ++i) pressed += patch.points[static_cast<std::size_t>(i)].impulse;
@@ -212,7 +215,8 @@ void SoftPatches::begin_tally(bool wanted) {
   sums_.assign(wanted ? blocks_.size() : 0, Sums{});
 }
 
-/// Contacts start from the impulses of the substep before, so those at its end are all that has acted in it.
+/// Contacts start from the impulses of the substep before, so the impulses at the end of a substep are all that acted
+/// in it.
 void SoftPatches::tally(const soft::Worker& worker) {
   if (!tallies_) return;
   const auto [first, last] = worker.share(blocks_.size());
@@ -223,8 +227,8 @@ void SoftPatches::tally(const soft::Worker& worker) {
 
 Real SoftPatches::tallied(std::size_t i, int point) const { return sums_[layout_.block(i)].of[point][layout_.lane(i)]; }
 
-/// The impulses of friction are the patch's. Each point has them, in the fields that Bullet keeps for a point that it
-/// finds again, so that they are still there when one of them is lost.
+/// Impulses of friction belong to the patch. Each point gets them, in fields that Bullet keeps for a point that it
+/// finds again, so they survive when a point is lost.
 void SoftPatches::remember(int threads) const {
   soft::side_by_side(threads, [&](const soft::Worker& worker) {
     const auto [first, last] = worker.share(patches_.size());

@@ -1,5 +1,5 @@
-// The contact points of awake bodies, as the soft step solves them: in patches, coloured so that those of a colour
-// share no body that moves, side by side in blocks.
+// The contact points of awake bodies, as the soft step solves them: in patches, side by side in blocks. Patches of one
+// colour share no body that moves (soft/layout.h).
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace aurasim::physics {
 
-/// What resists, in the world frame.
+/// Inverse mass and inertia of a body, in the world frame.
 struct SoftInertia {
   soft::Real inv_mass = 0;         ///< 1/kg
   soft::Real inv_inertia[6] = {};  ///< xx, xy, xz, yy, yz, zz, 1/(kg m^2)
@@ -24,34 +24,36 @@ class SoftPatches {
   SoftPatches(double step_s, int substeps);
 
   void clear(std::size_t movers);
-  /// Of bodies with these movers. The patches of an island come in an order that follows from the island alone: so do
-  /// the colours.
+  /// Adds a patch between two movers. The patches of an island have to be added in an order that follows from the
+  /// island alone.
   void add(SoftPatch& patch, std::int32_t a, std::int32_t b);
-  /// Lays out all that was added. `inertias` of bodies, as movers; gravity in m/s^2.
+  /// Lays out all added patches. `inertias`: by mover; gravity in m/s^2.
   void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], int threads);
 
-  // By each worker, for its share. When they return, all have done theirs.
+  // The next three are called by each worker for its share. They return when all workers are done.
   void warm_start(soft::Mover* movers, const soft::Worker& worker);
   void solve(soft::Mover* movers, const soft::Substep& substep, const soft::Worker& worker);
   void bounce(soft::Mover* movers, const soft::Worker& worker);
 
-  // What has pressed in all substeps, if that is wanted. Touches nothing that is computed.
-  /// After build().
+  // Sums of the contact impulses over all substeps, for observers. They change nothing that is computed.
+  /// Clears the sums, or switches them off. Call after build().
   void begin_tally(bool wanted);
-  /// By each worker, for its share, after each substep; of the last one after bounce().
+  /// Adds the impulses of a substep. Called by each worker for its share after each substep, after the last one's
+  /// bounce().
   void tally(const soft::Worker& worker);
   std::size_t size() const { return patches_.size(); }
   const SoftPatch& patch(std::size_t i) const { return *patches_[i]; }
   std::int32_t mover_a(std::size_t i) const { return layout_.a(i); }
   std::int32_t mover_b(std::size_t i) const { return layout_.b(i); }
-  /// Of a patch's point, N s.
+  /// Sum of a patch's point, N s.
   soft::Real tallied(std::size_t i, int point) const;
 
-  /// Writes the impulses into the manifolds, for the next step; into patches ahead of time, whether they have pressed.
+  /// Writes the impulses into the manifolds for the next step. In patches ahead of time, notes whether they have
+  /// pressed.
   void remember(int threads) const;
 
  private:
-  /// A spring and a damper that cannot overshoot in a substep, as a share of a rigid contact's impulse.
+  /// A spring with damper that cannot overshoot in a substep, as shares of a rigid contact's impulse.
   struct Stiffness {
     Stiffness(soft::Real hertz, soft::Real substep_s);
     soft::Real rate_per_s, mass, impulse;
@@ -66,13 +68,13 @@ class SoftPatches {
   void fill(std::size_t at, const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 
   soft::Real substep_s_;
-  soft::Real light_hertz_, heavy_hertz_;  ///< of springs between bodies
-  std::vector<SoftPatch*> patches_;       ///< as they came
-  SoftLayout layout_;                     ///< by the number of points
+  soft::Real light_hertz_, heavy_hertz_;  ///< frequencies of the springs between bodies, by load
+  std::vector<SoftPatch*> patches_;       ///< in the order of add()
+  SoftLayout layout_;                     ///< the kind is the number of points
   std::vector<soft::Block> blocks_;
   bool tallies_ = false;
   std::vector<Sums> sums_;  ///< by block
-  bool bounces_ = false;    ///< any of them
+  bool bounces_ = false;    ///< some patch has restitution
 };
 
 }  // namespace aurasim::physics

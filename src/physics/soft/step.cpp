@@ -24,16 +24,18 @@ namespace {
 using soft::Mover;
 using soft::Real;
 
-/// An overlap is undone no faster.
+/// Highest speed at which overlaps are pushed apart.
 constexpr Real kTopPush_m_s = 3;
-/// So often joints are solved before contacts in each substep: they start from nothing. And after bodies have moved.
+/// Sweeps over joints in each substep: before contacts (several, because their impulses start from 0), and after bodies
+/// have moved.
 constexpr int kJointSweeps = 4, kLastJointSweeps = 2;
 
-/// The turn by the rotation vector v, rad: by the series up to half a radian, and as often again as it takes.
+/// The turn by the rotation vector v, rad. Uses the series up to half a radian; longer vectors are halved first and the
+/// turn is doubled as often.
 btQuaternion turn_by(btVector3 v) {
   int halved = 0;
   for (; v.length2() > 1 && halved < 20; ++halved) v /= 2;
-  const btScalar x2 = v.length2() / 4;  // of the half angle
+  const btScalar x2 = v.length2() / 4;  // square of half the angle
   const btScalar cosine = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90 * (1 - x2 / 132)))));
   const btScalar sinc = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156)))));
   btQuaternion q(v.x() / 2 * sinc, v.y() / 2 * sinc, v.z() / 2 * sinc, cosine);
@@ -41,7 +43,7 @@ btQuaternion turn_by(btVector3 v) {
   return q;
 }
 
-/// What the forces on it make of its velocities in a second.
+/// Accelerations of a body by the forces on it.
 struct Pushed {
   btVector3 v{0, 0, 0}, w{0, 0, 0};
   bool any = false;
@@ -51,7 +53,7 @@ Pushed pushed(const btRigidBody& body) {
   return {body.getInvMass() * body.getTotalForce(), body.getInvInertiaTensorWorld() * body.getTotalTorque(), true};
 }
 
-/// On the parabola, and as a free body turns.
+/// Moves a body without forces: on its parabola, with free rotation.
 void fly_freely(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
   const btTransform& start = body.getWorldTransform();
   const btVector3 v = body.getLinearVelocity();
@@ -70,7 +72,7 @@ void fly_freely(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
   }
 }
 
-/// Of a torque, one half acts before the turn and one after.
+/// Moves a body that touches nothing. Half of a torque's impulse acts before the turn and half after.
 void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
   const Pushed push = pushed(body);
   if (!push.any) return fly_freely(body, gravity, step_s);
@@ -93,7 +95,7 @@ struct SoftStep::Impl {
         patches(step_s, substeps),
         joints(step_s / substeps) {}
 
-  /// A mover's body at the start.
+  /// Body of a mover at the start of the step.
   struct Body {
     btVector3 p{0, 0, 0};
     btQuaternion q{0, 0, 0, 1};
@@ -109,7 +111,7 @@ struct SoftStep::Impl {
     const auto place = static_cast<std::size_t>(user_index);
     return user_index >= 0 && place < mover_at.size() && mover_at[place] != 0;
   }
-  /// Below 0 for statics that move, 0 for those that stand and for sleepers.
+  /// Index of a body's mover. Negative for moving statics, 0 for other statics and for sleepers.
   std::int32_t mover_of(int user_index) const {
     const auto of_static = static_cast<std::size_t>(-1 - user_index);
     if (user_index < 0) return of_static < mover_of_static.size() ? mover_of_static[of_static] : 0;
@@ -133,16 +135,19 @@ struct SoftStep::Impl {
   Real h_s;
   int substeps;
   btVector3 gravity{0, 0, 0};
-  std::vector<std::int32_t> mover_at;         ///< by user index; 0: touches nothing; kHeld: does, and has no mover
+  /// by user index; 0: touches nothing; kHeld: touches something and has no mover yet
+  std::vector<std::int32_t> mover_at;
   std::vector<std::int32_t> mover_of_static;  ///< by -1 - user index; 0: it stands
   std::vector<btRigidBody*> flying;
-  std::vector<btRigidBody*> held;        ///< as movers
-  std::vector<Mover> all_movers;         ///< in whole rows: an empty one and those of statics that move, if any; bodies
-  Mover* movers = nullptr;               ///< of bodies, of which the first never moves; of statics before them
-  std::vector<soft::Tumblers> steady;    ///< by row of statics
-  std::vector<soft::Tumblers> tumblers;  ///< by row
-  std::vector<SoftInertia> inertias;     ///< as movers
-  std::vector<Body> bodies;              ///< as movers
+  std::vector<btRigidBody*> held;  ///< bodies by mover
+  /// in whole rows: an empty row and those of moving statics, if any; then those of bodies
+  std::vector<Mover> all_movers;
+  /// movers of bodies, the first of which never moves; those of moving statics lie before them
+  Mover* movers = nullptr;
+  std::vector<soft::Tumblers> steady;    ///< by row of moving statics
+  std::vector<soft::Tumblers> tumblers;  ///< by row of bodies
+  std::vector<SoftInertia> inertias;     ///< by mover
+  std::vector<Body> bodies;              ///< by mover
   std::vector<PushedMover> pushes;       ///< ascending mover
   SoftPatches patches;
   SoftJoints joints;
@@ -159,7 +164,7 @@ void SoftStep::Impl::hold(int user_index) {
   mover_at[place] = kHeld;
 }
 
-/// Whoever touches nothing, and is held by no joint, flies at once.
+/// Makes the movers. Bodies that touch nothing and have no joint are moved at once.
 void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRigidBody* const> moving_statics,
                              std::span<const SoftTouch> touches, std::span<btTypedConstraint* const> joint_list) {
   mover_at.clear();
@@ -199,7 +204,7 @@ void SoftStep::Impl::make_room(std::size_t moving_statics) {
   bodies.resize(held.size());
 }
 
-/// They go on evenly, whatever they touch.
+/// Makes the movers of moving statics. They go on evenly, whatever they touch.
 void SoftStep::Impl::take_in_statics(std::span<btRigidBody* const> moving_statics) {
   mover_of_static.clear();
   std::fill(all_movers.data(), movers, Mover{});
@@ -301,7 +306,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
   patches.tally(worker);
 }
 
-/// Where they pressed when the step began.
+/// Adds the contact impulses at the contact points of the start of the step.
 void SoftStep::Impl::tell(ContactImpulses& impulses) const {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const SoftPatch& patch = patches.patch(i);
@@ -315,7 +320,8 @@ void SoftStep::Impl::tell(ContactImpulses& impulses) const {
   }
 }
 
-/// Gives a body where it is now, and how fast. What a mover has rounded off its speed at the start is not lost.
+/// Writes pose and velocities of a mover into its body. Adds only their changes, so the rounding of a mover's speed at
+/// the start is not lost.
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
   const Body& body = bodies[i];

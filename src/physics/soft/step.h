@@ -1,7 +1,7 @@
-// The soft step: what touches is found once a step, and solved in substeps. In each, contacts push apart what overlaps
-// as springs do; then bodies move; then contacts are rigid and rub, so that nothing keeps the speed of a push, and what
-// is to bounce does so at the end (E. Catto, "Solver2D", 2024). Contacts are coloured and computed side by side
-// (soft/patches.h), joints one after the other (soft/joints.h). Bodies that touch nothing fly on their parabola.
+// The soft step: contacts are found once a step and solved in substeps. In each substep, contacts first push overlaps
+// apart like springs. Then bodies move. Then contacts are rigid and have friction, so that no body keeps the speed of a
+// push. Restitution is applied at the end (E. Catto, "Solver2D", 2024). Contacts are coloured and computed side by side
+// (soft/patches.h), joints one after the other (soft/joints.h). Bodies that touch nothing move on their parabola.
 #pragma once
 
 #include <memory>
@@ -22,9 +22,9 @@ class SoftStep {
   SoftStep(double step_s, int substeps, int threads);
   ~SoftStep();
 
-  /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and are where they were afterwards. Each
-  /// island's touches and joints come in an order that follows from the island alone; all awake touches have their
-  /// patches in `contacts`. Gravity in m/s^2. Tells `impulses` what has pressed on what, if it wants to know.
+  /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and their own poses are not changed. The
+  /// touches and joints of each island have to come in an order that follows from the island alone; `contacts` has the
+  /// patches of all touches. Gravity in m/s^2. Adds the contact impulses to `impulses`, if wanted.
   void solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
              std::span<const SoftTouch> touches, SoftContacts& contacts, std::span<btTypedConstraint* const> joints,
              const btVector3& gravity, ContactImpulses& impulses);

@@ -1,4 +1,4 @@
-// What touches in a soft step, and where.
+// Touching bodies of a soft step, and their contact points.
 #pragma once
 
 #include <algorithm>
@@ -15,19 +15,19 @@ namespace aurasim::physics {
 /// Contact points of two bodies with one normal, at the start of a step.
 struct SoftPatch {
   struct Point {
-    soft::Real r_a[3] = {}, r_b[3] = {};  ///< from the centres of mass, m
+    soft::Real r_a[3] = {}, r_b[3] = {};  ///< the point from the centres of mass, m
     soft::Real gap = 0;                   ///< m; negative: overlap
-    soft::Real impulse = 0;               ///< of the last substep, N s
+    soft::Real impulse = 0;               ///< impulse of the last substep, N s
   };
 
   btPersistentManifold* manifold = nullptr;
-  bool ahead = false;                                  ///< of time: the manifold, if any, has not got the points
-  bool has_pressed = false;                            ///< ahead of time: the two have touched in the step
-  int a = 0, b = 0;                                    ///< user indices: statics' are negative
-  std::array<std::int8_t, soft::kMostPoints> of = {};  ///< the points in the manifold
+  bool ahead = false;        ///< a contact ahead of time: the manifold, if any, does not have the points
+  bool has_pressed = false;  ///< for contacts ahead of time: the two bodies have touched in the step
+  int a = 0, b = 0;          ///< user indices; those of statics are negative
+  std::array<std::int8_t, soft::kMostPoints> of = {};  ///< indices of the points in the manifold
   std::int8_t count = 0;
   soft::Real normal[3] = {};  ///< from a to b
-  soft::Real belt[3] = {};    ///< of the surface of b from that of a, by belts, m/s
+  soft::Real belt[3] = {};    ///< velocity of b's surface relative to a's by belts, m/s
   soft::Real friction = 0, restitution = 0, spinning_m = 0, rolling_m = 0;
   soft::Real rub_1 = 0, rub_2 = 0, twist = 0;  ///< impulses of friction of the last substep, N s and N m s
   std::array<Point, soft::kMostPoints> points;
@@ -35,16 +35,16 @@ struct SoftPatch {
 
 /// A manifold with a point, or with a contact ahead of time.
 struct SoftTouch {
-  btPersistentManifold* manifold = nullptr;  ///< ahead of time: may be null
+  btPersistentManifold* manifold = nullptr;  ///< may be null for a contact ahead of time
   int a = 0, b = 0;                          ///< user indices
   std::uint32_t slot_a = 0, slot_b = 0;
   Parts parts;
-  bool acts = true;                                      ///< on the bodies; else they go through each other
-  bool ahead = false;                                    ///< of time
+  bool acts = true;                                      ///< false: the bodies pass through each other
+  bool ahead = false;                                    ///< a contact ahead of time
   std::uint32_t list = 0, first_patch = 0, patches = 0;  ///< SoftContacts::patches_of()
 };
 
-/// The slot of a body among the islands; 0 of a static, and of what is in no world.
+/// The slot of a body in SoftIslands; 0 for statics and for objects in no world.
 inline std::uint32_t slot_of(const btCollisionObject& object) {
   return static_cast<std::uint32_t>(std::max(0, object.getUserIndex3()));
 }

@@ -64,7 +64,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
   }
 
  private:
-  /// Whom the step has brought together, maybe only for its duration.
+  /// Reports the first contacts of bodies that touched within the step, perhaps only for a part of it.
   void report_met() {
     for (const SoftAhead& ahead : contacts_.ahead()) {
       if (std::ranges::none_of(contacts_.patches_of(ahead), &SoftPatch::has_pressed)) continue;
@@ -89,7 +89,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     }
   }
 
-  /// Who has been slow for long wants to sleep: as Bullet says, of those who may.
+  /// Bodies that have been slow for long want to sleep, by Bullet's rules, unless they never sleep.
   void rest(btScalar step_s) {
     for (btRigidBody* body : islands_.awake()) {
       body->updateDeactivation(step_s);
@@ -102,7 +102,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     }
   }
 
-  /// Of what may have moved since the last time.
+  /// Updates the bounds of objects that may have moved since the last call.
   void bound() {
     const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
     for (btRigidBody* body : islands_.awake()) {

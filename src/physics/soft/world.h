@@ -1,5 +1,5 @@
-// The world of the soft step: what touches is found once, then islands, then all substeps (step.h). Bullet finds the
-// pairs and tells their contacts.
+// The world of the soft step: contacts are found once, then islands, then all substeps are computed (step.h). Bullet
+// finds the pairs and computes their contacts.
 #pragma once
 
 #include "physics/stepper.h"
