@@ -50,7 +50,8 @@ class SecurityLog {
   using Clock = std::chrono::steady_clock;
 
   SecurityLog();
-  /// Returns `text`, or nothing if it was just reported or there is too much to report.
+  /// Returns the messages to report: `text`, preceded by the number of messages left out so far if there were any.
+  /// Empty if `text` was just reported or there is too much to report.
   std::vector<std::string> worth_saying(const std::string& text);
   std::string with_names(std::string message) const;
 

@@ -14,7 +14,7 @@
 namespace aurasim::dds {
 namespace {
 
-/// Of one message: both fit into a datagram of 64 kB.
+/// Most rows in one message: both fit into a datagram of 64 kB.
 constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
 
 /// Programs whose last word a node remembers: more than steer one run.
