@@ -46,7 +46,7 @@ class Connection {
   int socket_ = -1;
   int log_ = -1;
   pid_t pid_ = 0;
-  int exit_code_ = 0;  ///< of the agent; 128 + a signal that has ended it
+  int exit_code_ = 0;  ///< exit code of the agent; 128 + a signal that has ended it
   int launcher_ = -1;  ///< pidfd of the launcher; -1: none was launched, or its end was seen
   std::uint64_t requests_ = 0;
 };

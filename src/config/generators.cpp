@@ -21,7 +21,7 @@ struct Chain {
   bool last_anchored = false;
 };
 
-/// What all formations share. F is the formation's frame: origin at `position`, x along its rows, z up.
+/// Values that all formations have. F is the formation's frame: origin at `position`, x along its rows, z up.
 struct Formation {
   core::PrototypeId prototype{};
   Bounds bounds;  ///< bounds of the shape, in the body's frame

@@ -7,9 +7,9 @@
 namespace aurasim::config {
 
 struct Gone {
-  std::string_view path;        ///< of the key, as errors name it: "physics.solver"
-  std::string_view value = {};  ///< the one value that is gone; empty: the key is gone with all its values
-  std::string_view text;        ///< what became of it, and what to choose instead
+  std::string_view path;        ///< path of the removed key, as errors name it: "physics.solver"
+  std::string_view value = {};  ///< the removed value; empty: the key was removed with all its values
+  std::string_view text;        ///< what replaced it, and what to choose instead
 };
 
 /// Finds a removed key. Null: the key never existed, or still does.

@@ -59,8 +59,8 @@ class ControlBus {
   std::vector<Status> spares();
   /// Marks `process` dead, whatever DDS still reports. For a caller that has seen the process end.
   void hold_for_dead(std::uint64_t process);
-  /// Handles the report `lost` of a death. It is believed once the process shows no life, and at once if the process
-  /// itself has sent it.
+  /// Handles the report `lost` of a death. It is believed at once if the process itself has sent it, and otherwise once
+  /// the process shows no life. A report about a process that lives is refused.
   void hear_of_death(const RunCommand& lost);
 
   bool publish_map(const WorldMap& map);

@@ -355,8 +355,8 @@ class Checker {
   Findings& findings_;
   GuidPrefix source_{}, destination_{};
   std::optional<std::uint64_t> timestamp_;
-  std::size_t begin_ = 0;   ///< of this submessage
-  std::uint8_t flags_ = 0;  ///< of this submessage
+  std::size_t begin_ = 0;   ///< offset of the present submessage
+  std::uint8_t flags_ = 0;  ///< flags of the present submessage
   bool last_ = false;       ///< the submessage extends to the datagram's end
 };
 

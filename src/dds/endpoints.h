@@ -23,7 +23,8 @@ struct EndpointSpec {
   std::vector<std::string> partitions;
   std::optional<core::RegionId> region;  ///< region whose endpoint this is; peers read it in the user data
   std::string profile = {};              ///< QoS profile; empty: the topic's
-  /// For a writer: a reader that asks for no history also gets no retransmissions, whatever its profile says.
+  /// For a reader: one that asks for no history (volatile) becomes best effort and gets no retransmissions, whatever
+  /// its profile says.
   bool best_effort_if_volatile = false;
 };
 

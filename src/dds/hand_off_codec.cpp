@@ -121,7 +121,7 @@ bool known_objects(const wire::Migration& in, const Expected& expected) {
 /// True when all quantities are within dds/bearable.h.
 bool are_bearable(const wire::Migration& in) {
   using namespace bearable;
-  constexpr std::array kWholeColumns = {26, 27, 37, 38, 39, 40};  // of a contact: read as int
+  constexpr std::array kWholeColumns = {26, 27, 37, 38, 39, 40};  // columns of a contact that are read as int
   constexpr double kMostInt = std::numeric_limits<std::int32_t>::max();
   for (std::size_t row = 0; row < in.points().size(); row += core::kContactPointDoubles) {
     for (const int column : kWholeColumns) {

@@ -73,7 +73,7 @@ class ImpairedLink {
     Time due;  ///< time to send it; only for kWaits
   };
 
-  /// Most bytes that may wait; a datagram beyond them is dropped (kOverflowed).
+  /// Most bytes that may wait; a datagram beyond them is dropped (kOverflows).
   static constexpr std::size_t kMostQueuedBytes = std::size_t{64} << 20;
 
   /// `stream` tells participants of one seed apart: each has random numbers of its own.

@@ -15,7 +15,7 @@ namespace aurasim::dds {
 struct MeshCacheLimits {
   std::size_t meshes = std::numeric_limits<std::size_t>::max();
   std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< bytes of points and triangles
-  // Limits for one source; dropped meshes are not counted.
+  // Limits for one source; released meshes are not counted.
   std::size_t meshes_of_source = std::numeric_limits<std::size_t>::max();
   std::size_t bytes_of_source = std::numeric_limits<std::size_t>::max();
 };

@@ -44,7 +44,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-/// A message of so many transforms fits into a datagram of 64 kB, with names of usual length.
+/// Most transforms in one message. With names of usual length it fits into a datagram of 64 kB.
 constexpr std::size_t kTransformsAtOnce = 400;
 
 /// Type support without type object and type information, as in ROS 2. With them Fast DDS 2.9.1 ends processes that do

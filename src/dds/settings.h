@@ -1,4 +1,4 @@
-// What a process has to know to join a run's DDS domain. Filled from a launch file by the caller.
+// Settings with which a process joins a run's DDS domain. Filled from a launch file by the caller.
 #pragma once
 
 #include <chrono>

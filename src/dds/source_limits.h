@@ -18,8 +18,8 @@ struct Source {
 /// Limits far above what a healthy node sends: 60 steps a second to some dozen neighbours, and now and then tens of MB
 /// at once.
 struct RateLimits {
-  double datagrams_per_s = 50'000, datagrams_burst = 100'000;  ///< of one socket
-  double bytes_per_s = 250e6, bytes_burst = 500e6;             ///< of one socket
+  double datagrams_per_s = 50'000, datagrams_burst = 100'000;  ///< limits of one socket
+  double bytes_per_s = 250e6, bytes_burst = 500e6;             ///< limits of one socket
   double address_datagrams_per_s = 400'000, address_datagrams_burst = 400'000;
   // Skipped sequence numbers. Each one costs Fast DDS a few ns with the reader's lock held, and each one in a gap also
   // costs memory.

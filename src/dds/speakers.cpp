@@ -22,7 +22,7 @@ constexpr std::size_t kMostFormer = 64;
 
 constexpr std::string_view kRegionPartition = "region/";
 
-/// Of "region/3" and "region/3/to/1": 3. Of anything else, wild cards too: -1.
+/// Region of a partition's name: 3 for "region/3" and "region/3/to/1"; -1 for anything else, wild cards included.
 std::int64_t region_of_partition(std::string_view partition) {
   if (!partition.starts_with(kRegionPartition)) return -1;
   partition.remove_prefix(kRegionPartition.size());

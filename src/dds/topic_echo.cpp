@@ -174,7 +174,7 @@ struct TopicEcho::Impl {
   Wakeup wakeup;
   Reader reader;
   TypeSupport type;
-  void* sample;  ///< of the generated type
+  void* sample;  ///< one sample of the generated type
   types::DynamicType_ptr dynamic;
   types::DynamicPubSubType dynamic_support;
   std::vector<types::DynamicTypeMember*> members;  ///< in the order of the IDL

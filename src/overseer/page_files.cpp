@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kWorthIt = 1024;    // bytes; a smaller answer fits into one packet anyway
 constexpr int kGzipFormat = 15 + 16;      // zlib's value for the largest window and a header of gzip
-constexpr std::size_t kMostKept = 1'000;  // files; no page has so many
+constexpr std::size_t kMostKept = 1'000;  // most files that are kept; a page has fewer
 
 std::string whole_file(const std::filesystem::path& file) {
   std::ostringstream text;

@@ -1,17 +1,17 @@
 // The folder with a run's keys.
 //
-//   DIR/identity_ca.pem         whose signature makes a name known
-//       permissions_ca.pem      whose signature says who may say what
-//       governance.p7s          what holds for everybody, signed
-//       crl.pem                 names that are not to be believed any more, signed
-//       names/NAME/key.pem      the private key of NAME; for nobody but its owner
+//   DIR/identity_ca.pem         the authority that signs the names' certificates
+//       permissions_ca.pem      the authority that signs permissions and governance
+//       governance.p7s          the rules for all participants, signed
+//       crl.pem                 the revoked certificates, signed
+//       names/NAME/key.pem      the private key of NAME; readable by its owner only
 //                  certificate.pem
-//                  permissions.p7s   what NAME may say and read, signed
+//                  permissions.p7s   what NAME may publish and read, signed
 //       issued.txt              every certificate so far: serial number, name, role
 //       private/                the private keys of the two authorities: they stay where the store was made
 //
-// A host gets all but the last two, and of names/ only its own: what `keys pack` puts into one file. That is a folder
-// of keys, too, from which nobody can be added.
+// A host gets all files except issued.txt and private/, and of names/ only its own: `keys pack` puts these into one
+// file. They are a folder of keys, too, but no name can be added to it.
 #pragma once
 
 #include <chrono>
@@ -32,7 +32,7 @@ namespace aurasim::security {
 struct Member {
   std::string name;
   Role role = Role::kViewer;
-  std::uint32_t region = 0;  ///< of Role::kRegion
+  std::uint32_t region = 0;  ///< region of a Role::kRegion
 
   std::string subject() const;
 };

@@ -7,8 +7,8 @@
 //     ...
 //   }
 //
-// DDS is spoken by a process of its own, `aurasim agent`, that each World starts and that ends with it, however this
-// program ends. docs/client.md.
+// The DDS connection is in a process of its own, `aurasim agent`. Each World starts one, and it ends with the World,
+// however this program ends. docs/client.md.
 #pragma once
 
 #include <array>
@@ -237,9 +237,10 @@ class AURASIM_API World {
   std::uint32_t drain(std::uint32_t region, Seconds time_out = kUsualTimeOut);
 
   // Keep.
-  // A saved world has a name, of letters, digits, '.', '_' and '-', and is a file in the nodes' folder of saved worlds
-  // (LaunchOptions::saves). A path is Refused.
-  /// A paused run is saved in the state in which it stands, any other in the next one that all nodes can save.
+  // A saved world has a name of letters, digits, '.', '_' and '-'. It is a file in the nodes' folder of saved worlds
+  // (LaunchOptions::saves). A path instead of a name throws Refused.
+  /// Saves the world: a paused run in the state in which it is paused, any other in the next state that all nodes can
+  /// save.
   SavedWorld save(const std::string& name, Seconds time_out = kUsualTimeOut);
   /// Continues from a saved world. A paused run stays paused, in the saved state.
   Acknowledgement load(const std::string& name, Seconds time_out = kUsualTimeOut);

@@ -1,4 +1,4 @@
-// What can go wrong between a program and a run, as types.
+// The errors between a program and a run, as types.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// What a program wants to be told of a world, state by state, and what it is told.
+// What a program wants to observe of a world, state by state, and the observations that it receives.
 //
 //   aurasim::client::Interest interest;
 //   interest.patterns = {"crate*"};
