@@ -1,4 +1,4 @@
-// What the agent's answers mean, as the library's types.
+// Converts the agent's answers to the library's types.
 #pragma once
 
 #include <aurasim/client.h>
@@ -8,9 +8,10 @@
 
 namespace aurasim::client {
 
-/// Its columns lie one after the other in the message's body. Throws Error if they do not fit.
+/// Reads the bodies of an answer, whose columns lie one after the other in the message's body. Throws Error if they do
+/// not fit.
 Bodies bodies_of(const Message& answer);
-/// Likewise, where more columns follow.
+/// Reads the bodies of an answer from `columns`, where other columns may follow. Throws Error if they do not fit.
 void take_bodies(const Message& answer, Columns& columns, Bodies& bodies);
 RunInfo info_of(const nlohmann::json& head);
 std::vector<NodeStatus> nodes_of(const nlohmann::json& head);
@@ -18,7 +19,7 @@ Acknowledgement acknowledgement_of(const nlohmann::json& head);
 RayHit ray_hit_of(const nlohmann::json& head);
 SavedWorld saved_world_of(const nlohmann::json& head);
 
-/// JSON has no infinite numbers: a side that is null is infinite.
+/// Converts a box. An infinite side becomes null, because JSON has no infinite numbers.
 nlohmann::json box_json(const std::array<double, 4>& box);
 std::vector<double> box_of(const nlohmann::json& json);
 

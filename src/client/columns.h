@@ -1,4 +1,4 @@
-// Columns of numbers from the body of an agent's answer.
+// Reads columns of numbers from the body of an agent's answer.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,19 @@
 
 namespace aurasim::client {
 
-/// Takes columns from the front of what is left. `bytes` outlives it.
+/// Takes columns from the front of the remaining bytes. `bytes` must outlive it.
 class Columns {
  public:
   Columns(const std::string& bytes, std::size_t rows) : bytes_(&bytes) { set_rows(rows); }
 
-  /// From here on, of columns with so many rows. Throws Error if there cannot be so many.
+  /// Returns a reader of the remaining columns, of `rows` rows each. Throws Error if there cannot be so many.
   Columns with_rows(std::size_t rows) const {
     Columns rest = *this;
     rest.set_rows(rows);
     return rest;
   }
 
-  /// Throws Error if it does not fit.
+  /// Takes the next column. Throws Error if it does not fit.
   template <class T>
   void take(std::vector<T>& column, std::size_t width = 1) {
     const std::size_t size = rows_ * width * sizeof(T);

@@ -19,7 +19,7 @@
 
 #include "client/last_words.h"
 
-extern "C" {  // glibc 2.36 has not said so itself
+extern "C" {  // glibc 2.36 does not declare this extern "C" itself
 #include <sys/pidfd.h>
 }
 
@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLookEvery = 100ms;
-constexpr auto kGrace = 20s;  ///< the agent ends a request itself when its time is over
+constexpr auto kGrace = 20s;  ///< waiting time beyond a request's time-out: the agent ends a late request itself
 constexpr auto kPatienceWithItsEnd = 10s;
 constexpr int kNap_ms = 100;
 constexpr off_t kLongestLastWords_B = 4000;
@@ -56,7 +56,7 @@ template <class Kind>
   throw Error(what);
 }
 
-/// Also of what is no number, or infinite.
+/// Limits a time-out to a valid range, also if it is NaN or infinite.
 Connection::Seconds bounded(Connection::Seconds time_out) {
   constexpr Connection::Seconds longest(1e8);
   return time_out.count() >= 0 ? std::min(time_out, longest) : Connection::Seconds(0);
@@ -66,7 +66,8 @@ Clock::time_point after(Connection::Seconds time_out) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(bounded(time_out));
 }
 
-/// Its default way with signals, whatever ours is; a process group of its own, for our Ctrl-C is not meant for it.
+/// Gives the agent the default handling of signals, whatever ours is, and a process group of its own, so that Ctrl-C
+/// for this program does not reach it.
 class SpawnAttributes {
  public:
   SpawnAttributes() {
@@ -134,7 +135,8 @@ Connection::~Connection() {
   ::close(log_);
 }
 
-/// Nothing is watched where the kernel cannot: then the launcher ends a moment after an agent that dies.
+/// Watches the launcher by a pidfd. On a kernel without pidfds nothing is watched, and the launcher ends a moment after
+/// an agent that dies.
 void Connection::watch_launcher(pid_t launcher) {
   if (launcher > 0 && launcher_ < 0) launcher_ = ::pidfd_open(launcher, 0);
 }
@@ -156,7 +158,7 @@ Message Connection::ask(Message question, Seconds time_out) {
   }
 }
 
-/// That of an earlier question, which was given up, is passed over.
+/// Reads the answer to `request`. Skips the answer to an earlier request that was given up.
 Message Connection::read_answer(std::uint64_t request, Clock::time_point deadline) {
   while (Clock::now() < deadline) {
     std::optional<Message> answer = read_message(socket_, Clock::now() + kLookEvery);
@@ -194,7 +196,7 @@ int Connection::end_launcher(Clock::time_point deadline) {
   return exit_code_;
 }
 
-/// It ends by itself when it sees that we are gone, and what it has started ends with it.
+/// Ends the agent. It ends by itself when it sees that we are gone, and everything that it has started ends with it.
 void Connection::end(Clock::time_point deadline) {
   if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   if (pid_ <= 0) return;

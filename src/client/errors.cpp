@@ -4,7 +4,7 @@ namespace aurasim::client {
 
 Error::Error(const std::string& what) : std::runtime_error(what) {}
 
-// Here, so that whoever catches one of these in another library means the same type.
+// Defined in this file so that other libraries that catch these errors mean the same type.
 Error::~Error() = default;
 BadFile::~BadFile() = default;
 NoSuchRun::~NoSuchRun() = default;

@@ -1,4 +1,4 @@
-// What a process said last on standard error, where that went into a file.
+// Reads the last output of a process on standard error, if that went into a file.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace aurasim::client {
 
-/// At most so many bytes of the end of an open regular file, without its last line ends; nothing of anything else.
+/// Returns at most `longest_B` bytes of the end of an open regular file, without its last line ends; empty for any
+/// other file.
 std::string last_words(int file, off_t longest_B);
 
 }  // namespace aurasim::client

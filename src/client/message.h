@@ -1,5 +1,5 @@
-// What a client library and its agent (cli/agent/) say to each other over a pair of sockets: a head in JSON and a body
-// of bytes, in native byte order, for the two are always on one host.
+// Messages between a client library and its agent (cli/agent/) over a pair of sockets: a head in JSON and a body of
+// bytes. The byte order is native, because both are always on one host.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace aurasim::client {
 
-/// Changes with every change of what is said.
+/// Version of these messages. Changes with every change of them.
 inline constexpr int kAgentProtocol = 3;
 
 struct Message {
@@ -19,19 +19,20 @@ struct Message {
   std::string body;
 };
 
-/// The other side has gone, or says what is no message.
+/// The other side is gone, or has sent an invalid message.
 class ConnectionLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws ConnectionLost.
+/// Sends a message. Throws ConnectionLost.
 void write_message(int socket, const Message& message);
 
-/// Nothing: none has begun to come before the deadline. Throws ConnectionLost, also when one stops in its middle.
+/// Receives a message. Nothing: none had begun to arrive before the deadline. Throws ConnectionLost, also when a
+/// message stops in its middle.
 std::optional<Message> read_message(int socket, std::chrono::steady_clock::time_point deadline);
 
-/// Something has come, or the other side has gone, within that time.
+/// True when within that time something has arrived or the other side has gone.
 bool is_readable(int socket, std::chrono::milliseconds time_out);
 
 }  // namespace aurasim::client

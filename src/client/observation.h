@@ -1,4 +1,4 @@
-// Interests as the agent takes them, and observed states as it tells them (cli/agent/observation_answer.cpp).
+// Converts interests to the agent's form, and its answers to observations (cli/agent/observation_answer.cpp).
 #pragma once
 
 #include <aurasim/client.h>
@@ -8,7 +8,7 @@
 namespace aurasim::client {
 
 nlohmann::json interest_json(const Interest& interest);
-/// Its columns lie one after the other in the message's body. Throws Error if they do not fit.
+/// Reads an observation, whose columns lie one after the other in the message's body. Throws Error if they do not fit.
 Observation observation_of(const Message& answer);
 
 }  // namespace aurasim::client

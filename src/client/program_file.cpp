@@ -18,7 +18,7 @@ bool is_program(const fs::path& file) {
   return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// Empty: not known.
+/// Folder of this library; empty: not known.
 fs::path folder_of_library() {
   static const char here = 0;
   Dl_info found{};

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// This program may have gone to another folder since the agent was started.
+/// Makes a path absolute, because this program may have changed its folder since the agent was started.
 std::string absolute(const std::string& file) { return std::filesystem::absolute(file).string(); }
 
 json shape_json(const Shape& shape) {
@@ -59,7 +59,7 @@ struct World::Impl {
   json ask(json head, Seconds time_out) { return connection.ask({std::move(head), {}}, time_out).head; }
   Bodies ask_bodies(json head, Seconds time_out) { return bodies_of(connection.ask({std::move(head), {}}, time_out)); }
 
-  /// All of them together; in their order.
+  /// Requests several acts at once. Returns their results in the same order.
   std::vector<Acknowledgement> act(json asks, std::int64_t at_step, Seconds time_out) {
     const json head = ask({{"do", "act"}, {"asks", std::move(asks)}, {"at", at_step}}, time_out);
     std::vector<Acknowledgement> done;
@@ -148,7 +148,7 @@ Observer& Observer::operator=(Observer&& other) noexcept {
 Observer::~Observer() {
   try {
     if (impl_) close();
-  } catch (const std::exception&) {  // the world has ended, and this with it
+  } catch (const std::exception&) {  // the world has ended, and the observation with it
   }
 }
 

@@ -12,7 +12,7 @@ bool is_ipv4(const std::string& text) {
   return ::inet_pton(AF_INET, text.c_str(), &address) == 1;
 }
 
-/// An address of IPv6 may name an interface behind a %.
+/// True for an address. One of IPv6 may name an interface behind a %.
 bool is_address(const std::string& text) {
   ::in6_addr address{};
   return text == "localhost" || is_ipv4(text) ||

@@ -1,15 +1,15 @@
-// Which texts are addresses of hosts. Pure: whether a host has them is asked where they are used.
+// Recognises addresses of hosts in texts. Pure: whether the host exists is checked where the address is used.
 #pragma once
 
 #include <string>
 
 namespace aurasim::config {
 
-/// Four numbers: 10.0.0.7.
+/// True for an IPv4 address such as 10.0.0.7.
 bool is_ipv4(const std::string& text);
-/// Of IPv4 or IPv6, or localhost.
+/// True for an address of IPv4 or IPv6, and for "localhost".
 bool is_address(const std::string& text);
-/// 10.0.0.7 or 10.0.0.7:7410.
+/// True for 10.0.0.7 and 10.0.0.7:7410.
 bool is_ipv4_with_port(const std::string& text);
 
 }  // namespace aurasim::config

@@ -201,7 +201,7 @@ void add_joints(const core::Scene& scene, Digest& d) {
   }
 }
 
-/// What decides about bits, on any map.
+/// Adds everything that decides about the bits of states, on any region map.
 void add_physics(const Launch& launch, Digest& d) {
   d.add(launch.time.step_hz);
   d.bytes(static_cast<std::uint64_t>(launch.time.substeps));
@@ -213,7 +213,7 @@ void add_physics(const Launch& launch, Digest& d) {
   d.bytes(launch.physics.is_continuous());
 }
 
-/// What else all nodes agree on.
+/// Adds the other settings that all nodes must agree on.
 void add_settings(const Launch& launch, Digest& d) {
   d.bytes(launch.regions.version());
   d.add(launch.neighbour_distance_m);

@@ -91,9 +91,9 @@ const KeysOf<core::StaticBody>& keys_of_static() {
   return keys;
 }
 
-constexpr double kRoundedMoments = 1e-9;  ///< relative: what a thin plate's may be off by
+constexpr double kRoundedMoments = 1e-9;  ///< relative tolerance: rounding error of a thin plate's moments
 
-/// No more than the two others together, as of any real body.
+/// Checks that no moment is larger than the sum of the two others, as for any real body.
 void check_inertia(const Field& field, const std::optional<core::Vec3>& inertia) {
   if (!inertia || 2 * inertia->maxCoeff() <= inertia->sum() * (1 + kRoundedMoments)) return;
   field.refuse("three moments of inertia of which none is above the sum of the two others");
@@ -124,7 +124,7 @@ core::Prototype read_prototype(const std::string& name, const Field& field, Scen
   return prototype;
 }
 
-/// By something of a file that is included.
+/// Refuses a name that something of an included file already has.
 void refuse_taken(const std::string& name, const Names& names, const Field& blame) {
   if (!names.index_of(name)) return;
   blame.complain(fmt::format("found the name {} a second time, allowed: each name once", in_quotes(name)));
@@ -188,7 +188,7 @@ void read_shapes(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   for (const auto& [name, entry] : field.entries()) {
     refuse_taken(name, draft.shapes, entry);
-    // A shape that could not be read has its name all the same, or every use of it would be one more error.
+    // A shape that could not be read still gets its name; otherwise every use of it would be one more error.
     draft.scene.shapes.push_back({name, read_shape(entry, draft).value_or(core::Sphere{})});
     draft.shapes.add(name);
   }
@@ -238,7 +238,7 @@ void number_bodies(SceneDraft& draft) {
     while (!body.id && taken.contains(next)) ++next;
     body.body.id = body.id ? *body.id : core::BodyId{next++};
   }
-  // By places, since joints refer to bodies by theirs.
+  // Sorts places, not bodies, because joints refer to bodies by their places.
   std::vector<std::size_t> order(draft.bodies.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) { return draft.bodies[i].body.id; });

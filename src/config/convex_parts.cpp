@@ -23,11 +23,11 @@ using core::Vec3;
 constexpr std::size_t kMostTrianglesToDivide = 4000;
 constexpr std::size_t kMostParts = 64;
 constexpr std::size_t kMostPointsOfAPart = 64;
-constexpr double kNormalSize = 1000;    ///< of the mesh from corner to corner, as HACD sees it
-constexpr double kDeepestHollow = 10;   ///< of a part that is taken for convex, in that measure
-constexpr double kFarthestPieces = 30;  ///< that may share a part, in that measure
+constexpr double kNormalSize = 1000;    ///< size of the scaled mesh from corner to corner, in HACD's units
+constexpr double kDeepestHollow = 10;   ///< deepest hollow of a part that counts as convex, in HACD's units
+constexpr double kFarthestPieces = 30;  ///< largest distance of pieces that may share a part, in HACD's units
 
-/// The mesh as HACD wants it: about its middle and of a size that its limits are meant for.
+/// Scales a mesh as HACD expects it: centred, and of a size that its limits are meant for.
 struct Scaling {
   explicit Scaling(const TriangleMesh& mesh) {
     Vec3 low = mesh.points.front(), high = low;
@@ -68,7 +68,7 @@ bool is_sound(const TriangleMesh& mesh) {
          std::ranges::all_of(mesh.triangles, inside);
 }
 
-/// For each point the lowest one that it is connected with.
+/// For each point, the lowest point that it is connected with.
 std::vector<std::uint32_t> pieces_of(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.points.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -86,7 +86,7 @@ std::vector<std::uint32_t> pieces_of(const TriangleMesh& mesh) {
   return parent;
 }
 
-/// Turned so that the triangles of each piece face out: files have them either way.
+/// Returns the mesh with the triangles of each piece facing out; files have them either way.
 TriangleMesh facing_out(TriangleMesh mesh) {
   const std::vector<std::uint32_t> piece = pieces_of(mesh);
   std::map<std::uint32_t, double> volume;
@@ -101,7 +101,8 @@ TriangleMesh facing_out(TriangleMesh mesh) {
   return mesh;
 }
 
-/// Closed, in one piece, and nowhere in front of one of its triangles, by more than a hundred thousandth of its size.
+/// True when the mesh is closed, in one piece, and nowhere in front of one of its triangles by more than a hundred
+/// thousandth of its size.
 bool is_convex(const TriangleMesh& mesh, const Scaling& scaling) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& t : mesh.triangles) {
@@ -119,8 +120,9 @@ bool is_convex(const TriangleMesh& mesh, const Scaling& scaling) {
   });
 }
 
-/// HACD's own hulls lose corners of small parts, such as tetrahedra; so this one, of the few points that matter. They
-/// are first shaken by a millionth of their extent, so that no four lie in a plane and every side is one triangle.
+/// Makes the hull of a part from the few points that matter, because HACD's own hulls lose corners of small parts such
+/// as tetrahedra. The points are first shaken by a millionth of their extent, so that no four lie in a plane and every
+/// side is one triangle.
 TriangleMesh hull_of(const TriangleMesh& part) {
   TriangleMesh hull;
   hull.points = hull_points(part);
@@ -150,7 +152,7 @@ TriangleMesh hull_of(const TriangleMesh& part) {
   return hull;
 }
 
-/// The triangles that HACD has put into one part.
+/// Returns the triangles that HACD has put into one part.
 TriangleMesh triangles_of(const TriangleMesh& mesh, const HACD::HACD& hacd, std::size_t part) {
   TriangleMesh found;
   std::map<std::uint32_t, std::uint32_t> place;
@@ -165,7 +167,8 @@ TriangleMesh triangles_of(const TriangleMesh& mesh, const HACD::HACD& hacd, std:
   return found;
 }
 
-/// Do the triangles of a convex mesh that faces out have all points of `part` behind them, but for a hundredth?
+/// True when all points of `part` lie behind the triangles of `hull`, a convex mesh that faces out, up to a hundredth
+/// of the whole mesh's size.
 bool covers(const TriangleMesh& hull, const TriangleMesh& part, const Scaling& scaling) {
   const double allowance = 0.01 * kNormalSize / scaling.factor;
   return std::ranges::all_of(hull.triangles, [&](const auto& t) {
@@ -206,7 +209,7 @@ std::variant<TriangleMesh, std::string> decompose(const TriangleMesh& as_it_came
   hacd.SetNVerticesPerCH(kMostPointsOfAPart);
   hacd.SetConcavity(kDeepestHollow);
   hacd.SetConnectDist(kFarthestPieces);
-  // Hollows are measured there, too, not only at the points of the mesh.
+  // Makes HACD measure hollows also between the points of the mesh.
   hacd.SetAddExtraDistPoints(true);
   hacd.SetAddNeighboursDistPoints(true);
   hacd.SetAddFacesPoints(true);

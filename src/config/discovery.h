@@ -6,9 +6,9 @@
 namespace aurasim::config {
 
 enum class Discovery : std::uint8_t {
-  kMulticast,  ///< as the QoS profile says, and the shipped ones say so
+  kMulticast,  ///< as in the QoS profile; the shipped ones use multicast
   kPeers,      ///< no multicast: announcements go to the addresses of `peers`
-  kServer,     ///< by the discovery servers in `peers`
+  kServer,     ///< through the discovery servers in `peers`
 };
 
 }  // namespace aurasim::config

@@ -8,7 +8,7 @@
 
 namespace aurasim::config {
 
-/// Where something was written: line and column of a file, from 1, or an override as a whole (line 0).
+/// Place of a value: line and column of a file, from 1, or an override as a whole (line 0).
 struct Place {
   std::uint32_t source = 0;  ///< number given by Errors::add_source
   int line = 0;
@@ -17,15 +17,15 @@ struct Place {
 
 class Errors {
  public:
-  /// A file or an override. Its name starts every message about it.
+  /// Registers a file or an override, whose name starts every message about it. Returns its number.
   std::uint32_t add_source(std::string name);
 
-  /// `field` is a path such as "regions.count"; empty for the whole file.
+  /// Adds an error. `field` is a path such as "regions.count"; empty for the whole file.
   void add(const Place& place, std::string_view field, std::string_view message);
 
   bool empty() const { return count_ == 0; }
 
-  /// Throws BadConfig with the messages in the order of their places, unless there are none.
+  /// Throws BadConfig if there are errors, with the messages in the order of their places.
   void throw_if_any() const;
 
  private:
@@ -36,10 +36,10 @@ class Errors {
 
   std::vector<std::string> sources_;
   std::vector<Entry> entries_;
-  std::size_t count_ = 0;  ///< entries_ stops growing at a limit, this does not
+  std::size_t count_ = 0;  ///< number of all errors; entries_ stops growing at a limit
 };
 
-/// Text of a file as it may stand in a message: quoted, control characters escaped, cut when long.
+/// Quotes a text of a file for a message: control characters are escaped, long texts cut.
 std::string in_quotes(std::string_view text);
 
 }  // namespace aurasim::config

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kLongestText = 1024;
 constexpr std::size_t kMostNamesListed = 20;
 
-/// The whole text as a number; nothing for "1 m", "nan", "1e999", "" or anything in quotes.
+/// Parses the whole text as a number; nothing for "1 m", "nan", "1e999", "" or anything in quotes.
 template <class Number>
 std::optional<Number> parsed(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kText || node.quoted) return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<double> Field::number() const { return number(as(Value::Kind::kNum
 
 std::optional<double> Field::number(const Range& range) const {
   const std::optional<double> value = given() ? parsed<double>(*node_) : std::nullopt;
-  if (value && std::isfinite(*value) && range.contains(*value)) return *value + 0.0;  // no negative zero
+  if (value && std::isfinite(*value) && range.contains(*value)) return *value + 0.0;  // turns negative zero into zero
   refuse(range.text());
   return std::nullopt;
 }
@@ -226,7 +226,7 @@ Field Fields::operator[](std::string_view name) const {
   for (const KeyTable* table : tables_) {
     const Key* key = table->find(name);
     if (key == nullptr) continue;
-    // What is missing from a map that is itself missing or wrong has been said already.
+    // Keys of a map that is itself missing or wrong are not reported as missing, because the map was reported already.
     const bool required = given() && is_required(*key, count ? count->text : "");
     return Field(node, map_.place(), path_to(map_.path(), name), key->value, required, map_.errors());
   }

@@ -1,5 +1,5 @@
-// Typed reading of a YAML tree by tables of keys. Everything that is wrong is added to Errors with its place and path;
-// a reader that has nothing to give returns nothing and reading goes on, so that one run finds all errors.
+// Typed reading of a YAML tree by tables of keys. Every error is added to Errors with its place and path. A reader that
+// has no valid value returns nothing and reading goes on, so that one run finds all errors.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,13 @@
 
 namespace aurasim::config {
 
-/// One value of a file, or the lack of one, and what it may be. Readers of a value that is not there return nothing,
-/// and complain if it is required. Asking for another kind than its table says is an error of ours: std::logic_error.
+/// One value of a file, which may be missing, and the kinds of values that are allowed. Readers return nothing for a
+/// missing value, and complain if it is required. Reading a kind that its table does not allow is a bug of ours:
+/// std::logic_error.
 class Field {
  public:
-  /// `node` may be null: the value is not there, and `place` is that of the map it is missing from. `value` outlives
-  /// the field.
+  /// `node` is null if the value is missing; `place` is then that of the map in which it is missing. `value` must
+  /// outlive the field.
   Field(const YamlNode* node, const Place& place, std::string path, const Value& value, bool required, Errors& errors);
 
   bool given() const { return node_ != nullptr; }
@@ -38,14 +39,14 @@ class Field {
   Errors& errors() const { return *errors_; }
 
   std::optional<double> number() const;
-  /// For a range that depends on other keys, within that of the table.
+  /// Reads a number in a range that depends on other keys. `range` lies within that of the table.
   std::optional<double> number(const Range& range) const;
-  /// Nothing, without a complaint, if it is a word that may stand there instead.
+  /// Reads an integer. Returns nothing, without a complaint, if the value is a word that is allowed instead.
   std::optional<std::int64_t> integer() const;
   std::optional<bool> flag() const;
-  /// Printable, not empty, at most 1024 bytes.
+  /// Reads a text that is printable, not empty, and at most 1024 bytes long.
   std::optional<std::string> text() const;
-  /// One of the words of the table.
+  /// Reads one of the words of the table; null if there is none.
   const Word* word() const;
   template <class E>
   std::optional<E> choice() const {
@@ -53,17 +54,18 @@ class Field {
     return chosen ? std::optional(static_cast<E>(chosen->meaning)) : std::nullopt;
   }
   std::optional<core::Vec3> vec3() const;
-  /// As many as the table says.
+  /// Reads a list of as many numbers as the table demands.
   std::optional<std::vector<double>> numbers() const;
 
-  /// The values of a list; none if it is no such list.
+  /// Returns the values of a list; none if the value is no valid list.
   std::vector<Field> items() const;
-  /// The entries of a map whose keys are names, in the order of the file, without second entries of a name.
+  /// Returns the entries of a map whose keys are names, in the order of the file, without repeated names.
   std::vector<std::pair<std::string, Field>> entries() const;
 
-  /// "found ..., allowed: ..." (or "missing"); of a value that is gone (gone.h) what became of it.
+  /// Adds the error "found ..., allowed: ..." (or "missing"). For a value that was removed (gone.h) the error gives its
+  /// replacement.
   void refuse(std::string_view allowed) const;
-  /// Any other message.
+  /// Adds an error with any other message.
   void complain(std::string_view message) const;
 
  private:
@@ -79,27 +81,27 @@ class Field {
   Errors* errors_;
 };
 
-/// A map whose keys are in a table. Keys are asked for one by one; close() complains about those that are in no table.
+/// A map whose keys are in a table. Readers ask for keys one by one; close() complains about keys that are in no table.
 class Fields {
  public:
-  /// With the keys of the field's only table, and what it shares with others.
+  /// Uses the keys of the field's only table, and those that it shares with others.
   explicit Fields(const Field& map);
-  /// With the keys of one of its tables.
+  /// Uses the keys of one of the field's tables.
   Fields(const Field& map, const KeyTable& chosen);
-  /// What is wrong cannot be said key by key: with the keys of all its tables.
+  /// Uses the keys of all tables of the field. For maps that fit none of them, when errors cannot be given key by key.
   static Fields of_any_table(const Field& map);
 
   bool given() const { return map_.is_map(); }
   bool has(std::string_view key) const { return given() && map_.node()->find(key) != nullptr; }
   const Field& whole() const { return map_; }
 
-  /// std::logic_error if no table has the key.
+  /// Returns the field of a key. Throws std::logic_error if no table has the key.
   Field operator[](std::string_view key) const;
 
-  /// Those of the keys of which exactly one has to be there.
+  /// Returns the given fields among the keys of which exactly one is required (KeyTable::one_of).
   std::vector<Field> given_of(const KeyTable& table) const;
 
-  /// To be called once.
+  /// Complains about unknown keys. Call it once.
   void close() const;
 
  private:
@@ -111,10 +113,10 @@ class Fields {
   std::vector<const KeyTable*> tables_;
 };
 
-/// "a, b, c", cut when long.
+/// Joins names as "a, b, c", cut when long.
 std::string listed(const std::vector<std::string_view>& names);
 
-/// `parent.key`, or just the key at the top.
+/// Returns `parent.key`, or just the key at the top.
 std::string path_to(std::string_view parent, std::string_view key);
 
 }  // namespace aurasim::config

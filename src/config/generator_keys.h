@@ -7,7 +7,7 @@ namespace aurasim::config {
 
 enum class Anchor { kNone, kFirst, kLast, kBoth };
 
-/// What all formations take.
+/// Keys that all formations have.
 const KeyTable& formation_keys();
 
 }  // namespace aurasim::config

@@ -14,24 +14,24 @@ using core::Vec3;
 
 constexpr double kSmallestStep = 1e-6;
 
-/// Bodies that hang together by ball joints.
+/// A chain: bodies connected by ball joints.
 struct Chain {
   Vec3 step_F = Vec3::UnitX();
   bool first_anchored = false;
   bool last_anchored = false;
 };
 
-/// What all formations share. F is the formation's frame: origin at `position`, x along its rows, z up.
+/// Values that all formations have. F is the formation's frame: origin at `position`, x along its rows, z up.
 struct Formation {
   core::PrototypeId prototype{};
-  Bounds bounds;  ///< of the shape, in the frame of the body
+  Bounds bounds;  ///< bounds of the shape, in the body's frame
   core::Pose X_WF;
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
   double gap_m = 0;
   std::optional<std::string> name;
   std::optional<Chain> chain;
-  std::vector<Vec3> centres_F;  ///< of the bodies' bounds, bottom at z = 0
+  std::vector<Vec3> centres_F;  ///< centres of the bodies' bounds, bottom at z = 0
 
   double width_m() const { return bounds.size().x() + gap_m; }
 };
@@ -121,7 +121,7 @@ void place_row(const Fields& fields, Formation& formation, const SceneDraft& dra
   const auto count = count_field.integer();
   const auto step = fields["step"].vec3();
   if (!count || !step || !draft.has_room_for(static_cast<std::uint64_t>(*count), count_field)) return;
-  const Vec3 first = 0.5 * (formation.bounds.low + formation.bounds.high);  // position is a body's centre here
+  const Vec3 first = 0.5 * (formation.bounds.low + formation.bounds.high);  // here `position` is a body's centre
   for (std::int64_t i = 0; i < *count; ++i) formation.centres_F.push_back(first + as_double(i) * *step);
 }
 
@@ -139,7 +139,7 @@ void place_chain(const Fields& fields, Formation& formation, const SceneDraft& d
                           anchor == Anchor::kLast || anchor == Anchor::kBoth};
 }
 
-/// After the bodies, which are the last ones in the draft.
+/// Adds the joints. Precondition: the formation's bodies are the last ones in the draft.
 void add_joints(const Formation& formation, SceneDraft& draft) {
   const std::size_t count = formation.centres_F.size();
   if (!formation.chain || count == 0) return;

@@ -7,7 +7,7 @@ namespace aurasim::config {
 
 inline constexpr std::size_t kMostGenerators = 10'000;
 
-/// Exactly one kind of formation.
+/// Keys of a generator: exactly one kind of formation.
 const KeyTable& generator_keys();
 
 void read_generators(const Field& field, SceneDraft& draft);

@@ -7,14 +7,14 @@
 namespace aurasim::config {
 
 struct Gone {
-  std::string_view path;        ///< of the key, as errors name it: "physics.solver"
-  std::string_view value = {};  ///< the one value that is gone; empty: the key is gone with all its values
-  std::string_view text;        ///< what became of it, and what to choose instead
+  std::string_view path;        ///< path of the removed key, as errors name it: "physics.solver"
+  std::string_view value = {};  ///< the removed value; empty: the key was removed with all its values
+  std::string_view text;        ///< what replaced it, and what to choose instead
 };
 
-/// Null: the key was never there, or still is.
+/// Finds a removed key. Null: the key never existed, or still does.
 const Gone* gone_key(std::string_view path);
-/// Null: the key never had this value, or still has it.
+/// Finds a removed value of a key. Null: the key never had this value, or still has it.
 const Gone* gone_value(std::string_view path, std::string_view value);
 
 }  // namespace aurasim::config

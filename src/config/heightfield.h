@@ -10,7 +10,7 @@ namespace aurasim::config {
 
 const KeyTable& heightfield_keys();
 
-/// As triangles.
+/// Reads a heightfield and returns it as triangles.
 std::optional<core::Shape> read_heightfield(const Fields& fields);
 
 }  // namespace aurasim::config

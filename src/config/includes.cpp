@@ -15,12 +15,12 @@ namespace fs = std::filesystem;
 using core::Pose;
 
 constexpr std::size_t kDeepest = 16;
-constexpr std::size_t kMostFiles = 10'000;  ///< in all, each as often as it is included
+constexpr std::size_t kMostFiles = 10'000;  ///< most files in all, each counted as often as it is included
 constexpr std::array kOtherFormats = {".urdf", ".sdf", ".world", ".xml", ".mjcf"};
 
 std::string name_in(const Included& included, const std::string& name) { return included.name + "/" + name; }
 
-/// Says why the file cannot be included, if so.
+/// True when the file may be included; otherwise adds an error with the reason.
 bool may_be_included(const fs::path& file, const Field& field, const IncludeChain& chain) {
   if (std::ranges::find(kOtherFormats, file.extension()) != kOtherFormats.end()) {
     field.complain(
@@ -47,7 +47,7 @@ bool may_be_included(const fs::path& file, const Field& field, const IncludeChai
   return true;
 }
 
-/// What `file` names, as all parts of the reader know it.
+/// Path of the file that `name` names, in the form that all parts of the reader use.
 fs::path file_of(const std::string& name, const SceneDraft& scene) {
   return fs::absolute(scene.folder / name).lexically_normal();
 }
@@ -78,7 +78,7 @@ void read_include(const Field& item, const SceneDraft& scene, IncludeChain& chai
   chain.files.pop_back();
 }
 
-/// Where the first of what is taken over comes to be.
+/// Appends the included things. Returns the index of the first.
 template <class Thing>
 std::size_t take_over(const std::vector<Thing>& from, const Included& included, std::vector<Thing>& to, Names& names) {
   const std::size_t first = to.size();
@@ -96,7 +96,7 @@ void shift(Thing& thing, const Included& included) {
   thing.material += static_cast<std::uint32_t>(included.first_material);
 }
 
-/// Of its parts.
+/// Shifts the materials of a shape's parts to their indices in the scene.
 void shift_materials(core::Shape& shape, const Included& included) {
   auto* const compound = std::get_if<core::Compound>(&shape);
   if (compound == nullptr) return;

@@ -15,14 +15,14 @@ namespace {
 using core::Rectangle;
 using core::Vec3;
 
-/// Where a part of an injector's bodies appears.
+/// A volume in which a part of an injector's bodies appears.
 struct Volume {
   Vec3 centre = Vec3::Zero();
   Vec3 size = Vec3::Zero();
-  double share = 1;  ///< of the injector's bodies
+  double share = 1;  ///< share of the injector's bodies
 };
 
-/// The side of a region that faces another one.
+/// The side of a region towards another region.
 struct Side {
   double x = 0, y = 0;    ///< middle of the boundary that the two share
   double nx = 0, ny = 0;  ///< unit vector from the boundary into the region
@@ -148,7 +148,7 @@ void read_velocity(const Field& field, core::Injector& injector) {
   injector.velocity_max = *high;
 }
 
-/// Everything but the volumes: as if all bodies came from one.
+/// Reads everything but the volumes, as if all bodies came from one.
 core::Injector read_common(const Fields& fields, std::size_t index, const SceneDraft& draft) {
   core::Injector injector;
   keys_of_injector().read_members(fields, injector);
@@ -167,7 +167,7 @@ core::Injector read_common(const Fields& fields, std::size_t index, const SceneD
   return injector;
 }
 
-/// One of many seeds made from one (splitmix64).
+/// Derives seed number `index` from one seed (splitmix64).
 std::uint64_t derived_seed(std::uint64_t seed, std::size_t index) {
   std::uint64_t z = seed + 0x9e3779b97f4a7c15ull * (index + 1);
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
@@ -182,7 +182,7 @@ core::BodyId next_free_id(const core::Scene& scene) {
   return core::BodyId{scene.bodies.empty() ? 0 : value_of(scene.bodies.back().id) + 1};
 }
 
-/// Where its bodies may appear.
+/// Checks that the injector's volume is within the reach of a scene.
 void check_volume(const core::Injector& injector, const Field& blame) {
   for (const Vec3& corner_W : {injector.volume_min, injector.volume_max}) {
     if (!is_within_reach(corner_W)) return complain_of_place(blame, "a corner of a volume", corner_W);

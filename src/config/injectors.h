@@ -1,4 +1,4 @@
-// Injectors of a scene: each creates bodies over time, in one volume or in several that share its rate and count.
+// Reads injectors of a scene. Each creates bodies over time, in one volume or in several that share its rate and count.
 #pragma once
 
 #include "config/scene_draft.h"
@@ -9,10 +9,10 @@ inline constexpr std::size_t kMostInjectors = 10'000;
 
 const KeyTable& injector_keys();
 
-/// Ids of injected bodies follow those of the bodies: call after number_bodies().
+/// Reads all injectors. Call it after number_bodies(), because ids of injected bodies follow those of the bodies.
 void read_injectors(const Field& field, SceneDraft& draft);
 
-/// One more, of which only the ids are left to say.
+/// Adds one more injector, whose ids are set here.
 void add_injector(core::Injector injector, const Field& blame, SceneDraft& draft);
 
 }  // namespace aurasim::config

@@ -36,7 +36,7 @@ Key limits_deg_key() {
       .otherwise("free");
 }
 
-/// An angle in degrees, into a member in radians.
+/// Key of an angle in degrees whose member is in radians.
 template <class T>
 KeyOf<T> degrees(std::string_view name, double T::*member, std::string_view meaning) {
   return {optional(name, number(kTurns_deg, "degrees"), meaning).usual("0"), [member](const Field& field, T& object) {
@@ -44,14 +44,14 @@ KeyOf<T> degrees(std::string_view name, double T::*member, std::string_view mean
           }};
 }
 
-/// A key of a part of T, as one of T itself.
+/// Makes a key of T's part usable as a key of T.
 template <class T, class Part>
 KeyOf<T> of_part(Part T::*part, KeyOf<Part> key) {
   return {std::move(key.key),
           [part, store = std::move(key.store)](const Field& field, T& object) { store(field, object.*part); }};
 }
 
-/// What a joint that turns, or else slides, has of its own.
+/// Keys of a joint's own resistance (stiffness, damping, friction), for a joint that turns or slides.
 template <class T>
 std::vector<KeyOf<T>> resistance_keys(bool turns) {
   using core::JointResistance;
@@ -93,7 +93,7 @@ std::vector<KeyOf<T>> joined(std::vector<KeyOf<T>> rows, std::vector<KeyOf<T>> m
   return rows;
 }
 
-/// The drive is there if the key is.
+/// Key of a drive, which exists if and only if the key does.
 template <class T>
 KeyOf<T> drive_key(const KeysOf<core::JointDrive>& (*table)()) {
   return {optional("drive", map(table), "strives for a position or a speed, or pushes").otherwise("none"),

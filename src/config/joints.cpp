@@ -15,7 +15,7 @@ using core::Vec3;
 
 constexpr double kSmallestAxis = 1e-6;
 
-/// [low, high], in the unit of the result times `unit`.
+/// Reads [low, high] and multiplies both by `unit`.
 std::optional<JointLimits> read_limits(const Field& field, double unit) {
   if (!field.given()) return std::nullopt;
   const auto values = field.numbers();
@@ -27,7 +27,7 @@ std::optional<JointLimits> read_limits(const Field& field, double unit) {
   return JointLimits{(*values)[0] * unit, (*values)[1] * unit};
 }
 
-/// The same, where a side may be `none`.
+/// Reads [low, high], where a side may be `none`, and multiplies by `unit`.
 std::optional<JointLimits> read_open_limits(const Field& field, double unit) {
   if (!field.given()) return std::nullopt;
   const std::vector<Field> sides = field.items();
@@ -48,7 +48,7 @@ std::optional<JointLimits> read_open_limits(const Field& field, double unit) {
   return JointLimits{*low, *high};
 }
 
-/// The joint's z axis points along it.
+/// Reads an axis, as the rotation whose z axis points along it.
 core::Quat read_axis(const Field& field) {
   const Vec3 axis = field.given() ? field.vec3().value_or(Vec3::UnitZ()) : Vec3::UnitZ();
   if (axis.norm() < kSmallestAxis) {
@@ -58,10 +58,10 @@ core::Quat read_axis(const Field& field) {
   return core::Quat::FromTwoVectors(Vec3::UnitZ(), axis);
 }
 
-/// What else is read of a kind.
+/// Further results of reading a kind of joint.
 struct Reading {
   core::Quat q_WJ = core::Quat::Identity();
-  std::optional<Field> leader;  ///< the name of the joint that it follows
+  std::optional<Field> leader;  ///< field with the name of the joint that this one follows
 };
 
 std::optional<core::JointCoupling> read_coupling(const Field& field, bool has_drive, Reading& joint) {
@@ -134,7 +134,7 @@ constexpr std::pair<std::string_view, KindReader> kKinds[] = {{"ball", read_ball
                                                               {"fixed", read_fixed},
                                                               {"spring", read_spring}};
 
-/// The field of the name of a joint that it follows.
+/// Reads the joint's kind. Returns the field with the name of the joint that it follows, if there is one.
 std::optional<Field> read_kinds(const Fields& fields, core::JointSpec& joint) {
   Reading reading;
   for (const auto& [name, read] : kKinds) {
@@ -147,7 +147,7 @@ std::optional<Field> read_kinds(const Fields& fields, core::JointSpec& joint) {
   return reading.leader;
 }
 
-/// The places of one or two bodies in the draft.
+/// Returns the places in the draft of a joint's one or two bodies.
 std::vector<std::size_t> read_ends(const Field& field, const SceneDraft& draft) {
   std::vector<std::size_t> places;
   if (!field.given()) {
@@ -200,7 +200,7 @@ core::JointWays ways_of(const SceneDraft& draft) {
   return core::JointWays(std::move(ends));
 }
 
-/// Until the joints are numbered, a leader is its place among those of the file.
+/// Resolves the names of leaders to places among the file's joints. They stay places until the joints are numbered.
 void find_leaders(const std::vector<DraftFollower>& followers, SceneDraft& draft) {
   if (followers.empty()) return;
   Names names("joint");

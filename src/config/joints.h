@@ -7,13 +7,13 @@ namespace aurasim::config {
 
 inline constexpr std::size_t kMostJoints = 1'000'000;
 
-/// Exactly one kind of joint, and what all of them take.
+/// Keys of a joint: exactly one kind of joint, and the keys that all kinds have.
 const KeyTable& joint_keys();
 
-/// After all bodies.
+/// Reads the joints. Call it after all bodies have been read.
 void read_joints(const Field& field, SceneDraft& draft);
 
-/// Once the bodies have their ids.
+/// Sets the joints' ids and those of their bodies. Call it once the bodies have their ids.
 void number_joints(SceneDraft& draft);
 
 }  // namespace aurasim::config

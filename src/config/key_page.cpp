@@ -24,7 +24,7 @@ void add_tables_of(const Value& value, std::vector<const KeyTable*>& found) {
   for (const Value& other : value.also) add_tables_of(other, found);
 }
 
-/// 1e7 for 10000000.
+/// Writes a number shortly: 1e7 for 10000000.
 std::string short_number(double value) {
   const double size = std::abs(value);
   if (size >= 1e5 && std::log10(size) == std::floor(std::log10(size))) {
@@ -49,7 +49,7 @@ std::string count_text(const Value& list) {
   return fmt::format("list of {} to {}", list.fewest, list.most);
 }
 
-/// How a word, and a map's section, is shown.
+/// How a word, and a link to a map's section, are shown.
 struct Style {
   std::string (*word)(std::string_view);
   std::string (*section)(std::string_view);
@@ -117,7 +117,7 @@ std::string default_text(const KeyTable& table, const Key& key, const Style& sty
 
 std::string as_code(std::string_view text) { return fmt::format("`{}`", text); }
 
-/// As GitHub makes the anchors of headings.
+/// Anchor of a heading, as GitHub makes it.
 std::string anchor(std::string_view title) {
   std::string text;
   for (const char c : title) {

@@ -77,7 +77,7 @@ class Schema {
       schema["default"] = usual.is_discarded() ? Json(key.default_value) : usual;
     }
     if (value.contains("$ref")) {
-      schema["allOf"] = Json::array({value});  // what stands beside a $ref is ignored
+      schema["allOf"] = Json::array({value});  // in allOf, because keys beside a $ref are ignored
     } else {
       schema.update(value);
     }

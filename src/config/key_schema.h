@@ -7,8 +7,9 @@
 
 namespace aurasim::config {
 
-/// Of a file whose top is `root`. Everything that the reader takes passes. What it refuses does not, but for what goes
-/// beyond a key and its value: names that nobody has, minima above their maxima, boxes that overlap and the like.
+/// Returns the schema of a file whose top is `root`. Every file that the reader accepts is valid. A file that it
+/// refuses is invalid, unless the error goes beyond a key and its value: unknown names, minima above maxima, boxes that
+/// overlap and the like.
 std::string key_schema(const KeyTable& root);
 
 }  // namespace aurasim::config

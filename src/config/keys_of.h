@@ -1,5 +1,5 @@
-// Tables of keys that fill a struct: a key that names a member is read into it, and has the member's default. Keys that
-// name none are left to the reader.
+// Tables of keys that fill a struct. A key that names a member is read into it and has the member's default. Other keys
+// are left to the reader.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ class KeysOf : public KeyTable {
     }
   }
 
-  /// The whole map, if it is given, into the members that its keys name.
+  /// Reads the whole map, if it is given, into the members that its keys name.
   void read(const Field& field, T& object) const {
     if (!field.given()) return;
     const Fields fields(field, *this);
@@ -53,7 +53,7 @@ class KeysOf : public KeyTable {
     fields.close();
   }
 
-  /// The same where the reader has more to ask of the map.
+  /// Reads the members that the keys name. For readers that also read other keys of the map.
   void read_members(const Fields& fields, T& object) const {
     for (std::size_t i = 0; i < keys.size(); ++i) {
       if (!stores_[i]) continue;
@@ -63,7 +63,7 @@ class KeysOf : public KeyTable {
   }
 
  private:
-  std::vector<std::function<void(const Field&, T&)>> stores_;  ///< as `keys`
+  std::vector<std::function<void(const Field&, T&)>> stores_;  ///< one for each of `keys`
 };
 
 template <class M>
@@ -71,7 +71,7 @@ struct IsOptional : std::false_type {};
 template <class M>
 struct IsOptional<std::optional<M>> : std::true_type {};
 
-/// What `field` says, or nothing if that is wrong.
+/// Reads the value of `field`; nothing if it is invalid.
 template <class M>
 std::optional<M> value_of_field(const Field& field) {
   if constexpr (std::is_same_v<M, double>) {
@@ -126,7 +126,7 @@ template <class T, class M>
 std::function<void(const Field&, T&)> into(M T::*member) {
   return [member](const Field& field, T& object) {
     if constexpr (IsOptional<M>::value) {
-      object.*member = value_of_field<typename M::value_type>(field);  // none for a word such as auto
+      object.*member = value_of_field<typename M::value_type>(field);  // stays empty for a word such as auto
     } else {
       if (auto value = value_of_field<M>(field)) object.*member = std::move(*value);
     }
@@ -144,7 +144,7 @@ KeyOf<T> required(std::string_view name, M T::*member, Value value, std::string_
   return {required(name, std::move(value), meaning), into(member)};
 }
 
-/// A map that fills a member of its own struct.
+/// Key of a map that fills a member which is a struct itself.
 template <class T, class M>
 KeyOf<T> optional(std::string_view name, M T::*member, const KeysOf<M>& (*table)(), std::string_view meaning) {
   return {optional(name, map(table), meaning),

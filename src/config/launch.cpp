@@ -22,7 +22,7 @@
 namespace aurasim::config {
 namespace {
 
-/// What is given beside a preset, here or under `time`, goes before it: to be called first.
+/// Applies the preset. Keys given beside it, here or under `time`, override it, so this is called before they are read.
 void apply_preset(const Field& physics, Launch& launch) {
   if (!physics.is_map()) return;
   const Field field = Fields(physics)["preset"];
@@ -35,8 +35,8 @@ void apply_preset(const Field& physics, Launch& launch) {
   launch.time.substeps = preset.substeps;
 }
 
-/// The profiles beside the launch files of this project, or those that come with the program, if the launch file names
-/// none.
+/// Default profiles if the launch file names none: those beside the launch files of this project, or those that come
+/// with the program.
 std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
   std::filesystem::path beside = (folder / "../qos/aurasim.xml").lexically_normal();
   std::error_code error;
@@ -46,7 +46,7 @@ std::filesystem::path usual_profiles(const std::filesystem::path& folder) {
 
 void check_each(const Field& list, std::string_view allowed, bool (*is_good)(const std::string&)) {
   const bool has_items = list.is_list() && !list.node()->children.empty() && list.node()->children.size() <= 256;
-  if (!has_items) return;  // which has been said
+  if (!has_items) return;  // reported already
   for (const Field& item : list.items()) {
     if (item.is_text() && !is_good(item.node()->text)) item.refuse(allowed);
   }
@@ -83,7 +83,7 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   fields.close();
 }
 
-/// Nothing: there is no such file.
+/// Hash of a file's content; nothing if there is no such file.
 std::optional<std::uint64_t> hash_of_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || !std::filesystem::is_regular_file(file)) return std::nullopt;
@@ -105,7 +105,8 @@ void read_control(const Field& field, const std::filesystem::path& folder, Contr
   fields.close();
 }
 
-/// Whether the files are there is asked where they are used: hosts that only have nodes need no key of the viewer.
+/// Reads the settings of the overseer. Does not check that the files exist; that is done where they are used, because
+/// hosts that only run nodes need no key of the viewer.
 void read_overseer(const Field& field, const std::filesystem::path& folder, Overseer& overseer) {
   if (!field.given()) return;
   const Fields fields(field);
@@ -139,7 +140,8 @@ void read_scene_of(const Field& field, const std::vector<Override>& overrides, c
   launch.injector_sources = std::move(read.injector_sources);
 }
 
-/// "scene.gravity=..." changes the scene, "scene=..." names another one.
+/// Separates overrides: "scene.gravity=..." changes the scene, while "scene=..." names another scene and belongs to the
+/// launch file.
 void split_overrides(std::vector<Override> all, std::vector<Override>& of_launch, std::vector<Override>& of_scene) {
   for (Override& change : all) {
     if (change.path.size() > 1 && change.path[0] == "scene") {

@@ -19,7 +19,7 @@
 namespace aurasim::config {
 
 enum class Pace { kWall, kNone };
-/// kAuto: where the run is to have the bits of one node.
+/// Whether states are put back and computed again. kAuto: if the run is to have the same bits as one node.
 enum class Redo { kAuto, kOn, kOff };
 enum class OnDeath { kRecover, kStop };
 
@@ -27,7 +27,7 @@ struct Time {
   double step_hz = 60;
   int substeps = 8;
   core::SyncMode sync = core::SyncMode::kBounded;
-  std::optional<int> lookahead;  ///< K; nothing: from the tolerances
+  std::optional<int> lookahead;  ///< K; nothing: derived from the tolerances
   Pace pace = Pace::kWall;
   Redo redo = Redo::kAuto;
 };
@@ -44,24 +44,24 @@ struct Aura {
 };
 
 struct Physics {
-  /// What touches is found once a step.
+  /// True when contacts are found once a step.
   bool looks_once() const { return solver == "soft_step"; }
   bool is_continuous() const { return continuous.value_or(looks_once()); }
 
   std::string solver = "soft_step";
   int iterations = 10;
   int friction_directions = 1;     ///< rows of friction at each contact point, 1 or 2
-  double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that stays
-  std::optional<bool> continuous;  ///< fast bodies stop at what is in their way; none: where contacts are found once
-  std::optional<int> threads = 1;  ///< of a node's physics; none: as many as the host has for it
+  double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that remains
+  std::optional<bool> continuous;  ///< fast bodies stop at obstacles; nothing: yes where contacts are found once a step
+  std::optional<int> threads = 1;  ///< threads of a node's physics; nothing: as many as the host has for it
 };
 
-/// What is made worse of the network; what is not given is as the DDS profiles say.
+/// Impairment of the network. Values that are not given come from the DDS profiles.
 struct Impair {
-  std::optional<double> delay_s;        ///< one way
+  std::optional<double> delay_s;        ///< delay, one way
   std::optional<double> jitter_s;       ///< delay +- jitter, uniform
   std::optional<double> loss;           ///< 0 to 1, of datagrams
-  std::optional<double> bandwidth_B_s;  ///< of all that a node sends; 0: unlimited
+  std::optional<double> bandwidth_B_s;  ///< limit for all that a node sends; 0: unlimited
   std::optional<bool> reorder;
   std::optional<bool> discovery;
   std::optional<std::uint64_t> seed;
@@ -77,66 +77,66 @@ struct Dds {
   Impair impair;
 };
 
-/// What becomes of a run when one of its nodes dies.
+/// How a run reacts to the death of a node.
 struct Survival {
   OnDeath on_death = OnDeath::kRecover;
-  double checkpoint_s = 1;  ///< simulated, from one state that can be gone back to until the next
-  double patience_s = 20;   ///< so long the others wait for somebody who takes the region over, before one of them does
+  double checkpoint_s = 1;  ///< simulated time between cuts
+  double patience_s = 20;   ///< time that the others wait for a spare to take the region over, before one of them does
   std::string disk;  ///< folder, relative to the launch file; "off"; empty: where --saves is given, in that folder
 };
 
-/// Of programs that steer bodies and joints.
+/// Control by programs that steer bodies and joints.
 struct Control {
   core::LateSetpoint late = core::LateSetpoint::kNextState;
   core::OnSilence on_silence = core::OnSilence::kHold;
-  double silence_s = 0.5;            ///< simulated; a program that says nothing for longer has fallen silent
+  double silence_s = 0.5;            ///< simulated time without a message after which a program counts as silent
   std::filesystem::path replay;      ///< setpoints.csv of an earlier run, absolute once read; empty: none
-  std::uint64_t replay_content = 0;  ///< hash of it
+  std::uint64_t replay_content = 0;  ///< hash of the content of `replay`
 };
 
 struct Observe {
   double tick_hz = 20;
 };
 
-/// What nodes say to ROS 2, and hear of it (docs/ros2.md).
+/// Topics that nodes publish to ROS 2 and receive from it (docs/ros2.md).
 struct Ros2 {
   bool on = false;
   std::optional<int> domain;  ///< ROS_DOMAIN_ID; nothing: the run's
   double tf_hz = 20;
   std::string frame = "world";
-  std::vector<std::string> cmd_vel;  ///< names of bodies that listen
+  std::vector<std::string> cmd_vel;  ///< names of bodies that accept cmd_vel
 };
 
 /// PEM files, absolute once read.
 struct Tls {
-  std::filesystem::path certificate;  ///< with those of its issuers behind it, if there are any
+  std::filesystem::path certificate;  ///< the certificate, followed by those of its issuers if there are any
   std::filesystem::path key;
 };
 
-/// Of the viewer's server.
+/// The viewer's server.
 struct Overseer {
   std::string bind = "127.0.0.1";  ///< address that it listens on
   int port = 8080;                 ///< 0: any that is free
   std::optional<Tls> tls;          ///< nothing: plain HTTP
 };
 
-/// Where the scene file says something, for messages about it.
+/// Place in the scene file where a thing is described, for messages about it.
 struct SceneSource {
-  std::string name;  ///< that the file gives it; may be empty
-  int line = 0;      ///< 0: not in the file, but in an override
+  std::string name;  ///< name in the file; may be empty
+  int line = 0;      ///< line; 0: in an override instead of the file
   int column = 0;
 };
 
 struct Launch {
   std::filesystem::path file;          ///< absolute
-  std::vector<std::string> overrides;  ///< as they were given
+  std::vector<std::string> overrides;  ///< overrides as given
   std::filesystem::path scene_file;
   core::Scene scene;
   std::vector<SceneSource> body_sources;      ///< as scene.bodies
   std::vector<SceneSource> injector_sources;  ///< as scene.injectors
   core::RegionMap regions = core::RegionMap::columns(1, 1);
   bool neighbour_distance_is_given = false;
-  double neighbour_distance_m = 0;  ///< regions at most this far apart listen to each other; at least the zone
+  double neighbour_distance_m = 0;  ///< regions at most this far apart are neighbours; at least the zone
   Time time;
   Tolerances tolerances;
   Aura aura;
@@ -151,14 +151,15 @@ struct Launch {
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
-  /// Is every state checked, and computed again where two bodies touched on two hosts?
+  /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;
-  /// So many states lie between two that can be gone back to; 0: nobody goes back.
+  /// Number of states from one cut to the next; 0: no cuts.
   core::Step checkpoint_steps() const;
   core::ControlRules control_rules() const;
   /// 64-bit hash of everything that all nodes of a run must agree on (scene, regions, time, tolerances, aura, physics).
   std::uint64_t agreement() const;
-  /// Likewise of what decides about bits on any map: the scene, and how physics computes it. A saved world has it.
+  /// 64-bit hash of what decides the bits of states on any map: the scene, and how physics computes it. Stored in saved
+  /// worlds.
   std::uint64_t world_identity() const;
 };
 

@@ -31,7 +31,7 @@ core::TightAura top_speed_aura(const Launch& launch) {
   return {rules, no_shapes};
 }
 
-/// Parts between slashes: a letter or _, then letters, digits and _.
+/// True for a ROS name: parts between slashes, each a letter or _, then letters, digits and _.
 bool is_ros_name(const std::string& name) {
   char before = '/';
   for (const char c : name) {

@@ -1,4 +1,4 @@
-// What must hold between the parts of a launch file.
+// Checks conditions between the parts of a launch file.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace aurasim::config {
 
-/// Largest K, given or from the tolerances.
+/// Largest K, given or derived from the tolerances.
 inline constexpr int kLargestLookahead = 64;
 
 /// Distance between the surfaces of two bodies within which they have to share a host, at the top speed of the
@@ -16,16 +16,17 @@ inline constexpr int kLargestLookahead = 64;
 /// its reach"). Metres.
 double reach_m(const Launch& launch);
 
-/// Farthest from a region at which another one may have to hear of its bodies. Metres.
+/// Largest distance from a region at which another region's node may need its auras. Metres.
 double zone_m(const Launch& launch);
 
-/// Regions wide enough for their auras, K and the number of neighbours in bounds; sets neighbour_distance_m.
+/// Checks that regions are wide enough for their auras, and that K and the number of neighbours are in bounds. Sets
+/// neighbour_distance_m.
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch);
 
-/// Statics that move need a solver that knows them.
+/// Checks that the solver supports moving statics if there are any.
 void check_statics(const Field& physics, const Launch& launch);
 
-/// `ros2`, once scene and DDS have been read.
+/// Reads `ros2`. Call it once the scene and `dds` have been read.
 void read_ros2(const Field& ros2, Launch& launch);
 
 }  // namespace aurasim::config

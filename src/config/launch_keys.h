@@ -7,7 +7,7 @@
 namespace aurasim::config {
 
 const KeysOf<Launch>& launch_keys();
-/// What `regions` takes beside a layout.
+/// Keys of `regions` beside a layout.
 const KeyTable& regions_keys();
 const KeysOf<Time>& time_keys();
 const KeysOf<Tolerances>& tolerances_keys();

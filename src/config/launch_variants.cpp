@@ -10,7 +10,8 @@
 namespace aurasim::config {
 namespace {
 
-/// Infinite sides as far out as the outermost finite ones, and a bit: reading extends them again.
+/// Writes a box as text. Infinite sides become finite, slightly beyond the outermost finite ones; reading extends them
+/// again.
 std::string box_text(const core::Rectangle& box, const core::Rectangle& bounds) {
   const auto number = [](double x, double otherwise) { return std::isfinite(x) ? x : otherwise; };
   return fmt::format("[{}, {}, {}, {}]", number(box.x0, bounds.x0), number(box.y0, bounds.y0),

@@ -1,4 +1,5 @@
-// A launch that was read, with one thing changed: what a run becomes when it gets other regions or another scene.
+// Variants of a launch that was read, with one thing changed: the launch of a run that gets other regions or another
+// scene.
 #pragma once
 
 #include <string>
@@ -8,10 +9,10 @@
 
 namespace aurasim::config {
 
-/// One rectangle for each region; infinite sides allowed. Throws BadConfig.
+/// Returns the launch with these regions, one rectangle each; infinite sides allowed. Throws BadConfig.
 Launch with_regions(const Launch& launch, const std::vector<core::Rectangle>& boxes);
 
-/// The scene file of this name beside that of the launch. Throws BadConfig.
+/// Returns the launch with the scene file of this name beside that of the launch. Throws BadConfig.
 Launch with_scene(const Launch& launch, const std::string& name);
 
 }  // namespace aurasim::config

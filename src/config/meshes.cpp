@@ -29,8 +29,8 @@ constexpr std::uintmax_t kLargestMeshBytes = 256u << 20;
 constexpr std::size_t kMostTriangles = 1'000'000;
 constexpr std::size_t kMostHullPoints = 200;
 constexpr double kFarthest = 1e7;
-constexpr unsigned kMostCorners = 1000;       ///< of a face: finding its triangles takes time with the square of them
-constexpr std::size_t kDeepestNesting = 100;  ///< of a glTF's JSON: assimp reads it by recursion
+constexpr unsigned kMostCorners = 1000;  ///< most corners of a face: the time to triangulate it grows with their square
+constexpr std::size_t kDeepestNesting = 100;  ///< deepest nesting of a glTF's JSON, which assimp reads by recursion
 const std::set<std::string> kFormats = {".obj", ".stl", ".gltf", ".glb"};
 const std::string kUnknownFormat = "its name ends neither in .obj, .stl, .gltf nor .glb";
 
@@ -100,8 +100,8 @@ unsigned most_corners(const aiScene& scene) {
   return most;
 }
 
-/// How deep brackets lie in brackets, outside of texts. Of bytes that are no JSON it means nothing, but is no deeper
-/// than a reader of JSON would go.
+/// How deep brackets are nested outside of strings. For bytes that are no JSON the result has no meaning, but is never
+/// less than the depth that a JSON parser would reach.
 std::size_t nesting_of(std::string_view json) {
   std::size_t depth = 0, deepest = 0;
   bool in_text = false;
@@ -163,7 +163,7 @@ std::variant<TriangleMesh, std::string> read_mesh(const std::string& name, std::
   if (extension == ".gltf" && nesting_of(bytes) > kDeepestNesting)
     return fmt::format("its brackets are nested deeper than {}", kDeepestNesting);
   Assimp::Importer importer;
-  // Without a file system below it: the importer takes it over.
+  // Has no file system below it. The importer takes ownership.
   importer.SetIOHandler(
       new Assimp::MemoryIOSystem(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
   MeshRequest request;
@@ -188,7 +188,7 @@ std::vector<Vec3> hull_points(const TriangleMesh& mesh) {
 Vec3 centre_of_mass(const TriangleMesh& mesh) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : mesh.points) mean += p / static_cast<double>(mesh.points.size());
-  double volume = 0;  // of the tetrahedra between `mean` and the triangles, six times
+  double volume = 0;  // six times the volume of the tetrahedra between `mean` and the triangles
   Vec3 moment = Vec3::Zero();
   double size = 0;
   for (const auto& t : mesh.triangles) {

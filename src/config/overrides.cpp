@@ -9,7 +9,7 @@
 namespace aurasim::config {
 namespace {
 
-/// "a.b[0].c" and "a.b.0.c" as a, b, 0, c. Empty if there is an empty name.
+/// Splits a path: "a.b[0].c" and "a.b.0.c" become a, b, 0, c. Empty if a name is empty.
 std::vector<std::string> split_path(std::string_view text) {
   std::vector<std::string> names(1);
   for (const char c : text) {
@@ -47,7 +47,7 @@ std::optional<std::size_t> index_in(const YamlNode& list, std::string_view name)
   return index;
 }
 
-/// The child that `name` leads to; a map gets a new one if need be. Null: there is no way.
+/// Returns the child that `name` leads to; a map gets a new one if needed. Null: there can be no such child.
 YamlNode* child_of(YamlNode& parent, const std::string& name, const Place& at) {
   if (parent.kind == YamlNode::Kind::kList) {
     const auto index = index_in(parent, name);

@@ -15,10 +15,10 @@ struct Override {
   YamlNode value;
 };
 
-/// Those that can be read; each is a source of `errors`, named "--set key.path=value".
+/// Returns the valid overrides; each becomes a source of `errors`, named "--set key.path=value".
 std::vector<Override> parse_overrides(const std::vector<std::string>& texts, Errors& errors);
 
-/// Replaces the value at the path, or adds it to its map: the readers complain about keys that nobody knows.
+/// Replaces the value at the path, or adds it to its map. Unknown keys are left to the readers to report.
 void apply_override(const Override& change, YamlNode& root, Errors& errors);
 
 }  // namespace aurasim::config

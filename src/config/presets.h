@@ -21,7 +21,7 @@ inline constexpr std::array<Preset, 3> kPresets = {{
     {"exact", "sequential_impulse", 50, 8, 2},
 }};
 
-/// Throws std::invalid_argument if there is none of this name.
+/// Returns a preset. Throws std::invalid_argument if there is none of this name.
 const Preset& preset_named(const std::string& name);
 
 }  // namespace aurasim::config

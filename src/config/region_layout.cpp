@@ -12,7 +12,7 @@ namespace {
 using core::Rectangle;
 using core::RegionMap;
 
-/// Of a region.
+/// Range of a region's side, m.
 constexpr Range kSide = Range::from_to(1e-3, 1e6);
 
 enum class Kind { kColumns, kGrid, kBrick, kBoxes };
@@ -71,7 +71,7 @@ bool is_used_by(std::string_view layout, std::string_view key) {
   });
 }
 
-/// Edge `i` of `count` cells in a row that is centred on the origin.
+/// Coordinate of edge `i` of `count` cells in a row that is centred on the origin.
 double edge(std::size_t i, std::size_t count, double cell) {
   return (static_cast<double>(i) - 0.5 * static_cast<double>(count)) * cell;
 }
@@ -188,7 +188,7 @@ std::optional<RegionLayout> read_boxes(const Fields& fields) {
   }
 }
 
-/// Nothing if the map says a layout that there is not.
+/// Reads the kind of layout; nothing if there is no such layout.
 std::optional<Kind> read_kind(const Field& map) {
   if (!map.is_map()) return std::nullopt;
   const YamlNode* layout = map.node()->find("layout");
@@ -196,7 +196,7 @@ std::optional<Kind> read_kind(const Field& map) {
   return Field(layout, map.place(), path_to(map.path(), "layout"), any_layout(), true, map.errors()).choice<Kind>();
 }
 
-/// Its keys, or those of all layouts if the kind is not known.
+/// Returns the fields of this kind of layout, or of all kinds if it is not known.
 Fields fields_of(const Field& map, std::optional<Kind> kind) {
   if (!kind) return Fields::of_any_table(map);
   if (*kind == Kind::kColumns) return Fields(map, columns_keys());

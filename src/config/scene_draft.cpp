@@ -125,7 +125,7 @@ core::Pose read_pose(const Fields& fields) {
   return pose;
 }
 
-/// Written so that NaN is out of reach.
+/// The comparison is written so that NaN counts as out of reach.
 bool is_within_reach(const core::Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m; }
 
 void complain_of_place(const Field& blame, std::string_view what, const core::Vec3& p_W) {

@@ -1,4 +1,4 @@
-// A scene while it is being read: what the parts of the reader share.
+// A scene while it is being read: state that the parts of the reader share.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@
 
 namespace aurasim::config {
 
-/// Bodies of state 0 and of all injectors together.
+/// Most bodies of state 0 and of all injectors together.
 inline constexpr std::uint64_t kMostBodies = 1'000'000;
-/// Bullet's broadphase ids are ints; the last ones are left to it.
+/// Largest body id. Bullet's broadphase ids are ints, and the last ones are reserved for Bullet.
 inline constexpr std::int64_t kLargestBodyId = (std::int64_t{1} << 31) - 1001;
 
 /// Names of one kind of thing, in the order of the file, and their indices.
@@ -28,7 +28,7 @@ class Names {
 
   std::uint32_t add(const std::string& name);
   std::optional<std::uint32_t> index_of(const std::string& name) const;
-  /// Index of the name that `field` says; complains if there is none.
+  /// Returns the index of the name in `field`; complains if there is none.
   std::optional<std::uint32_t> find(const Field& field) const;
 
  private:
@@ -61,51 +61,51 @@ struct SceneDraft {
   Names prototypes{"prototype"};
   std::vector<DraftBody> bodies;
   Names body_names{"named body"};
-  std::vector<std::size_t> named_bodies;  ///< as body_names: places in `bodies`
+  std::vector<std::size_t> named_bodies;  ///< places in `bodies`, in the order of body_names
   std::vector<DraftJoint> joints;
   std::uint64_t injected_bodies = 0;
-  /// What `per` injectors are laid out by; nothing: the scene does not say, or what it says is wrong.
+  /// Layout for injectors with `per`; nothing: the scene has none, or an invalid one.
   std::optional<RegionLayout> layout;
   bool layout_is_wrong = false;
 
-  /// Names the body that comes next; complains about a name that is taken.
+  /// Names the body that is added next; complains about a name that is taken.
   void name_next_body(const std::string& name, const Field& blame);
 
-  /// Whether `count` more bodies may be added; complains if not.
+  /// Returns whether `count` more bodies may be added; complains if not.
   bool has_room_for(std::uint64_t count, const Field& blame) const;
 };
 
-/// Where `field` is, for messages about what it describes.
+/// Returns the place of `field`, for messages about the thing that it describes.
 SceneSource source_of(const Field& field, std::string name);
 
-/// Of maps of things that stand somewhere.
+/// Keys of the pose of a thing.
 const KeyTable& pose_keys();
 const KeyTable& orientation_keys();
 
-/// `position` and `orientation` of a map that shares pose_keys.
+/// Reads `position` and `orientation` of a map that shares pose_keys.
 core::Pose read_pose(const Fields& fields);
 
-/// Whether something may be there (core::limits::kFarthestPlace_m). Each coordinate of a file is, and so is not always
-/// what several add up to.
+/// True when a place is within core::limits::kFarthestPlace_m. Each coordinate in a file is, but their sums may not be.
 bool is_within_reach(const core::Vec3& p_W);
-/// What to say of a place that is not: "found ... at ..., allowed: ...".
+/// Adds the error for a place that is out of reach: "found ... at ..., allowed: ...".
 void complain_of_place(const Field& blame, std::string_view what, const core::Vec3& p_W);
 
-/// `orientation` alone.
+/// Reads `orientation` alone.
 core::Quat read_orientation(const Field& field);
 
-/// Metres per second, and radians per second, of one component.
+/// Range of one component of a velocity, m/s and rad/s.
 inline constexpr Range kSpeed = Range::from_to(-1e4, 1e4);
 
-/// `shape:`, a name or a shape in place; `material:`, a name; a name of its own.
+/// Keys `shape:` (a name or a shape in place), `material:` (a name), and a thing's own name.
 Key shape_key(std::string_view meaning);
 Key material_key();
 Key own_name_key(std::string_view meaning, std::string otherwise);
 
-/// `shape:` of a prototype, a static or a part: a name, or a shape in place, which gets the name `own_name`.
+/// Reads `shape:` of a prototype, a static or a part: a name, or a shape in place, which gets the name `own_name`.
+/// Returns the shape's index.
 std::optional<std::uint32_t> read_shape_reference(const Field& field, const std::string& own_name, SceneDraft& draft);
 
-/// `material:`; the material "default" if it is not given.
+/// Reads `material:`; the material "default" if it is not given.
 std::optional<std::uint32_t> read_material_reference(const Field& field, SceneDraft& draft);
 
 }  // namespace aurasim::config

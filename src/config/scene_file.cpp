@@ -56,7 +56,7 @@ void read_scene_layout(const Field& field, const LaunchLayout& launch, SceneDraf
   draft.layout_is_wrong = !draft.layout;
 }
 
-/// Reads scene files, one within the other.
+/// Reads scene files, which may include each other.
 class Reader {
  public:
   Reader(const LaunchLayout& launch, Errors& errors) : launch_(launch), errors_(errors) {}

@@ -1,5 +1,5 @@
-// A scene file, as a whole: its keys are in the tables of scene_file.cpp and of the readers beside it, and on the page
-// of all keys (docs/keys.md).
+// Reads a scene file as a whole. Its keys are in the tables of scene_file.cpp and of the readers beside it, and on the
+// page of all keys (docs/keys.md).
 //
 // Bodies without an id get the lowest free ones, in the order of the file, generators after `bodies`; the ids of
 // injected bodies follow, injector by injector.
@@ -17,7 +17,7 @@
 
 namespace aurasim::config {
 
-/// Where `layout: launch` points to.
+/// The launch file's layout, for `layout: launch`.
 struct LaunchLayout {
   bool is_known = false;  ///< false: the scene is read without a launch file
   std::optional<RegionLayout> layout;
@@ -29,7 +29,7 @@ struct SceneFile {
   std::vector<SceneSource> injector_sources;  ///< as scene.injectors
 };
 
-/// The scene in `file`, with overrides whose paths begin in the scene. Check `errors` before use.
+/// Reads the scene in `file`, with overrides whose paths begin in the scene. Check `errors` before use.
 SceneFile read_scene_file(const std::filesystem::path& file, const std::vector<Override>& overrides,
                           const LaunchLayout& launch, Errors& errors);
 

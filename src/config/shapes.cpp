@@ -68,7 +68,7 @@ std::optional<Shape> read_plane(const Fields& fields) {
   return core::Plane{normal->normalized(), *offset};
 }
 
-/// `mesh`/`file`, `scale` and `up` of a hull or a mesh.
+/// Reads the mesh file of a hull or a mesh: `mesh`/`file`, `scale` and `up`.
 std::optional<core::TriangleMesh> read_mesh_file(const Field& file_field, const Fields& fields,
                                                  const std::filesystem::path& folder) {
   const auto name = file_field.text();
@@ -93,7 +93,7 @@ std::optional<core::TriangleMesh> read_mesh_file(const Field& file_field, const 
   return std::nullopt;
 }
 
-/// Whether the points enclose a volume: no thinner than a millionth of their extent.
+/// True when the points enclose a volume that is no thinner than a millionth of their extent.
 bool has_volume(const std::vector<Vec3>& points) {
   const auto farthest = [&](auto measure) {
     Vec3 best = Vec3::Zero();
@@ -119,7 +119,8 @@ std::optional<std::vector<Vec3>> read_points(const Field& field) {
   return points;
 }
 
-/// With the keys of what the hull is made of, or of both if it does not say.
+/// Returns the fields of a hull with the keys of its source (points or a mesh), or of both if the file does not say
+/// which.
 Fields fields_of_hull(const Field& field) {
   const bool of_points = field.is_map() && field.node()->find("points") != nullptr;
   const bool of_mesh = field.is_map() && field.node()->find("mesh") != nullptr;
@@ -197,7 +198,7 @@ std::optional<Shape> read_compound(const Fields& fields, const SceneDraft& draft
   return compound;
 }
 
-/// What sizes, scales and places of parts amount to.
+/// Checks the extent that results from sizes, scales and places of parts.
 void check_size(const Field& field, const Shape& shape) {
   using namespace core::limits;
   constexpr double kRounded = 1e-9;
@@ -206,7 +207,7 @@ void check_size(const Field& field, const Shape& shape) {
   if (!(radius_m <= kLargestSize_m)) {
     field.complain(
         fmt::format("found a shape that reaches {:.4g} m from its origin, allowed: {:g} m", radius_m, kLargestSize_m));
-  } else if (!std::holds_alternative<core::Compound>(shape) &&  // its parts have been looked at
+  } else if (!std::holds_alternative<core::Compound>(shape) &&  // the parts of a compound have been checked
              !(thickness_m(shape) >= kSmallestSize_m * (1 - kRounded))) {
     field.complain(fmt::format("found a shape that is {:.4g} m thin, allowed: {:g} m or more", thickness_m(shape),
                                kSmallestSize_m));
@@ -264,7 +265,7 @@ struct BoundsOf {
   Bounds operator()(const core::Plane&) const { return {}; }
 };
 
-/// Box around the turned box of a part: never too small.
+/// Bounds of a part: a box around its rotated box, so never too small.
 Bounds bounds_of_part(const core::CompoundPart& part) {
   const Bounds own = std::visit(BoundsOf(), part.shape);
   std::vector<Vec3> corners;

@@ -1,4 +1,4 @@
-// Shapes of a scene: how each kind is written is in the tables of shapes.cpp, and on the page of all keys.
+// Reads shapes of a scene. How each kind is written is in the tables of shapes.cpp, and on the page of all keys.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,18 @@ namespace aurasim::config {
 
 struct SceneDraft;
 
-/// Exactly one kind of shape.
+/// Keys of a shape: exactly one kind of shape.
 const KeyTable& shape_keys();
 
-/// The shape that `field` (a map of one key) describes. Mesh files are relative to the draft's folder; parts have
-/// materials that the draft has by now.
+/// Reads the shape in `field` (a map of one key). Mesh files are relative to the draft's folder; materials of parts
+/// must be in the draft already.
 std::optional<core::Shape> read_shape(const Field& field, const SceneDraft& draft);
 
-/// Whether bodies may have it: not a triangle mesh and not a plane.
+/// True when bodies may have the shape: it is neither a triangle mesh nor a plane.
 bool can_move(const core::Shape& shape);
 
-/// How thick it is along the thinnest axis of its frame; of a compound: its thinnest part. Infinite for what cannot
-/// move.
+/// Thickness of a shape along the thinnest axis of its frame, m; for a compound: of its thinnest part. Infinite for
+/// shapes that cannot move.
 double thickness_m(const core::Shape& shape);
 
 /// Axis-aligned box around a shape, in the frame of its pose.
@@ -32,7 +32,7 @@ struct Bounds {
   core::Vec3 size() const { return high - low; }
 };
 
-/// Of a shape that can move, in its own frame.
+/// Bounds of a shape in its own frame. Precondition: can_move(shape).
 Bounds bounds_of(const core::Shape& shape);
 
 }  // namespace aurasim::config

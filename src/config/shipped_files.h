@@ -11,17 +11,17 @@ namespace aurasim::config {
 /// around the build folder, or that which the program was built from.
 std::filesystem::path shipped_folder();
 
-/// The QoS profiles of a launch file that names none and has no `qos` folder beside its own.
+/// QoS profiles for a launch file that names none and has no `qos` folder beside its own.
 std::filesystem::path shipped_profiles();
 
 /// The folder of the built page, which need not be there.
 std::filesystem::path shipped_page();
 
-/// A launch file that comes with the program, by its name without ".yaml". Everything else is a path, returned as it
-/// is; so is a name that is a file here.
+/// Path of a shipped launch file, by its name without ".yaml". Anything else is a path and returned unchanged; so is a
+/// name that is also a file in the current folder.
 std::string launch_file_named(const std::string& name);
 
-/// Sorted.
+/// Names of the shipped launch files, sorted.
 std::vector<std::string> shipped_launch_names();
 
 }  // namespace aurasim::config

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostStops = 1000;
 constexpr double kShortestWay_s = 0.01;
-/// The steepest of the curve by which speeds have no jumps.
+/// Largest slope of the smooth curve of motion, relative to the mean speed.
 constexpr double kSteepest = 1.5;
 
 const KeysOf<core::StaticPath>& keys_of_path() {
@@ -38,7 +38,8 @@ const KeysOf<core::StaticPath>& keys_of_path() {
   return keys;
 }
 
-/// Turns of more than half a circle are not told apart from those the other way.
+/// Checks the way between two stops. A turn of more than half a circle cannot be told from the shorter one the other
+/// way round.
 void check_way(const Field& field, const core::PathStop& before, const core::PathStop& stop, bool smooth) {
   const double duration_s = stop.at_s - before.at_s;
   if (duration_s < kShortestWay_s) {

@@ -1,4 +1,4 @@
-// Where statics go.
+// Reads the paths of moving statics.
 #pragma once
 
 #include "config/fields.h"
@@ -8,7 +8,7 @@ namespace aurasim::config {
 
 const KeyTable& path_keys();
 
-/// `path:` of a static that stands as it is read.
+/// Reads `path:` of a static. The stops are poses in the frame of the static at its start (StaticPath).
 std::optional<core::StaticPath> read_path(const Field& field);
 
 }  // namespace aurasim::config

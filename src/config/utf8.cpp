@@ -5,7 +5,7 @@
 namespace aurasim::config {
 namespace {
 
-/// Bytes of the character that begins with `first`: 1 to 4, or 0 if none does.
+/// Number of bytes of the character that begins with `first`: 1 to 4, or 0 if none does.
 std::size_t length_of_character(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first < 0xe0) return 2;
@@ -19,7 +19,7 @@ bool is_control(std::uint32_t character) {
   return character < 0x20 || (character >= 0x7f && character < 0xa0);
 }
 
-/// Neither a surrogate, nor beyond Unicode, nor written with more bytes than needed.
+/// True when a character is neither a surrogate, nor beyond Unicode, nor written with more bytes than needed.
 bool is_valid(std::uint32_t character, std::size_t length) {
   constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
   return character >= kSmallest[length] && character <= 0x10ffff && (character < 0xd800 || character > 0xdfff);

@@ -1,4 +1,4 @@
-// Which bytes may stand in a configuration file.
+// Checks which bytes are allowed in a configuration file.
 #pragma once
 
 #include <cstddef>

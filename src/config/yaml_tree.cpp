@@ -17,7 +17,7 @@
 namespace aurasim::config {
 namespace {
 
-/// Something that YAML allows and we do not.
+/// A construct of YAML that is refused here.
 struct RefusedYaml {
   YAML::Mark mark;
   std::string message;
@@ -76,7 +76,7 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode node;
     YAML::Mark mark;
     YAML::anchor_t anchor = YAML::NullAnchor;
-    bool has_key = false;  ///< of a map: the last child waits for its value
+    bool has_key = false;  ///< for a map: the last child waits for its value
   };
 
   Place place_of(const YAML::Mark& mark) const {
@@ -132,7 +132,7 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     YamlNode& entry = map.node.children.back();
-    // The parser notices that there is no value only at what comes next.
+    // A missing value has no place of its own: the parser notices it only at the next token.
     if (done.node.kind == YamlNode::Kind::kNothing) done.node.place = entry.key_place;
     done.node.key = std::move(entry.key);
     done.node.key_place = entry.key_place;
@@ -153,7 +153,7 @@ void add_syntax_error(const Place& at, const YAML::Mark& mark, std::string_view 
   errors.add(place, "", fmt::format("found {}, allowed: one YAML document", message));
 }
 
-/// Control characters and broken UTF-8 are refused before the parser sees them: it takes some for the end.
+/// Refuses control characters and broken UTF-8 before the parser sees them, because it takes some for the end.
 bool check_text(const std::string& text, const Place& at, Errors& errors) {
   const std::size_t bad = first_unprintable(text);
   if (bad == text.size()) return true;

@@ -19,10 +19,10 @@ struct YamlNode {
   Kind kind = Kind::kNothing;
   bool quoted = false;  ///< written in quotes or with a tag: text even if it looks like a number
   Place place;
-  Place key_place;  ///< of its key, when it is in a map
+  Place key_place;  ///< place of its key, when it is in a map
   std::string key;
   std::string text;
-  std::vector<YamlNode> children;  ///< of a list, or of a map in the order of the file, copies of keys included
+  std::vector<YamlNode> children;  ///< entries of a list, or of a map in the order of the file, repeated keys included
 
   const YamlNode* find(std::string_view wanted_key) const;
   YamlNode* find(std::string_view wanted_key);
@@ -33,13 +33,13 @@ inline constexpr std::uintmax_t kLargestFileBytes = 16u << 20;
 /// Most values that one file may have once its aliases are expanded.
 inline constexpr std::size_t kMostYamlNodes = 1'000'000;
 
-/// Text of a readable regular file of at most `limit` bytes; otherwise why not, in `why`.
+/// Returns the text of a readable regular file of at most `limit` bytes; otherwise nothing, and the reason in `why`.
 std::optional<std::string> read_bytes(const std::filesystem::path& file, std::uintmax_t limit, std::string& why);
 
-/// One YAML document. `at` is where its text begins: (source, 1, 1) for a file, (source, 0, 0) for an override.
+/// Parses one YAML document. `at` is where its text begins: (source, 1, 1) for a file, (source, 0, 0) for an override.
 std::optional<YamlNode> parse_yaml(const std::string& text, const Place& at, Errors& errors);
 
-/// The document in a file, which becomes a source of `errors`.
+/// Reads the document in a file, which becomes a source of `errors`.
 std::optional<YamlNode> read_yaml(const std::filesystem::path& file, Errors& errors);
 
 }  // namespace aurasim::config

@@ -33,7 +33,7 @@ core::Vec3 floats_at(const std::vector<float>& column, std::size_t i) {
                         : core::Vec3(column[3 * i], column[3 * i + 1], column[3 * i + 2]);
 }
 
-/// Never below `x`: a body may not be faster, or push harder, than its aura says.
+/// Rounds up to float, because a body must not be faster, or push harder, than its aura promises.
 float rounded_up(double x) {
   const auto nearest = static_cast<float>(x);
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
@@ -69,7 +69,7 @@ void encode_motion(const AuraBatch& batch, wire::AuraBatch& out) {
   }
 }
 
-/// What not every aura has.
+/// Encodes the columns that only some auras need.
 void encode_exceptions(const AuraBatch& batch, wire::AuraBatch& out) {
   out.elsewhere_row().clear();
   out.elsewhere_host().clear();

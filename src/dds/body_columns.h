@@ -1,5 +1,6 @@
-// Bodies as observers are told of them (core/replica.h), as the columns that topics replica and observation share:
-// id, epoch, host, prototype, flags, p_WB, q_WB, v_WB, w_WB. The flags belong to each topic, but for the first bit.
+// Encodes bodies as they are published to observers (core/replica.h), in the columns that topics replica and
+// observation share: id, epoch, host, prototype, flags, p_WB, q_WB, v_WB, w_WB. Each topic has its own flags; only the
+// first bit (kAsleep) is common.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ inline void put_floats(const Eigen::Vector3f& v, float* out) {
   out[2] = v.z();
 }
 
-/// All columns but the flags. `row_of(body)`: its core::ReplicaBody.
+/// Fills all columns except the flags. `row_of(body)` returns the body's core::ReplicaBody.
 template <class Body, class RowOf, class Wire>
 void put_body_columns(const std::vector<Body>& bodies, const RowOf& row_of, Wire& out) {
   fill(out.id(), bodies, [&](const Body& b) { return core::value_of(row_of(b).id); });
@@ -34,7 +35,7 @@ void put_body_columns(const std::vector<Body>& bodies, const RowOf& row_of, Wire
   fill_wide<3>(out.w_WB(), bodies, [&](const Body& b, float* to) { put_floats(row_of(b).w_WB, to); });
 }
 
-/// They are as long as their ids.
+/// True when every column has one row for each id.
 template <class Wire>
 bool body_columns_fit(const Wire& in) {
   return same_rows(in.id().size(), {{in.epoch().size()},
@@ -52,7 +53,7 @@ bool body_columns_are_finite(const Wire& in) {
   return all_finite(in.p_WB()) && all_finite(in.q_WB()) && all_finite(in.v_WB()) && all_finite(in.w_WB());
 }
 
-/// Of columns that have been checked.
+/// Returns row i. Precondition: the columns fit and are finite (the two checks above).
 template <class Wire>
 core::ReplicaBody body_at(const Wire& in, std::size_t i) {
   const float* q = in.q_WB().data() + 4 * i;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMotionNumbers = 13;
 
-/// Of finite numbers: p, q, v, w.
+/// True when a motion (p, q, v, w; all finite) is within dds/bearable.h.
 bool is_bearable(const double* motion) {
   using namespace bearable;
   const Eigen::Map<const core::Vec3> p_WB(motion), v_WB(motion + 7), w_WB(motion + 10);

@@ -1,4 +1,4 @@
-// What the check of states needs (core/state_check.h), as the alarm_* and past_* columns of an AuraBatch.
+// Encodes what the check of states needs (core/state_check.h) as the alarm_* and past_* columns of an AuraBatch.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace aurasim::dds {
 
 void encode_checks(const core::AuraBatch& batch, wire::AuraBatch& out);
 std::optional<WireError> check_checks(const wire::AuraBatch& in, const Expected& expected);
-/// Of columns that have been checked.
+/// Precondition: check_checks has found nothing wrong with the columns.
 void decode_checks(const wire::AuraBatch& in, core::AuraBatch& batch);
 
 }  // namespace aurasim::dds

@@ -15,7 +15,7 @@ namespace aurasim::dds {
 
 namespace {
 
-/// Parts of processes of which no status has told yet that they are nodes: that may come later.
+/// Most parts that are kept back because no status has identified their sender as a node yet.
 constexpr std::size_t kMostWaiting = 64;
 
 struct Given {
@@ -46,7 +46,8 @@ struct CheckpointBus::Impl {
   TypedWriter<wire::Checkpoint> to_all;
   core::Generation life = 0;
   std::vector<core::RegionId> keepers;
-  std::list<TypedWriter<wire::Checkpoint>> to_keepers;  ///< one each, so that a slow one is waited for alone
+  /// One writer per keeper, so that a slow keeper delays only its own parts.
+  std::list<TypedWriter<wire::Checkpoint>> to_keepers;
   std::optional<TypedReader<wire::Checkpoint>> reader;
   std::deque<Given> given;
 };
@@ -87,7 +88,7 @@ std::vector<Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
   std::vector<Checkpoint> taken;
   const Speakers& speakers = impl_->participant.domain().speakers();
-  // In a recovery, whoever keeps another's part gives it.
+  // In a recovery any node may send another region's part, because it may be its keeper.
   const auto may_say = [&](const Given& given) {
     return given.part.kind == Checkpoint::Kind::kGoBack ? speakers.is_node(given.by.writer)
                                                         : speakers.may_speak(given.by.writer, given.part.source);

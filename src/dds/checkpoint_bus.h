@@ -1,5 +1,5 @@
-// Topic checkpoint: parts of the world in one state, to go back to when a node has died. A region gives its own to
-// its keepers, other regions that keep them; in a recovery, a node that has a part gives it to all.
+// Topic checkpoint: parts of the world in one state, to go back to when a node has died. A region sends its part to its
+// keepers, which are other regions. In a recovery, a node that keeps a part sends it to all nodes.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +16,21 @@ namespace aurasim::dds {
 /// Used by one thread. The participant must outlive it.
 class CheckpointBus {
  public:
-  /// Of `region`'s node.
+  /// `region`: the region of the own node.
   CheckpointBus(Participant& participant, core::RegionId region);
   ~CheckpointBus();
 
-  /// From now on these regions keep our parts. `life`: with which generation the run went on after the last death; a
-  /// process that the others have given up, and that may still be there, gets and gives nothing.
+  /// From now on the regions `keepers` keep this node's parts. `life`: generation with which the run went on after the
+  /// last death. A process that the others have marked dead has another one, so it neither receives nor sends parts
+  /// even if it still runs.
   void use_keepers(const std::vector<core::RegionId>& keepers, core::Generation life);
-  /// A part to keep (kToKeep), to each keeper that has acknowledged all parts before it. Returns to how many it was
-  /// sent: a keeper behind a slow link misses some, and does not hold the others up.
+  /// Sends a part to keep (kToKeep) to each keeper that has acknowledged all parts before it. A keeper behind a slow
+  /// link misses some parts and does not hold up the others. Returns the number of keepers that it was sent to.
   std::size_t send_to_keepers(const Checkpoint& checkpoint);
-  /// To all nodes, in a recovery. Of a source and kind the last one counts, for those, too, who come later. False when
-  /// the write failed twice.
+  /// Sends a part to all nodes, in a recovery. The last one of each source and kind is kept for nodes that join later.
+  /// Returns false when the write failed twice.
   bool send_to_all(const Checkpoint& checkpoint);
-  /// What others have sent to us or to all since the last call.
+  /// Returns the parts that arrived since the last call, sent to this node or to all.
   std::vector<Checkpoint> take();
 
   const WireErrors& refused() const;

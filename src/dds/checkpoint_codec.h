@@ -1,4 +1,5 @@
-// dds/checkpoint.h as a wire type, and back. As in codec.h; what its octets say is checked by cut/.
+// Encodes dds/checkpoint.h as a wire type, and decodes it. Same contract as codec.h, except that the content of
+// `octets` is checked by cut/.
 #pragma once
 
 #include "dds/checkpoint.h"

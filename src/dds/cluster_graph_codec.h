@@ -1,4 +1,4 @@
-// core/cluster_graph.h as a wire type, and back. As in codec.h.
+// Encodes core/cluster_graph.h as a wire type, and decodes it. Same contract as codec.h.
 #pragma once
 
 #include "core/cluster_graph.h"

@@ -1,5 +1,5 @@
-// core/messages.h as wire types (idl/aurasim.idl), and back. Encoding keeps the target's memory. Decoding checks
-// everything: whatever the bytes, the result is a message that the rest may use, or the reason why not.
+// Encodes core/messages.h as wire types (idl/aurasim.idl), and decodes them. Encoding reuses the target's memory.
+// Decoding checks everything: whatever the bytes, it returns either a valid message or the error.
 #pragma once
 
 #include <variant>
@@ -20,7 +20,7 @@ using Decoded = std::variant<Message, WireError>;
 
 void encode(const core::AuraBatch& batch, wire::AuraBatch& out);
 void encode(const core::HandOff& hand_off, wire::Migration& out);
-/// An ack does not know its map in core.
+/// `map_version` is a parameter, because core::HandOffAck does not carry it.
 void encode(const core::HandOffAck& ack, std::uint64_t map_version, wire::MigrationAck& out);
 
 Decoded<core::AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected);

@@ -23,7 +23,7 @@ void fill(std::vector<Number>& column, const std::vector<Row>& rows, Of of) {
   }
 }
 
-/// Like fill, for vectors and matrices of `width` numbers; `put(row, out)` writes them.
+/// Like fill, for columns with `width` numbers per row: `put(row, out)` writes them.
 template <std::size_t width, class Number, class Row, class Put>
 void fill_wide(std::vector<Number>& column, const std::vector<Row>& rows, Put put) {
   column.resize(rows.size() * width);
@@ -44,7 +44,7 @@ inline core::Vec3 vector_at(const std::vector<double>& column, std::size_t i) {
   return core::Vec3(column[3 * i], column[3 * i + 1], column[3 * i + 2]);
 }
 
-/// No NaN, no infinity. Branch-free, so that it vectorizes.
+/// True when the column has neither NaN nor infinity. Branch-free, so that it vectorizes.
 inline bool all_finite(const std::vector<double>& column) {
   constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000U;
   std::uint64_t bad = 0;
@@ -63,7 +63,7 @@ inline bool all_finite(const std::vector<float>& column) {
   return bad == 0;
 }
 
-/// |x| <= bound. Not for NaN.
+/// True when |x| <= bound for every x. The result is meaningless for NaN; call all_finite first.
 template <class Number>
 bool all_within(const std::vector<Number>& column, double bound) {
   return std::ranges::all_of(column, [bound](Number x) { return std::abs(static_cast<double>(x)) <= bound; });
@@ -82,14 +82,15 @@ inline bool strictly_ascending(const std::vector<std::uint64_t>& ids) {
   return std::ranges::adjacent_find(ids, std::greater_equal<>{}) == ids.end();
 }
 
-/// Body ids are used as signed references too.
+/// True when every entry is a valid body id. Ids must also fit into a signed integer, because references to bodies are
+/// signed.
 inline bool all_body_ids(const std::vector<std::uint64_t>& column) {
   return std::ranges::all_of(column, [](std::uint64_t x) {
     return x <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   });
 }
 
-/// Quaternions (4 numbers each) of length 1, within kRotationTolerance.
+/// True when all quaternions (4 numbers each) have length 1, within kRotationTolerance.
 template <class Number>
 bool unit_quaternions(const std::vector<Number>& q) {
   for (std::size_t i = 0; i < q.size(); i += 4) {

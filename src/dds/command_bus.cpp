@@ -13,13 +13,13 @@
 namespace aurasim::dds {
 namespace {
 
-/// Of requests that a node remembers: more than all clients together have under way.
+/// Number of requests that a node remembers: more than all clients together have under way.
 constexpr std::size_t kRemembered = 1U << 16U;
 
-/// The requests that came, and what was said of each.
+/// Remembers received requests and the last reply to each.
 class Requests {
  public:
-  /// False if it is known.
+  /// Adds a request. Returns false if it is known already.
   bool add(std::uint64_t request) {
     if (!last_reply_.try_emplace(request).second) return false;
     order_.push_back(request);
@@ -82,7 +82,7 @@ std::vector<core::Command> CommandServerEndpoint::take() {
   const auto now = std::chrono::steady_clock::now();
   const auto take_new = [&](core::Command&& command, const Origin& origin) {
     auto& limit = std::holds_alternative<core::Ray>(command.ask) ? impl_->rays : impl_->others;
-    if (!limit.allows(origin.writer.guidPrefix, now)) {  // who asks again may be heard
+    if (!limit.allows(origin.writer.guidPrefix, now)) {  // a repeated request may be accepted later
       ++impl_->too_many;
       impl_->commands.ration(origin, words_of_ration());
       return;

@@ -1,4 +1,5 @@
-// Topics command, command_reply and shape: what clients ask of a run, the replies, the meshes that they bring.
+// Topics command, command_reply and shape: commands of clients, the replies of nodes, and the meshes that clients
+// bring.
 #pragma once
 
 #include <chrono>
@@ -13,7 +14,7 @@
 
 namespace aurasim::dds {
 
-/// The end of a node. Used by one thread. The participant must outlive it.
+/// A node's endpoint: receives commands and replies to them. Used by one thread. The participant must outlive it.
 class CommandServerEndpoint {
  public:
   /// Commands for other maps are refused and counted, until the map changes.
@@ -21,15 +22,15 @@ class CommandServerEndpoint {
   ~CommandServerEndpoint();
 
   void use_map(std::uint64_t map_version);
-  /// New ones, in order of arrival; each request once. Who asks again is told again what it was told last: its reader
-  /// may have been unknown here when the reply was sent.
+  /// Returns new commands in order of arrival, each request once. A client that repeats a request gets the last reply
+  /// again: the first time, its reader may not have been matched yet.
   std::vector<core::Command> take();
   void reply(core::CommandReply reply);
-  /// It was not obeyed here: if somebody asks again, it is new.
+  /// Forgets a request that was not executed here: if a client repeats it, take() returns it again.
   void forget(std::uint64_t request);
 
   const WireErrors& refused() const;
-  /// Commands that were dropped, since their client sent more than 500 a second for long.
+  /// Number of commands dropped because their client sent more than 500 a second for long.
   std::uint64_t too_many() const;
 
  private:
@@ -37,18 +38,19 @@ class CommandServerEndpoint {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The end of a client. Used by one thread. The participant must outlive it.
+/// A client's endpoint: sends commands and receives replies. Used by one thread. The participant must outlive it.
 class CommandClientEndpoint {
  public:
   explicit CommandClientEndpoint(Participant& participant);
   ~CommandClientEndpoint();
 
-  /// How many nodes take commands and can answer.
+  /// Number of nodes that are matched in both directions: they receive commands, and their replies arrive.
   std::size_t listeners() const;
-  /// Draws a request id if there is none, and returns it. Throws DdsError when the write failed.
+  /// Sends a command. Draws a request id if it has none. Returns the request id. Throws DdsError when the write failed.
   std::uint64_t send(core::Command command, std::uint64_t map_version);
   std::vector<core::CommandReply> take();
-  /// Gives a mesh to all nodes, now and later, as long as this process lives. Throws DdsError when the write failed.
+  /// Publishes a mesh to all nodes, those that join later included, as long as this process lives. Throws DdsError when
+  /// the write failed.
   void bring(std::uint64_t hash, const core::TriangleMesh& mesh);
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);

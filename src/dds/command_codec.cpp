@@ -94,7 +94,7 @@ struct Put {
   }
 };
 
-/// What a command says, once its numbers are known to be sound.
+/// Reads the members of a command whose numbers have been checked.
 class Get {
  public:
   explicit Get(const wire::Command& in) : in_(in) {}

@@ -1,4 +1,4 @@
-// The messages of core/command.h, and meshes, as wire types, and back. As in codec.h.
+// Encodes the messages of core/command.h, and meshes, as wire types, and decodes them. Same contract as codec.h.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ namespace aurasim::dds {
 struct NamedMesh {
   std::uint64_t hash = 0;
   core::TriangleMesh mesh;
-  bool is_told_again = false;  ///< by a node: no command that needs it is under way
+  /// A node publishes the mesh again for late joiners: no command that needs it is under way.
+  bool is_told_again = false;
 };
 
 void encode(const core::Command& command, std::uint64_t sender, std::uint64_t map_version, wire::Command& out);

@@ -33,7 +33,7 @@ const char* name_of(RunCommandKind kind) {
 
 namespace {
 
-/// Of what is kept of others, whoever they are.
+/// Limits on what is remembered of other processes, trusted or not.
 constexpr std::size_t kMostMaps = 256;
 constexpr std::size_t kMostRequests = 1U << 16U;
 constexpr std::size_t kMostWaiting = 64;
@@ -46,7 +46,7 @@ struct HeardCommand {
   std::chrono::steady_clock::time_point since;
 };
 
-/// Late joiners are told what was said long before, by nodes that have been replaced since.
+/// True for commands that were sent long ago, by nodes that have been replaced since. Late joiners receive them, too.
 bool is_old_news(const RunCommand& command, const Origin& origin) {
   const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore ||
                            command.kind == RunCommandKind::kEnd;
@@ -89,8 +89,8 @@ struct ControlBus::Impl {
 
   std::map<std::pair<std::uint64_t, Guid>, WorldMap> announced;  ///< by version and writer
   std::map<std::uint64_t, WorldMap> maps;
-  std::map<std::uint64_t, Guid> requests;      ///< seen or sent, and by whom
-  std::vector<HeardCommand> waiting;           ///< of nodes, if it is they who have said it
+  std::map<std::uint64_t, Guid> requests;  ///< requests seen or sent, and their writers
+  std::vector<HeardCommand> waiting;  ///< commands that only nodes may send, kept until their sender is known to be one
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
   RateLimit<Guid> against_statuses{1, 1};
   RateLimit<ProcessPrefix> asked{kWordsASecond, kWordsAtOnce};
@@ -134,7 +134,7 @@ void ControlBus::Impl::note(Status fresh, const Origin& origin) {
   const std::string problem = roster.problem_with(fresh, origin);
   if (problem.empty()) return roster.note(std::move(fresh), origin);
   refused.add(WireError::kSource);
-  // A node that was started anew before the old one is known to be dead says so for some seconds.
+  // A restarted node publishes as the region for some seconds before the old one is known to be dead.
   if (against_statuses.allows(origin.writer, std::chrono::steady_clock::now())) {
     status_reader.refuse_from(origin, problem);
   }
@@ -163,7 +163,8 @@ bool ControlBus::Impl::is_too_much(const Origin& origin) {
   return true;
 }
 
-/// Empty: none. What operators say, and launchers, anybody may say.
+/// Returns why `asked` is refused; empty: it is accepted. Commands of operators and launchers are accepted from any
+/// process.
 std::string ControlBus::Impl::problem_with(const RunCommand& asked, const Origin& origin) const {
   const Speakers& speakers = participant.domain().speakers();
   const bool is_first_node = speakers.may_speak(origin.writer, RegionId{0}) || roster.is_of(RegionId{0}, origin);
@@ -220,7 +221,7 @@ void ControlBus::hear_of_death(const RunCommand& lost) {
 }
 
 bool ControlBus::publish_map(const WorldMap& map) {
-  // In a run with keys only nodes may: nobody else has a writer before it is asked for.
+  // In a run with keys only nodes may publish maps, so other processes create the writer only when needed.
   if (!impl_->map_writer) {
     impl_->map_writer.emplace(impl_->participant.domain(), in_world(TopicId::kRegionMap), impl_->wakeup);
   }
@@ -272,8 +273,9 @@ std::uint64_t ControlBus::send(RunCommand command) {
   return command.request;
 }
 
-/// A process that has just begun hears commands before it knows who the nodes are: what only they may say waits for
-/// that, and what they say after it waits with it: a pause means nothing before the world that it is for.
+/// A process that has just started receives commands before it knows which processes are nodes. Commands that only
+/// nodes may send wait until that is known. Later commands of the same sender wait with them, because a pause means
+/// nothing before the world that it applies to.
 void ControlBus::Impl::judge(HeardCommand heard, std::vector<RunCommand>& commands) {
   const bool is_behind = std::ranges::any_of(
       waiting, [&](const HeardCommand& other) { return other.origin.writer == heard.origin.writer; });
@@ -316,7 +318,7 @@ std::vector<RunCommand> ControlBus::take_commands() {
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
     heard.push_back({std::move(command), origin, std::chrono::steady_clock::now()});
   }
-  if (!heard.empty()) impl_->look();  // who may say what
+  if (!heard.empty()) impl_->look();  // learns which process may send what
   for (HeardCommand& one : heard) impl_->judge(std::move(one), commands);
   return commands;
 }

@@ -17,19 +17,21 @@
 namespace aurasim::dds {
 
 struct ControlSettings {
-  /// Commands for another map are refused and counted; maps of all runs are seen. Nothing: all commands.
+  /// Map version that received commands must name; others are refused and counted. Maps of all runs are received.
+  /// Nothing: all commands are accepted.
   std::optional<std::uint64_t> map_version = {};
   /// This process is the node of this region and may publish_status. Nothing: launcher or tool.
   std::optional<core::RegionId> region = {};
-  /// Whoever has another one in its status is a stranger. Nothing: whatever nodes are there.
+  /// Agreement hash of this run. A node whose status names another one is a stranger. Nothing: nodes of all runs count.
   std::optional<std::uint64_t> agreement = {};
-  /// Likewise; commands that name another run are refused, too.
+  /// Number of this run. A node whose status names another one is a stranger, and commands that name another run are
+  /// refused. Nothing: nodes of all runs count.
   std::optional<std::uint64_t> run = {};
-  /// Of the run. Whoever says that it is the node of another region is a stranger.
+  /// Number of regions in the run. A node that claims a region beyond them is a stranger.
   std::uint32_t region_count = 1U << 20;
-  /// Neither sends nor takes commands, and publishes no map: in a run with keys a viewer may not.
+  /// Neither sends nor receives commands, and publishes no map: in a run with keys a viewer has no right to.
   bool only_watches = false;
-  /// Takes no commands: none are kept for it here.
+  /// Receives no commands, so DDS keeps none for this process.
   bool only_sends = false;
 };
 
@@ -39,49 +41,50 @@ class ControlBus {
   ControlBus(Participant& participant, const ControlSettings& settings);
   ~ControlBus();
 
-  /// From now on by this participant, which must outlive it; the one before is not used any more. Requests that were
-  /// returned are remembered, nodes and maps are heard anew.
+  /// From now on uses this participant, which must outlive the bus; the former one is not used any more. Requests
+  /// already returned stay remembered. Nodes and maps are discovered anew.
   void move_to(Participant& participant);
 
-  /// Only with a region. False when the write failed twice.
+  /// Precondition: the settings name a region. Returns false when the write failed twice.
   bool publish_status(const Status& status);
-  /// All that listen have the last one.
+  /// True when every matched reader has acknowledged the last status.
   bool status_is_known();
-  /// The latest status of every region of this run seen so far (also this one's). Where several processes are the
-  /// node of a region, the one that was here first counts, until it is lost or has ended.
+  /// Returns the latest status of every region of this run seen so far, the own one included. Where several processes
+  /// claim to be the node of one region, the first one counts until it is lost or has ended.
   const std::map<core::RegionId, SeenStatus>& statuses();
-  /// Live nodes of other runs, and those that say that they are this process's region.
+  /// Returns live nodes of other runs, and live nodes that claim to be this process's region.
   std::vector<SeenStatus> strangers();
 
-  /// Those that wait for a region of this run (kNoRegion).
+  /// Returns the spares of this run: processes that wait for a region (kNoRegion).
   std::vector<Status> spares();
-  /// This process is no more, whatever DDS still believes: who says so has seen it end.
+  /// Marks `process` dead, whatever DDS still reports. For a caller that has seen the process end.
   void hold_for_dead(std::uint64_t process);
-  /// Somebody says so: believed once the process shows no life, and at once if it says so itself.
+  /// Handles the report `lost` of a death. It is believed at once if the process itself has sent it, and otherwise once
+  /// the process shows no life. A report about a process that lives is refused.
   void hear_of_death(const RunCommand& lost);
 
   bool publish_map(const WorldMap& map);
   /// Commands for another map than this one are refused from now on.
   void use_map(std::uint64_t map_version);
-  /// Every map seen so far, by map_version. With an agreement, those of this run are those that its nodes have
-  /// published, as soon as any of them is known.
+  /// Returns every map seen so far, by map_version. With an agreement only maps that nodes of this run have published,
+  /// as soon as any node is known.
   const std::map<std::uint64_t, WorldMap>& maps();
 
-  /// Returns the request id. Late joiners get it too, as long as the sender lives. Throws DdsError when the write
-  /// failed twice.
+  /// Sends a command. Late joiners receive it too, as long as the sender lives. Returns the request id. Throws DdsError
+  /// when the write failed twice.
   std::uint64_t send(RunCommand command);
-  /// Commands of others that were not returned before, in order of arrival; each request id once. What only a node may
-  /// say is refused of anybody else.
+  /// Returns commands of other processes that were not returned before, in order of arrival, each request id once. A
+  /// command that only a node may send is refused from any other process.
   std::vector<RunCommand> take_commands();
-  /// This node has computed a state: whoever steps the run may send a command for the next one.
+  /// To be called when this node has computed a state: it allows one more command to each process that steps the run.
   void note_state();
-  /// It cannot be meant: counted against who has sent it.
+  /// Refuses a command that was taken but makes no sense, and counts it against its sender. `why` is for the log.
   void refuse(const RunCommand& command, const std::string& why);
 
   /// Returns when something arrived or a node's proof of life changed, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);
 
-  /// How many other processes listen to run_control. A command sent to nobody still reaches late joiners.
+  /// Number of other processes that receive run_control. A command sent to nobody still reaches late joiners.
   std::size_t listeners() const;
 
   const WireErrors& refused() const;

@@ -17,18 +17,18 @@ namespace {
 
 using MaybeError = std::optional<WireError>;
 
-/// Regions, parts, meshes: more than any run has.
+/// Largest number of regions, parts or meshes in a message: more than any run has.
 constexpr std::size_t kMostOfAll = 4096;
-constexpr core::Step kGoesOn = -1;  ///< no state in which it is to stand
+constexpr core::Step kGoesOn = -1;  ///< the run goes on: no state at which it is to pause
 
 bool finite_and_not_negative(std::initializer_list<double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x) && x >= 0; });
 }
 
-/// Infinite sides are fine; NaN and inside-out are not.
+/// True for a valid rectangle. Infinite sides are valid; NaN and swapped sides are not.
 bool is_rectangle(const core::Rectangle& r) { return r.x0 < r.x1 && r.y0 < r.y1; }
 
-/// The bounded string type of the IDL, which cuts on assignment; not within a UTF-8 character.
+/// Cuts a text to the length of the IDL's bounded string, never within a UTF-8 character.
 std::string cut_to_wire(const std::string& text) {
   constexpr std::size_t kMax = 256;
   if (text.size() <= kMax) {

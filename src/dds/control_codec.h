@@ -1,4 +1,4 @@
-// control_messages.h as wire types, and back. As in codec.h.
+// Encodes control_messages.h as wire types, and decodes them. Same contract as codec.h.
 #pragma once
 
 #include <variant>

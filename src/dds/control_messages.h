@@ -1,4 +1,4 @@
-// What node_status, region_map and run_control say.
+// Messages of topics node_status, region_map and run_control.
 #pragma once
 
 #include <chrono>
@@ -22,20 +22,20 @@ enum class NodeState : std::uint8_t {
   kPaused,
   kFinished,
   kFailed,
-  kRecovering,  ///< stands, because a node has died, until all go back to a state that is kept
-  kSpare,       ///< has no world yet: takes a region over
-  kCutOff,      ///< stands, and hears too few of the others to go on with them
+  kRecovering,  ///< stopped because a node has died, until all nodes go back to a kept state
+  kSpare,       ///< a spare process without a world: can take over a region
+  kCutOff,      ///< stopped, because it receives from too few of the others to go on with them
 };
 const char* name_of(NodeState state);
 
-/// Of the last second, milliseconds.
+/// Durations over the last second, milliseconds.
 struct Durations {
   double p50_ms = 0;
   double p99_ms = 0;
   double max_ms = 0;
 };
 
-/// Broken promises since the start, by kind.
+/// Violations since the start, by kind.
 struct Violations {
   std::uint64_t speed = 0;    ///< a body was faster than tolerances.speed
   std::uint64_t latency = 0;  ///< a message was older than K steps when it was needed
@@ -44,17 +44,17 @@ struct Violations {
   std::uint64_t span = 0;     ///< a cluster or reach wider than the neighbours that were asked
 };
 
-/// A region's part of the world in one state.
+/// Names one kept part: a region's part of the world in one state.
 struct KeptPart {
   core::RegionId region{};
   core::Step step = 0;
   auto operator<=>(const KeptPart&) const = default;
 };
 
-/// Of a process that waits until some region needs one.
+/// Region of a spare: a process that waits until some region needs one.
 inline constexpr core::RegionId kNoRegion{0xf'ffff};
 
-/// What a node says of itself.
+/// Status that a node publishes about itself.
 struct Status {
   core::RegionId region{};
   core::Generation generation = 0;
@@ -65,28 +65,32 @@ struct Status {
   std::uint64_t map_version = 0;
   std::uint64_t agreement = 0;  ///< equal on all nodes of a run (config::Launch::agreement)
   NodeState state = NodeState::kStarting;
-  std::optional<core::Step> holds_at;  ///< where it stands, or is to stand; nothing: it goes on
-  core::Generation era = 0;            ///< in which the scene was begun from its first state: others' parts do not fit
-  std::vector<KeptPart> parts;         ///< that it keeps
+  std::optional<core::Step> holds_at;  ///< state at which it is paused or will pause; nothing: it goes on
+  /// Generation in which the scene began from its first state; parts of other eras do not fit.
+  core::Generation era = 0;
+  std::vector<KeptPart> parts;  ///< parts that this node keeps
   std::uint64_t bodies = 0;
   std::uint64_t awake = 0;
   std::uint64_t foreign_auras = 0;
   std::uint64_t hand_offs_out = 0;
   std::uint64_t hand_offs_in = 0;
   Violations violations;
-  std::uint64_t late_collisions = 0;    ///< since the start, as the node itself can see them (node/collision_watch.h)
-  std::uint64_t missed_collisions = 0;  ///< likewise
+  /// Late collisions since the start, as far as the node itself can see them (node/collision_watch.h).
+  std::uint64_t late_collisions = 0;
+  std::uint64_t missed_collisions = 0;  ///< missed collisions since the start, as far as the node itself can see them
   std::uint32_t redos = 0;              ///< how often this generation has been put back and computed again
-  std::uint64_t setpoints_heard = 0;    ///< since the start: messages of programs
-  std::uint64_t setpoints_late = 0;     ///< that came after their state had been computed here
-  std::uint64_t setpoints_refused = 0;  ///< not understood, too many, too far ahead; and what a body cannot bear
-  std::vector<core::Listened> listens_to;  ///< and they to it, by region
+  std::uint64_t setpoints_heard = 0;    ///< messages of programs received since the start
+  std::uint64_t setpoints_late = 0;     ///< messages of programs that came after their state had been computed here
+  /// Messages not understood, too many or too far ahead, and setpoints beyond what a body can bear.
+  std::uint64_t setpoints_refused = 0;
+  /// Regions whose messages it receives and that receive its messages, ascending.
+  std::vector<core::Listened> listens_to;
   Durations frame;
   Durations physics;
   Durations protocol;
   Durations transport;
   double real_time_factor = 0;  ///< simulated seconds per second
-  double rate = 1;              ///< the same, as asked for
+  double rate = 1;              ///< requested simulated seconds per second
   std::uint64_t largest_cluster = 0;
   core::Rectangle footprint;  ///< the region; infinite sides allowed, metres
   std::int32_t lookahead = 0;
@@ -102,24 +106,25 @@ struct Status {
 struct SeenStatus {
   Status status;
   bool lost = false;  ///< its proof of life has ended; false again when it comes back
-  bool dead = false;  ///< and it never will: whoever started it has seen it end
+  bool dead = false;  ///< it will not come back: the process that started it has seen it end
   std::chrono::steady_clock::time_point seen;
-  std::uint16_t host = 0;  ///< the same for processes on one host, as Fast DDS makes it from the host's addresses
-  /// How far its host's wall clock is ahead of ours, as far as its last statuses tell: never more than that, and less
-  /// by the time that the fastest of them has taken.
+  /// Number of the host, which Fast DDS makes from its addresses; equal for processes on one host.
+  std::uint16_t host = 0;
+  /// How far the node's wall clock is ahead of the own one, estimated from its last statuses. A lower bound: it is too
+  /// small by the transit time of the fastest of them.
   std::chrono::nanoseconds clock_ahead{0};
 
   bool has_ended() const { return status.state == NodeState::kFinished || status.state == NodeState::kFailed; }
-  /// Neither lost nor at its end, nor out of reach of the others' words.
+  /// Live: neither lost, nor ended, nor cut off from the other nodes.
   bool is_live() const { return !lost && !has_ended() && status.state != NodeState::kCutOff; }
 };
 
-/// Who owns what, as the launcher or a node announces it.
+/// Region map: which region owns which rectangle. Published by the launcher or a node.
 struct WorldMap {
   std::uint64_t map_version = 0;
   std::uint64_t agreement = 0;
   core::Generation generation = 0;
-  core::Step from_step = 0;  ///< holds from this state on
+  core::Step from_step = 0;  ///< first state for which the map holds
   std::string scene;         ///< cut at 256 bytes
   std::vector<core::Rectangle> regions;
 };
@@ -144,27 +149,30 @@ struct RunCommand {
   std::uint64_t request = 0;  ///< 0: send() draws one
   RunCommandKind kind = RunCommandKind::kStart;
   core::Generation generation = 0;
-  std::uint64_t map_version = 0;  ///< of the run that is meant; 0: any
-  std::uint64_t run = 0;          ///< likewise
+  std::uint64_t map_version = 0;  ///< map version of the run that is meant; 0: any
+  std::uint64_t run = 0;          ///< number of the run that is meant; 0: any
   core::Step at_step = 0;         ///< takes effect when this state has been computed
   std::int64_t count = 0;         ///< kStep: how many steps, up to `at_step`
-  core::ProgramWord after{};      ///< kStep: computed once this has been heard on topic control; number 0: at once
-  std::int64_t epoch_ns = 0;      ///< wall clock (since 1970) of step 0; for kResume and kStep: of the first one
-  double rate = 1;  ///< kRate: from `at_step` on, which is due at `epoch_ns`, simulated seconds per second
-  /// kLost: whose node has died; kDrain: whose node is to give its region to another process; kTake: what a spare is to
-  /// take over; kEnd: the run ends, because nobody takes this region over.
+  /// KStep: the step waits until this message was received on topic control; number 0: no wait.
+  core::ProgramWord after{};
+  std::int64_t epoch_ns = 0;  ///< wall clock (ns since 1970) of step 0; for kResume and kStep: of the first step
+  double rate = 1;            ///< kRate: simulated seconds per second from `at_step` on; `at_step` is due at `epoch_ns`
+  /// kLost: the region whose node has died. kDrain: the region whose node is to hand it to another process. kTake: the
+  /// region that a spare is to take over. kEnd: the region that no process takes over, so the run ends.
   core::RegionId region{};
-  std::uint64_t process = 0;  ///< likewise: that node's, or the spare's
+  std::uint64_t process = 0;  ///< kLost, kDrain: the node's process; kTake: the spare's
   core::Generation era = 0;   ///< kRestore: `generation` begins with state `at_step` of this era, due at `epoch_ns`
   struct Member {
-    std::uint64_t process = 0;  ///< that goes on with the region
-    core::RegionId holder{};    ///< whose node gives the region's part to all
-    bool survives = false;      ///< it knows which orders there have been
+    std::uint64_t process = 0;  ///< process that continues the region
+    core::RegionId holder{};    ///< region whose node publishes this region's part to all
+    bool survives = false;      ///< this process lived before the death and knows the orders executed so far
   };
   std::vector<Member> members;  ///< kRestore: by region
-  bool is_of_itself = false;    ///< kLost: that very process says so. Not sent.
-  bool is_of_a_node = true;     ///< as far as is known; else it is a launcher's, an operator's, or anybody's. Not sent.
-  /// How far the sender's wall clock was ahead of ours when it came, less its way. Not sent.
+  bool is_of_itself = false;  ///< kLost: sent by the very process that it names. Set by the receiver; not on the wire.
+  /// Sent by a node, as far as is known; else by a launcher, an operator or anybody. Not on the wire.
+  bool is_of_a_node = true;
+  /// How far the sender's wall clock was ahead of the own one when the command came, less the transit time. Not on the
+  /// wire.
   std::chrono::nanoseconds clock_ahead{0};
 };
 

@@ -43,7 +43,7 @@ constexpr std::size_t kMostLocators = 64;
 
 bool is_sequence_number(std::uint64_t number) { return number >= 1 && number <= kLargestSequenceNumber; }
 
-/// One datagram, from the front.
+/// Checks one datagram from the front.
 class Checker {
  public:
   Checker(std::span<const std::uint8_t> bytes, Findings& findings) : bytes_(bytes), findings_(findings) {}
@@ -70,7 +70,7 @@ class Checker {
     return kFine;
   }
 
-  /// The submessage at `at`, which is moved behind it.
+  /// Checks the submessage at `at` and moves `at` behind it.
   Result check_next(std::size_t& at) {
     if (bytes_.size() - at < 4) return Refusal::kLength;
     begin_ = at;
@@ -135,8 +135,8 @@ class Checker {
     }
   }
 
-  /// Fast DDS ends every datagram with these. What counts them takes differences that must not be negative: it never
-  /// sees them.
+  /// Checks the statistics with which Fast DDS ends every datagram. They are never passed to Fast DDS, because the code
+  /// that evaluates them takes differences that must not be negative.
   Result check_statistics(const WireCursor& body) {
     if (last_ || body.left() != kStatisticsBytes || body.at() + body.left() != bytes_.size()) {
       return Refusal::kStatistics;
@@ -165,7 +165,7 @@ class Checker {
     return !body.failed() && count <= kMostLocators && count * 24 <= body.left() ? kFine : Refusal::kLength;
   }
 
-  /// Base, number of bits and the bits.
+  /// Checks a number set: base, number of bits and the bits.
   static Result check_bits(WireCursor& body) {
     const std::uint32_t bits = body.u32();
     if (body.failed() || bits > kMostBits) return Refusal::kNumberSet;
@@ -184,7 +184,7 @@ class Checker {
     return request;
   }
 
-  /// `bits` is at the number of them.
+  /// Adds a request. `bits` is positioned at the number of bits.
   Result add_request(Request request, WireCursor bits, WireCursor& body) {
     if (Result refused = check_bits(body)) return refused;
     if (body.left() < 4) return Refusal::kLength;
@@ -240,7 +240,7 @@ class Checker {
     claim.last = body.sequence_number();
     body.skip(4);
     if (body.failed()) return Refusal::kLength;
-    // An empty history ends before its begin.
+    // For an empty history last is first - 1.
     if (!is_sequence_number(claim.first) || claim.last > kLargestSequenceNumber || claim.last + 1 < claim.first) {
       return Refusal::kSequenceNumber;
     }
@@ -287,7 +287,7 @@ class Checker {
       claim.first = claim.last = sequence;
       claim.has_payload = has_payload;
       findings_.claims.push_back(claim);
-      // The guard says it as a gap.
+      // Hidden, because the guard passes the end of an instance on as a gap.
       if (!has_payload) findings_.hide_submessage(begin_, last_);
     }
     if (has_payload) return check_payload(writer, body, destination_, findings_);
@@ -319,7 +319,7 @@ class Checker {
     claim.payload_B = body.left();
     claim.timestamp = timestamp_;
     if (!fragments_fit(claim)) return Refusal::kFragment;
-    // Fast DDS sees the sample in one piece (datagram_guard.h).
+    // Hidden, because Fast DDS gets the whole sample in one piece (datagram_guard.h).
     findings_.hide_submessage(begin_, last_);
     findings_.claims.push_back(claim);
     return kFine;
@@ -337,7 +337,7 @@ class Checker {
     return claim.payload_B >= expected && claim.payload_B <= expected + 3;
   }
 
-  /// Length and octets; lengths of DDS Security are big-endian.
+  /// Checks a secure body: length and octets. Lengths in DDS Security are big-endian.
   static Result check_secure_body(WireCursor& body) {
     body.set_little(false);
     const std::uint32_t length = body.u32();
@@ -355,9 +355,9 @@ class Checker {
   Findings& findings_;
   GuidPrefix source_{}, destination_{};
   std::optional<std::uint64_t> timestamp_;
-  std::size_t begin_ = 0;   ///< of this submessage
-  std::uint8_t flags_ = 0;  ///< of this submessage
-  bool last_ = false;       ///< it goes on to the datagram's end
+  std::size_t begin_ = 0;   ///< offset of the present submessage
+  std::uint8_t flags_ = 0;  ///< flags of the present submessage
+  bool last_ = false;       ///< the submessage extends to the datagram's end
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
-// Whether a datagram is RTPS of the form that a run's peers send. Debian's Fast DDS 2.9.1 takes much of a datagram on
-// trust: some lengths end the process, some numbers make it count for minutes. What can be verified from the bytes
-// alone is verified here, before Fast DDS sees them; what takes a memory is returned as claims for datagram_guard.h.
-// Pure; knows nothing of Fast DDS. The form: OMG DDSI-RTPS 2.2, sections 8.3 and 9.4; DDS Security 1.1, section 7.3.
+// Checks whether a datagram is RTPS of the form that a run's peers send. Debian's Fast DDS 2.9.1 trusts much of a
+// datagram: some lengths end the process, some numbers make it count for minutes. This check verifies what follows from
+// the bytes alone, before Fast DDS sees them. What can only be judged from earlier datagrams is returned as claims, for
+// datagram_guard.h. Pure; knows nothing of Fast DDS. The form: OMG DDSI-RTPS 2.2, sections 8.3 and 9.4; DDS Security
+// 1.1, section 7.3.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@
 
 namespace aurasim::dds {
 
-/// Nothing: Fast DDS may see the first `findings.size` bytes, once `findings.hide` has been called on them.
+/// Returns why the datagram is refused. Nothing: Fast DDS may see its first `findings.size` bytes, after
+/// `findings.hide` has been called on them.
 std::optional<Refusal> check_datagram(std::span<const std::uint8_t> bytes, Findings& findings);
 
 }  // namespace aurasim::dds

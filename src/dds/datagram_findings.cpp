@@ -32,7 +32,8 @@ void Findings::clear() {
   acknowledgements.clear();
 }
 
-/// Padding of length 0 would have none: what goes on to the end is cut off.
+/// Turns a submessage into padding. One that extends to the datagram's end is cut off instead, because as padding its
+/// length 0 would mean "no content".
 void Findings::hide_submessage(std::size_t at, bool goes_to_end) {
   if (goes_to_end) {
     size = std::min(size, at);
@@ -41,7 +42,7 @@ void Findings::hide_submessage(std::size_t at, bool goes_to_end) {
   }
 }
 
-/// Readers and writers come first, then the base, the number of bits and the bits.
+/// Overwrites an acknowledgement: reader and writer come first, then the base, the number of bits and the bits.
 void Findings::Acknowledgement::write_over(std::span<std::uint8_t> submessage) const {
   constexpr std::size_t kBase = 4 + 8, kBits = kBase + 8;
   constexpr std::uint8_t kFinalFlag = 2;

@@ -1,4 +1,4 @@
-// What is found in a datagram (datagram_check.h): why it is dropped, or what it claims.
+// Findings about a datagram (datagram_check.h): why it is dropped, or what it claims.
 #pragma once
 
 #include <array>
@@ -10,24 +10,26 @@
 
 namespace aurasim::dds {
 
-/// Why a datagram is dropped. The first ones follow from its bytes, those from kRate on from what came before it.
+/// Reasons to drop a datagram. Those before kRate follow from its bytes; those from kRate on depend on earlier
+/// datagrams.
 enum class Refusal : std::uint8_t {
-  kHeader,          ///< too short, no RTPS, or not of version 2
-  kSubmessage,      ///< of an unknown kind, or too many
-  kLength,          ///< a submessage does not fit, or is too short for its kind
-  kStatistics,      ///< eProsima's statistics anywhere but at the end, or of a wrong length
-  kSequenceNumber,  ///< below 1, beyond kLargestSequenceNumber, or last before first
-  kNumberSet,       ///< more than 256 bits, or bits that are not there
-  kFragment,        ///< fragments that do not fit their sample, or not those that came before
-  kParameterList,   ///< a parameter that does not fit, or no end
-  kParameter,       ///< a string, locator, partition, duration, ... that is not one
-  kPayload,         ///< discovery, liveliness or handshake that is not one
-  kRate,            ///< more from one source than any peer sends
-  kJump,            ///< sequence numbers that leave out too many
-  kUnfinished,      ///< too many bytes of samples of which parts are missing
-  kTooMany,         ///< participants or endpoints
-  kRepeat,          ///< asked for by a process that is no node, and not answered; the rest of the datagram passes
-  kShunned,         ///< of a process that is not listened to any more
+  kHeader,      ///< too short, no RTPS, or not of version 2
+  kSubmessage,  ///< a submessage of unknown kind, or too many of them
+  kLength,      ///< a submessage does not fit, or is too short for its kind
+  kStatistics,  ///< eProsima's statistics anywhere but at the end, or of a wrong length
+  /// A sequence number below 1 or beyond kLargestSequenceNumber, or a range whose last is before its first.
+  kSequenceNumber,
+  kNumberSet,      ///< a number set with more than 256 bits, or shorter than it says
+  kFragment,       ///< fragments that do not fit their sample or contradict earlier ones
+  kParameterList,  ///< a parameter that does not fit, or no end
+  kParameter,      ///< a malformed string, locator, partition, duration, ...
+  kPayload,        ///< a malformed discovery, liveliness or handshake payload
+  kRate,           ///< more datagrams or bytes from one source than any peer sends
+  kJump,           ///< sequence numbers that leave out too many
+  kUnfinished,     ///< too many bytes of samples of which parts are missing
+  kTooMany,        ///< too many participants or endpoints
+  kRepeat,   ///< a retransmission that a process outside the run asked for is withheld; the rest of the datagram passes
+  kShunned,  ///< from a process that is shut out
 };
 inline constexpr std::size_t kRefusalCount = 16;
 const char* name_of(Refusal refusal);
@@ -39,73 +41,78 @@ struct PrefixHash {
 
 struct WireGuid {
   GuidPrefix prefix{};
-  std::uint32_t entity = 0;  ///< its four octets, the first one highest
+  std::uint32_t entity = 0;  ///< entity id: its four octets, the first one in the highest bits
   bool operator==(const WireGuid&) const = default;
 };
 
-/// What a submessage says that only its past can judge.
+/// Claim of a submessage that can only be judged from earlier datagrams.
 struct Claim {
   enum class Kind : std::uint8_t { kData, kHeartbeat, kGap, kFragments, kParticipant, kEndpoint, kEndpointGone };
   Kind kind{};
   GuidPrefix destination{};  ///< zeros: everybody
-  WireGuid guid;             ///< of the writer; of the participant or endpoint that is announced
-  std::uint64_t first = 0;   ///< sequence number: of a sample, of a heartbeat's range, of a gap
-  std::uint64_t last = 0;    ///< sequence number: of a heartbeat's range, of a gap; first - 1: it has none
-  std::uint32_t reader = 0;  ///< whom it is for; 0: all
-  bool has_payload = true;   ///< of a sample; one without says that its instance has ended
+  WireGuid guid;             ///< id of the writer, or of the announced participant or endpoint
+  std::uint64_t first = 0;   ///< sequence number of a sample, or the first of a heartbeat's range or a gap
+  std::uint64_t last = 0;    ///< last sequence number of a heartbeat's range or a gap; first - 1: the range is empty
+  std::uint32_t reader = 0;  ///< entity id of the addressed reader; 0: all readers
+  bool has_payload = true;   ///< the sample carries data; without data it announces the end of its instance
   std::uint32_t sample_B = 0, fragment_B = 0;
-  std::uint32_t first_fragment = 0, fragments = 0;  ///< from 1
-  double lease_s = 0;                               ///< of a participant
-  std::size_t payload = 0, payload_B = 0;           ///< where in the datagram fragments are
-  std::optional<std::uint64_t> timestamp;           ///< of fragments: seconds, and in 32 bits their fraction
+  std::uint32_t first_fragment = 0, fragments = 0;  ///< number of the first fragment (from 1) and how many there are
+  double lease_s = 0;                               ///< lease of an announced participant
+  std::size_t payload = 0, payload_B = 0;           ///< offset and size of the fragments' payload in the datagram
+  /// Timestamp of fragments: seconds in the high 32 bits, their fraction in the low ones.
+  std::optional<std::uint64_t> timestamp;
 };
 
-/// A reader says what it has of a writer, and what it would like to be sent again.
+/// A reader's acknowledgement or request: what it has of a writer, and what it wants retransmitted.
 struct Request {
   GuidPrefix destination{};  ///< zeros: everybody
   WireGuid reader;
   std::uint32_t writer = 0;
-  bool of_fragments = false;  ///< of one sample
-  std::uint64_t base = 0;     ///< all samples before it are acknowledged; 0: it has just come. Not of fragments
-  std::uint32_t wanted = 0;   ///< samples or fragments
-  std::size_t at = 0;         ///< where its submessage begins
-  bool goes_to_end = false;   ///< it has no length
+  bool of_fragments = false;  ///< fragments of one sample are wanted, not whole samples
+  /// All samples before this number are acknowledged; 0: the reader has just joined. Unused for fragments.
+  std::uint64_t base = 0;
+  std::uint32_t wanted = 0;  ///< number of samples or fragments wanted
+  std::size_t at = 0;        ///< offset of its submessage in the datagram
+  bool goes_to_end = false;  ///< its submessage has length 0: it extends to the end of the datagram
 };
 
-/// Reused from datagram to datagram.
+/// Result of a check. Reused for the next datagram, to keep its memory.
 struct Findings {
-  std::size_t size = 0;     ///< how much of the datagram Fast DDS may see: without eProsima's statistics at its end
-  bool introduces = false;  ///< it says who somebody is: a participant's discovery, or a handshake
+  std::size_t size = 0;  ///< number of leading bytes that Fast DDS may see; excludes eProsima's statistics at the end
+  bool introduces = false;  ///< it introduces a process: participant discovery or a handshake
   std::vector<Claim> claims;
   std::vector<Request> requests;
   std::vector<std::size_t> hidden_parameters;   ///< offsets of parameter ids that Fast DDS must not act on
-  std::vector<std::size_t> hidden_submessages;  ///< offsets of submessage ids, likewise
+  std::vector<std::size_t> hidden_submessages;  ///< offsets of submessage ids that Fast DDS must not act on
   struct Acknowledgement {
-    std::size_t at = 0;  ///< where an acknowledgement's submessage begins
+    std::size_t at = 0;  ///< offset of the acknowledgement's submessage
     std::uint64_t base = 0;
     void write_over(std::span<std::uint8_t> submessage) const;
   };
-  std::vector<Acknowledgement> acknowledgements;  ///< that are to say that all before `base` is there
+  /// Acknowledgements to be rewritten: all samples before `base` are there.
+  std::vector<Acknowledgement> acknowledgements;
   void clear();
-  /// That begins at `at`.
+  /// Hides the submessage that begins at `at`.
   void hide_submessage(std::size_t at, bool goes_to_end);
-  /// Makes the first two padding; acknowledgements want nothing. `bytes` is the datagram that was checked.
+  /// Turns the hidden parameters and hidden submessages into padding, and rewrites the acknowledgements so that they
+  /// ask for no retransmission. `bytes` is the datagram that was checked.
   void hide(std::span<std::uint8_t> bytes) const;
 };
 
 inline constexpr std::size_t kHeaderBytes = 20;
 inline constexpr std::uint64_t kLargestSequenceNumber = std::uint64_t{1} << 40;
-/// The hand-off of a whole scene (10,000 bodies with contacts) has some 20 MB.
+/// Largest sample that is accepted. The hand-off of a whole scene (10,000 bodies with contacts) has some 20 MB.
 inline constexpr std::uint32_t kLargestSample_B = 64U << 20;
-/// The smallest that Fast DDS and CycloneDDS make on any link are larger than 1 kB.
+/// Smallest fragment size that is accepted. Fast DDS and CycloneDDS make fragments larger than 1 kB on any link.
 inline constexpr std::uint32_t kSmallestFragment_B = 256;
-/// Of a set of sequence or fragment numbers.
+/// Largest size of a set of sequence or fragment numbers, bits.
 inline constexpr std::uint32_t kMostBits = 256;
 inline constexpr std::size_t kMostSubmessages = 512;
-/// Participants that stay remembered for longer than this after their last word are not taken in, s.
+/// Longest lease that is accepted, s. A participant that announces a longer one is refused, because it would stay
+/// remembered too long after it falls silent.
 inline constexpr double kLongestLease_s = 3600;
 
-/// Discovery, liveliness and handshakes: what participants say of themselves, not what a run says.
+/// True for built-in endpoints: discovery, liveliness and handshakes, which carry no messages of a run.
 inline bool is_built_in(std::uint32_t entity) { return (entity & 0xc0U) == 0xc0U; }
 /// The writer by which a participant announces itself.
 inline constexpr std::uint32_t kParticipantWriter = 0x000100c2;

@@ -54,8 +54,8 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
   return std::nullopt;
 }
 
-/// Fast DDS sees no fragments, but what they are together. So of discovery nothing is there that nobody could look at,
-/// and what has to be hidden can be.
+/// Checks a sample that was put together from fragments, and passes it on whole. So discovery data in fragments is
+/// checked like any other, and its hidden parameters are hidden.
 std::optional<Refusal> DatagramGuard::judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes,
                                                   Source source, Time now, Admitted& admitted) {
   auto whole = peers_.take_whole(claim, bytes);
@@ -68,7 +68,7 @@ std::optional<Refusal> DatagramGuard::judge_whole(const Claim& claim, std::span<
   return std::nullopt;
 }
 
-/// What others announce of it may come with what is not its.
+/// True when the sender is shut out, or when another process announces a process that is shut out or its endpoints.
 bool DatagramGuard::is_of_shunned(const Findings& findings, const GuidPrefix& sender) const {
   if (shunned_.empty()) return false;
   const auto is_announcement = [](const Claim& claim) {

@@ -1,6 +1,7 @@
-// Stands between the sockets and Fast DDS: lets through what datagram_check.h and peer_book.h allow, and counts the
-// rest. Knows nothing of Fast DDS; wire_transport.h puts it to work. Fast DDS never sees a part of a sample, nor that
-// an instance has ended: of both it forgets too late or too early, and ends the process (DataReaderHistory.cpp:822).
+// Filters datagrams between the sockets and Fast DDS: passes what datagram_check.h and peer_book.h allow, and counts
+// the rest. Knows nothing of Fast DDS; wire_transport.h applies it. Two things are never passed to Fast DDS, because it
+// forgets them too late or too early and then ends the process (DataReaderHistory.cpp:822): parts of a sample, and the
+// end of an instance.
 #pragma once
 
 #include <array>
@@ -33,39 +34,42 @@ struct GuardLimits {
 /// Thread-safe.
 class DatagramGuard {
  public:
-  using Time = core::TokenBucket::Time;  ///< of any clock that does not go back
+  using Time = core::TokenBucket::Time;  ///< time of any monotonic clock
 
   explicit DatagramGuard(const GuardLimits& limits = {})
       : rates_(limits.rates), peers_(limits.peers), repeats_(limits.repeats) {}
 
-  /// What is for others alone says nothing about what Fast DDS here has seen.
+  /// Sets the prefix of the own participant. Datagrams for other participants only are not recorded in the peer book,
+  /// because Fast DDS here does not see them.
   void set_own(const GuidPrefix& own);
-  /// Who is a node of the run, but for this process: see repeats.h.
+  /// Sets the processes that are nodes of the run, the own one excluded (repeats.h).
   void set_nodes(Repeats::Prefixes nodes);
-  /// A writer of this process, of what nodes say to each other.
+  /// Registers a writer of this process whose samples only nodes need.
   void add_writer_of_nodes(std::uint32_t writer);
   void remove_writer_of_nodes(std::uint32_t writer);
-  /// Nothing of it passes from now on, until it is forgiven.
+  /// Drops everything that `process` sends from now on, until it is forgiven.
   void shun(const GuidPrefix& process);
   void forgive(const GuidPrefix& process);
 
   struct Admitted {
-    /// Datagrams that Fast DDS is to see first: what is better said otherwise.
+    /// Datagrams to pass to Fast DDS before this one. They replace parts of it, such as fragments by the whole sample.
     std::vector<MadeDatagram> before;
-    std::size_t size = 0;  ///< of the datagram's begin, that Fast DDS may see; 0: nothing
-    /// Fast DDS 2.9.1 must not see another one like it meanwhile, on another socket: what it keeps of whom it meets
-    /// passes through variables that all threads share (SecurityManager's temporaries; mended in 2.9.2, #3373). Of two
-    /// participants with keys, one would not be met, for ever.
+    std::size_t size = 0;  ///< number of leading bytes that Fast DDS may see; 0: none
+    /// Fast DDS 2.9.1 must not process another such datagram at the same time on another socket. It keeps what it
+    /// learns of a new participant in variables that all threads share (SecurityManager's temporaries; fixed in 2.9.2,
+    /// #3373). Otherwise one of two participants with keys would never be matched.
     bool is_alone = false;
   };
-  /// Changes `bytes`: what Fast DDS must not act on becomes padding.
+  /// Decides what of a received datagram Fast DDS may see. Overwrites in `bytes` what Fast DDS must not act on with
+  /// padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
   Delivery& delivery() { return delivery_; }
-  /// What this process is about to send, as it is to be sent; nothing: as it is.
+  /// Takes note of a datagram that this process is about to send. Returns the datagram to send instead; nothing: send
+  /// it as it is.
   std::optional<std::vector<std::uint8_t>> note_sent(std::span<const std::uint8_t> bytes);
 
   GuardReport report() const;
-  /// Sources of which something was refused for the first time since the last call.
+  /// Returns the addresses from which something was refused for the first time since the last call.
   std::vector<GuardReport::Address> take_new_sources();
   std::vector<std::pair<GuidPrefix, Repeats::Answer>> take_new_askers();
 
@@ -89,7 +93,7 @@ class DatagramGuard {
   GuardReport::Counts refused_{};
   std::uint64_t passed_ = 0;
   std::unordered_map<std::uint32_t, GuardReport::Address> addresses_;
-  std::uint64_t of_others_ = 0;  ///< refused, of addresses beyond those that are told apart
+  std::uint64_t of_others_ = 0;  ///< datagrams refused from addresses beyond those counted one by one
   std::vector<std::uint32_t> new_addresses_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 constexpr auto kPatienceWithListeners = std::chrono::seconds(10);
 constexpr std::size_t kEndpointsOfALink = 6;
 
-/// Everything between this region and one neighbour, but for the aura writer that all neighbours share.
+/// All endpoints between this region and one neighbour, except the aura writer, which all neighbours share.
 struct Link {
   Link(Domain& domain, RegionId self, RegionId neighbour, core::Generation life, Wakeup& wakeup)
       : region(neighbour),
@@ -49,7 +49,7 @@ struct Link {
   std::uint64_t match = 0;  ///< RemoteWriter::order of the neighbour's aura writer that we know; 0: none yet
   bool lost = false;
   bool met = false;           ///< has been matched once
-  std::uint64_t refused = 0;  ///< samples of its
+  std::uint64_t refused = 0;  ///< samples of this neighbour that were refused
 };
 
 void count_sent(TopicCounters& counters, WriteResult result, std::size_t bytes) {
@@ -67,7 +67,7 @@ std::size_t bytes_of(const WireMessage& sample) {
   return WireMessage::getCdrSerializedSize(sample);
 }
 
-/// Is it a message of this run, map and source that is refused for what it says?
+/// True for errors of messages that name this run, map and source correctly but have unsound content.
 bool is_our_own(WireError error) {
   switch (error) {
     case WireError::kMalformed:
@@ -88,9 +88,10 @@ constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
   return {};  // a lost acknowledgement is asked for again
 }
 
-/// Takes all samples of a reader into `inbox`; what decode refuses is counted, by topic and by link. What is not said
-/// by the region's node is nobody's word: nobody is held for dead for it. As long as nobody has told which process that
-/// is (`is_told`), it is no lie either: of two, the first may have died without a word.
+/// Takes all samples of a reader into `inbox`. What decode refuses is counted, by topic and by link. A sample that was
+/// not sent by the region's node is dropped and never counts against that node. While it is unknown which process that
+/// is (`is_told`), such a sample is not counted against its sender either: of two processes the first may have died
+/// unnoticed.
 template <class WireMessage, class Message>
 void drain(Reader& reader, WireMessage& sample, const Expected& expected, const std::optional<ProcessPrefix>& node,
            bool is_told, std::vector<Message>& inbox, TopicCounters& counters, std::uint64_t& refused,
@@ -150,11 +151,12 @@ struct DdsTransport::Impl {
   Impl(Participant& participant, const TransportSettings& settings);
 
   Link* find(RegionId region);
-  /// The process that is the node of the link's region; as long as nobody has said which, who was here first.
+  /// The process that is the node of the link's region. While no status names it: the process whose writer was matched
+  /// first.
   std::optional<ProcessPrefix> node_of(const Link& link) const;
   Link& link_to(RegionId region);
   void wait_for(const std::vector<RegionId>& listeners);
-  /// Which of the link's endpoints have no counterpart yet.
+  /// Names of the link's endpoints that are not matched yet.
   std::vector<std::string> unmatched(const Link& link) const;
   std::vector<std::string> missing_neighbours(std::vector<RegionId>& regions) const;
   void take_peer_changes(std::vector<core::PeerEvent>& peers);
@@ -167,8 +169,9 @@ struct DdsTransport::Impl {
   Participant& participant;
   Wakeup& wakeup;
   Writer aura_writer;
-  std::vector<std::unique_ptr<Link>> links;  ///< to settings.neighbours, then to others as they were asked for
-  wire::AuraBatch aura;                      // reused for every sample
+  /// Links to settings.neighbours, then to other regions as they were requested.
+  std::vector<std::unique_ptr<Link>> links;
+  wire::AuraBatch aura;  // reused for every sample
   wire::Migration migration;
   wire::MigrationAck ack;
   TransportCounters counters;
@@ -197,15 +200,16 @@ std::optional<ProcessPrefix> DdsTransport::Impl::node_of(const Link& link) const
   return first.order == 0 ? std::nullopt : std::optional(first.guid.guidPrefix);
 }
 
-/// Bodies may ask for regions that were no neighbours at first.
+/// Returns the link to `region`, and creates it if bodies need a region that was no neighbour at first.
 Link& DdsTransport::Impl::link_to(RegionId region) {
   if (Link* link = find(region)) return *link;
   links.push_back(std::make_unique<Link>(participant.domain(), settings.region, region, settings.life, wakeup));
   return *links.back();
 }
 
-/// What is sent before a listener is matched would be lost to it. They have been expected for half a second, so there
-/// is mostly nothing to wait for. One that computes one step for long makes its endpoints after it.
+/// Waits until the listeners are matched, because samples sent before would be lost to them. They have been expected
+/// for half a second, so there is mostly nothing to wait for. A node that computes one step for long creates its
+/// endpoints after that step.
 void DdsTransport::Impl::wait_for(const std::vector<RegionId>& listeners) {
   auto deadline = std::chrono::steady_clock::now() + kPatienceWithListeners;
   for (const RegionId region : listeners) {

@@ -1,7 +1,6 @@
-// One region's nodes-to-nodes messages over DDS (docs/design.md, "On the wire"): topics aura, migration and
-// migration_ack.
-// Readers name only the neighbours' partitions. Samples arrive in DDS threads, which do no more than wake the owner;
-// decoding happens in take().
+// Transports one region's messages to and from other nodes over DDS (docs/design.md, "On the wire"): topics aura,
+// migration and migration_ack. Readers are matched only with the neighbours' partitions. Samples arrive in DDS threads,
+// which only wake the owner; decoding happens in take().
 #pragma once
 
 #include <chrono>
@@ -22,16 +21,16 @@ struct TransportSettings {
   core::RegionId region{};
   std::vector<core::RegionId> neighbours;
   std::uint64_t map_version = 0;  ///< messages of another map are refused and counted
-  /// Generation with which the run goes on after a death; 0: nobody has died. Who is of another one is not met: DDS
-  /// holds the endpoints of a process that was killed for alive until its lease ends.
+  /// Generation with which the run went on after the last death; 0: no node has died. Endpoints of another generation
+  /// are not matched: DDS holds the endpoints of a killed process for alive until its lease ends.
   core::Generation life = 0;
-  std::uint32_t region_count = 0;  ///< of the map
-  // Of the scene: messages that name an index at or above these are refused. What is not given is not checked.
+  std::uint32_t region_count = 0;  ///< number of regions in the map
+  // Numbers of the scene's objects: messages with an index at or above these are refused. The default checks nothing.
   std::uint32_t prototype_count = 0xffff'ffffU;
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
-  /// Does that region's node live, and compute one step for long? Whoever is to be listened to by it waits until it
-  /// has. Empty: none does.
+  /// True when that region's node is alive but has been computing one step for long. Waiting to be matched by it then
+  /// goes on until that step is done. Empty: no node counts as busy.
   std::function<bool(core::RegionId)> is_busy = {};
 };
 
@@ -53,7 +52,7 @@ struct TransportCounters {
   TopicCounters migration_ack;
 };
 
-/// Neighbours that were not there in time; what() names them and what is missing of each.
+/// Thrown when neighbours were not matched in time. what() names them, and which endpoints of each are missing.
 class NeighboursMissing : public DdsError {
  public:
   NeighboursMissing(const std::string& what, std::vector<core::RegionId> regions)
@@ -75,24 +74,24 @@ class DdsTransport final : public transport::Transport {
   /// Returns when every neighbour's readers and writers of all three topics are matched with this region's.
   /// Throws NeighboursMissing at the time-out. What is sent after a match is not lost.
   void wait_until_matched(std::chrono::nanoseconds time_out);
-  /// True when wait_until_matched would return at once.
+  /// True when every endpoint of every neighbour is matched, so that wait_until_matched would return at once.
   bool all_matched() const;
-  /// How many endpoints of neighbours have been found, of six for each.
+  /// Number of matched endpoints of neighbours; six of each when complete.
   std::size_t found() const;
 
-  /// Messages of a neighbour that are of this run and map but not sound go to Inbox::refusals.
-  /// Also reports neighbours whose proof of life has ended: kLost once, kJoined when one that was lost is back and
-  /// matched. A process that dies is lost after one and a half leases of its aura writer, one that hangs after
-  /// Settings::hang_limit more, one that leaves at once; one that was restarted before that gives kLost and then
-  /// kJoined. The first meeting is no event.
+  /// Fills `inbox` with what arrived. Messages of a neighbour that name this run and map but are not sound go to
+  /// Inbox::refusals. Also reports neighbours: kLost once when the proof of life has ended, kJoined when a lost one is
+  /// back and matched. The first match is no event. A process that dies is lost after one and a half leases of its aura
+  /// writer; one that hangs, after Settings::hang_limit more; one that leaves, at once. One that restarts sooner gives
+  /// kLost and then kJoined.
   void take(core::Inbox& inbox) override;
-  /// Never blocks for longer than the profiles' max_blocking_time (twice) per sample.
+  /// Sends all messages of `outbox`. Never blocks for longer than the profiles' max_blocking_time (twice) per sample.
   void send(const core::Outbox& outbox) override;
-  /// Also returns when a neighbour was matched, unmatched or fell silent.
+  /// Returns when something arrived, when a neighbour was matched, unmatched or fell silent, or at the time-out.
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
 
   const TransportCounters& counters() const;
-  /// Neighbours that samples were refused of, and how many.
+  /// Neighbours whose samples were refused, with the number of refused samples.
   std::vector<std::pair<core::RegionId, std::uint64_t>> refused() const;
 
  private:

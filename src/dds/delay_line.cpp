@@ -19,7 +19,7 @@ namespace {
 /// A full socket may hold the sender up for this long; then the datagram is lost.
 constexpr std::chrono::milliseconds kLongestBlocking{100};
 
-/// A list of one destination.
+/// A locator list with one destination.
 class OneLocator final : public eprosima::fastdds::rtps::LocatorsIterator {
  public:
   explicit OneLocator(const Locator_t* position) : position_(position) {}
@@ -44,7 +44,7 @@ bool send_now(SenderResource& socket, const octet* bytes, std::uint32_t size, co
 
 ImpairedLink::Time now() { return Clock::now().time_since_epoch(); }
 
-/// Address and port as one number.
+/// Combines address and port into one number.
 std::uint64_t number_of(const Locator_t& locator) {
   const octet* address = IPLocator::getIPv4(locator);
   std::uint64_t number = locator.port;
@@ -68,7 +68,8 @@ DelayLine::~DelayLine() {
   if (thread_.joinable()) thread_.join();
 }
 
-/// Decides, and keeps what has to wait. In one critical section: the order of decisions is the order in the queue.
+/// Decides on a datagram, and queues it if it has to wait. One critical section covers both, so that the order of
+/// decisions is the order in the queue.
 ImpairedLink::Fate DelayLine::offer(SenderResource& socket, const octet* bytes, std::uint32_t size,
                                     const Locator_t& destination) {
   const bool spared =

@@ -1,4 +1,4 @@
-// Holds a participant's datagrams back until their time has come. One thread per participant.
+// Holds back a participant's datagrams until they are due. One thread per participant.
 #pragma once
 
 #include <condition_variable>
@@ -23,15 +23,16 @@ class DelayLine {
   DelayLine(const DelayLine&) = delete;
   DelayLine& operator=(const DelayLine&) = delete;
 
-  /// Copies the bytes if they have to wait. `socket` must live until stop(). False: the socket refused, where it was
-  /// asked at once; a lost datagram is true, as in any network.
+  /// Sends a datagram now, or copies its bytes and sends it later. `socket` must live until stop(). Returns false only
+  /// when the socket refused a datagram that was sent at once. A datagram that the impairment loses returns true, as in
+  /// any network.
   bool send(eprosima::fastrtps::rtps::SenderResource& socket, const eprosima::fastrtps::rtps::octet* bytes,
             std::uint32_t size, const eprosima::fastrtps::rtps::Locator_t& destination);
 
-  /// Sends all that waits, at once and in order. A process that ends without stop() calls this, or its last words
-  /// would be lost; those of a real network are under way by then.
+  /// Sends all waiting datagrams at once and in order. A process that ends without stop() calls this, or its last
+  /// messages would be lost; on a real network they would be under way by then.
   void flush();
-  /// Flushes and holds nothing back from now on. May be called twice.
+  /// Flushes, and sends everything at once from then on. May be called twice.
   void stop();
 
   ImpairmentCounters counters() const;
@@ -45,7 +46,7 @@ class DelayLine {
     eprosima::fastrtps::rtps::Locator_t destination;
     std::vector<eprosima::fastrtps::rtps::octet> bytes;
 
-    /// Of a priority queue, whose top is the greatest: what leaves first.
+    /// Order of the priority queue, whose top is its greatest element: the datagram that leaves first.
     bool operator<(const Datagram& other) const {
       return due != other.due ? due > other.due : sequence > other.sequence;
     }
@@ -60,8 +61,8 @@ class DelayLine {
 
   const Impairment impairment_;
   const MetatrafficPorts ports_;
-  /// Held while something is sent: Fast DDS does not expect two threads in a socket, and what was taken from the queue
-  /// must not be overtaken. Taken before mutex_.
+  /// Held while a datagram is sent: Fast DDS does not expect two threads in a socket, and a datagram taken from the
+  /// queue must not be overtaken. Locked before mutex_.
   std::mutex wire_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,4 +1,5 @@
-// When Fast DDS may see datagrams. It receives in one thread per socket, and not everything in it bears that.
+// Controls when Fast DDS may process datagrams. It receives in one thread per socket, and some of its code does not
+// allow that.
 #pragma once
 
 #include <chrono>
@@ -9,14 +10,15 @@
 
 namespace aurasim::dds {
 
-/// Thread-safe. Who waits to stop it gets its turn, however much comes.
+/// Thread-safe. A thread that waits in stop() gets its turn, however many datagrams come.
 class Delivery {
  public:
   struct Running {
     std::shared_lock<std::shared_mutex> running;
     std::unique_lock<std::mutex> alone;
   };
-  /// Held while Fast DDS sees a datagram. `alone`: of those that are, it sees one at a time.
+  /// Returns a lock to hold while Fast DDS processes a datagram. `alone`: of the datagrams with this flag, Fast DDS
+  /// processes one at a time.
   [[nodiscard]] Running begin(bool alone) {
     wait_until_open();
     Running held;
@@ -28,9 +30,9 @@ class Delivery {
     return held;
   }
 
-  /// Held while an endpoint is made or removed: Fast DDS 2.9.1 goes through its list of readers, without a lock, when a
-  /// datagram says that a writer lives (WLP::sub_liveliness_changed). Not to be asked for by what a datagram has
-  /// called.
+  /// Returns a lock to hold while an endpoint is created or removed. When a datagram renews a writer's liveliness, Fast
+  /// DDS 2.9.1 iterates over its readers without a lock (WLP::sub_liveliness_changed). Must not be called from the
+  /// processing of a datagram: that deadlocks.
   [[nodiscard]] std::unique_lock<std::shared_mutex> stop() {
     const std::lock_guard turn(turn_);
     return std::unique_lock(running_);
@@ -39,15 +41,15 @@ class Delivery {
   struct Reopen {
     void operator()(Delivery* delivery) const { delivery->open(); }
   };
-  /// As long as this is there datagrams wait, in their order, most of them in their sockets. For a participant that is
-  /// being made: Fast DDS 2.9.1 announces it before it takes what comes (RTPSParticipantImpl::enable), and what others
-  /// answer at once was lost. A handshake that is lost comes again after a second.
+  /// Datagrams wait, in order, while the returned object exists; most of them wait in their sockets. Needed while a
+  /// participant is created: Fast DDS 2.9.1 announces it before it receives (RTPSParticipantImpl::enable), and answers
+  /// that came at once were lost. A lost handshake is repeated only after a second.
   [[nodiscard]] std::unique_ptr<Delivery, Reopen> close() {
     const std::lock_guard lock(open_mutex_);
     is_open_ = false;
     return std::unique_ptr<Delivery, Reopen>(this);
   }
-  /// Sooner than that.
+  /// Lets datagrams through again before the object that close() returned is destroyed.
   void open() {
     {
       const std::lock_guard lock(open_mutex_);

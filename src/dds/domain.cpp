@@ -50,8 +50,8 @@ constexpr std::array<TopicNames, kTopicCount> kTopics = {{
     {"observation", "aurasim::wire::Observation"},
 }};
 
-/// A process whose silence nobody believes is not forgotten for it either: it would have to be found anew, and what was
-/// sent meanwhile would be lost. Who has died is told by others long before.
+/// Lease of a process whose silence is not believed. It is long, so that DDS does not drop a slow process, which would
+/// have to be discovered anew and would lose what was sent meanwhile. Deaths are reported by other means long before.
 constexpr std::chrono::seconds kPatientLease{30};
 
 void be_patient_with_this(DomainParticipantQos& qos) {
@@ -60,7 +60,8 @@ void be_patient_with_this(DomainParticipantQos& qos) {
   lease = eprosima::fastrtps::Duration_t(static_cast<std::int32_t>(kPatientLease.count()), 0);
 }
 
-/// Regions in one process talk like regions in two: through the wire, by its protocol.
+/// Switches Fast DDS's intraprocess delivery off, so that regions in one process communicate over the wire like regions
+/// in two.
 void switch_intraprocess_delivery_off() {
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;

@@ -1,4 +1,4 @@
-// What stands behind a Participant: the Fast DDS participant, its types and topics, and what all endpoints share.
+// Implementation of Participant: the Fast DDS participant, its types and topics, and what all endpoints share.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ enum class TopicId : std::uint8_t {
   kObservation
 };
 inline constexpr std::size_t kTopicCount = 17;
-/// "aura", "migration", ...: also the first part of the profile names.
+/// Name of a topic ("aura", "migration", ...), which is also the first part of its profile names.
 const char* name_of(TopicId topic);
 
 // Partitions of docs/protocol.md.
@@ -55,15 +55,16 @@ inline const std::string kWorldPartition = "world";
 inline const std::string kEveryRegionPartition = "region/*";
 std::string partition_of(core::RegionId source);
 std::string partition_of(core::RegionId source, core::RegionId destination);
-/// What a region tells one observer.
+/// Partition for the messages of region `source` to one observer.
 std::string partition_of_observer(core::RegionId source, std::uint64_t client);
-/// What all regions tell it.
+/// Pattern for the partitions of all regions' messages to one observer.
 std::string partition_of_observer(std::uint64_t client);
-/// Of what nodes say to each other: also by generation, once somebody has died (dds_transport.h). 0: nobody has.
+/// Adds the generation to a partition for messages between nodes, once a node has died (dds_transport.h). `life` 0: no
+/// node has died.
 std::string in_life(std::string partition, core::Generation life);
-/// Of all generations.
+/// Pattern for `partition` in all generations.
 std::string in_any_life(const std::string& partition);
-/// What any region says to this one.
+/// Pattern for the partitions of messages from any region to `destination`.
 std::string partition_to(core::RegionId destination);
 
 /// Thread-safe.
@@ -75,26 +76,27 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Domain& operator=(const Domain&) = delete;
 
   eprosima::fastdds::dds::DomainParticipant& participant() { return *participant_; }
-  /// Created when first asked for.
+  /// Returns the topic; creates it at the first call.
   eprosima::fastdds::dds::Topic& topic(TopicId id);
   Profiles& profiles() { return profiles_; }
   Directory& directory() { return directory_; }
   Speakers& speakers() { return speakers_; }
-  /// Who of the others speaks with keys.
+  /// Which of the other participants use keys.
   const PeerKeys& peer_keys() const { return peer_keys_; }
-  /// After which peers forget a silent participant.
+  /// Lease: time after which peers forget a silent participant.
   std::chrono::nanoseconds lease() const;
-  /// Nothing leaves this host.
+  /// True when no datagram leaves this host.
   bool loopback_only() const { return loopback_only_; }
   LivelinessAsserter& liveliness() { return *liveliness_; }
-  /// Settings::believes_silence. Silence between hosts may be a cut, and is always believed.
+  /// Value of Settings::believes_silence; always true when traffic leaves this host, because silence between hosts may
+  /// be a cut network.
   bool believes_silence() const { return believes_silence_; }
-  /// Wakes the thread that uses this process's endpoints, whichever of them something has come to: that thread waits
-  /// for one of them and serves all. Endpoints that are used by another thread have a wakeup of their own.
+  /// Wakes the thread that uses this process's endpoints when a sample arrives at any of them: it waits for one of them
+  /// and serves all. Endpoints used by another thread have a wakeup of their own.
   Wakeup& wakeup() { return wakeup_; }
-  /// What holds datagrams back; null where nothing is impaired.
+  /// The delay line of this participant; null when the network is not impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
-  /// What keeps malformed datagrams from Fast DDS.
+  /// The guard that keeps malformed datagrams from Fast DDS.
   DatagramGuard& guard() const { return *guard_; }
 
  private:
@@ -116,7 +118,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   PeerKeys peer_keys_;
   bool loopback_only_ = false;
   bool believes_silence_ = true;
-  std::optional<SecurityLog::Hearing> refusals_;  ///< in a run with keys
+  std::optional<SecurityLog::Hearing> refusals_;  ///< receives refusals by keys; only in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;
   std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};

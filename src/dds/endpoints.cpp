@@ -38,7 +38,7 @@ bool is_of_nodes(TopicId topic) {
   return topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
 }
 
-/// As the guard reads it from the wire.
+/// Entity id as one number, in the form in which the guard reads it from the wire.
 std::uint32_t entity_of(const Guid& endpoint) {
   std::uint32_t entity = 0;
   for (const unsigned char octet : endpoint.entityId.value) entity = entity << 8 | octet;
@@ -110,7 +110,7 @@ std::size_t Writer::forget_acknowledged() {
   return forgotten;
 }
 
-/// Fast DDS 2.9 does not tell which reader it waits for.
+/// Logs which reader does not acknowledge. Fast DDS 2.9 does not report which reader a writer waits for.
 void Writer::say_who_does_not_read() {
   std::set<std::string> strangers;
   for (const Guid& reader : watch_.readers()) {
@@ -148,7 +148,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
-  // Whatever a profile says, none: guarded_type.h. Of one the other must be none, too.
+  // No limits, whatever a profile says (guarded_type.h). If one of the two is unlimited, the other must be, too.
   qos.resource_limits().max_instances = qos.resource_limits().max_samples = 0;
   if (spec.best_effort_if_volatile && qos.durability().kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS) {
     qos.reliability().kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;

@@ -1,4 +1,4 @@
-// One writer or reader with the publisher or subscriber that gives it its partitions, by profile name.
+// A writer or reader with the publisher or subscriber that gives it its partitions. QoS comes from a profile, by name.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,10 @@ namespace aurasim::dds {
 struct EndpointSpec {
   TopicId topic = TopicId::kAura;
   std::vector<std::string> partitions;
-  std::optional<core::RegionId> region;  ///< whose endpoint this is; peers are told (user data)
-  std::string profile = {};              ///< of the QoS; empty: the topic's
-  /// A reader that asks for no history gets no repeats either, whatever its profile says.
+  std::optional<core::RegionId> region;  ///< region whose endpoint this is; peers read it in the user data
+  std::string profile = {};              ///< QoS profile; empty: the topic's
+  /// For a reader: one that asks for no history (volatile) becomes best effort and gets no retransmissions, whatever
+  /// its profile says.
   bool best_effort_if_volatile = false;
 };
 
@@ -31,8 +32,8 @@ inline EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, 
 
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
-/// QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept alive by the
-/// domain's liveliness asserter.
+/// A DDS writer. QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept
+/// alive by the domain's liveliness asserter.
 class Writer {
  public:
   Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
@@ -40,20 +41,19 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// `sample` is the generated type of the topic.
+  /// Writes one sample. `sample` points to the generated type of the topic.
   WriteResult write(void* sample);
-  /// Forgets all samples if every reader has them all; returns how many there were. A reader that acknowledges nothing
-  /// for as many calls as the history is deep is named in the log. For volatile writers of which only
-  /// the caller's thread writes. Fast DDS 2.9 forgets them by itself, except those that a reader was still to
-  /// acknowledge when another one was matched: these stay for ever, and each heartbeat then lists what is missing after
-  /// them, one by one.
+  /// Drops all samples from the history if every reader has acknowledged all of them. Returns how many samples there
+  /// were. Names a reader in the log that has acknowledged nothing for as many calls as the history is deep. Only for
+  /// volatile writers used by the caller's thread alone. Needed because Fast DDS 2.9 never drops samples that a reader
+  /// had yet to acknowledge when another reader was matched; each heartbeat then lists all gaps after them one by one.
   std::size_t forget_acknowledged();
-  /// Every matched reader has every sample. Does not wait.
+  /// True when every matched reader has acknowledged every sample. Does not wait.
   bool all_acknowledged();
   /// True when a reader of `region` is matched.
   bool reaches(core::RegionId region) const;
   std::size_t reader_count() const { return watch_.readers().size(); }
-  /// Readers that have come so far, those that left again included.
+  /// Number of readers matched so far, those that left again included.
   std::uint64_t matches() const { return watch_.matches(); }
   /// Matched readers in other processes.
   std::size_t foreign_reader_count() const;
@@ -64,20 +64,21 @@ class Writer {
 
   Domain& domain_;
   WriterWatch watch_;
-  bool is_of_nodes_ = false;  ///< what it writes, nodes say to each other
-  std::int32_t unread_ = 0;   ///< calls of forget_acknowledged() since every reader had everything
+  bool is_of_nodes_ = false;  ///< its samples are messages between nodes
+  std::int32_t unread_ = 0;   ///< calls of forget_acknowledged() since every reader had acknowledged everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };
 
-/// Where a sample comes from.
+/// Origin of a received sample.
 struct Origin {
   Guid writer;
-  /// The writer's wall clock when it was sent, minus ours when it came: how far that clock is ahead, less the way.
+  /// How far the writer's wall clock is ahead of the own one, less the transit time: its time of sending minus our time
+  /// of receipt.
   std::chrono::nanoseconds clock_ahead{0};
 };
 
-/// QoS by profile `<topic>_reader`, or as the spec says.
+/// A DDS reader. QoS by profile `<topic>_reader`, or as the spec says.
 class Reader {
  public:
   Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
@@ -88,16 +89,17 @@ class Reader {
   /// Takes the next sample that carries data into `sample` (the generated type). False when there is none.
   bool take(void* sample, Origin* origin = nullptr);
 
-  /// It is counted against who has sent it, if it is no message of ours at all: other versions, runs and maps, and what
-  /// somebody has typed, are nobody's fault.
+  /// Refuses a taken sample. Counted against its sender only if it is no message of ours at all. Other versions, runs
+  /// and maps, and what a person has typed, are not counted as the sender's fault.
   void refuse_from(const Origin& origin, WireError error);
-  /// Likewise: it is not its to say.
+  /// Refuses a taken sample that its sender had no right to send, and counts it against the sender. `what` names the
+  /// message.
   void refuse_from(const Origin& origin, const std::string& what);
-  /// It is more than its sender is given: `what` says how much that is.
+  /// Drops a taken sample because its sender exceeds a rate limit. `what` says what the limit is.
   void ration(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }
-  /// As the QoS says.
+  /// Partitions of the reader, from its QoS.
   std::vector<std::string> partitions() const;
 
  private:

@@ -12,10 +12,10 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kAckNack = 0x06, kNackFrag = 0x12, kInfoDestination = 0x0e;
 constexpr std::uint8_t kLittleFlag = 1, kFinalFlag = 2;
-/// In one acknowledgement; of more it asks in the next.
+/// Most samples whose fragments are requested for one acknowledgement; the rest follow with the next.
 constexpr int kMostRequests = 8;
 
-/// `endpoints` are reader and writer, as in the acknowledgement.
+/// Appends a request for fragments. `endpoints` are reader and writer, as in the acknowledgement.
 void append_request(Bytes& to, std::span<const std::uint8_t> endpoints, std::uint64_t number,
                     const MissingFragments& missing, std::uint32_t count) {
   const auto length = static_cast<std::uint8_t>(28 + 4 * missing.words.size());
@@ -28,7 +28,7 @@ void append_request(Bytes& to, std::span<const std::uint8_t> endpoints, std::uin
   append_number(to, count);
 }
 
-/// Bit `index` of a number set whose words begin at `words`.
+/// Offset of the octet with bit `index` of a number set whose words begin at `words`.
 std::size_t octet_of(std::size_t words, std::uint32_t index, bool little) {
   const std::uint32_t octet = index % 32 / 8;
   return words + index / 32 * 4 + (little ? 3 - octet : octet);
@@ -36,7 +36,8 @@ std::size_t octet_of(std::size_t words, std::uint32_t index, bool little) {
 
 }  // namespace
 
-/// The acknowledgement without what is asked for otherwise, and the requests for that; empty: there is none.
+/// Returns the acknowledgement without the samples whose fragments are requested, followed by those requests. Empty:
+/// nothing to change.
 Bytes FragmentRequests::instead_of(std::span<const std::uint8_t> ack_nack, const GuidPrefix& destination,
                                    const PeerBook& peers) {
   constexpr std::size_t kEndpoints = 4, kWords = 4 + 8 + 8 + 4;

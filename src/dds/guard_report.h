@@ -1,4 +1,4 @@
-// What was kept from Fast DDS, for people.
+// Report for people: which datagrams were kept from Fast DDS.
 #pragma once
 
 #include <array>
@@ -18,16 +18,16 @@ struct GuardReport {
 
   std::uint64_t passed = 0;
   Counts refused{};
-  std::vector<Address> addresses;  ///< that something was refused of, ascending
-  std::uint64_t of_others = 0;     ///< refused, of more addresses than are told apart
+  std::vector<Address> addresses;  ///< addresses from which something was refused, ascending
+  std::uint64_t of_others = 0;     ///< datagrams refused from addresses beyond those counted one by one
 
   std::uint64_t total() const;
 };
 
 std::uint64_t total_of(const GuardReport::Counts& counts);
-/// "3 length, 1 rate".
+/// Text of the counts that are not 0, e.g. "3 length, 1 rate".
 std::string text_of(const GuardReport::Counts& counts);
-/// "10.0.0.7".
+/// Text of an IPv4 address, e.g. "10.0.0.7".
 std::string text_of_address(std::uint32_t address);
 
 }  // namespace aurasim::dds

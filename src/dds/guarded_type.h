@@ -1,5 +1,5 @@
-// The generated type supports, made safe. As generated, one boolean that is neither 0 nor 1 throws through a DDS thread
-// and ends the process, and getKey() writes one buffer from several threads.
+// Wraps the generated type supports to make them safe. As generated, one boolean that is neither 0 nor 1 throws through
+// a DDS thread and ends the process, and getKey() writes one buffer from several threads.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@
 
 namespace aurasim::dds {
 
-/// Larger samples are refused. Far above the hand-off of a whole scene (10,000 bodies with contacts: some 20 MB).
+/// Largest sample; larger ones are refused. Far above the hand-off of a whole scene (10,000 bodies with contacts: some
+/// 20 MB).
 inline constexpr std::uint32_t kMaxPayloadBytes = 256U << 20;
 
-/// Readers keep something of every key that they have met, and may forget none of which samples are still to come: a
-/// limit of theirs would end the process (DataReaderHistory.cpp, find_key). What comes with more keys than these shares
-/// one.
+/// Largest number of keys per topic; further keys all share one. Readers keep state for every key and cannot forget one
+/// whose samples are still to come, and a limit in the reader would end the process (DataReaderHistory.cpp, find_key).
 inline constexpr std::size_t kMostKeys = 4096;
 
-/// A sample whose bytes are not the type reads as version 0 (the codec calls it malformed). It cannot just be refused
-/// here: the reader would ask its writer for it again for ever.
+/// Deserializes a sample whose bytes do not fit the type as version 0, which the codec calls malformed. Refusing it
+/// here is no option: the reader would ask its writer for it for ever.
 template <class Generated>
 class GuardedType final : public Generated {
  public:

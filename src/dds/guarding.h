@@ -1,4 +1,4 @@
-// What a participant's guard (datagram_guard.h) has kept from Fast DDS. Any thread.
+// Reports what a participant's guard (datagram_guard.h) has kept from Fast DDS. Callable from any thread.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace aurasim::dds {
 
 GuardReport guarded(Participant& participant);
-/// Addresses of which something was refused for the first time since the last call.
+/// Addresses from which something was refused for the first time since the last call.
 std::vector<GuardReport::Address> take_new_refusals(Participant& participant);
 
 }  // namespace aurasim::dds

@@ -87,7 +87,7 @@ bool rotation_matrices(const std::vector<double>& R) {
   return true;
 }
 
-/// Rows [first, first + count) of every record lie inside `rows`.
+/// True when rows [first, first + count) of every record lie inside `rows`.
 bool spans_inside(const std::vector<std::uint32_t>& first, const std::vector<std::uint32_t>& count, std::size_t rows) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (std::uint64_t{first[i]} + count[i] > rows) {
@@ -97,7 +97,7 @@ bool spans_inside(const std::vector<std::uint32_t>& first, const std::vector<std
   return true;
 }
 
-/// A body of this very cluster, or a static of the scene.
+/// True when `object` is a body of this very cluster or a static of the scene.
 bool known_object(std::int64_t object, const wire::Migration& in, const Expected& expected) {
   if (object < 0) {
     return -(object + 1) < std::int64_t{expected.static_count};
@@ -118,10 +118,10 @@ bool known_objects(const wire::Migration& in, const Expected& expected) {
   return true;
 }
 
-/// A world could have them.
+/// True when all quantities are within dds/bearable.h.
 bool are_bearable(const wire::Migration& in) {
   using namespace bearable;
-  constexpr std::array kWholeColumns = {26, 27, 37, 38, 39, 40};  // of a contact: read as int
+  constexpr std::array kWholeColumns = {26, 27, 37, 38, 39, 40};  // columns of a contact that are read as int
   constexpr double kMostInt = std::numeric_limits<std::int32_t>::max();
   for (std::size_t row = 0; row < in.points().size(); row += core::kContactPointDoubles) {
     for (const int column : kWholeColumns) {

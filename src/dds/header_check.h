@@ -1,4 +1,4 @@
-// What every message says first, checked first.
+// Checks the header that every message begins with, before anything else.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace aurasim::dds {
 
-/// Version, generation and map version. `Message` is any wire type.
+/// Checks version, generation and map version. `Message` is any wire type.
 template <class Message>
 std::optional<WireError> check_header(const Message& in, const Expected& expected) {
   if (in.version() == 0) {  // set by GuardedType

@@ -5,7 +5,7 @@
 namespace aurasim::dds {
 namespace {
 
-/// SplitMix64: neighbouring numbers give unrelated ones.
+/// Mixes a seed by SplitMix64, so that neighbouring numbers give unrelated ones.
 std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e37'79b9'7f4a'7c15U;
   x = (x ^ (x >> 30)) * 0xbf58'476d'1ce4'e5b9U;
@@ -38,7 +38,7 @@ bool MetatrafficPorts::is_discovery(bool multicast, std::uint32_t port) const {
 ImpairedLink::ImpairedLink(const Impairment& impairment, std::uint64_t stream)
     : impairment_(impairment), random_(mixed(impairment.seed ^ mixed(stream))) {}
 
-/// Not std::uniform_real_distribution: that may differ between standard libraries.
+/// Does not use std::uniform_real_distribution, which may differ between standard libraries.
 double ImpairedLink::uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
 ImpairedLink::Time ImpairedLink::leaves_the_bottleneck(Time now, std::size_t bytes) {
@@ -48,14 +48,14 @@ ImpairedLink::Time ImpairedLink::leaves_the_bottleneck(Time now, std::size_t byt
 }
 
 ImpairedLink::Verdict ImpairedLink::offer(Time now, std::uint64_t destination, std::size_t bytes) {
-  // Drawn for every datagram, so that one setting does not shift the numbers of another.
+  // The number is drawn for every datagram, so that one setting does not shift the random numbers of another.
   const double luck = uniform();
   const double lateness_s = impairment_.delay_s + impairment_.jitter_s * (2 * uniform() - 1);
   if (counters_.queued_bytes + bytes > kMostQueuedBytes) {
     ++counters_.overflowed;
     return {Fate::kOverflows, now};
   }
-  const Time sent = leaves_the_bottleneck(now, bytes);  // what the network then loses has used it as well
+  const Time sent = leaves_the_bottleneck(now, bytes);  // a lost datagram uses bandwidth, too
   if (luck < impairment_.loss) {
     ++counters_.lost;
     return {Fate::kLost, now};

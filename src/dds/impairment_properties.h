@@ -1,4 +1,4 @@
-// How an XML profile says what is impaired: properties aurasim.impair.{delay,jitter,loss,bandwidth,reorder,discovery,
+// Reads the impairment from an XML profile: properties aurasim.impair.{delay,jitter,loss,bandwidth,reorder,discovery,
 // seed} in the <propertiesPolicy> of a participant.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace aurasim::dds {
 
-/// Throws DdsError, which begins with `source`, for an unknown name under aurasim.impair. and for a value that cannot
-/// be used. Of two of one name the later one counts.
+/// Returns the impairment that the properties describe. If a name occurs twice, the later value counts. Throws
+/// DdsError, whose text begins with `source`, for an unknown name under aurasim.impair. and for an invalid value.
 Impairment impairment_in(const eprosima::fastrtps::rtps::PropertyPolicy& properties, const std::string& source);
 
 }  // namespace aurasim::dds

@@ -1,4 +1,4 @@
-// core/interest.h as a wire type, and back. As in codec.h.
+// Encodes core/interest.h as a wire type, and decodes it. Same contract as codec.h.
 #pragma once
 
 #include "core/interest.h"

@@ -1,4 +1,4 @@
-// How large a datagram may be before IP cuts it into fragments, of which one that is lost loses all.
+// Finds the largest datagram that IP does not fragment. Losing one IP fragment loses the whole datagram.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@ struct Interface {
   std::string address;
   bool is_loopback = false;
   std::uint32_t mtu_B = 0;
-  bool is_running = true;  ///< its link carries
+  bool is_running = true;  ///< its link has a carrier
 };
 
-/// As the kernel tells; empty when it does not.
+/// Interfaces as the kernel lists them; empty when the query fails.
 std::vector<Interface> interfaces_of_this_host();
 
-/// Can a participant with this white list (addresses; empty: all) be made that reaches other hosts? Fast DDS leaves out
-/// interfaces whose links are down, and never looks at them again.
+/// True when every link that a participant with this white list would use is up (addresses; empty: all). Fast DDS
+/// leaves out interfaces whose links are down, and never looks at them again.
 bool all_links_are_up(const std::vector<Interface>& interfaces, const std::vector<std::string>& white_list);
 
-/// The largest UDP payload that fits into one packet on every one of `interfaces` that `white_list` (addresses; empty:
-/// all) lets through. 0 when there is no limit to know of: loopback does not cut.
+/// The largest UDP payload, bytes, that fits into one packet on every one of `interfaces` that `white_list` (addresses;
+/// empty: all) lets through. 0 when no limit is known: loopback does not fragment.
 std::uint32_t largest_payload_B(const std::vector<Interface>& interfaces, const std::vector<std::string>& white_list);
 
 }  // namespace aurasim::dds

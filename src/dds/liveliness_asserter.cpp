@@ -54,7 +54,8 @@ void LivelinessAsserter::run() {
     }
     const auto planned = interval_;
     condition_.wait_for(lock, planned);
-    // From waking to waking: a process may be stopped while it asserts as well as while it waits.
+    // The stall is measured from one waking to the next: a process may be stopped while it asserts as well as while it
+    // waits.
     const std::int64_t previous_ns = std::exchange(woken_ns, now_ns());
     note_stall(woken_ns - previous_ns - planned.count());
   }

@@ -1,6 +1,6 @@
-// Asserts the liveliness of a process: renews that of its writers while their owner makes progress: calls a transport
-// or a bus, or gets on with a computation (core/progress.h). So a long step is not a death, however long it takes, but
-// a process that hangs is.
+// Asserts the liveliness of a process: renews its writers' liveliness while their owner makes progress. Progress is a
+// call of a transport or a bus, or a mark of a long computation (core/progress.h). So a long step does not count as a
+// death, but a process that hangs does.
 #pragma once
 
 #include <atomic>
@@ -20,18 +20,19 @@ namespace aurasim::dds {
 
 class LivelinessAsserter {
  public:
-  /// `show_life`: called by its thread whenever it renews writers; empty: nothing is called.
+  /// `hang_limit`: longest time without progress. `show_life`: called by the asserter's thread whenever it renews
+  /// writers; may be empty.
   explicit LivelinessAsserter(std::chrono::nanoseconds hang_limit, std::function<void()> show_life = {});
   ~LivelinessAsserter();
 
   /// Renews `writer` every `lease` / 4 from now on.
   void add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease);
-  /// After this the writer is not touched any more.
+  /// Stops renewing `writer`. After the return it is not touched any more.
   void remove(eprosima::fastdds::dds::DataWriter* writer);
 
-  /// Any thread.
+  /// Marks progress of the owner. Callable from any thread.
   void progress();
-  /// The longest that the process was held up (stopped, starved, suspended) so far. Any thread.
+  /// The longest time so far that the process was held up (stopped, starved, suspended). Callable from any thread.
   std::chrono::nanoseconds longest_stall() const { return std::chrono::nanoseconds(longest_stall_ns_.load()); }
 
  private:
@@ -50,7 +51,7 @@ class LivelinessAsserter {
   bool stopping_ = false;
   std::chrono::nanoseconds interval_ = std::chrono::milliseconds(250);
   std::vector<eprosima::fastdds::dds::DataWriter*> writers_;
-  std::uint64_t marks_ = 0;  ///< of core::Progress, when last looked
+  std::uint64_t marks_ = 0;  ///< value of core::Progress at the last look
   std::thread thread_;       // last: starts when all else is there
 };
 

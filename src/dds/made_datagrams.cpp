@@ -14,7 +14,7 @@ void append_entity(Bytes& to, std::uint32_t entity) {
   for (int i = 3; i >= 0; --i) to.push_back(static_cast<std::uint8_t>(entity >> 8 * i));
 }
 
-/// Header and destination.
+/// Returns the begin of a datagram: RTPS header and destination.
 Bytes begin_of(const Claim& claim, std::span<const std::uint8_t> header) {
   Bytes bytes;
   bytes.reserve(128);
@@ -35,7 +35,8 @@ void make_data(MadeDatagram& sample, const Claim& claim, std::span<const std::ui
     append(bytes, std::array<std::uint8_t, 4>{0x09, 1, 8, 0});
     append_number_pair(bytes, *claim.timestamp);
   }
-  append(bytes, std::array<std::uint8_t, 8>{0x15, 1 | 4, 0, 0, 0, 0, 16, 0});  // to its end
+  // Submessage length 0: it extends to the datagram's end.
+  append(bytes, std::array<std::uint8_t, 8>{0x15, 1 | 4, 0, 0, 0, 0, 16, 0});
   append_entity(bytes, claim.reader);
   append_entity(bytes, claim.guid.entity);
   append_number_pair(bytes, claim.first);

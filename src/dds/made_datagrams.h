@@ -1,4 +1,4 @@
-// Datagrams that the guard puts together in place of what came.
+// Datagrams that the guard composes to replace received ones.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace aurasim::dds {
 
-/// A payload whose octets come before what stands in front of them.
+/// A datagram whose payload is filled in first; the headers are put in front of it afterwards.
 class MadeDatagram {
  public:
-  /// Memory that is not touched yet.
+  /// Allocates room for `payload_B` bytes without filling it.
   explicit MadeDatagram(std::size_t payload_B)
       : octets_(std::make_unique_for_overwrite<std::uint8_t[]>(kRoom_B + payload_B)),  // NOLINT: not filled with zeros
         end_(kRoom_B + payload_B) {}
@@ -27,16 +27,16 @@ class MadeDatagram {
   std::span<std::uint8_t> bytes() const { return {octets_.get() + begin_, end_ - begin_}; }
 
  private:
-  static constexpr std::size_t kRoom_B = 96;  ///< of header, destination, time, and what begins the submessage
+  static constexpr std::size_t kRoom_B = 96;  ///< room for header, destination, time, and the begin of the submessage
 
   std::unique_ptr<std::uint8_t[]> octets_;  // NOLINT
   std::size_t begin_ = kRoom_B, end_;
 };
 
-/// Makes of the payload that is in it what the writer of `claim` would have sent had the sample not been too large.
-/// `header` is of a datagram of the writer.
+/// Completes `sample`, which holds the payload, to the DATA datagram that the writer of `claim` would have sent if the
+/// sample had fitted into one. `header` is the RTPS header of any datagram of that writer.
 void make_data(MadeDatagram& sample, const Claim& claim, std::span<const std::uint8_t> header);
-/// From the claim's first number to its last.
+/// Returns a GAP datagram over the claim's sequence numbers, first to last.
 MadeDatagram datagram_of_gap(const Claim& claim, std::span<const std::uint8_t> header);
 
 }  // namespace aurasim::dds

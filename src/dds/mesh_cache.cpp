@@ -13,7 +13,7 @@ std::size_t bytes_of(const core::TriangleMesh& mesh) {
 
 bool MeshCache::add(std::uint64_t hash, core::TriangleMesh mesh, std::uint64_t source) {
   if (const auto known = entries_.find(hash); known != entries_.end()) {
-    known->second.released = false;  // brought again: somebody is about to ask for it
+    known->second.released = false;  // brought again: an order is about to ask for it
     known->second.added = ++additions_;
     return true;
   }

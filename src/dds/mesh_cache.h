@@ -1,5 +1,6 @@
-// Meshes of clients, by the hash of their content, until they are needed no more. The same on every node: what an order
-// may still name is never given up, and what has been made into a shape of the scene goes first when room is needed.
+// Keeps clients' meshes, by the hash of their content, until no order can name them any more. Behaves equally on every
+// node: a mesh that an order may still name is never dropped, and meshes already made into a shape of the scene are
+// dropped first when room is needed.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@ namespace aurasim::dds {
 
 struct MeshCacheLimits {
   std::size_t meshes = std::numeric_limits<std::size_t>::max();
-  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of points and triangles
-  // Of one source, those given up not counted.
+  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< bytes of points and triangles
+  // Limits for one source; released meshes are not counted.
   std::size_t meshes_of_source = std::numeric_limits<std::size_t>::max();
   std::size_t bytes_of_source = std::numeric_limits<std::size_t>::max();
 };
@@ -23,29 +24,29 @@ class MeshCache {
  public:
   explicit MeshCache(const MeshCacheLimits& limits = {}) : limits_(limits) {}
 
-  /// False if there is no room for it beside those that are still needed. Whoever brings more than a source may loses
-  /// the oldest of its own that nobody has asked for yet.
+  /// Adds a mesh. Returns false if there is no room beside the meshes that are still needed. A source that exceeds its
+  /// limit loses its own oldest mesh that no order has asked for yet.
   bool add(std::uint64_t hash, core::TriangleMesh mesh, std::uint64_t source = 0);
-  /// Likewise; of one that nobody is about to ask for.
+  /// Adds a mesh that no order is about to name. Returns false if there is no room.
   bool add_spare(std::uint64_t hash, core::TriangleMesh mesh, std::uint64_t source = 0);
-  /// Null if there is none, or none any more. Valid until the next add().
+  /// Returns the mesh, or null if it is not here or was dropped. Valid until the next add().
   const core::TriangleMesh* find(std::uint64_t hash) const;
-  /// Its shape has been made; it may be given up. Until it is asked for again:
+  /// Marks a mesh as droppable, because its shape has been made. Lasts until the mesh is asked for again.
   void release(std::uint64_t hash);
   void retain(std::uint64_t hash);
-  /// Nothing that is under way needs any of them.
+  /// Marks all meshes as droppable: no order under way needs any.
   void release_all();
-  /// Ascending.
+  /// Hashes of all meshes here, ascending.
   std::vector<std::uint64_t> hashes() const;
 
  private:
   struct Entry {
     core::TriangleMesh mesh;
     std::size_t bytes = 0;
-    std::uint64_t added = 0;  ///< the higher the later
+    std::uint64_t added = 0;  ///< order of adding: higher is later
     std::uint64_t source = 0;
     bool released = false;
-    bool asked = false;  ///< retained
+    bool asked = false;  ///< an order has asked for it since it was added
   };
   using Entries = std::map<std::uint64_t, Entry>;
   bool make_room(std::size_t bytes);

@@ -14,23 +14,24 @@ using core::value_of;
 
 namespace {
 
-/// Of what is kept of others, whoever they are.
-constexpr std::size_t kMostOfARegion = 64;   ///< processes that say that they are its node
-constexpr std::size_t kMostOfNoRegion = 64;  ///< and of all regions that the run has not
+/// Limits on what is remembered of other processes, trusted or not.
+constexpr std::size_t kMostOfARegion = 64;   ///< processes that claim to be the node of one region
+constexpr std::size_t kMostOfNoRegion = 64;  ///< processes that claim regions that the run does not have, together
 constexpr std::size_t kMostClaims = 1024;
 
-/// A sample that was long on its way makes its sender's clock look late: the fastest tells best. Of the last second, as
-/// clocks may be set.
+/// Samples kept to estimate a sender's clock: about the last second, as clocks may be set. A sample that was long under
+/// way makes the clock look late, so the fastest gives the best estimate.
 constexpr std::size_t kSamplesOfAClock = 10;
 
 std::uint16_t host_of(const Guid& guid) {
   return static_cast<std::uint16_t>(guid.guidPrefix.value[2] << 8 | guid.guidPrefix.value[3]);
 }
 
-/// Statuses come ten times a second.
+/// A process without a status for this long shows no life. Statuses come ten times a second.
 constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
 
-/// A process that only waits does nobody harm: a successor does, and a second launch of the same file by mistake.
+/// True when a process acts as a node. A process that only waits does no harm; a successor, or a second launch of the
+/// same file by mistake, does.
 bool acts(const Status& status) {
   return status.state == NodeState::kRunning || status.state == NodeState::kPaused ||
          status.state == NodeState::kRecovering;
@@ -38,15 +39,15 @@ bool acts(const Status& status) {
 
 constexpr int kIsNode = 2;
 
-/// Which of a region's processes is its node: of those that live, one that has not only come to take over from another.
-/// `stands`: it is the node so far. Then it is so at its end, too, until it has left: it still answers those who are on
-/// their way there, and nobody needs to take over.
+/// Rank of a process that claims a region; the highest one is its node. Live processes come first, and among them those
+/// that have not only come to take over from another. `stands`: it is the node so far. Then it remains so at its end,
+/// until it has left: it still answers messages that are under way to it, and no takeover is needed.
 int rank_of(const SeenStatus& seen, bool stands) {
   if (stands && !seen.lost && seen.status.state == NodeState::kFinished) return kIsNode;
   return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : kIsNode;
 }
 
-/// Where Fast DDS matched a writer anew, the later match counts. Null: it never did.
+/// Finds the latest match of a writer. Null: it was never matched.
 const RemoteWriter* find(const std::vector<RemoteWriter>& writers, const Guid& guid) {
   const auto found = std::find_if(writers.rbegin(), writers.rend(), [&](const auto& w) { return w.guid == guid; });
   return found == writers.rend() ? nullptr : &*found;
@@ -129,7 +130,8 @@ bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const 
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }
 
-/// On this host its process is looked for; elsewhere, who lives says something.
+/// On this host the operating system is asked whether the process exists. Elsewhere a process that has published
+/// nothing for kShowsNoLife shows no life.
 bool NodeRoster::shows_no_life(const Received& one) const {
   if (!settings_.stays_on_this_host) return std::chrono::steady_clock::now() > one.seen.seen + kShowsNoLife;
   const auto pid = static_cast<::pid_t>(one.seen.status.pid);

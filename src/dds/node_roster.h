@@ -1,4 +1,5 @@
-// Which processes say that they are nodes, which of them are of this run, and which one is each region's node.
+// Keeps track of the processes that claim to be nodes: which of them belong to this run, and which one is each region's
+// node.
 #pragma once
 
 #include <chrono>
@@ -19,11 +20,11 @@ namespace aurasim::dds {
 
 struct RosterSettings {
   std::uint32_t region_count = 0;
-  std::optional<std::uint64_t> agreement, run;  ///< whoever has another one is a stranger
-  std::optional<core::RegionId> region;         ///< whose node this process is
-  Guid writer;                                  ///< of its statuses; only with a region
-  bool stays_on_this_host = false;              ///< all processes can be looked for
-  bool believes_silence = true;                 ///< else who is silent is lost only if there is no such process
+  std::optional<std::uint64_t> agreement, run;  ///< a node with another one is a stranger
+  std::optional<core::RegionId> region;         ///< region of the own node; nothing: this process is no node
+  Guid writer;                                  ///< the own writer of statuses; only with a region
+  bool stays_on_this_host = false;              ///< all processes of the run are on this host, so they can be looked up
+  bool believes_silence = true;  ///< if false, a silent process is lost only when there is no such process any more
 };
 
 /// Used by one thread. `speakers` must outlive it.
@@ -31,33 +32,35 @@ class NodeRoster {
  public:
   NodeRoster(RosterSettings settings, Speakers& speakers) : settings_(settings), speakers_(speakers) {}
 
-  /// Why this cannot be what a node says of itself. Empty: it can.
+  /// Returns why `status` cannot be a node's status of itself. Empty: it can.
   std::string problem_with(const Status& status, const Origin& origin) const;
   void note(Status status, const Origin& origin);
-  /// Whose proof of life has ended, and whose status stands for each region now.
+  /// Updates which proofs of life have ended, and which status counts for each region.
   void look(const std::vector<RemoteWriter>& writers);
 
-  /// As of the last look.
+  /// Statuses of this run's nodes, as of the last look().
   const std::map<core::RegionId, SeenStatus>& statuses() const { return statuses_; }
-  /// Likewise: live nodes of other runs, and those that say that they are this process's region.
+  /// Live nodes of other runs, and live nodes that claim to be this process's region, as of the last look().
   std::vector<SeenStatus> strangers() const;
-  /// Likewise: those that wait for a region of this run.
+  /// Spares: processes that wait for a region of this run, as of the last look().
   std::vector<Status> spares() const;
 
   void hold_for_dead(std::uint64_t process) { dead_.insert(process); }
-  /// Somebody says so: believed once the process shows no life. False: it shows some.
+  /// Handles a report that `process` has died, which is believed once it shows no life. Returns false when it shows
+  /// some.
   bool hear_of_death(std::uint64_t process);
 
-  /// Does this process itself speak?
+  /// True when a sample of this origin was sent by `process` itself.
   bool is_of(std::uint64_t process, const Origin& origin) const;
-  /// Is it a node of that region, or about to be one? Of two, one may not yet be known to have died.
+  /// True when the sender is a node of `region` or about to be one. Of two such senders one may have died without that
+  /// being known yet.
   bool is_of(core::RegionId region, const Origin& origin) const;
 
  private:
-  struct Received {  ///< what one process has published last
+  struct Received {  ///< the last status of one process
     Guid writer;
     SeenStatus seen;
-    std::deque<std::chrono::nanoseconds> clock_ahead;  ///< by the last samples
+    std::deque<std::chrono::nanoseconds> clock_ahead;  ///< estimates from the last samples
   };
 
   bool is_region(core::RegionId region) const;
@@ -70,11 +73,11 @@ class NodeRoster {
 
   RosterSettings settings_;
   Speakers& speakers_;
-  std::map<core::RegionId, std::vector<Received>> received_;  ///< in order of the first sample
+  std::map<core::RegionId, std::vector<Received>> received_;  ///< processes in the order of their first samples
   std::map<core::RegionId, Guid> publishers_;
   std::map<core::RegionId, SeenStatus> statuses_;
-  std::set<std::uint64_t> dead_;     ///< processes that have ended
-  std::set<std::uint64_t> claimed_;  ///< others say so
+  std::set<std::uint64_t> dead_;     ///< processes that are known to have ended
+  std::set<std::uint64_t> claimed_;  ///< processes that others report as dead
 };
 
 }  // namespace aurasim::dds

@@ -14,18 +14,19 @@
 namespace aurasim::dds {
 namespace {
 
-/// Of one process: far more than a sensor that moves with its body needs.
+/// Interests that one process may publish a second: far more than a sensor that moves with its body needs.
 constexpr double kInterestsASecond = 100;
 constexpr double kInterestsAtOnce = 300;
 
-/// Of one observer's, that it has not acknowledged: less than the writer keeps, and what fits into its socket's buffer.
+/// Most observations of one observer that are not acknowledged: less than the writer keeps, and what fits into its
+/// socket's buffer.
 constexpr std::size_t kMostUnderWay = 48;
 constexpr std::size_t kMostUnderWay_B = 2'000'000;
 
-/// That an observer takes before it looks at anything else: large ones may come faster than they are decoded.
+/// Most observations that an observer takes per call: large ones may arrive faster than they are decoded.
 constexpr std::size_t kMostAtOnce = 64;
 
-/// As it is on the wire, but for some octets.
+/// Approximate size on the wire, bytes; some octets are left out.
 std::size_t size_of(const core::Observation& observation) {
   constexpr std::size_t kBody_B = 85, kJoint_B = 20, kContact_B = 72;
   return kBody_B * observation.bodies.size() + 8 * observation.outside.size() + kJoint_B * observation.joints.size() +
@@ -43,7 +44,7 @@ struct ObservationServer::Impl {
     core::Interest interest;
     Guid origin;
     std::uint64_t changes = 0;
-    std::size_t under_way = 0, under_way_B = 0;  ///< sent since it had acknowledged all
+    std::size_t under_way = 0, under_way_B = 0;  ///< samples and bytes sent since it had acknowledged everything
     TypedWriter<wire::Observation> writer;
   };
 
@@ -100,7 +101,7 @@ void ObservationServer::Impl::hear(core::Interest&& interest, const Origin& orig
   ++observer.changes;
 }
 
-/// A writer that is gone wants nothing any more, however it has ended.
+/// Drops the interests of writers that are gone, however they ended.
 void ObservationServer::Impl::forget_the_gone() {
   if (observers.empty()) return;
   const std::vector<RemoteWriter> writers = interests.watch().writers();

@@ -42,7 +42,7 @@ bool all_are_finite(const wire::Observation& in) {
          all_finite(in.contact_p()) && all_finite(in.contact_normal()) && all_finite(in.contact_impulse());
 }
 
-/// The first of two is a body, the second another one with a higher id, or a static.
+/// True when in each pair the first is a body, and the second another body with a higher id or a static.
 bool are_pairs(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b, const Expected& expected) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool is_pair =

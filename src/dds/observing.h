@@ -1,4 +1,4 @@
-// What observers expect of the messages of the run that they watch.
+// Expectations of observers about the messages of the run that they watch.
 #pragma once
 
 #include "dds/observer_settings.h"

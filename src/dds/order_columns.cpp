@@ -161,7 +161,7 @@ Maybe regions_of(const Numbers& n) {
   return action;
 }
 
-/// Steps and body ids are whole, and exact as doubles.
+/// Reads a redo. Steps and body ids must be whole numbers that a double represents exactly.
 Maybe redo_of(const Numbers& n) {
   constexpr double kMostExact = 9007199254740992.0;  // 2^53
   const auto whole = [](double x) { return x >= 0 && x < kMostExact && std::floor(x) == x; };
@@ -189,7 +189,7 @@ Maybe action_of(std::uint8_t kind, const Row& row) {
   if (!about_a_mesh && row.subject > kMostSubjects) return {};
   if (kind == 8) return regions_of(n);
   if (!finite) return {};
-  constexpr std::uint8_t kRedo = 10;  // says states and ids
+  constexpr std::uint8_t kRedo = 10;  // its numbers are states and ids
   if (kind != kRedo && !all_within(row.numbers, bearable::kLargestOfAnOrder)) return {};
   switch (kind) {
     case 0:

@@ -27,7 +27,7 @@ class AuraBatch;
 namespace aurasim::dds {
 
 void encode_orders(const std::vector<core::Order>& orders, wire::AuraBatch& out);
-/// Checks everything; nothing where it is not well-formed.
+/// Returns the orders of a batch after checking everything, or nothing if they are not well-formed.
 std::optional<std::vector<core::Order>> decode_orders(const wire::AuraBatch& in);
 
 }  // namespace aurasim::dds

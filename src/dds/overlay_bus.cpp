@@ -6,7 +6,7 @@
 namespace aurasim::dds {
 namespace {
 
-/// A topic of all regions, of which samples may be missed.
+/// Reader of a topic of all regions whose samples may be missed.
 template <class Wire>
 class Glance {
  public:

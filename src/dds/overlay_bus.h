@@ -1,5 +1,5 @@
-// What pages draw over the bodies: auras as the nodes publish them, and topic cluster_graph, which a node writes only
-// while somebody listens.
+// Data that pages draw over the bodies: auras as the nodes publish them, and topic cluster_graph, which a node writes
+// only while it has a reader.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ class ClusterGraphWriter {
   ~ClusterGraphWriter();
 
   bool anybody_listens() const;
-  /// What cannot be sent at once is not sent: the next tick sends all anew.
+  /// Sends the graph if that is possible at once. Otherwise it is dropped: the next tick sends a new one.
   void send(const core::ClusterGraph& graph);
 
  private:
@@ -27,7 +27,7 @@ class ClusterGraphWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The cluster graphs of all regions: some may be missed. The participant must outlive it.
+/// Receives the cluster graphs of all regions; some may be missed. The participant must outlive it.
 class ClusterGraphWatch {
  public:
   ClusterGraphWatch(Participant& participant, const ObserverSettings& settings);
@@ -40,7 +40,7 @@ class ClusterGraphWatch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The auras of all regions: some may be missed. The participant must outlive it.
+/// Receives the auras of all regions; some may be missed. The participant must outlive it.
 class AuraWatch {
  public:
   AuraWatch(Participant& participant, const ObserverSettings& settings);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kBits = 20;
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-/// The second largest component of a unit quaternion is at most 1 / sqrt(2).
+/// Scale of a component. The second largest component of a unit quaternion is at most 1 / sqrt(2).
 constexpr double kScale = std::numbers::sqrt2 * double((1 << (kBits - 1)) - 1);
 
 double signed_value(std::uint64_t field) {

@@ -64,12 +64,13 @@ constexpr std::size_t kLongestName = 256;
 constexpr std::size_t kLongestPropertyText = 4096;
 constexpr std::size_t kMostProperties = 64;
 constexpr std::size_t kMostPartitions = 64;
-/// Every `*` in a pattern that does not match multiplies the time of the C library's fnmatch(). Ours have two.
+/// Most stars in a pattern. Each `*` in a pattern that does not match multiplies the time of the C library's fnmatch().
+/// Our patterns have two.
 constexpr std::ptrdiff_t kMostStars = 4;
 constexpr std::size_t kMostLocators = 32;
 constexpr double kShortestLease_s = 0.05;
 
-/// Text with its end; `stars` counts those that match anything.
+/// Reads a text with its end. `stars` returns the number of `*` in it.
 bool is_string(WireCursor& cursor, std::size_t most, std::ptrdiff_t* stars) {
   const std::uint32_t length = cursor.u32();
   if (cursor.failed() || length == 0 || length > most || length > cursor.left()) return false;
@@ -95,7 +96,7 @@ bool is_partition_list(WireCursor& value) {
   return value.left() == 0;
 }
 
-/// Text properties; those of octets may follow.
+/// Reads a list of text properties; one of octet properties may follow.
 bool is_property_list(WireCursor& value) {
   const std::uint32_t count = value.u32();
   if (value.failed() || count > kMostProperties) return false;
@@ -113,7 +114,7 @@ bool is_octet_sequence(WireCursor& cursor) {
   return true;
 }
 
-/// A sequence of numbers of `size` octets.
+/// Reads a sequence of numbers of `size` octets each.
 bool is_number_sequence(WireCursor& value, std::size_t size, std::size_t most) {
   const std::uint32_t count = value.u32();
   return !value.failed() && count <= most && count * size <= value.left();
@@ -127,7 +128,7 @@ bool is_locator(WireCursor& value) {
   return kind != kUdpV4 || port <= UINT16_MAX;
 }
 
-/// Seconds and their 2^-32; nullopt for what is negative. Infinity is a large number.
+/// Reads a duration: seconds and their 2^-32. nullopt if it is negative. Infinity is a large number.
 std::optional<double> duration_s(WireCursor& value) {
   const std::int32_t seconds = value.i32();
   const std::uint32_t fraction = value.u32();
@@ -147,9 +148,9 @@ std::optional<WireGuid> guid_in(WireCursor& value) {
   return value.failed() ? std::nullopt : std::optional(guid);
 }
 
-/// What Fast DDS would act on and no run uses: foreign type objects end the process that reads them (eProsima/Fast-DDS
-/// #3296), filters are compiled and run in the writer, shared memory is off. Types are told apart by their names, and
-/// by the version in every message.
+/// True for parameters that Fast DDS would act on and that no run uses. Foreign type objects end the process that reads
+/// them (eProsima/Fast-DDS #3296), filters are compiled and run in the writer, shared memory is off. Types are told
+/// apart by their names, and by the version in every message.
 bool is_hidden(std::uint16_t pid, ListKind kind) {
   switch (pid) {
     case kTypeId:
@@ -158,7 +159,7 @@ bool is_hidden(std::uint16_t pid, ListKind kind) {
     case kContentFilter:
     case kDataSharing:
       return kind == ListKind::kEndpoint;
-    // The key is computed from the sample: guarded_type.h bounds how many there are.
+    // Hidden, because the key is computed from the sample; guarded_type.h bounds the number of keys.
     case kKeyHash:
       return kind == ListKind::kInlineQosOfSamples;
     default:
@@ -166,7 +167,7 @@ bool is_hidden(std::uint16_t pid, ListKind kind) {
   }
 }
 
-/// One parameter of discovery. `value` is all of it.
+/// Checks one parameter of discovery. `value` spans all of it.
 bool check_value(std::uint16_t pid, WireCursor value, ListKind kind, ListFindings& list, std::size_t& locators) {
   switch (pid) {
     case kParticipantLease: {

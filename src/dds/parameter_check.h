@@ -1,4 +1,5 @@
-// Parameter lists (RTPS 2.2, section 9.4.2.11): inline QoS, and what discovery says of participants and endpoints.
+// Checks parameter lists (RTPS 2.2, section 9.4.2.11): inline QoS, and the lists by which discovery describes
+// participants and endpoints.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +12,20 @@ namespace aurasim::dds {
 
 enum class ListKind : std::uint8_t { kInlineQos, kInlineQosOfSamples, kParticipant, kEndpoint };
 
-/// What a list says of its subject.
+/// Content of a list that later checks need.
 struct ListFindings {
-  std::optional<WireGuid> subject;  ///< participant or endpoint
-  double lease_s = 0;               ///< of a participant
-  bool gone = false;                ///< disposed of or unregistered
+  std::optional<WireGuid> subject;  ///< participant or endpoint that the list describes
+  double lease_s = 0;               ///< lease of the participant
+  bool gone = false;                ///< the subject is disposed of or unregistered
 };
 
-/// Reads up to and including the end of the list. Adds to `findings.hidden_parameters`.
+/// Checks a list and reads up to and including its end. Returns why it is refused; nothing: it is sound. Adds to
+/// `findings.hidden_parameters`.
 std::optional<Refusal> check_parameters(WireCursor& cursor, ListKind kind, ListFindings& list, Findings& findings);
 
-/// A token of DDS Security: a class, and properties with text and octets.
+/// Reads a token of DDS Security: a class, and properties with text and octets. Returns whether it is well-formed.
 bool is_data_holder(WireCursor& cursor);
-/// Length, text without zeros, a zero.
+/// Reads a string: length, text without zeros, a final zero. `most`: largest length. Returns whether it is well-formed.
 bool is_string(WireCursor& cursor, std::size_t most);
 
 }  // namespace aurasim::dds

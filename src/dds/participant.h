@@ -23,32 +23,34 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Says that the owner is not stuck. Transports and buses call it on every use; call it in a longer computation.
-  /// Any thread.
+  /// Marks progress: the owner is not stuck. Transports and buses call it on every use; a longer computation must call
+  /// it itself. Callable from any thread.
   void progress();
 
   /// True when this process was once held up (stopped, starved, suspended) for longer than its participant's lease. Its
-  /// peers have given it up, and Fast DDS 2.9.1 does not always match it again (3 of 25 did not within 30 s): it had
-  /// better end. Any thread.
+  /// peers have dropped it, and Fast DDS 2.9.1 does not always match it again (3 of 25 did not within 30 s), so it
+  /// should end. Callable from any thread.
   bool outlived_its_lease() const;
 
-  /// True when all traffic is on loopback, which cannot be cut: whoever is silent there is dead.
+  /// True when all traffic is on loopback. Loopback cannot be cut, so a process that is silent there is dead.
   bool stays_on_this_host() const;
 
   struct ImpairmentReport {
-    Impairment impairment;  ///< as the profile and the settings make it
+    Impairment impairment;  ///< result of the profile and the settings
     ImpairmentCounters datagrams;
   };
-  /// Nothing where nothing is impaired. Any thread.
+  /// Returns the impairment and its counters; nothing if the network is not impaired. Callable from any thread.
   std::optional<ImpairmentReport> impairment() const;
-  /// Samples of processes that are no nodes of the run, and repeats for them, that were refused. Any thread.
+  /// Number of samples from processes outside the run, and of retransmissions to them, that were refused. Callable from
+  /// any thread.
   std::uint64_t refused_of_strangers() const;
-  /// Who else is in the domain, with keys and without. Any thread.
+  /// Numbers of other participants in the domain, with keys and without. Callable from any thread.
   PeersByKeys peers_by_keys() const;
-  /// For the log: who is refused what, since the last call. Any thread.
+  /// Messages for the log about refusals since the last call. Callable from any thread.
   std::vector<std::string> take_said();
 
-  /// Sends what impairment still holds back. For a process that ends without destroying this. Any thread.
+  /// Sends at once the datagrams that impairment still holds back. For a process that ends without destroying this
+  /// object. Callable from any thread.
   void flush_delayed();
 
   const Settings& settings() const { return settings_; }

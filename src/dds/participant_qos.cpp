@@ -43,7 +43,7 @@ void set_interfaces(DomainParticipantQos& qos, const std::vector<std::string>& i
   qos.transport().use_builtin_transports = false;
 }
 
-/// "address" or "address:port".
+/// Locator of a peer given as "address" or "address:port".
 Locator_t locator_of(const std::string& peer, std::uint16_t default_port) {
   const auto colon = peer.find(':');
   const std::string address = peer.substr(0, colon);
@@ -64,7 +64,7 @@ Locator_t locator_of(const std::string& peer, std::uint16_t default_port) {
   return locator;
 }
 
-/// Announce to the peers only. Naming an own locator for discovery switches multicast off.
+/// Makes the participant announce itself to the peers only. Naming an own locator for discovery switches multicast off.
 void set_peers(DomainParticipantQos& qos, const Settings& settings) {
   auto& builtin = qos.wire_protocol().builtin;
   if (!settings.peers.empty()) {
@@ -89,7 +89,8 @@ void set_peers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
-/// Discovery by `fast-discovery-server -i N`, where N is the position in the list. Super client: sees every endpoint.
+/// Sets discovery by `fast-discovery-server -i N`, where N is the position in the list. As a super client the
+/// participant discovers every endpoint.
 void set_servers(DomainParticipantQos& qos, const Settings& settings) {
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.discoveryProtocol = eprosima::fastrtps::rtps::DiscoveryProtocol_t::SUPER_CLIENT;
@@ -108,8 +109,9 @@ void set_servers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
-/// Over a network, RTPS cuts what is larger than a packet, not IP: a piece that is lost is sent again alone, and the
-/// lease of a dead reader does not wait behind fragments. Copies the descriptors: the profile's are shared.
+/// Makes RTPS, not IP, fragment messages that are larger than a packet of the links. Then a lost fragment is
+/// retransmitted alone, and the lease of a dead reader does not wait behind fragments. Copies the descriptors, because
+/// the profile's are shared.
 void fit_to_links(DomainParticipantQos& qos) {
   const std::vector<Interface> interfaces = interfaces_of_this_host();
   for (auto& transport : qos.transport().user_transports) {
@@ -123,8 +125,8 @@ void fit_to_links(DomainParticipantQos& qos) {
   }
 }
 
-/// Fast DDS numbers the participants of a process and never uses a number again: a process that has joined DDS often
-/// would listen above the ports at which peers look for it. From the lowest port on, it takes the first that is free.
+/// Gives the participant the lowest free port. Fast DDS numbers the participants of a process and never reuses a
+/// number, so a process that has joined DDS often would listen above the ports at which peers look for it.
 void listen_where_peers_look(DomainParticipantQos& qos, std::uint32_t domain) {
   const auto& ports = qos.wire_protocol().port;
   for (Locator_t& own : qos.wire_protocol().builtin.metatrafficUnicastLocatorList) {
@@ -132,7 +134,7 @@ void listen_where_peers_look(DomainParticipantQos& qos, std::uint32_t domain) {
   }
 }
 
-/// DDS-Security with the plugins that Fast DDS brings.
+/// Sets up DDS-Security with the plugins that come with Fast DDS.
 void set_keys(DomainParticipantQos& qos, const security::KeyFiles& keys) {
   auto& properties = qos.properties().properties();
   const auto set = [&properties](const char* name, const std::string& value) { properties.emplace_back(name, value); };

@@ -8,9 +8,8 @@
 
 namespace aurasim::dds {
 
-/// Precedence: settings.interfaces, .discovery and .peers, where given, replace what the profile says. Messages are
-/// no larger than fits into a packet of the links that carry them (link_mtu.h). Throws DdsError when a value cannot be
-/// used.
+/// Returns the QoS. settings.interfaces, .discovery and .peers, where given, replace what the profile says. The largest
+/// message is what fits into a packet of the links that carry it (link_mtu.h). Throws DdsError for an invalid value.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
 
 /// True when every transport may use loopback addresses only.

@@ -30,7 +30,7 @@ Payload payload_of(std::uint32_t writer) {
   }
 }
 
-/// What a 16-octet key stands for, in discovery.
+/// Adds a claim about the participant or endpoint that the 16-octet key of discovery names.
 void add_subject(Claim::Kind kind, const ListFindings& list, const GuidPrefix& destination, Findings& findings) {
   if (!list.subject) return;
   Claim claim;
@@ -55,7 +55,7 @@ Result check_discovery(Payload payload, WireCursor& body, const GuidPrefix& dest
   return std::nullopt;
 }
 
-/// Identities, keys, class and tokens.
+/// Reads a handshake: identities, keys, class and tokens. Returns whether it is well-formed.
 bool is_handshake(WireCursor& body) {
   constexpr std::size_t kIdentities = 2 * 24 + 3 * 16, kMostTokens = 16, kLongestClass = 256;
   if (body.left() < kIdentities) return false;
@@ -80,7 +80,7 @@ std::optional<Refusal> check_payload(std::uint32_t writer, WireCursor& body, con
                                      Findings& findings) {
   const Payload payload = payload_of(writer);
   findings.introduces = findings.introduces || introduces(writer);
-  if (payload == Payload::kUnknown) return std::nullopt;  // nobody here listens to it
+  if (payload == Payload::kUnknown) return std::nullopt;  // no reader here receives it
   if (body.left() < 4) return Refusal::kPayload;
   body.skip(1);
   const std::uint8_t encapsulation = body.u8();

@@ -1,5 +1,5 @@
-// What the built-in writers of a participant say: discovery, liveliness and handshakes (RTPS 2.2, sections 8.5 and 9.6;
-// DDS Security 1.1, section 7.4.3). What a user's writer says is the codecs' to check. Pure.
+// Checks the payloads of a participant's built-in writers: discovery, liveliness and handshakes (RTPS 2.2, sections 8.5
+// and 9.6; DDS Security 1.1, section 7.4.3). Payloads of user writers are checked by the codecs. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace aurasim::dds {
 
-/// Of discovery of participants and of handshakes.
+/// True for the writers of participant discovery and of handshakes.
 bool introduces(std::uint32_t writer);
 
-/// `body` begins with the encapsulation. `destination`: the participant that it is for; zeros: all. Adds to
-/// `findings.claims` and `findings.introduces`.
+/// Checks a payload and returns why it is refused; nothing: it is sound. `body` begins with the encapsulation.
+/// `destination`: the addressed participant; zeros: all. Adds to `findings.claims` and `findings.introduces`.
 std::optional<Refusal> check_payload(std::uint32_t writer, WireCursor& body, const GuidPrefix& destination,
                                      Findings& findings);
 
-/// There is no payload: inline QoS says what is gone.
+/// Adds the claim that a participant or endpoint is gone. For a sample without payload, whose inline QoS names it.
 void add_gone(std::uint32_t writer, const ListFindings& inline_qos, const GuidPrefix& destination, Findings& findings);
 
 }  // namespace aurasim::dds

@@ -8,13 +8,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Fast DDS forgets a silent participant after its lease; this book never before it.
+/// How much longer than its lease a silent participant stays in the book. Fast DDS forgets it after its lease; the book
+/// must not forget it earlier.
 constexpr core::TokenBucket::Time kLonger = 10s;
-/// Unfinished ones of one writer.
+/// Most unfinished samples of one writer.
 constexpr std::size_t kMostSamples = 1024;
 constexpr std::size_t kMostReaders = 64;
 constexpr std::size_t kMostStrangers = 64;
-/// Discovery and handshakes: a description of an endpoint has some kB.
+/// Largest sample of discovery and handshakes: a description of an endpoint has some kB.
 constexpr std::uint32_t kLargestDiscovery_B = 64U << 10;
 
 }  // namespace
@@ -77,7 +78,8 @@ std::optional<Refusal> PeerBook::take_endpoint(Peer& peer, const Claim& claim) {
   return std::nullopt;
 }
 
-/// Null: there are too many. What was never announced (built-in, or announced in secret) makes room for others.
+/// Returns the record of an endpoint; null if there are too many. Endpoints that were never announced (built-in, or
+/// announced in secret) make room for others.
 PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   if (const auto it = peer.endpoints.find(entity); it != peer.endpoints.end()) return &it->second;
   if (peer.endpoints.size() >= limits_.endpoints_of_a_participant) {
@@ -89,7 +91,8 @@ PeerBook::Endpoint* PeerBook::endpoint_of(Peer& peer, std::uint32_t entity) {
   return &peer.endpoints[entity];
 }
 
-/// A sample beyond what a heartbeat has come to makes the way there expensive (take_heartbeat). It is sent again.
+/// True when a sample is too far beyond the last heartbeat: the following heartbeat would be expensive
+/// (take_heartbeat). The sample is retransmitted later.
 bool PeerBook::is_far_ahead(Endpoint& writer, const Claim& claim) const {
   std::uint64_t reached = writer.highest;
   for (const auto& [reader, first] : writer.first) reached = std::max(reached, first);
@@ -98,14 +101,16 @@ bool PeerBook::is_far_ahead(Endpoint& writer, const Claim& claim) const {
   return false;
 }
 
-/// Fast DDS counts from the number that it has last told of to the heartbeat's first, with its reader locked; if there
-/// is a sample on the way it looks all of them up in its history. Who joins late hears a heartbeat before samples.
+/// Judges a heartbeat. Fast DDS counts from the number that it has last reported up to the heartbeat's first, with its
+/// reader locked; if there are samples between them it looks them all up in its history. A late joiner receives a
+/// heartbeat before samples.
 std::optional<Refusal> PeerBook::take_heartbeat(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
                                                 SourceLimits& rates, Time now) {
   forget_samples(peer, writer, claim.reader, 0, claim.first);
   if (writer.first.size() >= kMostReaders && !writer.first.contains(claim.reader)) writer.first.clear();
   std::uint64_t& first = writer.first[claim.reader];
-  const std::uint64_t known = std::max(first, writer.first[0]);  // what is for all is for this one, too
+  // Heartbeats for all readers count for this reader, too.
+  const std::uint64_t known = std::max(first, writer.first[0]);
   if (claim.first <= known) return std::nullopt;
   const std::uint64_t jump = claim.first - known;
   if (jump > limits_.longest_jump) return Refusal::kJump;
@@ -115,7 +120,7 @@ std::optional<Refusal> PeerBook::take_heartbeat(Peer& peer, Endpoint& writer, co
   return std::nullopt;
 }
 
-/// Fast DDS goes through all numbers of a gap, and keeps those that do not follow on what it has.
+/// Judges a gap. Fast DDS iterates over all its numbers, and stores those that do not directly follow on what it has.
 std::optional<Refusal> PeerBook::take_gap(Peer& peer, Endpoint& writer, const Claim& claim, Source source,
                                           SourceLimits& rates, Time now) {
   const std::uint64_t numbers = claim.last + 1 - claim.first;
@@ -158,7 +163,8 @@ bool PeerBook::has_room_for(const Peer& peer, const Claim& claim) const {
          peer.unfinished_B + claim.sample_B <= limits_.unfinished_of_a_participant_B;
 }
 
-/// Memory is taken for the whole sample at its first fragment, and sizes from the first one that comes.
+/// Judges fragments. Memory for the whole sample is allocated at its first fragment, and the sizes are those that the
+/// first one names.
 std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, const Claim& claim,
                                                 std::span<const std::uint8_t> datagram, Time now) {
   if (is_built_in(claim.guid.entity) && claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
@@ -179,7 +185,7 @@ std::optional<Refusal> PeerBook::take_fragments(Peer& peer, Endpoint& writer, co
   return std::nullopt;
 }
 
-/// Its newest announcement: somebody has to be met first.
+/// Keeps a fragment of an unknown participant's newest announcement: it has to be read before the participant is known.
 std::optional<Refusal> PeerBook::take_stranger(const Claim& claim, std::span<const std::uint8_t> datagram, Time now) {
   if (claim.sample_B > kLargestDiscovery_B) return Refusal::kFragment;
   auto it = strangers_.find(claim.guid.prefix);
@@ -244,8 +250,8 @@ PeerBook::Samples::iterator PeerBook::forget(Peer& peer, Endpoint& writer, Sampl
   return writer.samples.erase(sample);
 }
 
-/// Numbers in [from, to), as far as they are for this reader alone or this is for all: what one reader is told does not
-/// make another forget.
+/// Drops unfinished samples with numbers in [from, to). With a `reader`, only samples for that reader alone: a message
+/// to one reader must not make another lose a sample.
 void PeerBook::forget_samples(Peer& peer, Endpoint& writer, std::uint32_t reader, std::uint64_t from,
                               std::uint64_t to) {
   for (auto it = writer.samples.lower_bound(from); it != writer.samples.end() && it->first < to;) {

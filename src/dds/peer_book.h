@@ -1,5 +1,5 @@
-// What is remembered of the participants that have announced themselves: whether what a datagram claims goes on from
-// what came before. Of others Fast DDS takes nothing but announcements. Pure; time is passed in.
+// Remembers the participants that have announced themselves, and judges whether the claims of a datagram continue their
+// earlier ones. From unknown participants Fast DDS gets only announcements. Pure; time is passed in.
 #pragma once
 
 #include <cstddef>
@@ -16,23 +16,25 @@
 
 namespace aurasim::dds {
 
-/// Of a sample, counted from 1.
+/// Missing fragments of a sample; fragments are numbered from 1.
 struct MissingFragments {
-  std::uint32_t base = 0;            ///< the first one
-  std::uint32_t count = 0;           ///< of bits, the first of which stands for `base`; at most 256
+  std::uint32_t base = 0;            ///< number of the first missing fragment
+  std::uint32_t count = 0;           ///< number of bits, the first of which stands for `base`; at most 256
   std::vector<std::uint32_t> words;  ///< the bits, the first one highest
 };
 
 struct PeerLimits {
   std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
   std::size_t endpoints_of_a_participant = 4096;
-  std::uint64_t longest_jump = std::uint64_t{1} << 27;    ///< at 60 steps a second: 26 days
-  std::uint64_t farthest_ahead = std::uint64_t{1} << 14;  ///< samples, of what their writer was known to have reached
-  double price_with_samples = 32;                         ///< of a jump over numbers among which there are samples
+  std::uint64_t longest_jump = std::uint64_t{1} << 27;  ///< at 60 steps a second: 26 days
+  /// Samples that a number may be ahead of its writer's highest known one.
+  std::uint64_t farthest_ahead = std::uint64_t{1} << 14;
+  double price_with_samples = 32;  ///< price factor of a jump over numbers among which there are samples
   std::uint64_t longest_gap = std::uint64_t{1} << 18;
-  std::uint64_t free_jump = 1024, free_gap = 256;  ///< which cost nothing worth counting
+  std::uint64_t free_jump = 1024, free_gap = 256;  ///< jumps and gaps up to these lengths are free
   std::size_t unfinished_B = std::size_t{192} << 20, unfinished_of_a_participant_B = std::size_t{96} << 20;
-  /// A sample to which nothing is added for so long makes room: what is lost of it is not sent again.
+  /// Time after which an unfinished sample that gets no more fragments makes room: what was lost of it is not
+  /// retransmitted.
   core::TokenBucket::Time until_given_up = std::chrono::seconds(2);
 };
 
@@ -42,26 +44,26 @@ class PeerBook {
 
   explicit PeerBook(const PeerLimits& limits) : limits_(limits) {}
 
-  /// A participant has said something, whatever it is.
+  /// Takes note that a datagram of `participant` has arrived.
   void hear(const GuidPrefix& participant, Time now);
-  /// `datagram` is what the claim was found in.
+  /// Returns why the claim is refused; nothing: it is accepted. `datagram` is the one that contains the claim.
   std::optional<Refusal> judge(const Claim& claim, std::span<const std::uint8_t> datagram, Source source,
                                SourceLimits& rates, Time now);
-  /// The sample of which `claim` was the last fragment that was missing, as one datagram; nothing: of no other claim.
-  /// What comes of it from now on begins anew. `header` is of the datagram that the claim was found in.
+  /// Returns the whole sample as one datagram if `claim` was its last missing fragment, otherwise nothing. The sample
+  /// is then dropped: further fragments of it begin a new one. `header` is of the datagram that contains the claim.
   std::optional<MadeDatagram> take_whole(const Claim& claim, std::span<const std::uint8_t> header);
-  /// What is missing of a sample; nothing: none of it is here.
+  /// Returns which fragments of a sample are missing; nothing if none of them has arrived.
   std::optional<MissingFragments> missing_of(const WireGuid& writer, std::uint64_t number) const;
 
   std::size_t participants() const { return peers_.size(); }
   std::size_t unfinished_B() const { return unfinished_B_; }
 
  private:
-  /// One that comes in fragments.
+  /// A sample that arrives in fragments.
   struct Sample {
-    Claim first;             ///< that came; its reader is that of all, or 0
+    Claim first;             ///< the first claim that came; `reader` is the reader that all its fragments are for, or 0
     std::uint32_t missing;   ///< fragments
-    std::vector<bool> here;  ///< by fragment
+    std::vector<bool> here;  ///< which fragments have arrived
     MadeDatagram datagram;
     Time touched{0};  ///< when something was added to it
 
@@ -72,9 +74,10 @@ class PeerBook {
   using Samples = std::map<std::uint64_t, Sample>;
   struct Endpoint {
     bool announced = false;
-    std::map<std::uint32_t, std::uint64_t> first;  ///< by reader (0: all): the highest that a heartbeat has begun with
-    std::uint64_t highest = 0;                     ///< of its samples
-    Samples samples;                               ///< that are unfinished
+    /// By reader (0: all): the highest first number of its heartbeats so far.
+    std::map<std::uint32_t, std::uint64_t> first;
+    std::uint64_t highest = 0;  ///< highest sequence number of its samples
+    Samples samples;            ///< unfinished samples
   };
   using Endpoints = std::unordered_map<std::uint32_t, Endpoint>;
   struct Peer {
@@ -105,7 +108,8 @@ class PeerBook {
 
   PeerLimits limits_;
   Peers peers_;
-  std::unordered_map<GuidPrefix, Sample, PrefixHash> strangers_;  ///< who announce themselves in fragments
+  /// Announcements in fragments, by unknown participants.
+  std::unordered_map<GuidPrefix, Sample, PrefixHash> strangers_;
   std::unordered_map<std::uint32_t, std::size_t> peers_of_address_;
   std::size_t unfinished_B_ = 0;
 };

@@ -1,6 +1,6 @@
-// Which other participants of a domain speak with keys. In every run a participant announces itself in the clear, and
-// one with keys names its identity there (DDS Security 1.1, section 7.4.1.2): whoever has no keys, or others, still
-// learns that somebody is there.
+// Keeps track of which other participants of a domain use keys. In every run a participant announces itself in the
+// clear, and one with keys names its identity there (DDS Security 1.1, section 7.4.1.2). So a process with no keys, or
+// with other keys, still learns that it is there.
 #pragma once
 
 #include <mutex>
@@ -17,7 +17,7 @@ namespace aurasim::dds {
 class PeerKeys {
  public:
   void note(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-  /// It could not prove who it is.
+  /// Takes note that `participant` could not prove its identity.
   void note_refused(const eprosima::fastrtps::rtps::GUID_t& participant);
   PeersByKeys count() const;
 

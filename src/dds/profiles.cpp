@@ -16,7 +16,8 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-/// Fast DDS keeps one set of profiles per process and refuses a name that it has already, so each file is loaded once.
+/// Loads a file unless it was loaded before. Fast DDS keeps one set of profiles per process and refuses a name that it
+/// already has.
 void load_once(const std::filesystem::path& file) {
   static std::mutex mutex;
   static std::set<std::filesystem::path> loaded;

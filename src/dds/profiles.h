@@ -20,7 +20,7 @@ class Profiles {
 
   const std::filesystem::path& file() const { return file_; }
 
-  // Each throws DdsError with the file and the names that were looked for.
+  // Each getter throws DdsError with the file and the names that were looked for.
   eprosima::fastdds::dds::DomainParticipantQos participant();  ///< with the properties of `<stem>_impairment`
   eprosima::fastdds::dds::DataWriterQos writer(eprosima::fastdds::dds::Publisher& publisher, std::string_view name);
   eprosima::fastdds::dds::DataReaderQos reader(eprosima::fastdds::dds::Subscriber& subscriber, std::string_view name);

@@ -1,4 +1,4 @@
-// How much of one kind a process may send. A bucket of tokens for each; time is passed in.
+// Limits the rate of messages of one kind for each source: one token bucket per source. Time is passed in.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace aurasim::dds {
 
-/// `Source`: has operator<.
+/// `Source` identifies a sender and needs operator<.
 template <class Source>
 class RateLimit {
  public:
@@ -17,7 +17,7 @@ class RateLimit {
 
   RateLimit(double per_second, double at_once) : per_second_(per_second), at_once_(at_once) {}
 
-  /// False: this is one too many.
+  /// Returns whether one more message of `source` is allowed, and takes a token if so.
   bool allows(const Source& source, Time now) {
     if (buckets_.size() >= kMostSources && !buckets_.contains(source)) forget_the_quiet(now);
     if (buckets_.size() >= kMostSources && !buckets_.contains(source)) return false;
@@ -25,7 +25,7 @@ class RateLimit {
         .first->second.take(1, now.time_since_epoch());
   }
 
-  /// Each source that is known may send so many more, up to as many as at once.
+  /// Adds tokens to every known source, up to the size of its bucket.
   void allow_more(double messages) {
     for (auto& [source, bucket] : buckets_) bucket.add(messages);
   }

@@ -1,5 +1,5 @@
-// How much one process may ask of a run, on command (rays, and all the rest) and on run_control: more than any page or
-// client sends. With keys an operator has no more: a key may be in wrong hands, and a program out of hand.
+// Rate limits for one process on topics command (rays, and all the rest) and run_control: more than any page or client
+// sends. An operator with keys gets no more: a key may be in wrong hands, and a program out of control.
 #pragma once
 
 #include <string>
@@ -13,11 +13,12 @@ namespace aurasim::dds {
 inline constexpr double kWordsASecond = 500;
 inline constexpr double kWordsAtOnce = 1000;
 
-/// Of setpoints, by one program: four messages for each of 240 states a second.
+/// Setpoint messages of one program a second: four for each of 240 states.
 inline constexpr double kSetpointsASecond = 1000;
 inline constexpr double kSetpointsAtOnce = 4000;
 
-/// Besides, for each state that the node computes: a program in lock-step says so much for each, however fast they are.
+/// Setpoint messages allowed in addition for each state that the node computes. A program in lock-step sends one for
+/// each state, however fast they are computed.
 inline constexpr double kWordsAState = 1;
 inline constexpr double kSetpointsAState = 4;
 

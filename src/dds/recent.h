@@ -1,4 +1,5 @@
-// A map of bounded size, of what anybody can fill: the least recently seen are forgotten first, half of them at once.
+// A map of bounded size, for keys that anybody on the network can create. When it is full the least recently used half
+// is forgotten at once.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +9,11 @@
 
 namespace aurasim::dds {
 
-/// Keeps those that were seen since the last time that half of them had come.
+/// Two generations: entries used since the last rotation stay, the older half is dropped at the next one.
 template <class Key, class Value, class Hash = std::hash<Key>>
 class Recent {
  public:
-  /// What is kept under `key`, or else what `make` makes. Valid until the next call.
+  /// Returns the value under `key`, and creates it by `make()` if there is none. Valid until the next call.
   template <class Make>
   Value& find(const Key& key, std::size_t most, Make make) {
     if (const auto it = young_.find(key); it != young_.end()) return it->second;

@@ -71,7 +71,8 @@ Repeats::Answer Repeats::judge(const Request& request, Time now) {
   return Answer::kDrop;
 }
 
-/// What it has already, or has just come to, is its to say.
+/// True when a process that is no node asks for messages between nodes later than RepeatLimits::until_known after its
+/// first request. A reader that has just joined (base 0) or lacks nothing is never too late.
 bool Repeats::is_too_late(Asker& asker, const Request& request, Time now) const {
   if (asker.since == Time(0)) asker.since = now;
   if (now - asker.since < limits_.until_known) return false;

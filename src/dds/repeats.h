@@ -1,6 +1,6 @@
-// What is said again to readers that ask for it. Nodes of the run get all that they ask for. Everybody else gets so
-// much a second, and of what nodes say to each other after a while nothing: a reader that takes no samples asks for all
-// of them with each heartbeat, for ever, and they are kept for it. Pure; time is passed in.
+// Limits retransmissions. Nodes of the run get all that they ask for. Other processes get a limited number of bytes a
+// second, and after a while no messages between nodes: a reader that takes no samples asks for all of them with each
+// heartbeat, for ever, and they are kept for it. Pure; time is passed in.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,13 @@
 
 namespace aurasim::dds {
 
-/// Of processes that are no nodes. A viewer with 10% loss asks each node for some kB a second, a spare that comes late
-/// for some 20 MB at once.
+/// Limits for processes that are no nodes. A viewer with 10% loss asks each node for some kB a second, a spare that
+/// joins late for some 20 MB at once.
 struct RepeatLimits {
-  double bytes_per_s = 8e6, bytes_burst = 32e6;            ///< of one process
-  double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< of all together; discovery is not counted
-  double smallest_sample_B = 8192;                         ///< what any costs
-  /// Who listens to what nodes say to each other has so long to become known as one.
+  double bytes_per_s = 8e6, bytes_burst = 32e6;            ///< limits of one process
+  double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< limits of all together; discovery is not counted
+  double smallest_sample_B = 8192;                         ///< lowest cost of a retransmission
+  /// Time in which a reader of messages between nodes has to become known as a node.
   core::TokenBucket::Time until_known = std::chrono::seconds(10);
 };
 
@@ -36,25 +36,25 @@ class Repeats {
   explicit Repeats(const RepeatLimits& limits)
       : limits_(limits), all_(limits.all_bytes_per_s, limits.all_bytes_burst, Time(0)) {}
 
-  /// But for this process itself. Before any is known, everybody is one.
+  /// Sets the nodes of the run, the own process excluded. While the set is empty every process counts as a node.
   void set_nodes(Prefixes nodes) { nodes_ = std::move(nodes); }
-  /// A writer of this process, of what nodes say to each other.
+  /// Registers a writer of this process whose samples only nodes need.
   void add_writer_of_nodes(std::uint32_t writer) { of_nodes_.insert(writer); }
   void remove_writer_of_nodes(std::uint32_t writer) { of_nodes_.erase(writer); }
 
-  /// A datagram that this process sends: how large samples are, and how many there have been.
+  /// Learns from a datagram that this process sends how large its samples are, and how many there have been.
   void note_sent(std::span<const std::uint8_t> datagram);
 
   enum class Answer : std::uint8_t {
     kPass,
-    kDrop,    ///< who asks again may be heard
-    kHasAll,  ///< as if it had acknowledged all samples until last_of()
+    kDrop,    ///< not answered now; a later request may be answered
+    kHasAll,  ///< treated as if it had acknowledged all samples up to last_of()
   };
   Answer judge(const Request& request, Time now);
   std::uint64_t last_of(std::uint32_t writer) const;
 
-  /// Processes that were refused repeats, or of which nothing is awaited any more, for the first time since the last
-  /// call.
+  /// Processes that were refused retransmissions, or from which no acknowledgement is awaited any more, for the first
+  /// time since the last call.
   std::vector<std::pair<GuidPrefix, Answer>> take_news() { return std::exchange(news_, {}); }
 
   static constexpr std::size_t kMostAskers = 2048, kMostWriters = 65'536, kMostNews = 64;
@@ -62,12 +62,12 @@ class Repeats {
  private:
   struct Asker {
     core::TokenBucket bytes;
-    Time since{0};  ///< that it was first heard of what nodes say to each other; 0: it has not been
+    Time since{0};  ///< first request of it for messages between nodes; 0: none so far
     bool is_said = false, is_said_of_nodes = false;
   };
   struct Sent {
     std::uint64_t last = 0;
-    std::uint32_t sample_B = 0, fragment_B = 0;  ///< the largest of late: those of 100 samples ago hardly count
+    std::uint32_t sample_B = 0, fragment_B = 0;  ///< recent maxima: the weight of a sample 100 samples ago is small
   };
 
   void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B, std::uint32_t fragment_B);

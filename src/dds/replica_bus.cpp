@@ -56,12 +56,12 @@ struct ReplicaReader::Impl {
   std::optional<TypedReader<wire::Replica>> deltas;
   std::optional<TypedReader<wire::Replica>> keys;
   std::uint64_t received = 0;
-  std::uint64_t refused_before = 0;  ///< by the readers before these
-  /// Refused because their process was not known as that region's node.
+  std::uint64_t refused_before = 0;  ///< samples refused by former readers
+  /// Regions and processes whose replicas were refused because the process was not known as that region's node.
   std::set<std::pair<core::RegionId, ProcessPrefix>> strangers;
 };
 
-/// Remembered of processes that are no nodes, however many send.
+/// Most processes remembered that are no nodes, however many send.
 constexpr std::size_t kMostStrangers = 64;
 
 void ReplicaReader::Impl::take_from(TypedReader<wire::Replica>& reader, std::vector<core::Replica>& replicas) {
@@ -74,8 +74,9 @@ void ReplicaReader::Impl::take_from(TypedReader<wire::Replica>& reader, std::vec
   });
 }
 
-/// The replicas of a process that takes a region over can be here before its status. What was refused until then is
-/// not sent again, and a node that stands has nothing new to tell. New readers get a key frame from every node.
+/// Renews the readers when a process whose replicas were refused has become a node. Replicas of a process that takes
+/// over a region can arrive before its status. Refused ones are not retransmitted, and a paused node has nothing new to
+/// publish. New readers get a key frame from every node.
 void ReplicaReader::Impl::listen_anew_to_who_became_a_node() {
   const auto is_node = [&speakers = participant.domain().speakers()](const auto& stranger) {
     return speakers.of(stranger.first) == stranger.second;

@@ -1,5 +1,5 @@
-// Topics replica and replica_key: a node publishes, observers listen. An observer never holds up a node: what it is too
-// slow for is overwritten.
+// Topics replica and replica_key: a node publishes, observers receive. An observer never holds up a node: samples that
+// it is too slow for are overwritten.
 #pragma once
 
 #include <chrono>
@@ -20,10 +20,10 @@ class ReplicaWriter {
   ReplicaWriter(Participant& participant, core::RegionId region);
   ~ReplicaWriter();
 
-  /// Key frames go to replica_key, all others to replica. False when the write failed.
+  /// Publishes a replica: key frames on replica_key, all others on replica. Returns false when the write failed.
   bool send(const core::Replica& replica);
   bool anybody_listens() const;
-  /// Grows whenever an observer comes.
+  /// Counts observers that have joined so far.
   std::uint64_t arrivals() const;
 
  private:
@@ -37,7 +37,7 @@ class ReplicaReader {
   ReplicaReader(Participant& participant, const ObserverSettings& settings);
   ~ReplicaReader();
 
-  /// What has come since the last call, deltas before key frames.
+  /// Returns the replicas that arrived since the last call, deltas before key frames.
   std::vector<core::Replica> take();
   /// Returns when something arrived, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);

@@ -1,4 +1,4 @@
-// core/replica.h as a wire type, and back. As in codec.h.
+// Encodes core/replica.h as a wire type, and decodes it. Same contract as codec.h.
 #pragma once
 
 #include "core/replica.h"

@@ -44,10 +44,10 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-/// A message of so many transforms fits into a datagram of 64 kB, with names of usual length.
+/// Most transforms in one message. With names of usual length it fits into a datagram of 64 kB.
 constexpr std::size_t kTransformsAtOnce = 400;
 
-/// As ROS 2 announces it: without type object and type information, with which Fast DDS 2.9.1 ends processes that do
+/// Type support without type object and type information, as in ROS 2. With them Fast DDS 2.9.1 ends processes that do
 /// not know the type.
 template <class Generated>
 class RosType : public Generated {
@@ -57,7 +57,8 @@ class RosType : public Generated {
     this->auto_fill_type_object(false);
   }
 
-  /// What is no such message reads as one with a number that is none: refused here, it would be asked for for ever.
+  /// Deserializes an invalid message as one whose number is not finite. If it were refused here, the reader would
+  /// request it for ever.
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
     if constexpr (std::is_same_v<typename Generated::type, geometry_msgs::msg::dds_::Twist_>) {
       if (!is_one(payload, data)) {
@@ -108,7 +109,7 @@ using OwnParticipant = std::unique_ptr<DomainParticipant, Leave>;
 
 OwnParticipant join(const Settings& settings, Profiles& profiles, const std::shared_ptr<DatagramGuard>& guard) {
   DomainParticipantQos qos = participant_qos(profiles, settings);
-  const std::string_view enclave = "enclave=/;";  // where ROS looks for what it takes for one of its own
+  const std::string_view enclave = "enclave=/;";  // ROS takes a participant with this user data for one of its own
   qos.user_data().setValue({enclave.begin(), enclave.end()});
   install(qos, guard, nullptr);
   OwnParticipant participant(
@@ -214,12 +215,12 @@ struct Ros2Bus::Impl {
     }
   }
 
-  Wakeup wakeup;  // of nobody: a node looks before each state
+  Wakeup wakeup;  // no thread waits on it: a node polls before each state
   std::shared_ptr<DatagramGuard> guard = std::make_shared<DatagramGuard>();
   Profiles profiles;
   Telling clock{wakeup}, tf{wakeup}, joints{wakeup};
   std::vector<std::unique_ptr<Hearing>> drivers;  ///< as Ros2Settings::cmd_vel
-  OwnParticipant participant;                     // after what listens to its endpoints
+  OwnParticipant participant;                     // destroyed before the listeners of its endpoints
   Publisher* publisher = nullptr;
   Subscriber* subscriber = nullptr;
   RateLimit<Guid> rates{kSetpointsASecond, kSetpointsAtOnce};

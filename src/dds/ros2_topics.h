@@ -23,11 +23,11 @@ inline constexpr Ros2Type kRos2JointState{"sensor_msgs/msg/JointState", "sensor_
 inline constexpr Ros2Type kRos2Twist{"geometry_msgs/msg/Twist", "geometry_msgs::msg::dds_::Twist_",
                                      "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"};
 
-/// On the wire, of a topic's full name: "/clock" is "rt/clock".
+/// Name on the wire of a topic's full name: "/clock" becomes "rt/clock".
 std::string ros2_wire_name(std::string_view topic);
-/// "/NAME/cmd_vel".
+/// Name of a body's command topic: "/NAME/cmd_vel".
 std::string ros2_cmd_vel_topic(std::string_view body);
-/// What an endpoint of a type says in its user data, since Iron: "typehash=RIHS01_...;".
+/// User data of an endpoint of this type, as ROS 2 expects it since Iron: "typehash=RIHS01_...;".
 std::vector<unsigned char> ros2_user_data(const Ros2Type& type);
 
 }  // namespace aurasim::dds

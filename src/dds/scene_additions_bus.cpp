@@ -82,7 +82,8 @@ struct MeshReader::Impl {
   Impl(Participant& participant_in, const MeshCacheLimits& limits)
       : participant(participant_in), reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
 
-  /// What a node tells again it has looked at when it came; in worlds that were saved by others, names may be others.
+  /// True when the mesh has the hash that it is named by. Meshes that a node publishes again are not checked: it
+  /// checked them on receipt, and worlds saved by others may use other names.
   bool is_what_it_is_called(const NamedMesh& named, const Origin& origin) const {
     return core::content_hash(named.mesh) == named.hash ||
            (named.is_told_again && participant.domain().speakers().is_node(origin.writer));

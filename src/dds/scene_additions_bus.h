@@ -1,5 +1,4 @@
-// Topics orders and shape: what clients have added to the scene since the run began, for observers and for tools that
-// come late.
+// Topics orders and shape: the scene additions of clients since the run began, for observers and tools that join late.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@
 
 namespace aurasim::dds {
 
-/// Additions in sequence: all of one generation.
+/// All scene additions of one generation, in sequence.
 struct SceneAdditions {
   core::Generation generation = 0;
   std::vector<core::Order> orders;
@@ -38,7 +37,7 @@ class SceneAdditionsReader {
  public:
   explicit SceneAdditionsReader(Participant& participant);
   ~SceneAdditionsReader();
-  /// The newest that came since the last call.
+  /// Returns the newest additions that arrived since the last call.
   std::optional<SceneAdditions> take();
 
  private:
@@ -46,13 +45,14 @@ class SceneAdditionsReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Tells meshes of clients that may be gone, for those who come late. Used by one thread. The participant must outlive
-/// it.
+/// Publishes again the meshes of clients that may have left, for processes that join late. Used by one thread. The
+/// participant must outlive it.
 class MeshWriter {
  public:
   explicit MeshWriter(Participant& participant);
   ~MeshWriter();
-  /// As long as this process lives. False: topic shape takes no more.
+  /// Publishes a mesh, which stays available as long as this process lives. Returns false when topic shape takes no
+  /// more.
   bool tell_again(std::uint64_t hash, const core::TriangleMesh& mesh);
 
  private:
@@ -60,16 +60,17 @@ class MeshWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Meshes that clients have brought. Used by one thread. The participant must outlive it.
+/// Receives meshes that clients have brought. Used by one thread. The participant must outlive it.
 class MeshReader {
  public:
   explicit MeshReader(Participant& participant, const MeshCacheLimits& limits = {});
   ~MeshReader();
-  /// Takes in what has come, if it is what it is called by (core::content_hash).
+  /// Takes in the meshes that have arrived, and returns the cache. A mesh whose content does not match its hash
+  /// (core::content_hash) is refused.
   MeshCache& meshes();
-  /// Null if it has not come (yet).
+  /// Returns the mesh, or null if it has not arrived (yet).
   const core::TriangleMesh* mesh(std::uint64_t hash) { return meshes().find(hash); }
-  /// Meshes that were not sound, not what they were called, or that there was no room for.
+  /// Number of meshes refused: not sound, not matching their hash, or without room.
   std::uint64_t refused() const;
 
  private:

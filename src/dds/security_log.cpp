@@ -23,7 +23,7 @@ constexpr const char* kOurs = "SECURITY_AURASIM";
 constexpr const char* kReasons = "SECURITY_AUTHENTICATION";
 constexpr const char* kRefused = "refused ";
 
-// What strangers can make us say and remember.
+// Limits on what unknown processes can make this process log and remember.
 constexpr std::size_t kMostNames = 4096;
 constexpr std::size_t kMostSaid = 1024;
 constexpr auto kSayAgain = std::chrono::minutes(1);
@@ -31,15 +31,17 @@ constexpr auto kWindow = std::chrono::seconds(10);
 constexpr std::uint64_t kMostInWindow = 30;
 constexpr std::size_t kLongestClaim = 128;
 
-/// A number is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the participant, then what of it is meant.
+/// Length of a participant's number in text, which is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the
+/// participant, then the entity.
 constexpr std::size_t kPrefix = 12 * 3 - 1;
 
-/// Warnings but for those of kReasons are of no use: dozens a second while two participants meet.
+/// True for log entries about security that are useful. Warnings other than kReasons are not: there are dozens a second
+/// while two participants are matched.
 bool is_about_security(const std::string& category, const std::string& message) {
   return category.starts_with("SECURITY") || (category == "RTPS_EDP" && message.starts_with("Security manager"));
 }
 
-/// Fast DDS's log, but for what it says of security.
+/// Consumer of Fast DDS's log: passes on all entries except those about security.
 class Listener final : public LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
@@ -63,7 +65,7 @@ std::string text_of(const T& value) {
   return out.str();
 }
 
-/// It comes from a stranger, and goes to a terminal.
+/// Replaces unprintable characters: the text comes from an unknown process and goes to a terminal.
 std::string printable(const std::string& text) {
   std::string out;
   for (const char c : text.substr(0, kLongestClaim)) out += c >= ' ' && c <= '~' ? c : '?';
@@ -82,7 +84,7 @@ std::string address_in(const ParticipantDiscoveryInfo& info) {
   return locators.empty() ? "nowhere" : text_of(locators.at(0));
 }
 
-/// Without the place in Fast DDS's sources.
+/// Removes the place in Fast DDS's sources from a log message.
 std::string without_place(std::string message) {
   for (std::size_t place = 0; (place = message.find(" (./src")) != std::string::npos;) {
     const std::size_t end = message.find(')', place);
@@ -118,7 +120,7 @@ SecurityLog::Hearing::~Hearing() {
     const std::lock_guard lock(log.mutex_);
     log.tells_.erase(number_);
   }
-  Log::Flush();  // whoever is being told has been told
+  Log::Flush();  // waits until calls under way have returned
 }
 
 void SecurityLog::note(const ParticipantDiscoveryInfo& info) {
@@ -133,7 +135,7 @@ void SecurityLog::note(const ParticipantDiscoveryInfo& info) {
 }
 
 void SecurityLog::refused(const GUID_t& participant) {
-  // By the log, so that it comes after the reason.
+  // Goes through the log, so that it is handled after the reason.
   Log::QueueLog(kRefused + text_of(participant), Log::Context{__FILE__, __LINE__, __func__, kOurs}, Log::Kind::Warning);
 }
 
@@ -152,7 +154,7 @@ void SecurityLog::hear(const std::string& message, const std::string& category) 
     }
     tells = tells_;
   }
-  for (const std::string& text : texts) {  // a terminal that stands still must not hold DDS's threads up
+  for (const std::string& text : texts) {  // unlocked: a blocked terminal must not hold up DDS's threads
     for (const auto& [number, tell] : tells) {
       if (tell) tell(text);
     }

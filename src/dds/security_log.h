@@ -1,5 +1,6 @@
-// Whom Fast DDS refuses in a run with keys, and why, in words: it says so in its log, by numbers, and in callbacks that
-// have no reason. One for all participants of a process, as its log is.
+// Collects which participants Fast DDS refuses in a run with keys, and the reasons in words. Fast DDS gives the reason
+// in its log, by numbers, and the refusal in callbacks without a reason. One instance for all participants of a
+// process, as Fast DDS's log is.
 #pragma once
 
 #include <chrono>
@@ -20,10 +21,11 @@ class SecurityLog {
  public:
   using Tell = std::function<void(const std::string&)>;
 
-  /// From the first call on, Fast DDS's log about security comes here, and the rest of it goes where it went.
+  /// Returns the instance. From the first call on Fast DDS's log entries about security come here; all others go where
+  /// they went before.
   static SecurityLog& instance();
 
-  /// Tells somebody as long as it lives; from DDS's threads.
+  /// Subscription: calls its function for each refusal, from DDS's threads, as long as it lives.
   class Hearing {
    public:
     explicit Hearing(Tell tell);
@@ -35,20 +37,21 @@ class SecurityLog {
     int number_ = 0;
   };
 
-  /// Who a participant says it is: nothing is proved yet.
+  /// Takes note of the name that a participant claims, which is not proved yet.
   void note(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-  /// "process 01.0f...": the name of that one is put behind its number.
+  /// Adds the process's name behind each process number ("process 01.0f...") in `text`.
   std::string with_name_of_process(std::string text) const;
-  /// It could not prove it. Fast DDS has logged the reason just before.
+  /// Handles that `participant` failed to prove its identity. Fast DDS has logged the reason just before.
   void refused(const eprosima::fastrtps::rtps::GUID_t& participant);
-  /// An entry of Fast DDS's log about security.
+  /// Handles an entry of Fast DDS's log about security.
   void hear(const std::string& message, const std::string& category);
 
  private:
   using Clock = std::chrono::steady_clock;
 
   SecurityLog();
-  /// `text`, unless it has just been said, or there is too much to say.
+  /// Returns the messages to report: `text`, preceded by the number of messages left out so far if there were any.
+  /// Empty if `text` was just reported or there is too much to report.
   std::vector<std::string> worth_saying(const std::string& text);
   std::string with_names(std::string message) const;
 
@@ -56,7 +59,7 @@ class SecurityLog {
   std::map<int, Tell> tells_;
   int next_number_ = 0;
   std::map<std::string, std::string> names_;  ///< by the text of the participant's prefix
-  std::string reason_;                        ///< heard last, of somebody who is about to be refused
+  std::string reason_;                        ///< last logged reason, for the refusal that follows
   std::map<std::string, Clock::time_point> said_;
   Clock::time_point window_begin_{};
   std::uint64_t in_window_ = 0;

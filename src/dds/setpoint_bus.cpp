@@ -14,13 +14,13 @@
 namespace aurasim::dds {
 namespace {
 
-/// Of one message: both fit into a datagram of 64 kB.
+/// Most rows in one message: both fit into a datagram of 64 kB.
 constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
 
-/// Programs whose last word a node remembers: more than steer one run.
+/// Most programs whose last message number a node remembers: more than steer one run.
 constexpr std::size_t kMostPrograms = 1024;
 
-/// The last word of each program. When there are too many programs, the one that came first is forgotten.
+/// The number of each program's last message. When there are too many programs, the one that came first is forgotten.
 class LastWords {
  public:
   void note(const core::ProgramWord& word) {

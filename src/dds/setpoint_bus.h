@@ -1,4 +1,4 @@
-// Topic control: what programs want of bodies and joints (core/setpoint.h).
+// Topic control: setpoints that programs publish for bodies and joints (core/setpoint.h).
 #pragma once
 
 #include <chrono>
@@ -12,20 +12,20 @@
 
 namespace aurasim::dds {
 
-/// Of a node. Used by one thread. The participant must outlive it.
+/// A node's endpoint. Used by one thread. The participant must outlive it.
 class SetpointReader {
  public:
   explicit SetpointReader(Participant& participant);
   ~SetpointReader();
 
-  /// Those for this generation that have come since the last call, in order of arrival.
+  /// Returns setpoints for this generation that arrived since the last call, in order of arrival.
   std::vector<core::Setpoints> take(core::Generation generation);
-  /// Has a message of this program with this number, or a later one, come by the last take()? True also when the
-  /// message was for another generation, or was dropped.
+  /// True when the last take() or an earlier one received a message of this program with this number or a later one.
+  /// True also when the message was for another generation or was dropped.
   bool has_heard(const core::ProgramWord& word) const;
-  /// This node has computed a state: programs may say something for the next one.
+  /// To be called when this node has computed a state: it allows each program one more message.
   void note_state();
-  /// Messages that were dropped: their sender has sent far more than a state needs, or what is none.
+  /// Number of messages dropped because their sender sent far more than a state needs, or because they were invalid.
   std::uint64_t refused() const;
 
  private:
@@ -33,13 +33,14 @@ class SetpointReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Of a program. Used by one thread. The participant must outlive it.
+/// A program's endpoint. Used by one thread. The participant must outlive it.
 class SetpointWriter {
  public:
   explicit SetpointWriter(Participant& participant);
   ~SetpointWriter();
 
-  /// Numbers them, and says who sends them; large ones go in several messages. Throws DdsError when the write failed.
+  /// Publishes setpoints; fills in their number and sender. Large ones go in several messages. Throws DdsError when the
+  /// write failed.
   void send(core::Setpoints setpoints);
   /// The last message that was sent; number 0: none was.
   core::ProgramWord last_word() const;

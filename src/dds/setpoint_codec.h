@@ -1,4 +1,4 @@
-// core/setpoint.h as a wire type, and back. As in codec.h.
+// Encodes core/setpoint.h as a wire type, and decodes it. Same contract as codec.h.
 #pragma once
 
 #include "core/setpoint.h"

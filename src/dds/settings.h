@@ -1,4 +1,4 @@
-// What a process has to know to join a run's DDS domain. Filled from a launch file by the caller.
+// Settings with which a process joins a run's DDS domain. Filled from a launch file by the caller.
 #pragma once
 
 #include <chrono>
@@ -22,26 +22,28 @@ struct Settings {
   /// what the file lacks comes from `aurasim.xml` beside it, or in the folder above. Of a participant profile
   /// `<stem>_impairment` only the properties count; they are laid over those of the participant.
   std::filesystem::path profiles;
-  /// Addresses that may carry traffic. Not empty: replaces the white list of every transport of the profile, whatever
-  /// the file says; {"*"} removes the white list. Empty: the file decides.
+  /// Addresses that may carry traffic. If not empty it replaces the white list of every transport of the profile; {"*"}
+  /// removes the white list. Empty: the profile decides.
   std::vector<std::string> interfaces;
   config::Discovery discovery = config::Discovery::kMulticast;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
-  /// Lays over what the profile's properties aurasim.impair.* say.
+  /// Overrides what the profile's properties aurasim.impair.* say.
   ImpairmentOverrides impairment;
-  /// Participants of one run give different numbers, and so lose different datagrams with the same seed.
+  /// Separates the random numbers of participants. Each participant of a run uses a different value, so that they lose
+  /// different datagrams with the same seed.
   std::uint64_t impairment_stream = 0;
   /// A process whose owner has neither called any transport or bus nor marked progress (core/progress.h) for this long
   /// no longer counts as alive.
   std::chrono::nanoseconds hang_limit = std::chrono::seconds(10);
   /// Called every quarter second by a thread of its own as long as this process counts as alive.
   std::function<void()> show_life;
-  /// A process that is silent for one and a half leases counts as lost. False where somebody else knows who has died
-  /// and says so: then the silence of a process that is there means that it is slow. Heeded on loopback only.
+  /// True: a process that is silent for one and a half leases counts as lost. False where another party knows which
+  /// processes have died and reports it: then a silent process that still exists counts as slow. False only has an
+  /// effect on loopback.
   bool believes_silence = true;
-  /// Joins a run with keys; nothing: an open one.
+  /// Keys to join a run with keys; nothing: an open run.
   std::optional<security::KeyFiles> keys;
-  /// Called from DDS's threads with a sentence for each peer, reader or writer whom keys refuse.
+  /// Called from DDS's threads with a sentence for each peer, reader or writer that is refused because of its keys.
   std::function<void(const std::string&)> tell_refusal;
 };
 

@@ -13,7 +13,8 @@
 namespace aurasim::dds {
 namespace {
 
-/// What is kept of others, whatever they do: of writers that are gone, of processes, of words for the log.
+/// Limits on what is remembered of other processes, whatever they do: writers that are gone, processes, texts for the
+/// log.
 constexpr std::size_t kMostGone = 4096;
 constexpr std::size_t kMostProcesses = 4096;
 constexpr std::size_t kMostWords = 64;
@@ -21,7 +22,7 @@ constexpr std::size_t kMostFormer = 64;
 
 constexpr std::string_view kRegionPartition = "region/";
 
-/// Of "region/3" and "region/3/to/1": 3. Of anything else, wild cards too: -1.
+/// Region of a partition's name: 3 for "region/3" and "region/3/to/1"; -1 for anything else, wild cards included.
 std::int64_t region_of_partition(std::string_view partition) {
   if (!partition.starts_with(kRegionPartition)) return -1;
   partition.remove_prefix(kRegionPartition.size());
@@ -123,7 +124,7 @@ bool Speakers::is_node_locked(const ProcessPrefix& process) const {
 
 void Speakers::refuse(const Guid& writer, const std::string& what) {
   const std::lock_guard lock(mutex_);
-  if (is_node_locked(writer.guidPrefix)) return;  // that is counted, and ends, elsewhere
+  if (is_node_locked(writer.guidPrefix)) return;  // nodes are counted and handled elsewhere
   const bool was_node = std::ranges::find(former_, writer.guidPrefix) != former_.end();
   refused_ += was_node ? 0 : 1;
   if (refused_of_.size() >= kMostProcesses && !refused_of_.contains(writer.guidPrefix)) return;

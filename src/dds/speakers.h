@@ -1,6 +1,6 @@
-// Who may say what. Everything on the wire names a region as its source; by whom it was really said, DDS tells by the
-// writer's id. So what a process says in the name of another's region is found out, counted, and, when there is too
-// much of it, not listened to any more.
+// Checks which process may publish as which region. Every message names a region as its source; the writer's id in DDS
+// tells which process really sent it. Messages in the name of another's region are refused and counted, and a process
+// that sends too many of them is shut out.
 #pragma once
 
 #include <cstdint>
@@ -25,39 +25,39 @@ class DatagramGuard;  // datagram_guard.h
 /// Thread-safe.
 class Speakers {
  public:
-  /// `guard`, if there is one, is told who is a node and who is not listened to.
+  /// `guard`, if there is one, learns which processes are nodes and which are shut out.
   explicit Speakers(std::shared_ptr<DatagramGuard> guard = nullptr) : guard_(std::move(guard)) {}
 
-  /// Of this process: it may say everything.
+  /// Sets the own process, which may publish as any region.
   void set_self(const ProcessPrefix& self);
-  /// A writer was discovered, with the partitions that it announces, or is gone.
+  /// Takes note of a discovered writer and the partitions that it announces, or of a writer that is gone.
   void add(const Guid& writer, const std::vector<std::string>& partitions);
   void remove(const Guid& writer);
 
-  /// `process` is the node of `region`.
+  /// Sets `process` as the node of `region`.
   void set(core::RegionId region, const ProcessPrefix& process);
   std::optional<ProcessPrefix> of(core::RegionId region) const;
 
-  /// Does all that it publishes go to partitions of this region? What is not known is believed.
+  /// True when all partitions of `writer` belong to `region`. Also true for an unknown writer.
   bool is_at_home(const Guid& writer, core::RegionId region) const;
-  /// Is it an endpoint of the process that is the node of `region`? Before that one is known, everybody's is.
+  /// True when `endpoint` belongs to the process that is the node of `region`. Also true while that node is unknown.
   bool may_speak(const Guid& endpoint, core::RegionId region) const;
-  /// Is it an endpoint of a node of this run, of whatever region? Before any is known, everybody's is.
+  /// True when `endpoint` belongs to a node of this run, of whatever region. Also true while no node is known.
   bool is_node(const Guid& endpoint) const;
 
-  /// What `writer` has said was not its to say, or cannot be. A process of no node is not listened to any more after
-  /// kPatience of them. Of one that was a node, the last words may come late: they are not told.
+  /// Counts a sample that `writer` had no right to publish, or that is invalid. A process that is no node is shut out
+  /// after kPatience of them. Refusals of a former node are not reported, because its last messages may arrive late.
   void refuse(const Guid& writer, const std::string& what);
-  /// `writer` has said more than it is given; what is over is dropped. Counted, and told once of each process and
-  /// topic, but nobody is shut out for it: who asks for much at once has done nothing else wrong.
+  /// Counts a sample of `writer` that exceeded a rate limit and was dropped. Reported once per process and topic. No
+  /// process is shut out for it, because sending much at once is no other fault.
   void ration(const Guid& writer, const std::string& what);
-  /// It is not listened to from now on, unless it is a node's.
+  /// Shuts `process` out from now on, unless it is a node.
   void shun(const ProcessPrefix& process, const std::string& why);
   bool shuns(const ProcessPrefix& process) const;
-  /// Samples refused of processes that are no nodes, in all.
+  /// Total number of samples refused from processes that are no nodes.
   std::uint64_t refused() const;
 
-  /// For the log: the first refusal of each process, when it is not listened to any more, and what others say here.
+  /// Adds a message for the log. The log gets the first refusal of each process, each shut-out, and these.
   void say(std::string text);
   std::vector<std::string> take_said();
 
@@ -73,10 +73,10 @@ class Speakers {
   std::shared_ptr<DatagramGuard> guard_;
   mutable std::mutex mutex_;
   std::optional<ProcessPrefix> self_;
-  std::map<Guid, std::int64_t> homes_;  ///< of writers: their region; -1: of none, or of several
-  std::deque<Guid> gone_;               ///< what they have published may still be waiting here
+  std::map<Guid, std::int64_t> homes_;  ///< region of each writer; -1: no region, or several
+  std::deque<Guid> gone_;               ///< removed writers whose samples may still be waiting here
   std::map<core::RegionId, ProcessPrefix> nodes_;
-  std::deque<ProcessPrefix> former_;  ///< nodes until others took their regions over, oldest first
+  std::deque<ProcessPrefix> former_;  ///< processes that were nodes until others took over their regions, oldest first
   std::map<ProcessPrefix, std::uint64_t> refused_of_;
   std::set<ProcessPrefix> shunned_;
   std::set<std::pair<ProcessPrefix, std::string>> rationed_;
@@ -86,7 +86,7 @@ class Speakers {
 
 GuidPrefix prefix_of(const ProcessPrefix& process);
 ProcessPrefix process_of(const GuidPrefix& prefix);
-/// "01.0f.6a...": as Fast DDS and other tools print it.
+/// Text of a process id, "01.0f.6a...", as Fast DDS and other tools print it.
 std::string text_of(const ProcessPrefix& process);
 
 }  // namespace aurasim::dds

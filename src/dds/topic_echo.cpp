@@ -51,7 +51,7 @@ Json sequence_to_json(types::DynamicData& data, types::MemberId id, types::Dynam
   return list;
 }
 
-/// The kinds that the types in idl/ have: primitives, strings and sequences of them.
+/// Converts one member. Supports the kinds that occur in idl/: primitives, strings and sequences of them.
 Json to_json(types::DynamicData& data, types::MemberId id, types::DynamicType& type) {
   switch (type.get_kind()) {
     case types::TK_BOOLEAN:
@@ -81,7 +81,8 @@ Json to_json(types::DynamicData& data, types::MemberId id, types::DynamicType& t
   }
 }
 
-/// Whoever only watches must hold nobody up: where no history is asked for, what is lost on the way stays lost.
+/// Spec of a reader that only watches. It must hold up no writer, so where no history is asked for a lost sample stays
+/// lost.
 EndpointSpec watching(TopicId topic, const std::string& partition) {
   EndpointSpec spec{topic, {partition}, {}, {}};
   const bool has_lives = topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
@@ -118,7 +119,7 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
     case TopicId::kClusterGraph:
       each_region([&](core::RegionId source) { partitions.push_back(partition_of(source)); });
       break;
-    case TopicId::kObservation:  // of all observers
+    case TopicId::kObservation:  // observations of all observers
       each_region([&](core::RegionId source) { partitions.push_back(partition_of(source) + "/observer/*"); });
       break;
     case TopicId::kMigration:
@@ -136,7 +137,7 @@ std::vector<std::string> partitions_of_topic(const std::string& name, std::size_
 
 std::string every_partition_of_topic(const std::string& name) {
   const std::vector<std::string> partitions = partitions_of_topic(name, 1);
-  if (checked(name) == TopicId::kCheckpoint) return "*";  // and what is for all
+  if (checked(name) == TopicId::kCheckpoint) return "*";  // includes the parts that are sent to all
   return partitions.front() == kWorldPartition ? kWorldPartition : kEveryRegionPartition;
 }
 
@@ -156,7 +157,7 @@ struct TopicEcho::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// By the bytes that both types have in common.
+  /// Converts through the serialized bytes, which both types share.
   Json sample_as_json() {
     SerializedPayload_t payload(type->getSerializedSizeProvider(sample)());
     type.serialize(sample, &payload);
@@ -173,7 +174,7 @@ struct TopicEcho::Impl {
   Wakeup wakeup;
   Reader reader;
   TypeSupport type;
-  void* sample;  ///< of the generated type
+  void* sample;  ///< one sample of the generated type
   types::DynamicType_ptr dynamic;
   types::DynamicPubSubType dynamic_support;
   std::vector<types::DynamicTypeMember*> members;  ///< in the order of the IDL

@@ -17,10 +17,10 @@ namespace aurasim::dds {
 /// Names of all topics, in the order of `TopicId`.
 std::vector<std::string> topic_names();
 
-/// Where a topic is published in a run of so many regions; never empty. Throws std::invalid_argument when there is no
-/// such topic.
+/// Partitions in which a topic is published in a run of `regions` regions; never empty. Throws std::invalid_argument
+/// when there is no such topic.
 std::vector<std::string> partitions_of_topic(const std::string& topic, std::size_t regions);
-/// All of them in one pattern. Throws likewise.
+/// One pattern that matches all partitions of a topic. Throws std::invalid_argument when there is no such topic.
 std::string every_partition_of_topic(const std::string& topic);
 
 /// Used by one thread. The participant must outlive it.
@@ -31,7 +31,8 @@ class TopicEcho {
   TopicEcho(Participant& participant, const std::string& topic, const std::string& partition);
   ~TopicEcho();
 
-  /// The next sample; members in the order of the IDL. Infinite numbers are null. Nothing: none has come.
+  /// Returns the next sample, or nothing if none has arrived. Members are in the order of the IDL; infinite numbers are
+  /// null.
   std::optional<nlohmann::ordered_json> take();
   /// Returns when something has come, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);

@@ -3,7 +3,7 @@
 
 namespace aurasim::dds {
 
-/// Sets them up with our types; from the second time on it does nothing. Call it before a thread may use a message
+/// Fills Fast DDS's type tables with our types; further calls do nothing. Call it before a thread may use a message
 /// type: Fast DDS 2.9.1 fills these tables without a lock when the first message is made or the first peer discovered,
 /// and a process that does either on two threads at once crashes (1 in 6 starts of an experiment on two threads).
 void set_type_tables_up();

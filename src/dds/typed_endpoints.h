@@ -1,4 +1,4 @@
-// Writers and readers of one kind of message each: coded on the way out, checked on the way in.
+// Writers and readers of one message type each: they encode on sending, and check and decode on receipt.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ class TypedWriter : public Writer {
  public:
   using Writer::Writer;
 
-  /// What encode(message..., Wire) makes of it.
+  /// Encodes by encode(message..., Wire) and writes the result.
   template <class... Message>
   WriteResult send(const Message&... message) {
     encode(message..., sample_);
@@ -36,7 +36,7 @@ class TypedWriter : public Writer {
   Wire sample_;  // reused
 };
 
-/// What is not sound is counted, not passed on.
+/// Reader of one type. Unsound samples are counted and dropped.
 template <class Wire>
 class TypedReader : public Reader {
  public:
@@ -44,8 +44,8 @@ class TypedReader : public Reader {
 
   using Reader::Reader;
 
-  /// Calls `visit(message)`, or `visit(message, origin)`, for each that has come, and `refuse(sample, error)` for each
-  /// that is none. Of those that come faster than they are taken, at most `at_most`.
+  /// Calls `visit(message)` or `visit(message, origin)` for each message that has arrived, and `refuse(sample, error)`
+  /// for each invalid sample. `at_most` limits the samples of one call, in case they arrive faster than they are taken.
   template <class Visit, class Refuse>
   void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse, std::size_t at_most = SIZE_MAX) {
     Origin origin;
@@ -66,7 +66,7 @@ class TypedReader : public Reader {
   void take_each(const Expected& expected, Visit&& visit) {
     take_each(expected, std::forward<Visit>(visit), [](const Wire&, WireError) {});
   }
-  /// Appends all that have come.
+  /// Appends all messages that have arrived to `out`.
   void take_all(const Expected& expected, std::vector<Message>& out) {
     take_each(expected, [&out](Message&& message) { out.push_back(std::move(message)); });
   }

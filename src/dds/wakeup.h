@@ -1,4 +1,4 @@
-// Wakes one waiting thread. Notified from DDS threads, which must not be held up.
+// Wakes one waiting thread. DDS threads notify it, which must not be held up.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@ class Wakeup {
     return std::exchange(notified_, false);
   }
 
-  /// Forgets earlier notifications: the owner is about to look at everything.
+  /// Forgets earlier notifications. Called by the owner just before it looks at everything.
   void clear() {
     const std::lock_guard lock(mutex_);
     notified_ = false;

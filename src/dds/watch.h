@@ -1,5 +1,5 @@
-// Who is at the other end of an endpoint. The listeners run in DDS threads with DDS locks held: they note what happened
-// and wake the owner, nothing else.
+// Keeps track of the remote endpoints matched with a local one. The listeners run in DDS threads with DDS locks held:
+// they only record what happened and wake the owner.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@
 namespace aurasim::dds {
 
 using Guid = eprosima::fastrtps::rtps::GUID_t;
-/// A process: the same in all its endpoints.
+/// Identifies a process: all its endpoints share this prefix.
 using ProcessPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
 /// One match of a reader with a writer. A writer that is matched anew is a new entry.
@@ -28,9 +28,9 @@ struct RemoteWriter {
   std::uint64_t order = 0;  ///< counts matches, from 1
   bool matched = true;
   bool alive = false;  ///< has proved its life and the proof has not run out
-  /// Since when its proof has run out; nothing while it has not, or before the first one.
+  /// Time when its proof of life ran out. Nothing while it is valid, or before the first one.
   std::optional<std::chrono::steady_clock::time_point> silent_since;
-  /// Unmatched, or silent for the grace time: set in what ReaderWatch returns.
+  /// Unmatched, or silent for longer than the grace time. Only set in copies that ReaderWatch returns.
   bool lost = false;
 };
 
@@ -44,7 +44,8 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   explicit ReaderWatch(Wakeup& wakeup) : wakeup_(wakeup) {}
 
   static constexpr std::chrono::nanoseconds kForEver = std::chrono::nanoseconds::max();
-  /// Before the reader exists. At least two proofs of life must fit into it. kForEver: silence is never believed.
+  /// Sets the grace time. Call it before the reader exists. At least two proofs of life must fit into it. kForEver:
+  /// silence is never believed.
   void set_grace(std::chrono::nanoseconds grace) { grace_ = grace; }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
@@ -55,16 +56,16 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
 
   /// Writers in order of match; those that are gone are kept.
   std::vector<RemoteWriter> writers() const;
-  /// Of process `node`, the writer matched last. Nobody knows which process that is: of whichever has a writer here,
-  /// the first that is not lost, or the last of all. Order 0 when there never was one.
+  /// Returns the writer of process `node` that was matched last. Without `node`: the first writer here that is not
+  /// lost, or else the one matched last. Its order is 0 when there never was one.
   RemoteWriter latest(const std::optional<ProcessPrefix>& node = {}) const;
-  /// Is one matched, of this process if one is named?
+  /// True when a writer is matched; with `node`, a writer of that process.
   bool any_matched(const std::optional<ProcessPrefix>& node = {}) const;
 
  private:
   RemoteWriter* find_matched(const Guid& guid);
   void forget_all_but_newest_lost();
-  /// A copy that says whether it is lost by now.
+  /// Returns a copy with `lost` set as of now.
   RemoteWriter judged(RemoteWriter writer) const;
 
   Wakeup& wakeup_;
@@ -83,7 +84,7 @@ class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
 
   std::vector<Guid> readers() const;
-  /// Readers that have come so far, those that left again included.
+  /// Number of readers matched so far, those that left again included.
   std::uint64_t matches() const;
 
  private:

@@ -18,7 +18,7 @@ std::vector<std::uint8_t> serialized(Type& type, Sample& sample) {
   return {payload.data, payload.data + payload.length};
 }
 
-/// False: the bytes are not the type.
+/// Deserializes a sample. Returns false when the bytes are not the type.
 template <class Type, class Sample>
 bool deserialize(Type& type, std::span<const std::uint8_t> bytes, Sample& sample) {
   SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));

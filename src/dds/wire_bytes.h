@@ -1,5 +1,5 @@
-// Messages as the bytes that Fast DDS puts into a sample, and back: for measuring them, and for runs without DDS that
-// are to pay for coding.
+// Converts messages to the bytes that Fast DDS puts into a sample, and back. For measuring them, and for runs without
+// DDS that are to pay the cost of coding.
 #pragma once
 
 #include <cstdint>

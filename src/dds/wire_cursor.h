@@ -1,4 +1,4 @@
-// Reads a datagram from the front, and never beyond its part. Pure.
+// Reads a datagram from the front, and never beyond the end of its part. Pure.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace aurasim::dds {
 
-/// Whoever reads more than left() gets zeros, and failed() says so.
+/// Reading more than left() bytes yields zeros and sets failed().
 class WireCursor {
  public:
   WireCursor(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t end, bool little)
@@ -25,14 +25,14 @@ class WireCursor {
   std::uint16_t u16() { return number<std::uint16_t>(); }
   std::uint32_t u32() { return number<std::uint32_t>(); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  /// Two halves, the high one first.
+  /// Reads a 64-bit number as two halves, the high one first.
   std::uint64_t u32_pair() {
     const std::uint64_t high = u32();
     return high << 32 | u32();
   }
-  /// Negative ones come out above every limit.
+  /// Reads a sequence number. Negative ones become larger than every limit.
   std::uint64_t sequence_number() { return u32_pair(); }
-  /// Octets in their order, whatever the endianness.
+  /// Reads octets in their order, whatever the endianness.
   template <class Array>
   Array octets() {
     Array array{};
@@ -44,9 +44,9 @@ class WireCursor {
     return std::uint32_t{o[0]} << 24 | std::uint32_t{o[1]} << 16 | std::uint32_t{o[2]} << 8 | o[3];
   }
   void skip(std::size_t count) { take(count); }
-  /// To a multiple of 4 from the datagram's begin; padding may be missing at the very end.
+  /// Skips to a multiple of 4 from the datagram's begin. Padding may be missing at the very end.
   void align() { skip(std::min(left(), (4 - at_ % 4) % 4)); }
-  /// The next `count` bytes as a part of their own.
+  /// Splits off the next `count` bytes as a part of their own.
   WireCursor part(std::size_t count) {
     const std::size_t begin = at_;
     if (!take(count)) return {bytes_, at_, at_, little_};

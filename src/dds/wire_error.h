@@ -23,7 +23,7 @@ enum class WireError : std::uint8_t {
   kVersion,     ///< another protocol version
   kGeneration,  ///< another generation of the run than expected
   kMapVersion,  ///< another region map than expected
-  kSource,      ///< says that it comes from, or goes to, another region than its partition
+  kSource,      ///< names another source or destination region than its partition
   kLength,      ///< arrays that belong together differ in length
   kTooLarge,    ///< more elements than any sane message has
   kNotFinite,   ///< NaN or infinity
@@ -47,7 +47,7 @@ class WireErrors {
   std::array<std::uint64_t, kWireErrorKinds> counts_{};
 };
 
-/// What the receiver knows a message must say. Nothing: any value will do.
+/// Values that the receiver requires of a message. Nothing: any value is accepted.
 struct Expected {
   std::optional<std::uint64_t> map_version;
   std::optional<core::Generation> generation;

@@ -7,7 +7,7 @@
 
 namespace aurasim::dds {
 
-/// One by one: GCC 12 warns of what insert() does.
+/// Appends one octet at a time, because GCC 12 warns about insert().
 inline void append(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> octets) {
   for (const std::uint8_t octet : octets) to.push_back(octet);
 }
@@ -16,7 +16,7 @@ inline void append_number(std::vector<std::uint8_t>& to, std::uint32_t number) {
   for (int i = 0; i < 4; ++i) to.push_back(static_cast<std::uint8_t>(number >> 8 * i));
 }
 
-/// Two halves, the high one first.
+/// Appends a 64-bit number as two halves, the high one first.
 inline void append_number_pair(std::vector<std::uint8_t>& to, std::uint64_t number) {
   append_number(to, static_cast<std::uint32_t>(number >> 32));
   append_number(to, static_cast<std::uint32_t>(number));

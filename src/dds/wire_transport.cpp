@@ -75,7 +75,7 @@ bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32
   for (; *begin != *end; ++*begin) {
     const Locator_t& destination = **begin;
     if (!IsLocatorSupported(destination)) continue;
-    // Fast DDS offers every datagram to every socket, and those after the first keep unicast to themselves.
+    // Fast DDS offers every datagram to every socket. Sockets after the first one do not send unicast.
     if (!first && !descriptor_.white_listed && !IPLocator::isMulticast(destination)) continue;
     sent &= descriptor_.line->send(*socket, bytes, size, destination);
   }
@@ -99,7 +99,7 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
 }
 
 void WireTransport::shutdown() {
-  descriptor_.guard->delivery().open();  // or who closes the sockets waits for those who read from them
+  descriptor_.guard->delivery().open();  // else closing the sockets waits for their threads, which wait in the delivery
   if (descriptor_.line != nullptr) descriptor_.line->stop();
   low_level_transport_->shutdown();
 }

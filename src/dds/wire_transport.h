@@ -1,5 +1,5 @@
-// What stands between Fast DDS and its sockets, in every participant: a DatagramGuard for what comes and, where the
-// network is impaired, a DelayLine for what goes.
+// Layer between Fast DDS and its sockets in every participant: a DatagramGuard for received datagrams and, if the
+// network is impaired, a DelayLine for sent ones.
 #pragma once
 
 #include <atomic>
@@ -15,12 +15,13 @@
 namespace aurasim::dds {
 
 struct WireTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
-  /// `below` is what sends and receives. `line` may be null; if it is not, `below` must be UDPv4.
+  /// `below` is the transport that sends and receives. `line` may be null; if it is not, `below` must be UDPv4.
   WireTransportDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below,
                           std::shared_ptr<DatagramGuard> guard, std::shared_ptr<DelayLine> line);
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
-  bool white_listed = false;  ///< then every interface's socket sends; if not, one for unicast and all for multicast
+  /// True: every interface's socket sends; false: one socket sends unicast, and all send multicast.
+  bool white_listed = false;
   std::shared_ptr<DatagramGuard> guard;
   std::shared_ptr<DelayLine> line;
 };
@@ -31,17 +32,18 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   ~WireTransport() override;
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-  /// Only what is sent is impaired.
+  /// Sends through the delay line: only sent datagrams are impaired.
   bool send(eprosima::fastrtps::rtps::SenderResource* socket, const eprosima::fastrtps::rtps::octet* bytes,
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& time_out) override;
-  /// Only what is received is guarded; of what is sent the guard takes note, and asks for fragments.
+  /// Passes a received datagram through the guard. Sent datagrams are not filtered; the guard only takes note of them
+  /// and puts requests for fragments into them.
   void receive(eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,
                const eprosima::fastrtps::rtps::Locator_t& remote) override;
-  /// Comes before the sockets are closed: what waits is sent now.
+  /// Sends all waiting datagrams. Fast DDS calls it before it closes the sockets.
   void shutdown() override;
 
  private:
@@ -49,11 +51,11 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   std::atomic<eprosima::fastrtps::rtps::SenderResource*> first_socket_{nullptr};
 };
 
-/// Where a participant of these profiles and of this domain hears and tells of others.
+/// Ports on which a participant with this QoS and domain sends and receives discovery.
 MetatrafficPorts metatraffic_ports(const eprosima::fastdds::dds::DomainParticipantQos& qos, std::uint32_t domain);
 
-/// Puts the guard, and the line if there is one, over every transport; Fast DDS's built-in ones, shared memory among
-/// them, are not used. Throws DdsError when there is a line and a transport that is not UDPv4.
+/// Puts the guard, and the delay line if there is one, over every transport of `qos`. Fast DDS's built-in transports,
+/// shared memory among them, are not used. Throws DdsError when there is a line and a transport that is not UDPv4.
 void install(eprosima::fastdds::dds::DomainParticipantQos& qos, const std::shared_ptr<DatagramGuard>& guard,
              const std::shared_ptr<DelayLine>& line);
 

@@ -9,10 +9,10 @@
 namespace aurasim::importing {
 namespace {
 
-/// How fast a follower goes where it should be, with everything that may hang from it: faster than what it is driven
-/// by, slower than a state.
+/// Frequency of a follower's drive, with everything that may hang from it: higher than the motion of its leader, lower
+/// than a step allows.
 constexpr double kStiffness_rad_s = 2 * std::numbers::pi * 30;
-/// What a scene takes.
+/// Largest stiffness and damping that a scene accepts.
 constexpr double kMostGain = 1e9;
 
 bool has_own_axis(const core::JointKind& kind) {
@@ -28,7 +28,7 @@ bool hang_together(std::size_t follower, std::size_t leader, const Model& model)
   return !core::JointWays(std::move(ends)).way(id(follower), id(leader)).empty();
 }
 
-/// Of all that moves, kg; or about the joint, kg m^2.
+/// Upper bound of the inertia that the joint moves: mass, kg, or moment about the joint, kg m^2.
 double most_inertia(const Joint& joint, const Model& model) {
   double inertia = 0;
   for (const Link& link : model.links) {

@@ -12,9 +12,9 @@ namespace {
 using core::Mat3;
 using core::Vec3;
 
-constexpr double kNoProduct = 1e-12;  ///< of the largest moment: what rounding leaves of a product of inertia
+constexpr double kNoProduct = 1e-12;  ///< relative to the largest moment: rounding error of a product of inertia
 
-/// The order of columns in which each is most nearly the axis of its number.
+/// Order of columns in which column i is as near as possible to axis i.
 std::array<int, 3> nearest_order(const Mat3& axes) {
   std::array<int, 3> order = {0, 1, 2}, best = order;
   double most = -1;

@@ -17,16 +17,16 @@ using std::numbers::pi;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFarthestWay = 1e7;      ///< m; a scene's limits of a slider
 constexpr double kMostTurns = 1999 * pi;  ///< rad; a scene's limits of a hinge
-constexpr double kSquare = 1e-9;          ///< cosine of the angle between axes that count as square to each other
+constexpr double kSquare = 1e-9;          ///< cosine of the angle between axes that count as perpendicular
 
-/// None on a side that is farther than that.
+/// Returns the limits; a limit beyond `farthest` counts as none.
 std::optional<JointLimits> limits_within(double farthest, const AxisRule& rule) {
   const JointLimits limits{rule.low < -farthest ? -kInfinite : rule.low, rule.high > farthest ? kInfinite : rule.high};
   if (std::isinf(limits.low) && std::isinf(limits.high)) return std::nullopt;
   return limits;
 }
 
-/// Of one turn among several axes.
+/// Returns the limits of a turning axis among several.
 std::optional<JointLimits> turn_limits(const AxisRule& rule, const std::string& element, Model& model) {
   if (rule.low >= -pi && rule.high <= pi) return JointLimits{rule.low, rule.high};
   if (std::isfinite(rule.low) || std::isfinite(rule.high)) {
@@ -38,7 +38,8 @@ std::optional<JointLimits> turn_limits(const AxisRule& rule, const std::string& 
   return std::nullopt;
 }
 
-/// A spring has stiffness and damping, but no friction and no bound: a drive becomes a part of them.
+/// Returns the spring of an axis. A spring has stiffness and damping, but no friction and no limit of force, so a drive
+/// becomes a part of them.
 core::SpringAxis spring_axis(const AxisRule& rule, const std::string& element, Model& model) {
   core::SpringAxis axis;
   axis.limits = rule.turns ? turn_limits(rule, element, model) : limits_within(kFarthestWay, rule);
@@ -61,11 +62,11 @@ core::SpringJoint all_locked() {
   return spring;
 }
 
-/// The axes of J, of which one to three are given; the others are made up.
+/// The axes of J. One to three are given; the others are chosen.
 struct Triad {
   std::array<std::optional<Vec3>, 3> given;
   core::Mat3 axes = core::Mat3::Identity();
-  bool third_turned_over = false;  ///< the z axis is the opposite of the one that was given
+  bool third_turned_over = false;  ///< the z axis is opposite to the given one
 
   bool is_square() const {
     for (int i = 0; i < 3; ++i) {
@@ -77,7 +78,7 @@ struct Triad {
   }
 
   void complete() {
-    for (int i = 0; i < 3; ++i) {  // one is given: any other that is square to it
+    for (int i = 0; i < 3; ++i) {  // one axis is given: choose any perpendicular one
       const int next = (i + 1) % 3, last = (i + 2) % 3;
       if (given[i] && !given[next] && !given[last]) given[next] = axis_frame(*given[i]) * Vec3::UnitX();
     }
@@ -91,8 +92,8 @@ struct Triad {
   }
 };
 
-/// Which of the turns about x, y and z stand for the first, second and third of `count`. Two are x and z: about y a
-/// scene's joint cannot turn by a quarter or more.
+/// Axes (0 x, 1 y, 2 z) about which the first, second and third of `count` turns go. Two turns use x and z, because a
+/// scene's joint cannot turn about y by a quarter or more.
 std::vector<int> turn_slots(std::size_t count) {
   if (count == 0) return {};
   if (count == 1) return {2};
@@ -100,7 +101,7 @@ std::vector<int> turn_slots(std::size_t count) {
   return {0, 1, 2};
 }
 
-/// Gives the ways the axes of J that turns have left.
+/// Gives the sliding axes the axes of J that the turning ones have left.
 void choose_axes_of_ways(const std::vector<AxisRule>& ways, Triad& triad) {
   for (const AxisRule& rule : ways) {
     const Vec3 axis = rule.axis_W.normalized();
@@ -138,7 +139,8 @@ std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules,
     (rule.turns ? turns : ways).push_back(rule);
   }
   if (ways.size() > 3 || turns.size() > 3) return std::nullopt;
-  // Ways and turns share the axes of J. The turns' order matters, so they choose; then each way has to lie along one.
+  // Sliding and turning axes share the axes of J. The order of turns matters, so they choose first; then each sliding
+  // axis has to lie along one of them.
   Triad triad;
   const std::vector<int> slots = turn_slots(turns.size());
   for (std::size_t i = 0; i < turns.size(); ++i) triad.given[slots[i]] = turns[i].axis_W.normalized();

@@ -1,4 +1,4 @@
-// Joints of one axis, and of several, as those of a scene.
+// Converts joints of one or several axes to those of a scene.
 #pragma once
 
 #include <limits>
@@ -7,7 +7,8 @@
 
 namespace aurasim::importing {
 
-/// One way or turn of a joint, as files describe it. Infinite limits are none.
+/// One axis of a joint, along which it slides or about which it turns, as files describe it. Infinite limits mean no
+/// limits.
 struct AxisRule {
   core::Vec3 axis_W = core::Vec3::UnitZ();
   bool turns = true;
@@ -17,10 +18,10 @@ struct AxisRule {
   std::optional<core::JointDrive> drive = {};
 };
 
-/// The rotation that takes z to the axis: as the scene reader makes it of a hinge's or slider's `axis`.
+/// Rotation that takes z to the axis, equal to the one that the scene reader makes of a hinge's or slider's `axis`.
 core::Quat axis_frame(const core::Vec3& axis_W);
 
-/// Of one axis along z of J: a hinge or slider.
+/// Returns a joint with one axis along z of J: a hinge or slider.
 core::JointKind one_axis_kind(const AxisRule& rule);
 
 struct SeveralAxes {
@@ -28,8 +29,9 @@ struct SeveralAxes {
   core::Quat q_WJ;
 };
 
-/// Of several axes, each moved by those before it: ways first, then turns, each kind square to its own. Nothing if they
-/// are not, or if a turn in the middle may be as far as a quarter, where its neighbours' axes would meet.
+/// Returns a joint of several axes, each moved by those before it: first sliding axes, then turning ones, each kind
+/// perpendicular among itself. Nothing if they are not, or if a turn in the middle may reach a quarter, where its
+/// neighbours' axes would coincide.
 std::optional<SeveralAxes> several_axes_kind(const std::vector<AxisRule>& rules, const std::string& element,
                                              Model& model);
 

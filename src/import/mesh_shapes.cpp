@@ -26,7 +26,7 @@ constexpr int kEllipsoidPoints = 200;
 
 bool is_collada(const std::filesystem::path& file) { return ending_of(file) == ".dae"; }
 
-/// Equal points are joined, and triangles without an area left out.
+/// Joins equal points, and drops triangles without an area.
 TriangleMesh joined(const aiScene& scene, const Vec3& scale) {
   TriangleMesh mesh;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {

@@ -1,33 +1,33 @@
-// Meshes as collision shapes: convex ones for what moves, triangles for what does not.
+// Makes collision shapes of meshes: convex ones for links that move, triangles for static ones.
 #pragma once
 
 #include "import/model.h"
 
 namespace aurasim::importing {
 
-/// Of its name, in small letters: ".obj".
+/// Ending of a file's name, in small letters: ".obj".
 std::string ending_of(const std::filesystem::path& file);
 
-/// All triangles of an OBJ, STL, glTF or Collada (DAE) file, times `scale`, or why there are none. Of Collada the axes
-/// are taken as they are written, whatever is said to be up: as the robots' own programs do.
+/// Returns all triangles of an OBJ, STL, glTF or Collada (DAE) file, times `scale`, or the reason why there are none.
+/// The axes of Collada are used as written, and its up axis is ignored, as the robots' own programs do.
 std::variant<core::TriangleMesh, std::string> read_triangles(const std::filesystem::path& file,
                                                              const core::Vec3& scale);
 
-/// Convex shapes in the place of the mesh: itself if it is convex, else the parts that it is taken apart into, else its
-/// hull. What that changes is told of.
+/// Returns convex shapes for a mesh: the mesh itself if it is convex, else its convex parts, else its hull. A change of
+/// the shape is added to the model's findings.
 std::vector<core::ConvexHull> convex_shapes(const core::TriangleMesh& mesh, const std::string& element, Model& model);
 
-/// The hull of the mesh's points; of very many the outermost.
+/// Returns the hull of the mesh's points; if there are very many, of the outermost ones.
 core::ConvexHull hull_of_points(const core::TriangleMesh& mesh);
 
-/// Points of an ellipsoid with these half axes, evenly spread.
+/// Returns the hull of evenly spread points of an ellipsoid with these half axes, m.
 core::ConvexHull ellipsoid_hull(const core::Vec3& half_axes);
 
-/// Triangles as the text of an OBJ file.
+/// Writes triangles as the text of an OBJ file.
 std::string obj_text(const core::TriangleMesh& mesh);
 
-/// Gives the link a collision shape for each convex part of the mesh; of a static link, the file itself where the scene
-/// reader reads it, or else the triangles. Returns the mesh. Throws BadModel if the file cannot be read.
+/// Adds a collision shape to the link for each convex part of the mesh. A static link gets the file itself if the scene
+/// reader can read it, or else the triangles. Returns the mesh. Throws BadModel if the file cannot be read.
 core::TriangleMesh add_mesh(const std::filesystem::path& file, const core::Vec3& scale, Collision collision,
                             const std::string& element, Link& link, Model& model);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-9;
 
-/// The bound of an actuator's force on the joint, either way; infinite without.
+/// Limit of an actuator's force on the joint, either way; infinite if there is none.
 double most_of(const mjModel& m, int actuator, double gear, const std::string& element, Model& model) {
   if (!m.actuator_forcelimited[actuator]) return core::JointDrive{}.max_effort;
   const double low = m.actuator_forcerange[2 * actuator], high = m.actuator_forcerange[2 * actuator + 1];
@@ -23,11 +23,12 @@ double most_of(const mjModel& m, int actuator, double gear, const std::string& e
   return std::abs(gear) * std::max(std::abs(low), std::abs(high));
 }
 
-/// What position and velocity actuators do at a control of 0, from where the joint starts. Nothing without any.
+/// Drive that equals the position and velocity actuators at a control of 0, from where the joint starts. Nothing if
+/// there are none.
 std::optional<core::JointDrive> drive_of(const mjModel& m, int joint, double start, const std::string& element,
                                          Model& model) {
   std::optional<core::JointDrive> drive;
-  double pull = 0;  ///< at the start
+  double pull = 0;  ///< force at the start
   for (int a = 0; a < m.nu; ++a) {
     const bool drives = (m.actuator_trntype[a] == mjTRN_JOINT || m.actuator_trntype[a] == mjTRN_JOINTINPARENT) &&
                         m.actuator_trnid[2 * a] == joint;
@@ -89,7 +90,7 @@ void tell_of_dofs(const mjModel& m, int joint, const std::string& element, Model
   }
 }
 
-/// Of joints with three or six degrees of freedom, beyond what holds them.
+/// Adds findings about properties of joints with three or six degrees of freedom, beyond those that hold them.
 void tell_of_wide_joint(const mjModel& m, int joint, const std::string& element, Model& model) {
   if (m.jnt_type[joint] == mjJNT_FREE && m.dof_damping[m.jnt_dofadr[joint]] != 0)
     model.lose(element, "damping of a free joint");
@@ -99,12 +100,12 @@ void tell_of_wide_joint(const mjModel& m, int joint, const std::string& element,
 
 struct Parts {
   std::vector<AxisRule> rules;
-  std::vector<core::Vec3> anchors;  ///< of the turns
+  std::vector<core::Vec3> anchors;  ///< anchors of the turning axes
   int balls = 0, frees = 0;
   double ball_damping = 0;
 };
 
-/// Nothing if a scene has no joint for all that joins the body.
+/// Returns the joint for all joints of a body; nothing if a scene has no such joint.
 std::optional<SeveralAxes> mjcf_kind(const Parts& parts, const std::string& element, Model& model) {
   if (parts.balls == 1 && parts.rules.empty())
     return SeveralAxes{core::BallJoint{parts.ball_damping}, core::Quat::Identity()};
@@ -124,24 +125,25 @@ struct EqualityEnds {
   std::optional<std::size_t> parent;
 };
 
-/// Nothing if neither end moves, or both are one link.
+/// Returns the ends of an equality; nothing if neither end moves, or both are one link.
 std::optional<EqualityEnds> ends_of(const std::optional<std::size_t>& a, const std::optional<std::size_t>& b) {
   if ((!a && !b) || a == b) return std::nullopt;
   return a ? EqualityEnds{*a, b} : EqualityEnds{*b, std::nullopt};
 }
 
-/// Whether a weld holds its bodies as they stand.
+/// True when a weld holds its bodies in their present poses.
 bool holds_as_it_stands(const mjData& d, const mjtNum* data, int body1, int body2) {
   const core::Pose X_W1{mj_vec3(d.xpos + 3 * body1), mj_quat(d.xquat + 4 * body1)};
   const core::Pose X_W2{mj_vec3(d.xpos + 3 * body2), mj_quat(d.xquat + 4 * body2)};
   const core::Pose X_12 = inverse(X_W1) * X_W2;
-  // 2.2: data is anchor, relpos, relquat; the anchor is a point of body 2, relpos the place of body 2's frame in 1.
+  // MuJoCo 2.2: data is anchor, relpos, relquat. The anchor is a point of body 2, relpos the place of body 2's frame in
+  // body 1.
   const core::Vec3 point_2 = mj_vec3(data), relpos = mj_vec3(data + 3);
   const core::Vec3 held = X_12.p_WB + X_12.q_WB * point_2;
   return (held - relpos).norm() < 1e-6 && X_12.q_WB.angularDistance(mj_quat(data + 6)) < 1e-6;
 }
 
-/// One joint that is a polynomial of another.
+/// Couples a joint that is a polynomial of another one.
 void couple_joints(const mjModel& m, int equality, const std::string& element, Model& model) {
   const int joint1 = m.eq_obj1id[equality], joint2 = m.eq_obj2id[equality];
   const mjtNum* data = m.eq_data + mjNEQDATA * equality;

@@ -26,8 +26,7 @@ struct MujocoError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// For as long as it lives, an error in MuJoCo is an exception instead of the end of the process, and a warning is
-/// kept.
+/// While it exists, an error in MuJoCo throws an exception instead of ending the process, and warnings are kept.
 class MujocoGuard {
  public:
   MujocoGuard() : error_(mju_user_error), warning_(mju_user_warning) {
@@ -59,7 +58,7 @@ struct FreeData {
   void operator()(mjData* d) const { mj_deleteData(d); }
 };
 
-/// Every file that the model names has to lie where it may, before MuJoCo opens one.
+/// Checks, before MuJoCo opens a file, that every file that the model names lies in an allowed folder.
 void check_named_files(const fs::path& file, const ReadSettings& settings, int depth) {
   tinyxml2::XMLDocument document;
   std::vector<const tinyxml2::XMLElement*> open = {load_xml(file, document)};
@@ -87,7 +86,7 @@ void check_named_files(const fs::path& file, const ReadSettings& settings, int d
   }
 }
 
-/// The name of the element that MuJoCo's message is about stands in it: "Element 'geom', line 5".
+/// Compiles the model. MuJoCo's error message contains the element, as in "Element 'geom', line 5".
 std::unique_ptr<mjModel, FreeModel> compile(const fs::path& file) {
   char error[1000] = "";
   std::unique_ptr<mjModel, FreeModel> m(mj_loadXML(file.c_str(), nullptr, error, sizeof error));
@@ -122,7 +121,8 @@ class MjcfReader {
  private:
   std::string body_name(int body) const { return mjcf_name(m_, mjOBJ_BODY, body, "body"); }
 
-  /// Bodies that are welded to their parent are one link with it; those that are welded to the world never move.
+  /// Makes links of bodies. Bodies welded to their parent become one link with it; those welded to the world are
+  /// static.
   void read_bodies() {
     for (int body = 0; body < m_.nbody; ++body) {
       const int welded = m_.body_weldid[body];
@@ -164,13 +164,14 @@ class MjcfReader {
     model_.links.push_back(std::move(link));
   }
 
-  /// About the body's centre of mass, in the axes of its frame.
+  /// Inertia tensor about the body's centre of mass, in the axes of its frame.
   core::Mat3 tensor_of(int body) const {
     const core::Mat3 R = mj_quat(m_.body_iquat + 4 * body).toRotationMatrix();
     return R * core::Mat3(mj_vec3(m_.body_inertia + 3 * body).asDiagonal()) * R.transpose();
   }
 
-  /// Adds mass, moments (by the parallel axes of both) and shapes of a body that does not move in the link.
+  /// Adds to a link the mass, moments (by the parallel axis theorem) and shapes of a body that does not move relative
+  /// to it.
   void weld_to(Link& link, int body) {
     const core::Pose X_LBody = inverse(link.X_WL) * X_WBody(body);
     const double mass = m_.body_mass[body], sum = link.mass_kg + mass;
@@ -243,7 +244,7 @@ class MjcfReader {
     }
   }
 
-  /// MuJoCo collides with the hull of a mesh, too.
+  /// Returns the hull of a mesh, because MuJoCo, too, collides with the hull.
   Geometry mesh_hull(int mesh, const std::string& element) {
     core::TriangleMesh points;
     for (int v = 0; v < m_.mesh_vertnum[mesh]; ++v) {
@@ -263,8 +264,8 @@ class MjcfReader {
            (m_.geom_contype[geom2] & m_.geom_conaffinity[geom1]) == 0;
   }
 
-  /// Pairs that the file excludes or whose bits let them pass through each other. Parent and child are joined, and so
-  /// kept apart anyway; in MuJoCo that is so unless the parent never moves.
+  /// Keeps pairs apart that the file excludes, or whose bits let them pass through each other. Parent and child are
+  /// joined and so kept apart anyway; in MuJoCo this holds unless the parent is static.
   void keep_apart() {
     for (int e = 0; e < m_.nexclude; ++e) exclude(m_.exclude_signature[e]);
     std::vector<std::vector<int>> geoms(model_.links.size());
@@ -332,7 +333,7 @@ class MjcfReader {
   const mjModel& m_;
   const mjData& d_;
   LinkOfBody link_of_;
-  std::map<int, std::size_t> links_of_geom_;  ///< of what never moves
+  std::map<int, std::size_t> links_of_geom_;  ///< links of static geoms
   Model model_;
 };
 

@@ -1,7 +1,7 @@
-// A model as other programs' files describe it, in the terms that all of their formats share: links with mass and
-// collision shapes, joints between them, at rest. Lengths in metres, masses in kilograms, angles in radians.
-// Frames: W the world of the file, L a link's own, B the link's principal axes of inertia at its centre of mass, which
-// is the frame that a body of a scene has, C a collision shape's.
+// A model of another program's file, in the terms that all of their formats share: links with mass and collision
+// shapes, joints between them, at rest. Lengths in metres, masses in kilograms, angles in radians. Frames: W the world
+// of the file; L a link's own; B the link's principal axes of inertia at its centre of mass, which is the frame of a
+// body in a scene; C a collision shape's.
 #pragma once
 
 #include <cstddef>
@@ -27,9 +27,10 @@ struct MeshFile {
 using Geometry = std::variant<core::Sphere, core::Box, core::Capsule, core::Cylinder, core::ConvexHull, core::Plane,
                               core::TriangleMesh, MeshFile>;
 
-/// What a contact of two such surfaces has: a scene's contacts multiply those of the two bodies.
+/// Surface properties, defined so that two equal surfaces have these values in contact. A scene instead multiplies the
+/// values of the two bodies.
 struct Surface {
-  double friction = 1;  ///< Coulomb's
+  double friction = 1;  ///< Coulomb coefficient
   double rolling_friction_m = 0;
   double spinning_friction_m = 0;
   double restitution = 0;
@@ -56,19 +57,19 @@ struct Link {
 
 struct Joint {
   std::string name;
-  core::JointKind kind;               ///< what it follows: an index in Model::joints
-  std::size_t child = 0;              ///< index in Model::links; what the joint moves
-  std::optional<std::size_t> parent;  ///< nothing: the world
+  core::JointKind kind;               ///< the leader of its coupling is an index in Model::joints
+  std::size_t child = 0;              ///< index in Model::links of the link that the joint moves
+  std::optional<std::size_t> parent;  ///< index in Model::links; nothing: the world
   core::Pose X_WJ;
   bool collide = false;  ///< whether child and parent collide with each other
 };
 
-/// More pairs of links than these are not kept apart: each costs a joint.
+/// Most pairs of links that are kept from colliding, because each costs a joint.
 inline constexpr std::size_t kMostPairsApart = 50'000;
 
-/// What a scene cannot say.
+/// Something in the file that a scene cannot express.
 struct Finding {
-  std::string element;  ///< as "link 'arm'/collision 'tip'"
+  std::string element;  ///< element of the file, e.g. "link 'arm'/collision 'tip'"
   std::string what;
 
   bool operator==(const Finding&) const = default;
@@ -76,18 +77,20 @@ struct Finding {
 
 struct Model {
   std::string name;
-  std::optional<core::Vec3> gravity;  ///< m/s^2; nothing: the file does not say
+  std::optional<core::Vec3> gravity;  ///< m/s^2; nothing: not in the file
   std::vector<Link> links;
   std::vector<Joint> joints;
-  std::vector<std::pair<std::size_t, std::size_t>> apart;  ///< links, a < b, that never collide with each other
-  std::vector<Finding> lost;                               ///< what will move or touch otherwise than in the file
-  std::vector<Finding> notes;                              ///< what a scene has no use for: looks, sensors, controllers
+  /// Pairs of links, a < b, that never collide with each other.
+  std::vector<std::pair<std::size_t, std::size_t>> apart;
+  std::vector<Finding> lost;   ///< things that will move or touch otherwise than in the file
+  std::vector<Finding> notes;  ///< things that a scene does not use: looks, sensors, controllers
 
   void lose(std::string element, std::string what) { lost.push_back({std::move(element), std::move(what)}); }
   void note(std::string element, std::string what) { notes.push_back({std::move(element), std::move(what)}); }
 };
 
-/// A file that cannot be imported: file, line where the library knows it, element, what is wrong.
+/// Thrown for a file that cannot be imported. what() gives the file, the line where the library knows it, the element,
+/// and what is wrong.
 class BadModel : public std::runtime_error {
  public:
   explicit BadModel(std::vector<std::string> errors);
@@ -99,10 +102,10 @@ class BadModel : public std::runtime_error {
 
 core::Pose inverse(const core::Pose& X_AB);
 
-/// "KIND 'NAME'".
+/// Returns "KIND 'NAME'".
 std::string element_name(std::string_view kind, std::string_view name);
 
-/// Sorts `apart`, each pair once, without pairs that a joint keeps apart anyway.
+/// Sorts `apart` and removes repeated pairs, and pairs that a joint keeps apart anyway.
 void tidy_apart(Model& model);
 
 }  // namespace aurasim::importing

@@ -10,14 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The rest of `uri` behind `scheme`, if it begins with it.
+/// Removes `scheme` from the begin of `uri`. Returns whether it was there.
 bool take_scheme(std::string& uri, std::string_view scheme) {
   if (!uri.starts_with(scheme)) return false;
   uri.erase(0, scheme.size());
   return true;
 }
 
-/// Where `rest` of model://NAME/REST may be: NAME is a folder of `root`, or `root` itself.
+/// Places where the file of model://NAME/REST may be: NAME is a folder of `root`, or `root` itself.
 std::vector<fs::path> candidates_in(const fs::path& root, const std::string& name_and_rest) {
   std::vector<fs::path> found = {root / name_and_rest};
   const std::size_t slash = name_and_rest.find('/');

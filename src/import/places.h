@@ -1,4 +1,4 @@
-// Where files that a model names may lie: in the model's folder or in those that the caller gives, nowhere else.
+// Finds the files that a model names. They must lie in the model's folder or in folders that the caller gives.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@
 
 namespace aurasim::importing {
 
-/// The file that `uri` names: model://NAME/REST, package://NAME/REST, file://PATH or a path relative to `folder`.
-/// Or why there is none. Symbolic links are followed before it is asked where the file lies.
+/// Returns the file that `uri` names, or the reason why there is none. `uri`: model://NAME/REST, package://NAME/REST,
+/// file://PATH or a path relative to `folder`. Symbolic links are followed before the place of the file is checked.
 std::variant<std::filesystem::path, std::string> find_named_file(const std::string& uri,
                                                                  const std::filesystem::path& folder,
                                                                  const std::vector<std::filesystem::path>& paths);
 
-/// Whether `file` lies in `folder` or below it.
+/// True when `file` lies in `folder` or below it.
 bool is_within(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace aurasim::importing

@@ -28,7 +28,7 @@ void check_size(const std::filesystem::path& file) {
     refuse_file(file, fmt::format("it has {} bytes, at most {}", size, kLargestModelBytes));
 }
 
-/// The whole file as one static mesh, or, with a mass, as one body about its centre of mass.
+/// Reads a mesh file as one static mesh or, with a mass, as one body about its centre of mass.
 Model read_mesh_model(const std::filesystem::path& file, const ReadSettings& settings) {
   Model model;
   model.name = file.stem().string();

@@ -1,4 +1,4 @@
-// Places, shapes and joints as YAML. For the scene writer alone.
+// Writes poses, shapes and joints as YAML. Only for the scene writer.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +21,10 @@ using core::Vec3;
 
 constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
 
-/// In as few digits as give the same bits back.
+/// Writes a number with as few digits as give the same bits back.
 std::string digits(double number) { return fmt::format("{}", number + 0.0); }
 
-/// Many things of one kind on one line.
+/// Writes a vector on one line.
 YAML::Emitter& operator<<(YAML::Emitter& out, const Vec3& v) {
   return out << YAML::Flow << YAML::BeginSeq << digits(v.x()) << digits(v.y()) << digits(v.z()) << YAML::EndSeq;
 }
@@ -45,11 +45,11 @@ void write_pose(YAML::Emitter& out, const core::Pose& pose) {
   write_orientation(out, pose.q_WB);
 }
 
-/// Key and value of one shape within a map.
+/// Writes key and value of one shape within a map.
 class ShapeWriter {
  public:
   explicit ShapeWriter(YAML::Emitter& out) : out_(out) {}
-  /// `materials`: names, by the indices that parts have.
+  /// `materials`: names of materials, by the indices that parts use.
   ShapeWriter(YAML::Emitter& out, std::vector<std::string> materials) : out_(out), materials_(std::move(materials)) {}
 
   void operator()(const core::Sphere& s) { begin("sphere").number("radius", s.radius).end(); }
@@ -94,7 +94,7 @@ class ShapeWriter {
     if (scale != Vec3::Ones()) out_ << YAML::Key << "scale" << YAML::Value << scale;
     end();
   }
-  void operator()(const core::TriangleMesh&) {}  // written as files
+  void operator()(const core::TriangleMesh&) {}  // triangle meshes are written as files
 
  private:
   ShapeWriter& begin(const char* kind) {
@@ -111,10 +111,10 @@ class ShapeWriter {
   std::vector<std::string> materials_;
 };
 
-/// Ways and turns of a joint, within its map.
+/// Writes the axes of a joint within its map.
 class JointWriter {
  public:
-  /// `leader`: the name of the joint that it follows, if it does.
+  /// `leader`: the name of the joint that this one follows; empty: none.
   JointWriter(YAML::Emitter& out, const core::Quat& q_WJ, std::string leader)
       : out_(out), q_WJ_(q_WJ), leader_(std::move(leader)) {}
 
@@ -162,7 +162,7 @@ class JointWriter {
     out_ << YAML::Key << kind << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << "axis" << YAML::Value
          << Vec3(q_WJ_ * Vec3::UnitZ());
   }
-  /// Rounding may put half a turn beyond `most`.
+  /// Writes limits, cut at `most`, because rounding may put half a turn beyond it.
   void write_limits(const char* key, const std::optional<core::JointLimits>& limits, double unit,
                     double most = std::numeric_limits<double>::infinity()) {
     if (!limits) return;
@@ -172,7 +172,7 @@ class JointWriter {
     out_ << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginSeq << side(limits->low) << side(limits->high)
          << YAML::EndSeq;
   }
-  /// If it is not what is so without the key.
+  /// Writes a number unless it has its default value.
   void number(const std::string& key, double value, double usual = 0) {
     if (value != usual) out_ << YAML::Key << key << YAML::Value << digits(value);
   }

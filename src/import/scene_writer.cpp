@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 
-constexpr double kMostFriction = 100;  ///< of a scene's material
+constexpr double kMostFriction = 100;  ///< largest friction of a scene's material
 
 class SceneWriter {
  public:
@@ -80,7 +80,7 @@ class SceneWriter {
     return names;
   }
 
-  /// Its first part has the body's material.
+  /// Returns the link's shape with materials for its parts; the first part has the body's material.
   core::Shape shape_with_materials(const Link& link) const {
     core::Shape shape = body_shape(link);
     auto* const compound = std::get_if<core::Compound>(&shape);
@@ -92,8 +92,8 @@ class SceneWriter {
     return shape;
   }
 
-  /// Friction and restitution of a contact are products, so each body has the root; resistance to rolling and spinning
-  /// is each body's times the friction of the other, added.
+  /// Writes materials. Friction and restitution of a contact are products, so each body gets the square root. A
+  /// contact's resistance to rolling and spinning is the sum of each body's value times the other's friction.
   void write_materials() {
     out_ << YAML::Key << "materials" << YAML::Value << YAML::BeginMap;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -217,7 +217,7 @@ class SceneWriter {
     out_ << YAML::EndMap;
   }
 
-  /// What keeps two bodies from colliding is a joint that is free in all ways.
+  /// Keeps two bodies from colliding by a joint that is free in all directions.
   void write_apart(const Instance& instance, std::size_t a, std::size_t b) {
     const std::string name = fmt::format("{} apart from {}", model_.links[a].name, model_.links[b].name);
     out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << name_in(instance, name);

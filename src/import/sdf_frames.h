@@ -1,4 +1,4 @@
-// sdformat's poses as ours, and its errors as ours. For the SDF reader alone.
+// Converts sdformat's poses and errors to ours. Only for the SDF reader.
 #pragma once
 
 #include <sdf/sdf.hh>
@@ -15,7 +15,7 @@ inline core::Pose pose_of(const ignition::math::Pose3d& pose) {
   return {vec3_of(pose.Pos()), quat_of(pose.Rot()).normalized()};
 }
 
-/// Of a frame as seen from another one, by default its parent. Throws BadModel with `element`.
+/// Pose of a frame in the frame `to`, by default in its parent. Throws BadModel with `element`.
 inline core::Pose resolved(const sdf::SemanticPose& pose, const std::string& to, const std::string& element) {
   ignition::math::Pose3d found;
   const sdf::Errors errors = pose.Resolve(found, to);
@@ -23,7 +23,7 @@ inline core::Pose resolved(const sdf::SemanticPose& pose, const std::string& to,
   return pose_of(found);
 }
 
-/// A model while it is read: where it stands in the world, and how its names begin.
+/// Context of a model that is being read: its pose in the world, and the prefix of its names.
 struct SdfScope {
   const sdf::Model& model;
   core::Pose X_WM;

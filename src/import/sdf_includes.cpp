@@ -27,7 +27,7 @@ class IncludeCheck {
       throw BadModel({fmt::format("{}: <include>: more than {} deep, or {} in all", file.string(), kDeepestSdfInclude,
                                   kMostIncludes)});
     tinyxml2::XMLDocument document;
-    if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) return;  // sdformat says what is wrong with it
+    if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) return;  // sdformat reports the error
     open_.push_back(file);
     if (document.RootElement() != nullptr) look_into(*document.RootElement(), file.parent_path());
     open_.pop_back();
@@ -47,7 +47,7 @@ class IncludeCheck {
   }
 
   std::vector<fs::path> paths_;
-  std::vector<fs::path> open_;  ///< from the first file to the one that is being looked at
+  std::vector<fs::path> open_;  ///< chain of includes from the first file to the present one
   std::size_t count_ = 0;
 };
 

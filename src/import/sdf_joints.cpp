@@ -12,7 +12,7 @@ namespace {
 constexpr double kNoLimit = 1e15;  ///< sdformat's own is 1e16
 constexpr double kNoBound = 1e300;
 
-/// "world" is nothing.
+/// Returns the link at an end of a joint; nothing for "world".
 std::optional<std::size_t> end_of(const std::string& name, const SdfScope& scope,
                                   const std::map<std::string, std::size_t>& links, const std::string& element) {
   if (name == "world") return std::nullopt;
@@ -36,13 +36,13 @@ AxisRule rule_of(const sdf::JointAxis& axis, bool turns, bool limited, const Sdf
                      .damping = axis.Damping(),
                      .friction = axis.Friction()};
   if (std::isfinite(axis.Effort()) && axis.Effort() > 0 && axis.Effort() < kNoBound)
-    rule.drive = core::JointDrive{.max_effort = axis.Effort()};  // of whoever will drive it
+    rule.drive = core::JointDrive{.max_effort = axis.Effort()};  // limit for later drives
   if (std::isfinite(axis.MaxVelocity()) && axis.MaxVelocity() >= 0 && axis.MaxVelocity() < kNoBound)
     model.note(element, "limit/velocity: a bound for a controller");
   return rule;
 }
 
-/// One axis, or two that move one after the other.
+/// Returns the joint kind for one axis, or for two of which the first moves the second.
 std::optional<SeveralAxes> kind_of(const sdf::Joint& joint, const SdfScope& scope, const std::string& element,
                                    Model& model) {
   const auto rule = [&](unsigned index, bool turns, bool limited) {

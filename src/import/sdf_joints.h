@@ -1,4 +1,4 @@
-// Joints of an SDF model.
+// Reads joints of an SDF model.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 
 namespace aurasim::importing {
 
-/// Adds one joint. `links` has the model's links by their whole names.
+/// Adds one joint. `links`: indices of the model's links by their full names.
 void add_sdf_joint(const sdf::Joint& joint, const SdfScope& scope, const std::map<std::string, std::size_t>& links,
                    Model& model);
 

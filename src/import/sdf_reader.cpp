@@ -1,4 +1,4 @@
-// SDF, and URDF as sdformat turns it into SDF.
+// Reads SDF, and URDF as sdformat converts it to SDF.
 #include <fmt/format.h>
 #include <sdf/sdf.hh>
 
@@ -19,7 +19,7 @@ constexpr std::size_t kMostLinks = 100'000;
 
 std::string message_of(const sdf::Error& error, const fs::path& file) {
   std::string text = error.FilePath().value_or(file.string());
-  if (text.starts_with("<")) text = file.string();  // sdformat's "data-string"
+  if (text.starts_with("<")) text = file.string();  // sdformat's placeholder "<data-string>"
   if (error.LineNumber()) text += fmt::format(":{}", *error.LineNumber());
   if (error.XmlPath()) text += fmt::format(": {}", *error.XmlPath());
   return text + ": " + error.Message();
@@ -74,7 +74,8 @@ class SdfReader {
 
   void read_root_model(const sdf::Model& model, const std::string& prefix, std::size_t root) {
     ignition::math::Pose3d X_WM;
-    if (!model.SemanticPose().Resolve(X_WM).empty()) X_WM = model.RawPose();  // alone in its file: no frame around it
+    // A model alone in its file has no frame around it.
+    if (!model.SemanticPose().Resolve(X_WM).empty()) X_WM = model.RawPose();
     read_sdf_model({model, pose_of(X_WM), prefix, model.Static(), root});
   }
 
@@ -116,7 +117,7 @@ class SdfReader {
     model_.links.push_back(std::move(link));
   }
 
-  /// Where the file lies that says this: a model may be included from another folder.
+  /// Folder of the file that contains the link, because a model may be included from another folder.
   fs::path folder_of(const sdf::Link& link) const {
     const fs::path named = link.Element() ? link.Element()->FilePath() : "";
     return fs::is_regular_file(named) ? named.parent_path() : file_.parent_path();
@@ -157,7 +158,7 @@ class SdfReader {
     if (xml->HasElement("velocity_decay")) model_.lose(element, "velocity_decay");
   }
 
-  /// Links of one model pass through each other, unless their models say self_collide.
+  /// Keeps links of one model apart unless their models have self_collide.
   void keep_apart() {
     for (std::size_t b = 0; b < model_.links.size(); ++b) {
       for (std::size_t a = 0; a < b; ++a) {
@@ -172,14 +173,14 @@ class SdfReader {
   }
 
   fs::path file_;
-  std::vector<fs::path> paths_;  ///< in which named files may lie, too
+  std::vector<fs::path> paths_;  ///< further folders in which named files may lie
   Model model_;
   std::map<std::string, std::size_t> links_;
   std::vector<bool> self_collides_;
   std::vector<std::size_t> root_of_;
 };
 
-/// What sdformat warns of and goes on: elements and attributes that it does not know.
+/// Adds notes for sdformat's warnings: elements and attributes that it does not know.
 void note_warnings(const fs::path& file, const ReadSettings& settings, Model& model) {
   sdf::Root root;
   for (const sdf::Error& error : root.Load(file.string(), parser_config(file, settings, sdf::EnforcementPolicy::ERR)))

@@ -9,7 +9,7 @@
 namespace aurasim::importing {
 namespace {
 
-/// The element at the end of a way of names, or null.
+/// Returns the element at the end of a path of names, or null.
 sdf::ElementPtr element_at(sdf::ElementPtr element, const std::vector<const char*>& way) {
   for (const char* name : way) {
     if (!element || !element->HasElement(name)) return nullptr;
@@ -55,7 +55,7 @@ void add_mesh_of(const sdf::Mesh& mesh, const std::filesystem::path& folder,
   add_mesh(std::get<std::filesystem::path>(found), vec3_of(mesh.Scale()), std::move(collision), element, link, model);
 }
 
-/// What needs no file; nothing if a scene has no such shape.
+/// Reads a shape that needs no file; nothing if a scene has no such shape.
 std::optional<Geometry> simple_shape(const sdf::Geometry& geometry, const std::string& element, Model& model) {
   switch (geometry.Type()) {
     case sdf::GeometryType::BOX:

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 
-/// "::" parts names of models from those of links, so no name may have it.
+/// Makes a name valid in SDF, where "::" separates names of models from those of links.
 std::string sdf_name(std::string name) {
   for (auto at = name.find("::"); at != std::string::npos; at = name.find("::")) {
     name.erase(at, 1);
@@ -57,7 +57,7 @@ SdfAxis own_axis(const Joint& joint) {
   return {Vec3::UnitZ(), joint.limits, joint.resistance, joint.drive.value_or(core::JointDrive{}).max_effort};
 }
 
-/// Nothing if SDF has no such joint.
+/// Converts a joint; nothing if SDF has no such joint.
 std::optional<SdfKind> sdf_kind(const core::SpringJoint& spring) {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -132,7 +132,7 @@ class SdfWriter {
     text("pose", fmt::format("{} {} {} {} {}", triple(pose.p_WB), q.x(), q.y(), q.z(), q.w()), attributes);
   }
 
-  /// Places of bodies that joints hold together, or apart.
+  /// Groups of bodies (places in scene_.bodies) that joints connect or keep apart.
   std::vector<std::vector<std::size_t>> models() const {
     std::vector<std::size_t> root(scene_.bodies.size());
     std::iota(root.begin(), root.end(), std::size_t{0});
@@ -231,7 +231,7 @@ class SdfWriter {
     std::visit([&](const auto& of) { write_geometry(of, name); }, shape);
     close();
     open("surface");
-    open("friction"), open("ode");  // contacts of a scene have the product of both bodies
+    open("friction"), open("ode");  // a scene's contacts have the product of both bodies' values
     number("mu", material.friction * material.friction), number("mu2", material.friction * material.friction);
     close(), close();
     open("bounce");
@@ -266,14 +266,14 @@ class SdfWriter {
     text_.meshes.emplace_back(mesh, obj_text(s));
     open("mesh"), text("uri", mesh.string()), close();
   }
-  void write_geometry(const core::Compound&, const std::string&) {}  // its parts are written one by one
+  void write_geometry(const core::Compound&, const std::string&) {}  // the parts of a compound are written one by one
 
   void write_sdf_joint(const core::JointSpec& joint) {
     const std::optional<SdfKind> kind = sdf_kind(joint.kind);
     if (!kind) return lose("joint", joint.name, "axes that no joint of SDF has: it is left out");
     const auto* hinge = std::get_if<core::HingeJoint>(&joint.kind);
     if (hinge != nullptr && hinge->motor) lose("joint", joint.name, "its motor");
-    // Drives and gears are left to plugins there.
+    // SDF leaves drives and gears to plugins.
     if (core::coupling_of(joint.kind)) lose("joint", joint.name, "that it follows another joint");
     if (const auto drive = core::drive_of(joint.kind);
         drive && *drive != core::JointDrive{.max_effort = drive->max_effort})
@@ -295,7 +295,7 @@ class SdfWriter {
   void write_axis(const char* name, const Vec3& axis_W, const SdfAxis& rule) {
     open(name);
     text("xyz", triple(axis_W), {{"expressed_in", "__model__"}});
-    open("limit");  // an element that SDF asks for, with or without limits
+    open("limit");  // SDF requires this element, even without limits
     if (rule.limits && std::isfinite(rule.limits->low)) number("lower", rule.limits->low);
     if (rule.limits && std::isfinite(rule.limits->high)) number("upper", rule.limits->high);
     if (std::isfinite(rule.max_effort)) number("effort", rule.max_effort);
@@ -320,8 +320,8 @@ class SdfWriter {
   const core::Scene& scene_;
   fs::path file_;
   const TrianglesAround& triangles_around_;
-  std::map<core::BodyId, std::size_t> place_;  ///< in scene_.bodies
-  std::vector<std::string> names_;             ///< as scene_.bodies
+  std::map<core::BodyId, std::size_t> place_;  ///< place in scene_.bodies
+  std::vector<std::string> names_;             ///< in the order of scene_.bodies
   tinyxml2::XMLPrinter xml_;
   SdfText text_;
 };

@@ -28,13 +28,13 @@ std::string text_of(const XMLElement& element, const char* attribute) {
   return text == nullptr ? "" : text;
 }
 
-/// Attribute `attribute` of the child `child`.
+/// Returns attribute `attribute` of the child `child`.
 std::string text_of(const XMLElement& element, const char* child, const char* attribute) {
   const XMLElement* below = element.FirstChildElement(child);
   return below == nullptr ? "" : text_of(*below, attribute);
 }
 
-/// All numbers of a text, or nothing if it has anything else.
+/// Parses all numbers of a text; nothing if it contains anything else.
 std::optional<std::vector<double>> numbers_in(const std::string& text) {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
@@ -61,7 +61,7 @@ class UrdfCheck {
     errors_.push_back(fmt::format("{}:{}: {}: {}", file_, where.GetLineNum(), element, what));
   }
 
-  /// Nothing if the attribute is missing or wrong; the latter is told of.
+  /// Reads the numbers in an attribute. Nothing if it is missing or wrong; the latter adds an error.
   std::optional<std::vector<double>> numbers(const XMLElement& element, const char* attribute, std::size_t count,
                                              const std::string& name) {
     if (element.Attribute(attribute) == nullptr) return std::nullopt;
@@ -174,7 +174,7 @@ class UrdfCheck {
     if (low > high) complain(*limit, name + "/limit", fmt::format("lower {} is above upper {}", low, high));
   }
 
-  /// One link without a parent, from which all others hang.
+  /// Checks that there is exactly one link without a parent, and that all others descend from it.
   void check_tree() {
     std::set<std::string> roots;
     for (const std::string& link : links_) {
@@ -194,7 +194,7 @@ class UrdfCheck {
   const XMLElement& robot_;
   std::vector<std::string> errors_;
   std::set<std::string> links_, joints_;
-  std::map<std::string, std::string> parent_;  ///< of links
+  std::map<std::string, std::string> parent_;  ///< parent of each link
 };
 
 const XMLElement& load_robot(const std::filesystem::path& file, tinyxml2::XMLDocument& document) {

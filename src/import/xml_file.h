@@ -1,4 +1,4 @@
-// XML files, where our own code looks into them beside the fields' libraries.
+// Reads XML files, for our own code that looks into them besides the formats' libraries.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace aurasim::importing {
 
-/// The outermost element; null if there is none. Throws BadModel, with the line, for what is no XML.
+/// Loads a file and returns its outermost element; null if there is none. Throws BadModel, with the line, if it is no
+/// XML.
 const tinyxml2::XMLElement* load_xml(const std::filesystem::path& file, tinyxml2::XMLDocument& document);
 
 }  // namespace aurasim::importing

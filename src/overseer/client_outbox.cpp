@@ -16,7 +16,7 @@ void ClientOutbox::publish(Notice notice, SharedText text) {
 void ClientOutbox::look(const View& view) {
   hidden_ = view.hidden;
   frames_.look(view.eye);
-  if (hidden_) overlays_ = nullptr;  // they would be of long ago
+  if (hidden_) overlays_ = nullptr;  // they would be outdated when the page is visible again
 }
 
 bool ClientOutbox::reply(std::string text) {

@@ -1,5 +1,5 @@
-// What waits to be sent to one page. However slow the page, this does not grow: of everything that can be sent anew
-// only the latest is kept, frames are merged (frame_codec.h), and replies are limited.
+// Messages that wait to be sent to one page. The memory is bounded however slow the page is: notices keep only the
+// latest of each kind, frames are merged (frame_codec.h), and replies are limited.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace aurasim::overseer {
 
-/// JSON of which only the latest counts, in the order in which they are sent.
+/// Kinds of JSON messages of which only the latest is kept, in the order in which they are sent.
 enum class Notice : std::uint8_t { kHello, kScene, kMoves, kMap, kStatus, kReplay, kBody };
 inline constexpr std::size_t kNotices = 7;
 
@@ -21,22 +21,22 @@ using SharedText = std::shared_ptr<const std::string>;
 using SharedBytes = std::shared_ptr<const Bytes>;
 
 struct Message {
-  SharedText text;    ///< or
-  SharedBytes bytes;  ///< a binary message
+  SharedText text;    ///< a text message, or null
+  SharedBytes bytes;  ///< a binary message, or null
   bool is_frame = false;
 };
 
 class ClientOutbox {
  public:
   void publish(Notice notice, SharedText text);
-  /// False: there are too many already; the page does not read.
+  /// Queues a reply. Returns false if too many are waiting, because the page does not read.
   bool reply(std::string text);
   void note(const WorldFrame& frame) { frames_.note(frame); }
-  /// A page that nobody looks at is sent nothing but replies; what it missed comes when it is looked at again.
+  /// Sets what the page looks at. A hidden page is sent only replies; the rest follows when it is visible again.
   void look(const View& view);
   void show(SharedBytes overlays) { overlays_ = std::move(overlays); }
 
-  /// What to send next, or nothing. `frames_too`: false when the last frame was sent only a moment ago.
+  /// Returns the next message to send, or nothing. `frames_too`: false when the last frame was sent only a moment ago.
   std::optional<Message> next(const SlotTable& table, bool frames_too);
 
   bool has_frame() const { return frames_.has_news() && !hidden_; }

@@ -1,5 +1,5 @@
-// What a page can ask for (docs/viewer.md, "JSON from the page"), as plain values, and who does it. Everything in a
-// Command has been checked: numbers are finite and in range, shapes are sound, rotations have length 1.
+// Commands of pages (docs/viewer.md, "JSON from the page") as plain values, and the interface that executes them.
+// Everything in a Command has been checked: numbers are finite and in range, shapes are sound, rotations have length 1.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,28 @@ namespace aurasim::overseer {
 struct Pause {};
 struct Resume {};
 struct Reset {};
-/// Only while paused: compute so many states.
+/// Computes so many states. Only while the run is paused.
 struct StepOn {
   std::int64_t count = 1;
 };
-/// Simulated seconds per second.
+/// Sets the rate: simulated seconds per second.
 struct SetRate {
   double value = 1;
 };
-/// The scene file of this name beside that of the run.
+/// Changes to the scene file of this name beside that of the run.
 struct LoadScene {
   std::string name;
 };
-/// The nodes keep the world under this name, or go back to the one of this name.
+/// Makes the nodes save the world under this name, or go back to the world of this name.
 struct SaveWorld {
   std::string name;
 };
 struct LoadWorld {
   std::string name;
 };
-/// To the newest earlier state that is kept.
+/// Goes back to the newest earlier kept state.
 struct StepBack {};
-/// A new region map, one rectangle per node. That they tile the plane is for the sink to check.
+/// Sets a new region map, one rectangle per node. The sink checks that they tile the plane.
 struct SetRegions {
   std::vector<core::Rectangle> boxes;
 };
@@ -81,27 +81,27 @@ struct SetVelocity {
   core::Vec3 v_WB = core::Vec3::Zero();
   std::optional<core::Vec3> w_WB;
 };
-/// What does a ray hit first? Changes nothing.
+/// Asks what a ray hits first. Changes nothing.
 struct CastRay {
   core::Vec3 from = core::Vec3::Zero();
   core::Vec3 to = core::Vec3::Zero();
-  std::vector<core::RegionId> regions;  ///< that are to answer; none: all
+  std::vector<core::RegionId> regions;  ///< regions that are to answer; empty: all
 };
 
 using Command = std::variant<Pause, Resume, Reset, StepOn, SetRate, LoadScene, SetRegions, Spawn, PlaceStatic, Remove,
                              Impulse, SetVelocity, CastRay, SaveWorld, LoadWorld, StepBack>;
 
-/// The word for it on the wire: "pause", "spawn", ...
+/// Name of a command on the wire: "pause", "spawn", ...
 const char* name_of(const Command& command);
-/// Whether it takes an operator's token, where there is one.
+/// True when the command needs an operator's token, if the server has one.
 bool changes_the_world(const Command& command);
 
-/// One connection of one page; never given out again.
+/// Identifies one connection of one page. Never reused.
 enum class ClientId : std::uint64_t {};
 
 struct Request {
   ClientId client{};
-  std::string id;  ///< made up by the page, comes back in the reply
+  std::string id;  ///< chosen by the page; returned in the reply
   Command command;
 };
 
@@ -109,11 +109,11 @@ struct Reply {
   ClientId client{};
   std::string request;
   bool ok = false;
-  std::string text;       ///< why not, or what was done
+  std::string text;       ///< reason for a refusal, or description of what was done
   nlohmann::json result;  ///< null, or an object
 };
 
-/// Does what pages ask for. Used by one thread, which also serves: nothing in here may block it.
+/// Executes the commands of pages. Used by one thread, which also serves pages: nothing in here may block it.
 class CommandSink {
  public:
   CommandSink() = default;
@@ -121,9 +121,9 @@ class CommandSink {
   CommandSink(const CommandSink&) = delete;
   CommandSink& operator=(const CommandSink&) = delete;
 
-  /// Begins it. Each request is answered by exactly one reply, at once or later, in any order.
+  /// Begins to execute a request. Each request gets exactly one reply, at once or later, in any order.
   virtual void submit(Request request) = 0;
-  /// Goes on with what has begun; called often. The replies that are ready.
+  /// Continues the requests that have begun, and returns the replies that are ready. Called often.
   virtual std::vector<Reply> take_replies() = 0;
 };
 

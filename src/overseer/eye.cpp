@@ -6,9 +6,10 @@
 namespace aurasim::overseer {
 namespace {
 
-/// A body reaches beyond its centre, and its shadow beyond the body.
+/// Margin around the picture, because a body reaches beyond its centre, and its shadow beyond the body.
 constexpr double kBesidePicture_m = 3;
-/// Told within half a metre, it is where it is expected when the page turns to it; then it is told exactly.
+/// Error outside of the picture, metres. With this error a body is roughly where it is expected when the page turns to
+/// it; then its exact place is sent.
 constexpr double kOutsideError_m = 0.5;
 
 }  // namespace

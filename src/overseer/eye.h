@@ -1,4 +1,4 @@
-// From where and how sharply a page looks at the world: what it cannot see need not be told at once.
+// The viewpoint of a page and the size of its pixels. Changes that it cannot show need not be sent at once.
 #pragma once
 
 #include "core/body_state.h"
@@ -8,11 +8,11 @@ namespace aurasim::overseer {
 struct Eye {
   core::Vec3 p_W = core::Vec3::Zero();
   core::Vec3 towards_W = core::Vec3::UnitX();  ///< length 1
-  double half_angle_rad = 0;                   ///< of a cone around all that the picture shows
-  double pixel_rad = 0;                        ///< what one pixel spans
+  double half_angle_rad = 0;                   ///< half the opening of a cone around all that the picture shows
+  double pixel_rad = 0;                        ///< angle that one pixel spans
 };
 
-/// So far from its place a body may be drawn: half a pixel within the picture, more outside of it. Metres.
+/// Error with which a body may be drawn, metres: half a pixel within the picture, more outside of it.
 double unseen_error_m(const Eye& eye, const core::Vec3& p_W);
 
 }  // namespace aurasim::overseer

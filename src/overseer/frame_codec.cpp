@@ -18,22 +18,22 @@ constexpr std::uint8_t kOverlays = 2;
 constexpr std::uint8_t kKeyFrame = 1;
 constexpr std::uint16_t kAsleep = 1, kUnderWay = 2, kHandedOver = 4;
 
-// What a client knows of a slot, and what it has to be sent.
-constexpr std::uint8_t kKnown = 1;     ///< it has the body that is there
-constexpr std::uint8_t kOutlived = 2;  ///< it has a body that is there no more
+// Bits for each slot of a client: what it has, and what it has to be sent.
+constexpr std::uint8_t kKnown = 1;     ///< the client has the body in this slot
+constexpr std::uint8_t kOutlived = 2;  ///< the client has a body that is no longer in this slot
 constexpr std::uint8_t kHostNews = 4;
 constexpr std::uint8_t kMoveNews = 8;
 constexpr std::uint8_t kHandOffNews = 16;
 constexpr std::uint8_t kListed = 32;
-constexpr std::uint8_t kNew = 64;  ///< within encode(): its pose has to be told whole
+constexpr std::uint8_t kNew = 64;  ///< within encode(): the whole pose has to be sent
 
-// How a pose is told, in the head of its row.
+// Encoding of a pose, in the head of its row.
 constexpr std::uint8_t kByteSteps = 1, kWordSteps = 2, kWholePosition = 3;
 constexpr std::uint8_t kByteLevels = 1 << 2, kWholeRotation = 2 << 2;
-constexpr std::uint8_t kFarSlot = 15;  ///< the slot follows; less: so many slots are passed over
-/// One level of a component, seen as an angle.
+constexpr std::uint8_t kFarSlot = 15;  ///< the slot number follows; lower values: number of slots skipped
+/// Angle of one level of a rotation's component.
 constexpr double kLevel_rad = 2 * std::numbers::sqrt2 / 1023;
-/// What turns with a body is seen so far from its centre, metres.
+/// Distance from a body's centre at which its rotation is judged, metres.
 constexpr double kReach_m = 1;
 
 class Writer {
@@ -62,7 +62,8 @@ ToldPose told_pose(const ViewBody& body) {
 
 int level(std::uint32_t packed, unsigned shift) { return static_cast<int>((packed >> shift) & 1023U); }
 
-/// The greatest difference of a component in levels; more than there are if another one is left out.
+/// Returns the greatest difference of a component, in levels. If another component is left out, returns more than the
+/// number of levels.
 int levels_between(std::uint32_t a, std::uint32_t b) {
   if (a >> 30U != b >> 30U) return 1024;
   int most = 0;
@@ -81,7 +82,7 @@ void put_host(const ViewBody& body, bool handed_over, Writer& out) {
   out.put(body.epoch);
 }
 
-/// Rows come by ascending slot.
+/// Writes the rows of poses. Rows must come by ascending slot.
 class PoseRows {
  public:
   explicit PoseRows(Writer& out) : out_(out) {}
@@ -177,7 +178,7 @@ void ClientFrames::note(const WorldFrame& frame) {
   if (has_news_) ++merged_;
   has_news_ = true;
   if (frame.restart) forget();
-  if (key_) return;  // everything will be listed
+  if (key_) return;  // a key frame lists everything anyway
   for (const Slot slot : frame.deleted) {
     std::uint8_t& bits = state(slot);
     if ((bits & kKnown) != 0) bits |= kOutlived;

@@ -1,5 +1,6 @@
-// The binary messages of docs/viewer.md, for any number of clients at any speed. What each client has been told is
-// remembered, a few bytes per body, so a slow one gets fewer frames and never more memory, and all get differences.
+// Encodes the binary messages of docs/viewer.md, for any number of clients at any speed. For each client a few bytes
+// per body remember what it was sent. So a slow client gets fewer frames and never costs more memory, and all clients
+// get differences.
 #pragma once
 
 #include <array>
@@ -15,13 +16,13 @@ namespace aurasim::overseer {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Positions are told as whole numbers of this, metres: a power of two, so that no sum of them is rounded.
+/// Unit of positions in frames, metres. A power of two, so that no sum of multiples is rounded.
 inline constexpr double kGrid_m = 1.0 / 2048;
 
-/// A pose as it is told.
+/// A pose as it is sent.
 struct ToldPose {
-  std::array<std::int64_t, 3> p{};  ///< in kGrid_m
-  std::uint32_t q = 0;              ///< packed
+  std::array<std::int64_t, 3> p{};  ///< position in units of kGrid_m
+  std::uint32_t q = 0;              ///< rotation, packed
 };
 
 /// The world as of the last frame.
@@ -33,7 +34,7 @@ class SlotTable {
   core::Step stamp() const { return stamp_; }
   std::size_t slot_count() const { return bodies_.size(); }
   std::size_t body_count() const { return count_; }
-  /// Null if the slot is empty.
+  /// Body in a slot; null if the slot is empty.
   const ViewBody* body(Slot slot) const { return slot < alive_.size() && alive_[slot] ? &bodies_[slot] : nullptr; }
 
  private:
@@ -44,18 +45,18 @@ class SlotTable {
   core::Step stamp_ = 0;
 };
 
-/// What one client knows. Begins with nothing: its first frame is a key frame.
+/// What one client has been sent. A new client has nothing, so its first frame is a key frame.
 class ClientFrames {
  public:
-  /// After the table has applied it.
+  /// Takes note of a frame. Call it after the table has applied the frame.
   void note(const WorldFrame& frame);
-  /// There has been a frame since the last one that was encoded.
+  /// True when there has been a frame since the last one that was encoded.
   bool has_news() const { return has_news_; }
-  /// Frames put into the next one, which was not sent in time for them.
+  /// Number of frames that were merged into a later one, because the client was too slow for them.
   std::uint64_t merged() const { return merged_; }
-  /// From where the client looks; nothing: it wants all as it is. What it cannot see it is told later.
+  /// Sets the client's viewpoint; nothing: it wants everything exactly. Changes that it cannot see are sent later.
   void look(const std::optional<Eye>& eye) { eye_ = eye; }
-  /// The next frame for this client; it counts as sent.
+  /// Encodes the next frame for this client, which then counts as sent.
   Bytes encode(const SlotTable& table);
 
  private:
@@ -78,11 +79,11 @@ class ClientFrames {
   std::uint64_t merged_ = 0;
 };
 
-/// Reads frames, for recordings.
+/// Decodes frames of recordings.
 class FrameDecoder {
  public:
-  /// A frame as a difference to `before`; nothing, if the bytes are no frame or do not fit to it and to those that were
-  /// read before: then only a key frame is sure to be right.
+  /// Decodes a frame as a difference to `before`. Nothing: the bytes are no frame, or do not continue `before` and the
+  /// frames decoded earlier. After that only a key frame is sure to be right.
   std::optional<WorldFrame> decode(std::span<const std::uint8_t> bytes, const SlotTable& before);
 
  private:

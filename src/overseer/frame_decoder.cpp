@@ -15,7 +15,7 @@ class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
-  /// 0 beyond the end, where ok() is false from then on.
+  /// Reads a number. Returns 0 beyond the end; ok() is false from then on.
   template <class Number>
   Number get() {
     Number value{};
@@ -154,7 +154,7 @@ class FrameReader {
   const SlotTable& before_;
   std::vector<ToldPose>& told_;
   WorldFrame frame_;
-  Slot next_ = 0;  ///< of the poses
+  Slot next_ = 0;  ///< next slot of the poses
   std::array<std::uint32_t, 4> counts_{};
   std::map<Slot, BodyChange> changes_;
   BodyChange nowhere_;

@@ -10,8 +10,9 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr int kNiceness = 10;
-/// Who wakes up waits for the end of the slice of who runs, however nice that is: 3 ms where nobody says otherwise
-/// (Linux 6.12 and later; before, it is not waited for and not looked at). The shortest that Linux takes, ns.
+/// Time slice of this thread, ns: the shortest that Linux takes. A thread that wakes up waits for the end of the
+/// running thread's slice, however nice that one is: 3 ms by default (Linux 6.12 and later; earlier ones ignore this
+/// value and do not wait).
 constexpr std::uint64_t kSlice_ns = 100'000;
 
 /// sched_setattr(2); glibc has none before 2.41.
@@ -27,7 +28,7 @@ struct SchedulingAttributes {
 
 void give_way() {
   SchedulingAttributes attributes;
-  ::syscall(SYS_sched_setattr, 0, &attributes, 0);  // of this thread; refused: it runs as the others
+  ::syscall(SYS_sched_setattr, 0, &attributes, 0);  // applies to this thread; if refused, it runs like the others
 }
 
 }  // namespace aurasim::overseer

@@ -2,7 +2,8 @@
 
 namespace aurasim::overseer {
 
-/// Makes the calling thread give way where processors are short: whatever pages do, nodes on this host go first.
+/// Lowers the calling thread's priority, so that nodes on this host run first when processors are short, whatever pages
+/// do.
 void give_way();
 
 }  // namespace aurasim::overseer

@@ -1,4 +1,4 @@
-// One TCP connection of a browser: HTTP requests, until one asks for the WebSocket.
+// Serves one TCP connection of a browser: HTTP requests, until one asks for the WebSocket.
 #pragma once
 
 #include <memory>
@@ -24,19 +24,19 @@
 
 namespace aurasim::overseer {
 
-inline constexpr std::chrono::seconds kIdleLimit{15};  // of a connection that has been answered, and may ask again
+inline constexpr std::chrono::seconds kIdleLimit{15};  // longest wait for a further request after an answer
 inline constexpr std::chrono::seconds kAnswerLimit{60};
 inline constexpr std::chrono::seconds kGoodbyeLimit{2};
-/// What is read and thrown away of a connection that is being closed.
+/// Most bytes that are read and discarded from a connection that is being closed.
 inline constexpr std::size_t kMostThrownAway = 4 * 1024 * 1024;
 inline constexpr std::uint32_t kLongestHeader = 16 * 1024;
-/// Requests of one connection; those beyond wait.
+/// Requests of one connection, as a token bucket: its size, and its refill a second. Further requests wait.
 inline constexpr double kRequests = 50;
 inline constexpr double kRequests_per_s = 50;
 
 inline std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Who has connected, and to which of this host's addresses.
+/// Addresses of a connection: the remote one, and the one of this host.
 struct Ends {
   std::string remote;
   std::string local;
@@ -76,7 +76,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   using StringBody = boost::beast::http::string_body;
   using Clock = std::chrono::steady_clock;
 
-  /// In the time that is left of what was set before.
+  /// Reads a header within the time left of the limit that was set before.
   void read_header() {
     namespace http = boost::beast::http;
     set_silent(true);
@@ -89,7 +89,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     });
   }
 
-  /// Answers what is no request, where somebody may still be there to read it.
+  /// Answers an invalid request if the sender may still be there to read the answer, and ends the connection.
   void give_up(Error error) {
     using Http = boost::beast::http::error;
     if (error == Http::header_limit || error == Http::buffer_overflow)
@@ -108,7 +108,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
   bool is_twofold(Field name) const { return parser_->get().count(name) > 1; }
   std::string_view target() const { return view_of(parser_->get().target()); }
 
-  /// The body has not been read yet: what is refused here costs nothing more.
+  /// Decides on a request before its body is read, so that refusing it costs nothing more.
   void route() {
     set_silent(false);
     if (is_twofold(Field::host) || is_twofold(Field::origin) || is_twofold(Field::authorization))
@@ -123,7 +123,8 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     serve();
   }
 
-  /// RFC 9112, section 3.2: HTTP/1.1 has a Host header, whose value may be empty.
+  /// True when the request names a host as RFC 9112, section 3.2 demands: HTTP/1.1 has a Host header, whose value may
+  /// be empty.
   bool names_a_host() const {
     const auto& request = parser_->get();
     if (request.count(Field::host) == 0) return request.version() < 11;
@@ -154,7 +155,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
         ->start(parser_->release());
   }
 
-  /// Who shows a token gets a cookie for it.
+  /// Answers a request that shows a token with a session cookie.
   void open_session() {
     if (header(Field::authorization).empty()) return refuse(401, "the token is missing or wrong");
     HttpAnswer reply = WebHub::session(standing_);
@@ -239,7 +240,8 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
     }
   }
 
-  /// A socket that is closed with unread bytes in it resets the connection: the answer might never be read.
+  /// Reads the rest before closing. Closing a socket with unread bytes resets the connection, and the answer might
+  /// never be read.
   void linger() {
     Error gone;
     socket_of(stream_).socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, gone);
@@ -254,7 +256,7 @@ class HttpConnection final : public WebCaller, public std::enable_shared_from_th
                                        });
   }
 
-  /// To somebody who has left out the s of https.
+  /// Answers a client that used http instead of https.
   void say_that_this_is_tls() {
     static constexpr std::string_view kAnswer =
         "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\nthis server speaks HTTPS\n";

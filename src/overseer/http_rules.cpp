@@ -15,7 +15,7 @@
 namespace aurasim::overseer {
 namespace {
 
-/// Nothing: an escape is not sound.
+/// Decodes escapes. Nothing: an escape is invalid.
 std::optional<std::string> unescape(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -1,5 +1,5 @@
-// What pages may have drawn over the bodies: how far auras reach, which bodies are linked into clusters, which touch.
-// The nodes are asked for it only while a page wants it.
+// Overlays that pages may draw over the bodies: how far auras reach, which bodies are linked into clusters, which
+// touch. The nodes publish this only while a page wants it.
 #pragma once
 
 #include <map>
@@ -16,18 +16,18 @@ namespace aurasim::overseer {
 
 class OverlayView {
  public:
-  /// Takes in what the nodes have published. `wanted`: by any page.
+  /// Takes in what the nodes have published. `wanted`: overlays that any page wants.
   void look(dds::Participant& participant, const dds::ObserverSettings& settings, const Show& wanted,
             const core::Scene& scene, const WorldView& view);
-  /// Another map or scene: what was known is of another world.
+  /// Drops everything, because a new map or scene makes it obsolete.
   void forget();
 
-  /// Bodies that the view does not know are left out. `ahead_s`: for how long an aura holds, seconds.
+  /// Encodes the overlays. Bodies that the view does not know are left out. `ahead_s`: how long an aura holds, seconds.
   Bytes encode(const WorldView& view, double ahead_s) const;
 
  private:
   struct Aura {
-    float radius_m = 0;  ///< of the bounding sphere
+    float radius_m = 0;  ///< radius of the bounding sphere
     float speed_m_s = 0;
   };
   void look_at_auras(const core::Scene& scene, const WorldView& view);

@@ -24,8 +24,8 @@ constexpr auto kRound = 5ms;
 constexpr auto kStatusPeriod = 250ms;
 constexpr auto kOverlayPeriod = 200ms;
 constexpr auto kMovesPeriod = 50ms;
-constexpr auto kGrowPeriod = 2s;        // while a mesh is missing
-constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are so much newer than the view, at most
+constexpr auto kGrowPeriod = 2s;        // retry period while a mesh is missing
+constexpr double kOldestView_s = 0.25;  // a ray is answered with states that are newer than the view by at most this
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void Overseer::record(const std::filesystem::path& file) {
   write_down(ChunkKind::kMap, map_message(watch_.launch().regions));
 }
 
-/// A full disk ends the recording, not the overseer.
+/// Runs `job` on the recording. A full disk ends the recording, not the overseer.
 template <class Job>
 void Overseer::keep_recording(Job job) {
   if (!recording_) return;
@@ -85,7 +85,8 @@ void Overseer::publish_scene() {
 
 std::string Overseer::scene_text() const { return scene_message(scene_, published_generation_, removed_statics_); }
 
-/// Now and then: programs may send a static on in every state. Frames are shown later than this.
+/// Publishes moved statics, at a limited rate, because programs may move a static in every state. Frames are shown
+/// later than this.
 void Overseer::publish_moves() {
   if (!moves_have_changed_ || Clock::now() < next_moves_) return;
   next_moves_ = Clock::now() + kMovesPeriod;
@@ -95,7 +96,8 @@ void Overseer::publish_moves() {
   write_down(ChunkKind::kMoves, text);
 }
 
-/// What clients have added to the scene, once the run shows that generation; again when a mesh has come later.
+/// Takes clients' scene additions into the scene once the run shows their generation, and again when a mesh arrives
+/// later.
 void Overseer::grow() {
   if (std::optional<dds::SceneAdditions> newest = additions_reader_.take()) {
     additions_ = std::move(newest);
@@ -113,7 +115,7 @@ void Overseer::grow() {
   if (has_all) additions_.reset();
 }
 
-/// Returns the numbers of all other orders.
+/// Takes the moves of statics out of the orders. Returns the numbers of all other orders.
 std::vector<std::uint64_t> Overseer::take_moves() {
   std::vector<std::uint64_t> others;
   static_moves_.clear();
@@ -159,10 +161,10 @@ void Overseer::turn() {
   publish_status();
 }
 
-/// The run has got other regions or another scene.
+/// Shows that the run has got other regions or another scene.
 void Overseer::show_change() {
   overlays_.forget();
-  scene_is_published_ = false;  // also when bodies of this generation have come before the map
+  scene_is_published_ = false;  // also needed when bodies of this generation arrived before the map
   const std::string map = map_message(watch_.launch().regions);
   web_.publish(Notice::kMap, map);
   write_down(ChunkKind::kMap, map);
@@ -186,7 +188,7 @@ void Overseer::compose_frames() {
     web_.show(*frame);
     write_down(*frame);
   }
-  if (any || Clock::now() >= next_overlays_) show_overlays();  // also of a run that stands
+  if (any || Clock::now() >= next_overlays_) show_overlays();  // also while the run is paused
 }
 
 void Overseer::show_overlays() {

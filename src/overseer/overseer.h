@@ -27,14 +27,14 @@ namespace aurasim::overseer {
 /// Used by one thread.
 class Overseer {
  public:
-  /// All of these outlive it.
+  /// All arguments must outlive the overseer.
   Overseer(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control, WebServer& web,
            CommandSink& sink);
 
-  /// From now on writes down what is published to pages. Throws BadRecording when the file cannot be written.
+  /// Starts to record what is published to pages. Throws BadRecording when the file cannot be written.
   void record(const std::filesystem::path& file);
 
-  /// One round: waits a few milliseconds for news and passes on what there is.
+  /// Runs one round: waits a few milliseconds for news and passes it on.
   void turn();
 
  private:
@@ -66,17 +66,18 @@ class Overseer {
   WorldWatch watch_;
   dds::SceneAdditionsReader additions_reader_;
   dds::MeshReader meshes_;
-  core::Scene scene_;  ///< as it has grown
+  core::Scene scene_;  ///< the scene with the scene additions so far
   std::set<core::StaticId> removed_statics_;
   std::vector<core::Order> static_moves_;
-  bool moves_have_changed_ = false;  ///< since they were published
+  bool moves_have_changed_ = false;  ///< moves have changed since they were last published
   Clock::time_point next_moves_;
-  std::vector<std::uint64_t> grown_by_;           ///< orders that scene_ has taken in
-  std::optional<dds::SceneAdditions> additions_;  ///< waits until its generation is shown, and all its meshes are here
-  bool additions_are_shown_ = false;              ///< with balls where meshes are missing
+  std::vector<std::uint64_t> grown_by_;  ///< numbers of orders that scene_ contains
+  /// Additions that wait until their generation is shown and all their meshes are here.
+  std::optional<dds::SceneAdditions> additions_;
+  bool additions_are_shown_ = false;  ///< additions_ are shown with balls in the place of missing meshes
   OverlayView overlays_;
   core::Generation published_generation_ = 0;
-  bool scene_is_published_ = true;  ///< that of published_generation_ and the newest map
+  bool scene_is_published_ = true;  ///< the scene of published_generation_ and of the newest map was published
   std::optional<RecordingWriter> recording_;
   double recording_began_s_ = 0;
   struct HandOffs {

@@ -14,9 +14,9 @@
 namespace aurasim::overseer {
 namespace {
 
-constexpr std::size_t kWorthIt = 1024;    // bytes; below that an answer is one datagram either way
-constexpr int kGzipFormat = 15 + 16;      // zlib's word for it: the largest window, and a header of gzip
-constexpr std::size_t kMostKept = 1'000;  // files; no page has so many
+constexpr std::size_t kWorthIt = 1024;    // bytes; a smaller answer fits into one packet anyway
+constexpr int kGzipFormat = 15 + 16;      // zlib's value for the largest window and a header of gzip
+constexpr std::size_t kMostKept = 1'000;  // most files that are kept; a page has fewer
 
 std::string whole_file(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -24,7 +24,7 @@ std::string whole_file(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-/// Pictures and fonts are compressed already.
+/// True for types that compression makes smaller. Pictures and fonts are compressed already.
 bool is_text(std::string_view type) {
   return type.starts_with("text/") || type.starts_with("application/json") || type.starts_with("image/svg") ||
          type.starts_with("application/wasm") || type.starts_with("model/gltf+json");

@@ -1,4 +1,4 @@
-// The files of the built page, compressed once for all who ask.
+// Serves the files of the built page. Each is compressed once for all requests.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace aurasim::overseer {
 
-/// What the asking side can do and has.
+/// What the requesting browser supports and already has.
 struct FileRequest {
   bool takes_gzip = false;
-  std::string etag;  ///< of what it has; empty: nothing
+  std::string etag;  ///< ETag of its copy; empty: it has none
 };
 
 struct FileAnswer {
   std::string content_type;
   std::string etag;
   bool is_gzip = false;
-  std::shared_ptr<const std::string> bytes;  ///< null: it has them already
+  std::shared_ptr<const std::string> bytes;  ///< content; null: its copy is up to date
 };
 
 /// Used by one thread.
@@ -28,7 +28,7 @@ class PageFiles {
  public:
   explicit PageFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Nothing: there is no such file (http_rules.h). Reads a file again when it has changed.
+  /// Returns the answer; nothing: there is no such file (http_rules.h). Reads a file again when it has changed.
   std::optional<FileAnswer> get(std::string_view target, const FileRequest& request);
 
  private:
@@ -37,7 +37,7 @@ class PageFiles {
     std::uintmax_t size = 0;
     std::string etag;
     std::shared_ptr<const std::string> plain;
-    std::shared_ptr<const std::string> gzip;  ///< null: not worth it
+    std::shared_ptr<const std::string> gzip;  ///< compressed content; null: compression does not pay
   };
   const Kept& read(const std::filesystem::path& file, std::string_view type);
 
@@ -45,10 +45,10 @@ class PageFiles {
   std::map<std::filesystem::path, Kept> kept_;
 };
 
-/// As HTTP's Accept-Encoding says it: gzip is named and not forbidden.
+/// True when HTTP's Accept-Encoding names gzip and does not forbid it.
 bool takes_gzip(std::string_view accept_encoding);
 
-/// RFC 1952, by zlib.
+/// Compresses `bytes` as gzip (RFC 1952).
 std::string gzip(std::string_view bytes);
 
 }  // namespace aurasim::overseer

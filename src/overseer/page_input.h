@@ -1,4 +1,4 @@
-// What pages send, read and checked. Nothing that a page sends can do more than be refused, with a text that says why.
+// Parses and checks the messages of pages. An invalid message has no effect but a refusal with the reason.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace aurasim::overseer {
 
-/// Longer messages are refused before they are read. Meshes go to /api/shapes.
+/// Longest message, bytes. Longer ones are refused before they are read. Meshes go to /api/shapes instead.
 inline constexpr std::size_t kLongestMessage = 64 * 1024;
 
 struct Show {
@@ -22,8 +22,8 @@ struct Show {
 };
 /// What the page looks at.
 struct View {
-  bool hidden = false;     ///< nobody sees it
-  std::optional<Eye> eye;  ///< nothing: it wants everything as it is
+  bool hidden = false;     ///< the page is hidden
+  std::optional<Eye> eye;  ///< viewpoint; nothing: the page wants everything exactly
 };
 struct Watch {
   std::optional<Slot> slot;
@@ -35,13 +35,13 @@ struct CommandMessage {
 struct ReplayControl {
   enum class Action : std::uint8_t { kPlay, kPause, kSeek, kSpeed };
   Action action = Action::kPlay;
-  double value = 0;  ///< step, or steps per step of the recorded time
+  double value = 0;  ///< kSeek: a step; kSpeed: steps shown per step of the recorded time
 };
 using PageMessage = std::variant<Show, View, Watch, CommandMessage, ReplayControl>;
 
 struct BadMessage {
   std::string why;
-  std::string request;  ///< of a command, when that much could be read: it is answered
+  std::string request;  ///< id of the command, if that could be parsed: then the refusal is a reply to it
 };
 
 std::variant<PageMessage, BadMessage> read_page_message(std::string_view text);

@@ -35,7 +35,7 @@ Json place_json(const core::Pose& pose) { return {{"p", vector_json(pose.p_WB)},
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// JSON has no infinity.
+/// A side of a box; infinity becomes null, because JSON has no infinity.
 Json side(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json durations_json(const dds::Durations& d) { return {{"p50", d.p50_ms}, {"p99", d.p99_ms}, {"max", d.max_ms}}; }
@@ -123,7 +123,7 @@ std::string scene_message(const core::Scene& scene, core::Generation generation,
 }
 
 std::string moves_message(core::Generation generation, std::span<const core::Order> moves) {
-  std::map<core::StaticId, Json> by_static;  // each in the order of time
+  std::map<core::StaticId, Json> by_static;  // for each static in order of time
   for (const core::Order& order : moves) {
     const auto& move = std::get<core::MoveStatic>(order.action);
     by_static[move.id].push_back({{"step", order.at_step},

@@ -1,4 +1,4 @@
-// JSON to the page (docs/viewer.md).
+// Composes the JSON messages to the page (docs/viewer.md).
 #pragma once
 
 #include <cstdint>
@@ -22,16 +22,16 @@ struct Hello {
   std::string scene;
   double step_s = 0;
   double tick_hz = 0;
-  core::Step first = 0;  ///< place in a replay at which it begins
+  core::Step first = 0;  ///< first place in the replay
   core::Step last = 0;
-  std::vector<core::Step> resets;  ///< places in it at which the run was begun anew
+  std::vector<core::Step> resets;  ///< places in the replay at which the run was reset
 };
 std::string hello_message(const Hello& hello);
 
-/// `removed`: statics that are there no longer; the others keep their ids.
+/// Describes a scene. `removed`: statics that do not exist any more; the others keep their ids.
 std::string scene_message(const core::Scene& scene, core::Generation generation,
                           const std::set<core::StaticId>& removed);
-/// Where statics go that have been told to (MoveStatic orders, ascending): all that the page has to know now.
+/// Describes where moved statics go (MoveStatic orders, ascending): all that the page has to know now.
 std::string moves_message(core::Generation generation, std::span<const core::Order> moves);
 std::string map_message(const core::RegionMap& map);
 
@@ -44,7 +44,7 @@ struct RunStatus {
   std::map<core::RegionId, double> hand_offs_per_s;
 };
 std::string status_message(const RunStatus& status);
-/// Numbers about the nodes, as Prometheus reads them.
+/// Metrics of the nodes in the format of Prometheus.
 std::string node_metrics(const RunStatus& status);
 
 std::string body_message(const ViewBody& body);

@@ -16,18 +16,19 @@
 
 namespace aurasim::overseer {
 
-/// Frames for one page come no closer than this, however fast the run goes.
+/// Shortest time between two frames for one page, however fast the run goes.
 inline constexpr std::chrono::milliseconds kFrameSpacing{12};
-/// What the kernel may hold for one page: more would only make what it shows older.
+/// Size of the kernel's send buffer for one page, bytes. More would only make the picture older.
 inline constexpr int kSendBuffer = 128 * 1024;
 inline constexpr std::chrono::seconds kHandshakeLimit{5};
 inline constexpr std::chrono::seconds kSilenceLimit{30};
-/// What is read of one page: what it sends beyond that waits in its own host, and no other page notices. Who drags a
-/// body sends some 30 messages a second.
+/// Rate at which one page's messages are read. The excess waits on the page's own host, and other pages do not notice.
+/// A page that drags a body sends some 30 messages a second.
 inline constexpr std::size_t kReadBytes_per_s = 128 * 1024;
 inline constexpr double kMessages = 200;
 inline constexpr double kMessages_per_s = 100;
-/// Pings are answered by the library, before anybody else hears of them: a page that sends more is dropped.
+/// Pings of one page, as a token bucket: its size, and its refill a second. The library answers pings before our code
+/// sees them, so a page that sends more is dropped.
 inline constexpr double kPings = 50;
 inline constexpr double kPings_per_s = 5;
 
@@ -104,7 +105,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     });
   }
 
-  /// At once, or when it is its turn again.
+  /// Reads the next message, at once or when the rate limit allows it.
   void read_on() {
     const Clock::duration wait = messages_.charge(Clock::now().time_since_epoch());
     if (wait <= Clock::duration::zero()) return read();
@@ -122,7 +123,7 @@ class PageSocket final : public PageConnection, public std::enable_shared_from_t
     }
   }
 
-  /// A frame that comes too soon after the last one is sent after a moment, unless another comes first.
+  /// Schedules a frame that comes too soon after the last one, unless another one comes first.
   void pump_later() {
     if (!outbox.has_frame() || waiting_) return;
     waiting_ = true;

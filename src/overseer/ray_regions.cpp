@@ -22,7 +22,7 @@ bool crosses(const Segment& ray, const core::Rectangle& region, double margin_m)
          clip(ray.from.y(), ray.to.y(), region.y0 - margin_m, region.y1 + margin_m, enter, leave);
 }
 
-/// Of a point from the nearest point of the segment, metres.
+/// Distance of a point from the segment, metres.
 double distance_to(const Segment& segment, const core::Vec3& p) {
   const core::Vec3 along = segment.to - segment.from;
   const double squared = along.squaredNorm();

@@ -1,4 +1,4 @@
-// Which regions have to be asked what a ray meets.
+// Finds the regions that have to be asked what a ray hits.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ struct Segment {
   core::Vec3 to = core::Vec3::Zero();
 };
 
-/// Those that the segment crosses, or passes within `margin_m`, and the hosts of bodies that it may meet, wherever they
-/// are. Ascending. `margin_m`: as far as a body may have moved since the view was updated.
+/// Returns, ascending, the regions that the segment crosses or passes within `margin_m`, and the hosts of bodies that
+/// it may hit, wherever they are. `margin_m`: how far a body may have moved since the view was updated.
 std::vector<core::RegionId> regions_for_ray(const Segment& ray, const core::RegionMap& map, const WorldView& view,
                                             const core::Scene& scene, double margin_m);
 

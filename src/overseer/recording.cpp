@@ -40,7 +40,7 @@ void RecordingWriter::write(const WorldFrame& frame, double time_s) {
   frames_.note(frame);
   const bool key = frame.restart || time_s >= next_key_s_;
   if (key) {
-    frames_ = {};  // knows nothing: its next frame has everything
+    frames_ = {};  // reset, so that the next frame is a key frame
     frames_.note(frame);
     next_key_s_ = time_s + kKeyFramePeriodS;
   }
@@ -57,7 +57,7 @@ void RecordingWriter::write(ChunkKind kind, const void* bytes, std::size_t size,
   header.time_s = time_s;
   out_.write(reinterpret_cast<const char*>(&header), sizeof header);
   out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-  if (kind == ChunkKind::kStatus) out_.flush();  // four times a second
+  if (kind == ChunkKind::kStatus) out_.flush();  // statuses come four times a second
   if (!out_) throw BadRecording(fmt::format("{}: cannot be written any more", file_.string()));
 }
 
@@ -77,7 +77,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file
                        header.size <= end - at - sizeof header;
     if (!sound) break;
     const auto kind = static_cast<ChunkKind>(header.kind);
-    if (kind == ChunkKind::kFrame && !any_frame) continue;  // nothing to start from
+    if (kind == ChunkKind::kFrame && !any_frame) continue;  // a reader needs a key frame to start from
     any_frame = any_frame || kind == ChunkKind::kKeyFrame;
     chunks_.push_back({kind, header.generation, header.step, header.time_s, at + sizeof header, header.size});
   }

@@ -31,7 +31,7 @@ struct Chunk {
   core::Generation generation = 0;
   core::Step step = 0;
   double time_s = 0;
-  std::uint64_t offset = 0;  ///< of its bytes
+  std::uint64_t offset = 0;  ///< offset of its bytes in the file
   std::uint32_t size = 0;
 };
 
@@ -60,11 +60,11 @@ class RecordingWriter {
 
 class RecordingReader {
  public:
-  /// Throws BadRecording when it is none, or has no frame.
+  /// Opens a recording. Throws BadRecording when the file is none, or has no frame.
   explicit RecordingReader(const std::filesystem::path& file);
 
   const std::vector<Chunk>& chunks() const { return chunks_; }
-  /// Throws BadRecording when the file has changed.
+  /// Reads a chunk. Throws BadRecording when the file has changed.
   std::string read(const Chunk& chunk);
 
  private:

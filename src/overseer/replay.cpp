@@ -42,7 +42,7 @@ RecordedRun read_run(const std::string& text) {
   return run;
 }
 
-/// A key frame amid the others, as what it changes.
+/// Turns a key frame amid the others into the changes that it makes.
 void make_difference(WorldFrame& key_frame, const SlotTable& before) {
   key_frame.restart = false;
   std::vector<bool> present(before.slot_count(), false);
@@ -74,8 +74,8 @@ Replay::Replay(const std::filesystem::path& file) : reader_(file) {
   position_ = static_cast<double>(first_);
 }
 
-/// A place for each chunk: that of the frame before it for a text. Where the run was begun anew its steps go back, and
-/// the places go on.
+/// Gives each chunk a place; a text gets that of the frame before it. Where the run was reset its steps go back, but
+/// places go on.
 void Replay::lay_out() {
   const Chunk* before = nullptr;
   first_ = std::ranges::find_if(reader_.chunks(), is_frame)->step;
@@ -111,7 +111,7 @@ void Replay::apply(const ReplayControl& control) {
   }
 }
 
-/// To the last key frame up to there; advance() does the rest.
+/// Goes to the last key frame up to `at`; advance() plays the rest.
 void Replay::seek(core::Step at) {
   const auto& chunks = reader_.chunks();
   next_ = 0;
@@ -122,7 +122,7 @@ void Replay::seek(core::Step at) {
   jumped_ = true;
 }
 
-/// After a jump: scene, map and status as they are there, if they are others than those told last.
+/// After a jump, sends the scene, map and status of the new place if they differ from those sent last.
 void Replay::tell_what_holds(Output& out) {
   std::map<Notice, std::size_t> holding;
   for (std::size_t i = 0; i < places_.size() && static_cast<double>(places_[i]) <= position_; ++i) {

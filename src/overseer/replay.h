@@ -1,4 +1,5 @@
-// Plays a recording: which frames and texts are due, at which speed, from where. No clock: the time is passed in.
+// Plays a recording: decides which frames and texts are due, at the chosen speed and place. No clock: the time is
+// passed in.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace aurasim::overseer {
 
-/// What a recording says of itself.
+/// Description of a recording.
 struct RecordedRun {
   std::string scene;
   double step_s = 1.0 / 60;
@@ -23,28 +24,28 @@ std::string recorded_run_text(const RecordedRun& run);
 
 class Replay {
  public:
-  /// Throws BadRecording.
+  /// Opens a recording. Throws BadRecording.
   explicit Replay(const std::filesystem::path& file);
 
   const RecordedRun& run() const { return run_; }
-  /// The places in the recording at which it begins and ends: steps, until the run is begun anew, which turns its steps
-  /// back, but not the place in the recording.
+  /// First and last place in the recording. Places are steps until the run is reset: then steps go back, but places go
+  /// on.
   core::Step first() const { return first_; }
   core::Step last() const { return places_.back(); }
-  /// The places at which the run was begun anew, ascending.
+  /// Places at which the run was reset, ascending.
   const std::vector<core::Step>& resets() const { return resets_; }
 
   void apply(const ReplayControl& control);
 
   struct Output {
     std::vector<WorldFrame> frames;
-    std::map<Notice, std::string> texts;  ///< the latest of each
+    std::map<Notice, std::string> texts;  ///< the latest text of each kind
   };
-  /// What is due by now.
+  /// Returns everything that is due at time `now_s`.
   Output advance(double now_s);
 
   core::Step step() const { return table_.stamp(); }
-  /// The place of what is shown, from first() to last().
+  /// Place that is shown, from first() to last().
   core::Step at() const { return at_; }
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
@@ -58,10 +59,10 @@ class Replay {
 
   RecordingReader reader_;
   RecordedRun run_;
-  std::vector<core::Step> places_;  ///< of each chunk
+  std::vector<core::Step> places_;  ///< place of each chunk
   std::vector<core::Step> resets_;
   core::Step first_ = 0;
-  std::map<Notice, std::size_t> told_;  ///< chunk of the latest text of each kind
+  std::map<Notice, std::size_t> told_;  ///< chunk of the latest text of each kind that was sent
   std::size_t next_ = 0;                ///< chunk
   double position_ = 0;                 ///< place up to which all is due
   core::Step at_ = 0;

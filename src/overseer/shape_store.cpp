@@ -9,7 +9,7 @@ namespace aurasim::overseer {
 namespace {
 
 constexpr std::size_t kMostMeshes = 256;
-constexpr std::size_t kMostPointsOfAll = 10'000'000;  // of all meshes
+constexpr std::size_t kMostPointsOfAll = 10'000'000;  // limit for all meshes together
 
 ShapeStore::Stored summary_of(std::uint64_t hash, const core::TriangleMesh& mesh) {
   return {hash, mesh.points.size(), mesh.triangles.size()};

@@ -12,7 +12,7 @@ namespace aurasim::overseer {
 /// A file of overseer.tls cannot be used.
 class BadTls : public std::runtime_error {
  public:
-  /// `key`: of the launch file, "certificate" or "key".
+  /// `key`: the key of the launch file, "certificate" or "key".
   BadTls(std::string key, const std::string& what) : std::runtime_error(what), key_(std::move(key)) {}
   const std::string& key() const { return key_; }
 

@@ -10,8 +10,8 @@
 namespace aurasim::overseer {
 namespace {
 
-constexpr double kGuesses = 10;         // wrong tokens of one address at once
-constexpr double kGuesses_per_s = 0.2;  // and from then on
+constexpr double kGuesses = 10;         // wrong tokens that one address may send at once
+constexpr double kGuesses_per_s = 0.2;  // wrong tokens a second that it may send from then on
 constexpr std::size_t kMostGuessers = 1'000;
 
 }  // namespace
@@ -21,7 +21,8 @@ WebAccess::WebAccess(const WebSettings& settings)
       names_(settings.names),
       token_(settings.token),
       view_token_(settings.view_token),
-      // Cookies of a host go to all its ports; only over TLS can a name be kept from those who speak without.
+      // Browsers send a host's cookies to all its ports. Only over TLS can a name (__Host-) be protected from servers
+      // without TLS.
       cookie_name_(fmt::format("{}aurasim_{}", has_tls_ ? "__Host-" : "", settings.port)),
       session_(make_token()),
       view_session_(make_token()) {}
@@ -34,7 +35,7 @@ std::string WebAccess::why_not(std::string_view host, std::string_view origin, s
 }
 
 bool WebAccess::is_meant(std::string_view host, std::string_view local_address) const {
-  if (is_loopback_name(host)) return true;  // no stranger's page comes from there
+  if (is_loopback_name(host)) return true;  // no foreign page can have this Host
   const std::string name = lower(host_name(host));
   if (name == local_address || name == fmt::format("[{}]", local_address)) return true;
   return std::any_of(names_.begin(), names_.end(), [&](const std::string& known) { return matches_name(name, known); });
@@ -71,7 +72,8 @@ std::string WebAccess::cookie(Standing standing) const {
                      standing == Standing::kOperator ? session_ : view_session_, has_tls_ ? "; Secure" : "");
 }
 
-/// Those who have not guessed for long are forgotten; where there are too many, any other is.
+/// Returns the bucket of wrong tokens of an address. Addresses without a recent guess are forgotten, and if there are
+/// still too many, any other one.
 core::TokenBucket& WebAccess::guesses_of(const std::string& address, Clock::time_point now) {
   if (guesses_.size() >= kMostGuessers && !guesses_.contains(address)) {
     std::erase_if(guesses_, [now](const auto& entry) { return entry.second.is_full(now.time_since_epoch()); });

@@ -1,7 +1,7 @@
-// Who may ask the web server for what. No sockets in here, and time is passed in.
+// Access rights at the web server. No sockets in here, and time is passed in.
 //
-// A token is shown in a header, and only there. Who has shown it is given a cookie that holds another secret, drawn at
-// the start: it ends with the overseer, and the token cannot be found out from it.
+// A token is accepted in a header only. A client that has shown it gets a cookie with another secret, drawn at the
+// start: it expires with the overseer, and the token cannot be derived from it.
 #pragma once
 
 #include <atomic>
@@ -18,20 +18,20 @@
 
 namespace aurasim::overseer {
 
-/// What somebody may do; each may do what those before it may.
+/// Rights of a client; each level includes those before it.
 enum class Standing : std::uint8_t {
-  kStranger,  ///< have the page, and show a token
-  kViewer,    ///< look at the world
-  kOperator,  ///< change it
+  kStranger,  ///< may load the page and show a token
+  kViewer,    ///< may look at the world
+  kOperator,  ///< may change the world
 };
 
-/// What of a request says who asks. Empty: not there.
+/// Parts of a request that identify the client. Empty: not there.
 struct Credentials {
   std::string_view authorization;
   std::string_view cookies;
 };
 
-/// With an HTTP status.
+/// A refusal with its HTTP status.
 struct Refusal {
   unsigned status = 403;
   std::string why;
@@ -42,17 +42,17 @@ class WebAccess {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The port is the one that it listens on.
+  /// `settings.port` must be the port that the server listens on.
   explicit WebAccess(const WebSettings& settings);
 
-  /// Why a request with these headers may not be served to whoever has connected to `local_address`; empty: it may.
+  /// Returns why a request with these headers, on a connection to `local_address`, is refused; empty: it is allowed.
   std::string why_not(std::string_view host, std::string_view origin, std::string_view local_address) const;
 
-  /// After some wrong tokens of one address its next ones are not even looked at for a while; who has a cookie does not
-  /// notice.
+  /// Returns the client's rights, or a refusal. After several wrong tokens from one address its next ones are refused
+  /// unread for a while; clients with a cookie are not affected.
   std::variant<Standing, Refusal> standing_of(const std::string& address, const Credentials& credentials,
                                               Clock::time_point now);
-  /// For Set-Cookie. Empty for strangers.
+  /// Value for Set-Cookie. Empty for kStranger.
   std::string cookie(Standing standing) const;
   std::uint64_t wrong_tokens() const { return wrong_tokens_; }
 
@@ -65,7 +65,7 @@ class WebAccess {
   std::vector<std::string> names_;
   std::string token_, view_token_;
   std::string cookie_name_;
-  std::string session_, view_session_;  ///< what the cookies hold
+  std::string session_, view_session_;  ///< secrets in the cookies
   std::map<std::string, core::TokenBucket> guesses_;
   std::atomic<std::uint64_t> wrong_tokens_ = 0;
 };

@@ -9,7 +9,7 @@ namespace {
 
 using Callers = std::vector<std::shared_ptr<WebCaller>>;
 
-/// The oldest of the address that has most. Null: there are none.
+/// Returns the oldest connection of the address that has most. Null: there are none.
 std::shared_ptr<WebCaller> oldest_of_the_greediest(const Callers& callers) {
   std::map<std::string, Callers> by_address;
   for (const auto& caller : callers) by_address[caller->address()].push_back(caller);
@@ -18,7 +18,7 @@ std::shared_ptr<WebCaller> oldest_of_the_greediest(const Callers& callers) {
   return greediest == by_address.end() ? nullptr : greediest->second.front();
 }
 
-/// The oldest of the silent, if there are any.
+/// Returns the connection to drop: a silent one if there is any, else one of all.
 std::shared_ptr<WebCaller> whom_to_drop(const Callers& callers) {
   Callers silent;
   std::copy_if(callers.begin(), callers.end(), std::back_inserter(silent),
@@ -48,7 +48,7 @@ void WebCallers::forget_the_gone() {
   std::erase_if(callers_, [](const auto& caller) { return caller.expired(); });
 }
 
-/// Nobody: there is room.
+/// Returns the connection to drop for a newcomer; null if there is room.
 std::shared_ptr<WebCaller> WebCallers::whom_to_drop_for(const std::string& address) const {
   Callers all, own;
   for (const auto& known : callers_) {

@@ -1,6 +1,6 @@
-// Who asks by HTTP. So many connections and no more, and so many of one address; when all are taken, a newcomer gets
-// the place of one that keeps its request waiting: whoever opens connections and says nothing shuts out himself, and no
-// page.
+// Limits the connections that ask by HTTP, in all and for each address. When all places are taken, a newcomer replaces
+// a connection that keeps its request waiting. So a client that opens connections and sends nothing shuts out only
+// itself.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ class WebCaller {
   WebCaller(const WebCaller&) = delete;
   WebCaller& operator=(const WebCaller&) = delete;
 
-  /// Ends it, whatever it does.
+  /// Ends the connection, whatever it is doing.
   virtual void drop() = 0;
 
   const std::string& address() const { return address_; }
-  /// Its next request has not come, or not the whole header of it.
+  /// True while the header of its next request has not completely arrived.
   bool is_silent() const { return is_silent_; }
 
  protected:
@@ -39,9 +39,9 @@ class WebCallers {
  public:
   WebCallers(std::size_t most, std::size_t most_of_one) : most_(most), most_of_one_(most_of_one) {}
 
-  /// Takes it in. Returns whether another one was dropped for it: the oldest silent one of the address that has most of
-  /// them; if all have asked, the oldest of the address that has most. One of its own address, if it is that which has
-  /// no more places.
+  /// Admits a connection. Returns whether another one was dropped for it: the oldest silent one of the address that has
+  /// most of these, or if none is silent, the oldest one of the address that has most. If the newcomer's own address
+  /// has no more places, one of that address is dropped.
   bool enter(const std::shared_ptr<WebCaller>& caller);
   std::size_t count();
 
@@ -50,8 +50,8 @@ class WebCallers {
   std::shared_ptr<WebCaller> whom_to_drop_for(const std::string& address) const;
 
   std::size_t most_;
-  std::size_t most_of_one_;                        ///< address
-  std::vector<std::weak_ptr<WebCaller>> callers_;  ///< in the order in which they came
+  std::size_t most_of_one_;                        ///< most connections of one address
+  std::vector<std::weak_ptr<WebCaller>> callers_;  ///< connections in order of arrival
 };
 
 }  // namespace aurasim::overseer

@@ -9,7 +9,8 @@ namespace {
 
 namespace ip = boost::asio::ip;
 
-/// Of those who have one to themselves: in IPv6 that is a network of 64 bits.
+/// Text of the address by which clients are counted. In IPv6 it is the network of 64 bits, which one client may have to
+/// itself.
 std::string text_of_remote(const ip::address& address) {
   if (address.is_v4() || address.is_loopback()) return address.to_string();
   if (address.to_v6().is_v4_mapped()) return ip::make_address_v4(ip::v4_mapped, address.to_v6()).to_string();
@@ -35,7 +36,7 @@ void serve(Stream stream, Ends ends, WebHub& hub, const boost::asio::any_io_exec
 
 void serve_connection(ip::tcp::socket socket, WebHub& hub, boost::asio::ssl::context* tls,
                       const boost::asio::any_io_executor& worker) {
-  boost::system::error_code gone;  // will be noticed soon
+  boost::system::error_code gone;  // errors are ignored: a lost connection is noticed soon
   Ends ends{text_of_remote(socket.remote_endpoint(gone).address()),
             text_of_local(socket.local_endpoint(gone).address())};
   PlainStream stream(std::move(socket));

@@ -1,4 +1,4 @@
-// One TCP connection of a browser, from its first byte on.
+// Serves one TCP connection of a browser from its first byte on.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>

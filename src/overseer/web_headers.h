@@ -1,4 +1,4 @@
-// What every answer of the web server tells the browser about what the page may do.
+// Headers of every answer, which tell the browser what the page may do.
 #pragma once
 
 #include <array>
@@ -6,14 +6,14 @@
 
 namespace aurasim::overseer {
 
-/// The page is made of its own files and talks to its own server: nothing of a third party, nothing inline, no frame
-/// around it. ('self' holds for the WebSocket, too.)
+/// Content policy. The page uses its own files and its own server only: no third parties, nothing inline, no frame
+/// around it. ('self' includes the WebSocket.)
 inline constexpr const char* kContentPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'";
 
 inline constexpr std::array<std::pair<const char*, const char*>, 7> kFixedHeaders = {{
-    {"Cache-Control", "no-cache"},  // ask whether it has changed
+    {"Cache-Control", "no-cache"},  // the browser has to ask whether the file has changed
     {"Content-Security-Policy", kContentPolicy},
     {"X-Content-Type-Options", "nosniff"},
     {"X-Frame-Options", "DENY"},
@@ -22,7 +22,8 @@ inline constexpr std::array<std::pair<const char*, const char*>, 7> kFixedHeader
     {"Cross-Origin-Resource-Policy", "same-origin"},
 }};
 
-/// Over TLS, and not for this host's own names: browsers would keep it for all ports of them.
+/// Strict transport, sent over TLS only and not for this host's own names, for which browsers would apply it to all
+/// ports.
 inline constexpr const char* kStrictTransport = "max-age=31536000";
 
 }  // namespace aurasim::overseer

@@ -1,4 +1,4 @@
-// What all connections of a web server share. All of it belongs to the server's thread but for what says otherwise.
+// State that all connections of a web server share. Used by the server's thread, unless a comment says otherwise.
 #pragma once
 
 #include <atomic>
@@ -22,16 +22,16 @@
 
 namespace aurasim::overseer {
 
-inline constexpr std::size_t kMostCallers = 256;  // that ask by HTTP, pages not counted
+inline constexpr std::size_t kMostCallers = 256;  // connections by HTTP, pages not counted
 inline constexpr std::size_t kMostCallersOfOne = 64;
 
 /// A page with a WebSocket, as the hub sees it.
 class PageConnection {
  public:
   virtual ~PageConnection() = default;
-  /// Sends what there is, unless something is being sent.
+  /// Sends the next waiting message, unless one is being sent.
   virtual void pump() = 0;
-  /// Ends the connection if what is being sent has been for longer than that.
+  /// Ends the connection if the present message has been in sending for longer than `limit`. Returns whether it did.
   virtual bool drop_if_stalled(std::chrono::steady_clock::duration limit) = 0;
 
   ClientId id{};
@@ -46,16 +46,16 @@ struct HttpAnswer {
   unsigned status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::string body = {};
-  std::string encoding = {};  ///< of the body; empty: as it is
-  std::string etag = {};      ///< empty: of something that changes
-  std::string cookie = {};    ///< for Set-Cookie
+  std::string encoding = {};  ///< content encoding of the body; empty: none
+  std::string etag = {};      ///< ETag; empty: the content changes
+  std::string cookie = {};    ///< value for Set-Cookie
 };
 
-/// One of so many places. Given back when it ends; in any thread.
+/// Holds one of a limited number of places, and gives it back on destruction; in any thread.
 class Place {
  public:
   Place() = default;
-  /// Holds nothing if all are taken.
+  /// Takes a place. Holds nothing if all are taken.
   Place(std::atomic<std::size_t>& taken, std::size_t most) : taken_(&taken) {
     if (taken.fetch_add(1) < most) return;
     release();
@@ -78,7 +78,7 @@ class Place {
   std::atomic<std::size_t>* taken_ = nullptr;
 };
 
-/// Of one page. Holds nothing if all are taken.
+/// The places that one page takes. Holds nothing if all are taken.
 struct PagePlace {
   Place of_all;
   Place of_address;
@@ -87,7 +87,7 @@ struct PagePlace {
 
 class WebHub {
  public:
-  /// The port is the one that the server listens on.
+  /// `settings.port` must be the port that the server listens on.
   WebHub(const WebSettings& settings, ShapeStore& shapes)
       : settings_(settings), shapes_(shapes), access_(settings), files_(settings.pages) {}
 
@@ -96,22 +96,22 @@ class WebHub {
   ShapeStore& shapes() { return shapes_; }
   WebAccess& access() { return access_; }
   const SlotTable& table() const { return table_; }
-  /// For a page that is about to join. Asked for before its WebSocket is accepted, or more would join than there are
-  /// places for.
+  /// Takes a place for a page that is about to join. Taken before its WebSocket is accepted; otherwise more pages could
+  /// join than there are places.
   PagePlace page_place(const std::string& address);
-  /// For a mesh that is about to be sent: it is held in memory until it has been read.
+  /// Takes a place for a mesh that is about to be uploaded. The mesh is held in memory until it has been read.
   Place upload_place() { return {upload_places_, settings_.most_uploads}; }
   void join(const std::shared_ptr<PageConnection>& page);
   void leave(ClientId id);
-  /// A text message of a page.
+  /// Handles a text message of a page.
   void read(PageConnection& page, std::string_view text);
   void refuse() { ++refused_; }
-  /// The answer to GET.
+  /// Returns the answer to GET.
   HttpAnswer get(std::string_view target, const FileRequest& request, Standing standing);
-  /// What somebody may do, as JSON.
+  /// Returns the client's rights as JSON.
   static HttpAnswer session(Standing standing);
 
-  /// A new connection.
+  /// Admits a new connection.
   void enter(const std::shared_ptr<WebCaller>& caller);
 
   // -- for the server
@@ -121,13 +121,13 @@ class WebHub {
   void set_metrics(std::string text) { metrics_ = std::move(text); }
   void answer(const Reply& reply);
   void drop_stalled();
-  /// Lets go of all pages, before the sockets' service ends.
+  /// Releases all pages before the sockets' service ends.
   void clear() { pages_.clear(); }
 
   // -- any thread
   std::vector<PageRequest> take_requests();
   WebCounters counters() const;
-  /// What any page wants to have drawn.
+  /// Overlays that any page wants.
   Show wanted() const { return {auras_wanted_, links_wanted_, contacts_wanted_}; }
   void count_sent(const Message& message, std::size_t bytes);
 
@@ -148,7 +148,7 @@ class WebHub {
   WebAccess access_;
   PageFiles files_;
   WebCallers callers_{kMostCallers, kMostCallersOfOne};
-  core::TokenBucket rays_{50, 100};  ///< of all pages: nodes answer them
+  core::TokenBucket rays_{50, 100};  ///< rate of rays of all pages together; nodes answer them
   SlotTable table_;
   std::array<SharedText, kNotices> notices_;
   std::string metrics_;
@@ -158,7 +158,7 @@ class WebHub {
   std::mutex requests_mutex_;
   std::vector<PageRequest> requests_;
   std::atomic<std::size_t> page_places_{0}, upload_places_{0};
-  std::map<std::string, std::atomic<std::size_t>> page_places_of_;  ///< by address
+  std::map<std::string, std::atomic<std::size_t>> page_places_of_;  ///< pages of each address
   std::atomic<bool> auras_wanted_ = false, links_wanted_ = false, contacts_wanted_ = false;
   std::atomic<std::uint64_t> clients_{0}, connections_{0}, frames_sent_{0}, frames_skipped_{0}, bytes_sent_{0},
       refused_{0}, dropped_{0};

@@ -23,8 +23,8 @@ using Error = boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::milliseconds kLookAfter{500};  // stalled pages
-constexpr std::size_t kReaders = 4;                   // of meshes: one that takes long does not hold up the others
+constexpr std::chrono::milliseconds kLookAfter{500};  // period of the check for stalled pages
+constexpr std::size_t kReaders = 4;  // threads that read meshes: one that takes long does not hold up the others
 
 tcp::acceptor opened(asio::io_context& io, const WebSettings& settings) {
   tcp::acceptor acceptor(io);
@@ -53,7 +53,7 @@ std::optional<asio::ssl::context> tls_of(const WebSettings& settings) {
   return make_tls_context(*settings.tls);
 }
 
-/// With what is only known now.
+/// Completes the settings with values that are known only after binding.
 WebSettings completed(WebSettings settings, std::uint16_t port, std::optional<asio::ssl::context>& tls) {
   settings.port = port;
   if (!tls) return settings;
@@ -85,7 +85,7 @@ struct WebServer::Impl {
   void accept() {
     acceptor.async_accept([this](const Error& error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (error) {  // out of files, say: not again at once
+      if (error) {  // e.g. out of file descriptors: retry only after a pause
         retry.expires_after(kLookAfter);
         return retry.async_wait([this](const Error& ended) {
           if (!ended) accept();

@@ -1,5 +1,5 @@
-// Serves the page, its WebSocket and the numbers about it (docs/viewer.md), in one thread of its own. The owner hands
-// over frames and texts that never change again, and fetches what pages ask for. Boost stays behind this header.
+// Serves the page, its WebSocket and the metrics (docs/viewer.md) in one thread of its own. The owner passes in frames
+// and texts that never change again, and fetches the requests of pages. Boost stays behind this header.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class CannotListen : public std::runtime_error {
 
 class WebServer {
  public:
-  /// Listens from now on. Throws CannotListen, BadTls (tls_files.h). The store outlives the server.
+  /// Starts to listen. Throws CannotListen, BadTls (tls_files.h). The store must outlive the server.
   WebServer(const WebSettings& settings, ShapeStore& shapes);
   ~WebServer();
   WebServer(const WebServer&) = delete;
@@ -34,18 +34,18 @@ class WebServer {
 
   std::uint16_t port() const;
 
-  /// To every page, also to those that come later.
+  /// Sends a notice to every page, also to those that join later.
   void publish(Notice notice, std::string json);
   void show(const WorldFrame& frame);
-  /// To the pages that want them.
+  /// Sends overlays to the pages that want them.
   void show_overlays(Bytes overlays);
   void set_metrics(std::string text);
   void answer(const Reply& reply);
 
-  /// What pages have asked for since the last call.
+  /// Returns the requests of pages since the last call.
   std::vector<PageRequest> take_requests();
   WebCounters counters() const;
-  /// What any page wants to have drawn.
+  /// Overlays that any page wants.
   Show wanted() const;
 
  private:

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCiphersOfTls12 = "ECDHE+AESGCM:ECDHE+CHACHA20";
 
-/// What OpenSSL says first: what comes after is only where that led to.
+/// Returns OpenSSL's first error; later ones only follow from it.
 std::string why_openssl_failed() {
   const unsigned long error = ERR_peek_error();
   ERR_clear_error();
@@ -41,7 +41,7 @@ void check_file(const char* key, const fs::path& file) {
   if (!fs::is_regular_file(status)) refuse(key, file, "this is no file");
 }
 
-/// Whoever runs the overseer, and a group that is meant to, may read it.
+/// Checks that only the user that runs the overseer, and a group that is meant to, may read the key.
 void check_secrecy(const fs::path& key) {
   std::error_code ignored;
   if ((fs::status(key, ignored).permissions() & fs::perms::others_all) != fs::perms::none)
@@ -76,7 +76,7 @@ ssl::context make_tls_context(const config::Tls& tls) {
   SSL_CTX_set_cipher_list(native, kCiphersOfTls12);
   SSL_CTX_set_options(native, SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION | SSL_OP_CIPHER_SERVER_PREFERENCE);
   SSL_CTX_set_mode(native, SSL_MODE_RELEASE_BUFFERS);                    // many idle connections need little memory
-  SSL_CTX_set_session_cache_mode(native, SSL_SESS_CACHE_OFF);            // tickets do
+  SSL_CTX_set_session_cache_mode(native, SSL_SESS_CACHE_OFF);            // session tickets suffice
   context.set_password_callback([](auto...) { return std::string(); });  // instead of asking at the terminal
   ERR_clear_error();
   if (SSL_CTX_use_certificate_chain_file(native, tls.certificate.c_str()) != 1)

@@ -10,10 +10,10 @@
 
 namespace aurasim::overseer {
 
-/// Throws BadTls, as check_tls (tls_files.h).
+/// Makes the TLS context. Throws BadTls like check_tls (tls_files.h).
 boost::asio::ssl::context make_tls_context(const config::Tls& tls);
 
-/// The names and addresses that its certificate is for.
+/// Names and addresses that the context's certificate is for.
 std::vector<std::string> names_of_certificate(boost::asio::ssl::context& context);
 
 }  // namespace aurasim::overseer

@@ -9,7 +9,7 @@
 
 namespace aurasim::overseer {
 
-/// Small number under which pages know a body. Given out again after a body is gone, in a later frame.
+/// Small number by which pages know a body. Reused in a later frame after the body is gone.
 using Slot = std::uint32_t;
 
 struct ViewBody {
@@ -29,16 +29,16 @@ struct ViewBody {
 struct BodyChange {
   ViewBody body;
   bool created = false;
-  bool host_changed = false;  ///< or its epoch, asleep, under_way
+  bool host_changed = false;  ///< host, epoch, asleep or under_way changed
   bool moved = false;
-  bool handed_over = false;  ///< a new host has it now
+  bool handed_over = false;  ///< a new host has the body now
 };
 
 struct WorldFrame {
   core::Generation generation = 0;
   core::Step stamp = 0;
   bool restart = false;       ///< forget every body first
-  std::vector<Slot> deleted;  ///< before `changed`
+  std::vector<Slot> deleted;  ///< slots whose bodies are gone; applied before `changed`
   std::vector<BodyChange> changed;
 };
 

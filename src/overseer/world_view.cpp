@@ -14,7 +14,7 @@ using core::value_of;
 
 namespace {
 
-/// More than this from one region while another is waited for: go on without it.
+/// Most ticks of one region that wait for another region; beyond this the view goes on without that one.
 constexpr std::size_t kMostPending = 64;
 
 }  // namespace
@@ -45,7 +45,7 @@ void WorldView::accept(Replica replica, double now_s) {
   if (sources_[index].state == RegionState::kDead) return;
   if (replica.generation > generation_) begin_generation(replica.generation);
   Source& source = sources_[index];
-  // A key frame may have overtaken ticks that are still to come.
+  // Key frames do not count, because they may have overtaken ticks that are still to come.
   if (!replica.key_frame) source.published = std::max(source.published, replica.stamp);
   const auto later = [](const Replica& a, const Replica& b) {
     return a.stamp != b.stamp ? a.stamp < b.stamp : a.key_frame < b.key_frame;
@@ -135,12 +135,13 @@ void WorldView::apply_row(const ReplicaBody& row, const Replica& replica) {
   Body& body = bodies_[found->second];
   const bool hosted = row.host == replica.source;
   bool newer = row.epoch > body.epoch;
-  // Under one epoch there is one host. That it has the body counts for more than that it was sent to it.
+  // One epoch has one host. A row in which it hosts the body outweighs one that says the body was sent to it.
   if (row.epoch == body.epoch && hosted && row.host == body.host) newer = body.under_way || replica.stamp >= body.stamp;
   if (newer) {
     take_row(body, row, replica);
   } else if (row.epoch == body.epoch && body.under_way) {
-    body.unclaimed_since = std::max(body.unclaimed_since, replica.stamp);  // its sender still vouches for it
+    // The sender has confirmed the body up to this state.
+    body.unclaimed_since = std::max(body.unclaimed_since, replica.stamp);
   } else {
     ++counters_.stale;
   }

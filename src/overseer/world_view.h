@@ -1,8 +1,8 @@
-// One world from what its regions publish of their parts (core/replica.h). No clock, no thread, no wire: the caller
-// passes replicas and the time.
+// Puts one world together from what its regions publish of their parts (core/replica.h). No clock, no thread, no wire:
+// the caller passes in replicas and the time.
 //
-// The highest epoch owns a body. One that its host has handed over keeps its last pose until the new host publishes it,
-// so it neither vanishes nor doubles. A key frame corrects what was missed.
+// The host with the highest epoch owns a body. A body that its host has handed over keeps its last pose until the new
+// host publishes it, so it neither vanishes nor doubles. A key frame corrects what was missed.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +18,30 @@ namespace aurasim::overseer {
 
 struct ViewSettings {
   std::size_t region_count = 1;
-  /// A body that nobody claims for so long is gone: its host died, or its removal was missed.
+  /// A body that no host has published for this many states is gone: its host died, or its removal was missed.
   core::Step unclaimed_patience = 180;
   /// How long a tick waits for regions that have not published theirs.
   double wait_s = 0.3;
 };
 
-/// Since the start.
+/// Counters since the start.
 struct ViewCounters {
   std::uint64_t frames = 0;
-  std::uint64_t gaps = 0;        ///< ticks of a region that never came
+  std::uint64_t gaps = 0;        ///< ticks of a region that never arrived
   std::uint64_t incomplete = 0;  ///< frames composed without a region that is alive
   std::uint64_t stale = 0;       ///< rows that a higher epoch or a newer state had overtaken
-  std::uint64_t given_up = 0;    ///< bodies that nobody claimed
+  std::uint64_t given_up = 0;    ///< bodies removed because no host published them
 };
 
 class WorldView {
  public:
   explicit WorldView(const ViewSettings& settings);
 
-  /// Replicas of one source come in order of their ticks; key frames and different sources in any order.
+  /// Takes in a replica. Replicas of one source must come in order of their ticks; key frames and different sources may
+  /// come in any order.
   void accept(core::Replica replica, double now_s);
 
-  /// A live region is waited for. The bodies of a dead one are gone unless others claim them.
+  /// State of a region. A live one is waited for. The bodies of a dead one are removed unless others claim them.
   enum class RegionState : std::uint8_t { kAbsent, kLive, kDead };
   void set_region(core::RegionId region, RegionState state);
 
@@ -50,7 +51,7 @@ class WorldView {
 
   core::Generation generation() const { return generation_; }
   core::Step stamp() const { return stamp_; }
-  /// A key frame of this generation has been taken in from it: since then all that it has is here.
+  /// True when a key frame of this generation has been received from the region, so that all its bodies are here.
   bool is_whole(core::RegionId region) const { return sources_.at(core::value_of(region)).is_whole; }
   std::size_t body_count() const { return slots_.size(); }
   template <class Visit>
@@ -59,14 +60,14 @@ class WorldView {
       if (body.alive) visit(static_cast<const ViewBody&>(body));
     }
   }
-  /// Null if there is none.
+  /// Returns a body; null if there is none.
   const ViewBody* find(core::BodyId id) const;
   const ViewCounters& counters() const { return counters_; }
 
  private:
   struct Body : ViewBody {
     bool alive = false;
-    core::Step stamp = 0;                                                            ///< state that the pose is of
+    core::Step stamp = 0;                                                            ///< state of the pose
     core::Step unclaimed_since = -1;                                                 ///< -1: its host claims it
     bool created = false, host_changed = false, moved = false, handed_over = false;  ///< since the last frame
   };
@@ -106,9 +107,9 @@ class WorldView {
   std::vector<Source> sources_;
   std::vector<Body> bodies_;  ///< by slot
   std::unordered_map<core::BodyId, Slot> slots_;
-  std::vector<Slot> free_;       ///< may be given out
-  std::vector<Slot> unclaimed_;  ///< may hold some that are claimed again
-  std::vector<Slot> touched_;    ///< since the last frame
+  std::vector<Slot> free_;       ///< slots that may be reused
+  std::vector<Slot> unclaimed_;  ///< slots of unclaimed bodies; some may be claimed again
+  std::vector<Slot> touched_;    ///< slots that changed since the last frame
   std::unordered_map<core::BodyId, Tombstone> tombstones_;
   core::Generation generation_ = 0;
   core::Step stamp_ = -1;

@@ -14,7 +14,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kLookPeriod = 20ms;
 
-/// A finished node is not waited for, but its bodies are where they are; those of a dead one are gone.
+/// State of a region for the view. A finished node is not waited for, but its bodies stay where they are; those of a
+/// dead node are removed.
 WorldView::RegionState region_state(const dds::SeenStatus& seen) {
   using State = WorldView::RegionState;
   switch (seen.status.state) {
@@ -56,7 +57,7 @@ WorldWatch::WorldWatch(const config::Launch& launch, dds::Participant& participa
   watch_anew();
 }
 
-/// Nodes give all that they have to whoever comes.
+/// Creates new readers, because nodes send everything that they have to new readers.
 void WorldWatch::watch_anew() {
   replicas_.emplace(participant_, settings_);
   view_.emplace(view_settings_);
@@ -84,8 +85,8 @@ core::Step WorldWatch::published(core::RegionId region, core::Generation generat
   return known != published_.end() && known->second.generation == generation ? known->second.step : -1;
 }
 
-/// The same regions under other processes: the world of the old ones is gone. Whoever takes a region over goes on with
-/// it in a later generation.
+/// True when the same regions are run by other processes in no later generation: the former world is gone. A process
+/// that takes over a region continues it in a later generation.
 bool WorldWatch::run_was_restarted() {
   bool restarted = false;
   for (const auto& [region, seen] : nodes_) {

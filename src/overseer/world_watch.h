@@ -1,5 +1,5 @@
-// A run as an observer has it: its nodes, the launch as the run is now, and its bodies, put together from what the
-// nodes publish over DDS. Listens only.
+// A run as an observer sees it: its nodes, the launch as the run is now, and its bodies, put together from what the
+// nodes publish over DDS. It only receives.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,15 @@ namespace aurasim::overseer {
 /// Used by one thread.
 class WorldWatch {
  public:
-  /// Both outlive it.
+  /// `participant` and `control` must outlive it.
   WorldWatch(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control);
 
-  /// Waits at most so long for news, and takes what has come.
+  /// Waits at most `time_out` for news, and takes in what has arrived.
   void look(std::chrono::nanoseconds time_out);
 
-  /// As the run is now: it may get other regions or another scene while it goes on.
+  /// The launch as the run is now: a run may get other regions or another scene while it goes on.
   const config::Launch& launch() const { return launch_; }
-  /// The hash of the launch that it began with.
+  /// Hash of the launch that the run began with.
   std::uint64_t agreement() const { return agreement_; }
   const std::map<core::RegionId, dds::SeenStatus>& nodes() const { return nodes_; }
   const dds::ObserverSettings& observer_settings() const { return settings_; }
@@ -34,9 +34,9 @@ class WorldWatch {
   WorldView& view() { return *view_; }
   const WorldView& view() const { return *view_; }
 
-  /// The run has got another map or scene since the last call.
+  /// True when the run has got another map or scene since the last call.
   bool take_change() { return std::exchange(changed_, false); }
-  /// The newest state of this generation that this region has published; -1: none.
+  /// Newest state of this generation that the region has published; -1: none.
   core::Step published(core::RegionId region, core::Generation generation) const;
 
  private:

@@ -59,7 +59,7 @@ void require(bool well, const char* doing) {
   if (!well) fail(doing);
 }
 
-/// `result` was to be read from `text`.
+/// Checks that `result` was read from `text`; throws BadKeys if not.
 template <class T>
 T found_in(const std::string& text, T result, const char* what) {
   if (result) return result;
@@ -124,7 +124,7 @@ Integer integer_of(const std::string& hex) {
   return Integer(checked(BN_to_ASN1_INTEGER(number, nullptr), "write a serial number"));
 }
 
-/// So that no two are equal without anybody counting them.
+/// Draws a serial number at random, so that no counter is needed to keep them different.
 Integer random_serial() {
   const BigNumber number(checked(BN_new(), "take memory"));
   require(BN_rand(number.get(), 127, BN_RAND_TOP_ONE, BN_RAND_BOTTOM_ANY) == 1, "draw a serial number");
@@ -164,7 +164,7 @@ void add_extension(X509* certificate, X509* issuer, int what, const char* value)
 
 Key new_key() { return Key(checked(EVP_EC_gen("P-256"), "make a key")); }
 
-/// Everything but the extensions and the signature.
+/// Makes a certificate without extensions and signature.
 X509Ptr begin_certificate(EVP_PKEY* key, const Subject& subject, const Validity& valid) {
   X509Ptr certificate(checked(X509_new(), "take memory"));
   require(X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
@@ -189,7 +189,7 @@ KeyPair make_authority(const Subject& subject, const Validity& valid) {
   X509* self = certificate.get();
   require(X509_set_issuer_name(self, X509_get_subject_name(self)) == 1, "write the certificate");
   add_extension(self, self, NID_basic_constraints, "critical,CA:TRUE,pathlen:0");
-  // Of S/MIME the authority is the signer itself.
+  // digitalSignature is needed, because the authority itself signs the S/MIME documents.
   add_extension(self, self, NID_key_usage, "critical,digitalSignature,keyCertSign,cRLSign");
   add_extension(self, self, NID_subject_key_identifier, "hash");
   require(X509_sign(self, key.get(), EVP_sha256()) > 0, "sign the certificate");
@@ -247,7 +247,7 @@ std::string make_revocations(const KeyPair& authority, const std::vector<std::st
                 X509_REVOKED_set_revocationDate(revoked.get(), now.get()) == 1 &&
                 X509_CRL_add0_revoked(list.get(), revoked.get()) == 1,
             "write the revocations");
-    (void)revoked.release();  // the list's now
+    (void)revoked.release();  // owned by the list now
   }
   require(X509_CRL_sort(list.get()) == 1 && X509_CRL_sign(list.get(), key_in(authority.key).get(), EVP_sha256()) > 0,
           "sign the revocations");

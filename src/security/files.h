@@ -1,4 +1,4 @@
-// Text files of a store. Every error is a BadKeys that names the file.
+// Writes and reads text files of a key store. Every error is a BadKeys that names the file.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@ namespace aurasim::security {
 enum class Secrecy { kPublic, kPrivate };
 
 std::string read_key_file(const std::filesystem::path& file);
-/// Whole or not at all. kPrivate: nobody but its owner may read it, at no moment.
+/// Writes a file whole or not at all. kPrivate: at no moment may anybody but its owner read it.
 void write_key_file(const std::filesystem::path& file, std::string_view text, Secrecy secrecy);
-/// For nobody but its owner; it must not be there.
+/// Makes a folder that only its owner may use. It must not exist yet.
 void make_key_folder(const std::filesystem::path& folder);
-/// Refuses a private key that anybody but its owner may read or write.
+/// Throws BadKeys if anybody but the owner may read or write the private key.
 void check_is_private(const std::filesystem::path& file);
 
 }  // namespace aurasim::security

@@ -5,8 +5,9 @@
 namespace aurasim::security {
 namespace {
 
-/// Who may only read a topic has the key that decrypts it, and could speak with it in its writer's name; so where nodes
-/// act on what observers can read, each message also carries a code for each of its readers.
+/// Topics that observers read and that nodes act on. A process that may only read a topic has the key that decrypts it,
+/// and could publish with it in its writer's name. So each message of these topics also carries an authentication code
+/// for each of its readers.
 constexpr const char* kTopicsThatObserversRead[] = {"aura", "node_status", "region_map", "run_control", "shape"};
 
 std::string topic_rule(const char* topic, const char* protection) {

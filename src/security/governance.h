@@ -1,13 +1,13 @@
-// What holds for everybody in a run with keys, as the document that DDS-Security reads.
+// The rules for all participants of a run with keys, as the document that DDS-Security reads.
 #pragma once
 
 #include <string>
 
 namespace aurasim::security {
 
-/// XML. Nobody without keys joins or is heard, discovery is encrypted, and so is every message of every topic, with
-/// what DDS says of it (heartbeats, acknowledgements); each endpoint has a key of its own, which only those get whom it
-/// is matched with.
+/// Returns the governance document, XML. No participant without keys may join or is accepted. Discovery is encrypted,
+/// and so is every message of every topic, with its heartbeats and acknowledgements. Each endpoint has a key of its
+/// own, which only the endpoints matched with it get.
 std::string governance_document();
 
 }  // namespace aurasim::security

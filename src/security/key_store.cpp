@@ -24,7 +24,8 @@ constexpr const char* kRevocations = "crl.pem";
 constexpr const char* kIssued = "issued.txt";
 constexpr const char* kOrganisation = "aurasim";
 constexpr std::size_t kLongestName = 48;
-/// Hosts whose clocks are a little late know a new certificate at once.
+/// Certificates are valid from this long before now, so that hosts whose clocks are slightly late accept a new one at
+/// once.
 constexpr std::chrono::minutes kClocksDiffer{5};
 
 Seconds now() { return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()); }
@@ -44,7 +45,7 @@ void check_name(const std::string& name) {
   }
 }
 
-/// The number in region-N.
+/// Returns the N in "region-N".
 std::optional<std::uint32_t> region_in(const std::string& name) {
   constexpr std::string_view kPrefix = "region-";
   if (!name.starts_with(kPrefix)) return std::nullopt;
@@ -56,12 +57,12 @@ std::optional<std::uint32_t> region_in(const std::string& name) {
 
 Subject subject_of(const Member& member) { return {member.name, name_of(member.role), kOrganisation}; }
 
-/// Two stores' authorities differ in name, so that Fast DDS can say which it is that it does not know.
+/// Names an authority after its store, so that Fast DDS can report which authority it does not know.
 Subject subject_of_authority(const char* what, const std::string& store) {
   return {fmt::format("{} of {}", what, store), "", kOrganisation};
 }
 
-/// With the file in front of what is wrong with it.
+/// Runs `work`, and puts the file's name in front of the message of a BadKeys.
 template <class Work>
 auto about(const std::filesystem::path& file, Work&& work) {
   try {
@@ -171,7 +172,7 @@ void KeyStore::write_member(const Member& member, const Validity& valid) {
   const KeyPair pair = issue(identity, subject, both);
   const std::string permissions =
       sign(authority(kPermissions), permissions_document(subject, both, grants_of(member.role, member.region)));
-  // Before it can be used: or it could not be revoked.
+  // Listed before it can be used; otherwise it could not be revoked.
   write_key_file(folder_ / kIssued,
                  fmt::format("{}{} {} {}\n", read_key_file(folder_ / kIssued),
                              read_certificate(pair.certificate).serial, member.name, name_of(member.role)),
@@ -264,7 +265,7 @@ KeyFiles KeyStore::files_of(const std::string& name) const {
   for (const auto& file : {files.identity_ca, files.permissions_ca, files.certificate}) {
     check_date(file, about(file, read_certificate).valid);
   }
-  find(name);  // its certificate is its own
+  find(name);  // checks that the certificate belongs to the name
   const std::string certificate = read_key_file(files.certificate);
   if (!is_signed_by(certificate, identity)) {
     throw BadKeys(fmt::format("{}: not signed by {}", files.certificate.string(), files.identity_ca.string()));
@@ -302,7 +303,7 @@ std::vector<MemberState> KeyStore::check() const {
 std::vector<std::filesystem::path> KeyStore::files_for_host(const std::vector<std::string>& names) const {
   std::vector<std::filesystem::path> files = {"identity_ca.pem", "permissions_ca.pem", kGovernance, kRevocations};
   for (const std::string& name : names) {
-    files_of(name);  // or they would be refused there
+    files_of(name);  // checks the keys, which would otherwise be refused on that host
     for (const char* file : {"certificate.pem", "key.pem", "permissions.p7s"}) {
       files.push_back(std::filesystem::path("names") / name / file);
     }

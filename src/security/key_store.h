@@ -1,17 +1,17 @@
 // The folder with a run's keys.
 //
-//   DIR/identity_ca.pem         whose signature makes a name known
-//       permissions_ca.pem      whose signature says who may say what
-//       governance.p7s          what holds for everybody, signed
-//       crl.pem                 names that are not to be believed any more, signed
-//       names/NAME/key.pem      the private key of NAME; for nobody but its owner
+//   DIR/identity_ca.pem         the authority that signs the names' certificates
+//       permissions_ca.pem      the authority that signs permissions and governance
+//       governance.p7s          the rules for all participants, signed
+//       crl.pem                 the revoked certificates, signed
+//       names/NAME/key.pem      the private key of NAME; readable by its owner only
 //                  certificate.pem
-//                  permissions.p7s   what NAME may say and read, signed
+//                  permissions.p7s   what NAME may publish and read, signed
 //       issued.txt              every certificate so far: serial number, name, role
 //       private/                the private keys of the two authorities: they stay where the store was made
 //
-// A host gets all but the last two, and of names/ only its own: what `keys pack` puts into one file. That is a folder
-// of keys, too, from which nobody can be added.
+// A host gets all files except issued.txt and private/, and of names/ only its own: `keys pack` puts these into one
+// file. They are a folder of keys, too, but no name can be added to it.
 #pragma once
 
 #include <chrono>
@@ -28,16 +28,16 @@
 
 namespace aurasim::security {
 
-/// Who has a key.
+/// One holder of a key: a name with its role.
 struct Member {
   std::string name;
   Role role = Role::kViewer;
-  std::uint32_t region = 0;  ///< of Role::kRegion
+  std::uint32_t region = 0;  ///< region of a Role::kRegion
 
   std::string subject() const;
 };
 
-/// region-3.
+/// Returns the member of a region, e.g. "region-3".
 Member member_of_region(std::uint32_t region);
 
 struct MemberState {
@@ -47,35 +47,36 @@ struct MemberState {
   std::string problem;  ///< empty: none
 };
 
-/// Every failure is a BadKeys that names the file, what was found, and what is allowed.
+/// A key store. Every failure is a BadKeys that names the file, what was found, and what is allowed.
 class KeyStore {
  public:
   using Days = std::chrono::days;
 
   /// Makes a store in a folder that is not there yet.
   static KeyStore create(const std::filesystem::path& folder, Days authorities_valid);
-  /// A store, or what a host has been given of one.
+  /// Opens a store, or the part of one that a host has been given.
   explicit KeyStore(std::filesystem::path folder);
 
-  /// Names are of letters, digits, - and _.
+  /// Makes a key for a new name, of letters, digits, - and _.
   void add(const Member& member, Days valid);
   void add(const Member& member, const Validity& valid);
-  /// New keys for a name; what it had is good until it ends.
+  /// Makes new keys for a name. Its former keys stay valid until they expire.
   void rotate(const std::string& name, Days valid);
-  /// All certificates that NAME was ever given. Others believe them until they have the new crl.pem and are started
-  /// again.
+  /// Revokes all certificates that `name` was ever given. Other processes accept them until they have the new crl.pem
+  /// and are restarted.
   void revoke(const std::string& name);
 
-  /// In order of their names.
+  /// All members, in order of their names.
   std::vector<Member> members() const;
   std::optional<Member> find(const std::string& name) const;
-  /// The first of these roles that somebody has; of several with it, the first by name.
+  /// Returns a member with the first of these roles that any member has. If several have it: the first by name.
   std::optional<Member> first_with(const std::vector<Role>& roles) const;
-  /// Everything that a process of that name needs, checked: there, private, of this store, in time, not revoked.
+  /// Returns the files that a process of that name needs, after checking that they are there, private, of this store,
+  /// in date and not revoked.
   KeyFiles files_of(const std::string& name) const;
-  /// Of every name.
+  /// Checks every name and returns its state.
   std::vector<MemberState> check() const;
-  /// Relative to the folder: what a host needs of it to be these names.
+  /// Files that a host needs to run processes of these names, relative to the folder.
   std::vector<std::filesystem::path> files_for_host(const std::vector<std::string>& names) const;
 
   const std::filesystem::path& folder() const { return folder_; }

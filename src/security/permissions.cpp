@@ -14,18 +14,19 @@ namespace {
 constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "viewer", "operator", "recorder"};
 
 const std::string kWorld = "world";
-const std::string kEveryRegion = "region/*";  // and what regions say to each other
+const std::string kEveryRegion = "region/*";  // includes the partitions between regions
 const std::string kEveryObserver = "region/*/observer/*";
 
-/// Fast DDS reads the dates as of the time zone of its host.
+/// Margin on both dates, because Fast DDS reads them in the time zone of its host.
 constexpr std::chrono::hours kTimeZones{24};
 
-/// What a node publishes and its neighbours and observers read; in generations after a death under another name.
+/// Partitions in which a node publishes for neighbours and observers. After a death the generation is part of the
+/// partition's name.
 std::vector<std::string> from(const std::string& region) {
   return {fmt::format("region/{}", region), fmt::format("region/{}/since/*", region)};
 }
 
-/// `region` is a number, or `*` for whoever may be the node of any.
+/// Rights of a node. `region` is a number, or `*` for a process that may become the node of any region.
 Grants grants_of_node(const std::string& region) {
   const std::string to_any = fmt::format("region/{}/to/*", region);
   const std::vector<std::string> own = {fmt::format("region/{}", region)};
@@ -48,7 +49,7 @@ Grants grants_of_node(const std::string& region) {
                       {"orders", {kWorld}},
                       {"shape", {kWorld}},
                       {"checkpoint", {to_any, kWorld}}};
-  // Whom it listens to changes with the bodies (docs/decisions/0003), so it may listen to all.
+  // The regions that it receives from change with the bodies (docs/decisions/0003), so it may read all.
   grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
                        {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
                        {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here},
@@ -68,7 +69,7 @@ std::vector<Grant> what_viewers_see() {
           {"observation", {kEveryObserver}}};
 }
 
-/// Who looks on says what it wants to see.
+/// Right of observers to publish their interests.
 const Grant kInterest = {"interest", {kWorld}};
 
 Grants grants_of_operator() {

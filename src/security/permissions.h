@@ -1,5 +1,5 @@
-// Who may say what, and listen to what: by role, topic and partition (docs/protocol.md), and as the document that
-// DDS-Security reads.
+// Which role may publish and read which topics in which partitions (docs/protocol.md), and the same as the document
+// that DDS-Security reads.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace aurasim::security {
 
 enum class Role : std::uint8_t {
   kRegion,    ///< the node of one region
-  kSpare,     ///< waits for a region, and then is its node: may speak for any
-  kViewer,    ///< sees the world and the nodes, says nothing
-  kOperator,  ///< a viewer that may also ask something of the world, and start, pause and stop the run
-  kRecorder,  ///< reads everything, says nothing
+  kSpare,     ///< waits for a region and then becomes its node; may publish as any region
+  kViewer,    ///< observes the world and the nodes, publishes nothing
+  kOperator,  ///< a viewer that may also send commands, and start, pause and stop the run
+  kRecorder,  ///< reads everything, publishes nothing
 };
 inline constexpr int kRoleCount = 5;
 const char* name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
 
-/// In these partitions of a topic; patterns as of fnmatch, whose `*` crosses `/`.
+/// A right to use these partitions of a topic. Patterns as in fnmatch, whose `*` matches `/` too.
 struct Grant {
   std::string topic;
   std::vector<std::string> partitions;
@@ -34,14 +34,15 @@ struct Grants {
   std::vector<Grant> subscribes;
 };
 
-/// `region` counts for kRegion only.
+/// Returns the rights of a role. `region` is used for kRegion only.
 Grants grants_of(Role role, std::uint32_t region = 0);
 
-/// As Fast DDS decides. A partition that is a pattern itself is granted only if the grant covers its letters.
+/// True when a partition is granted, decided as Fast DDS does. A partition that is a pattern itself is granted only if
+/// the grant matches it as text.
 bool is_granted(const std::vector<Grant>& grants, std::string_view topic, const std::string& partition);
 
-/// One rule for each topic and direction: topics in one rule would share all its partitions, and of several rules for a
-/// topic Fast DDS reads the first only. XML.
+/// Returns the permissions document, XML. It has one rule for each topic and direction, because topics in one rule
+/// would share all its partitions, and of several rules for a topic Fast DDS reads the first only.
 std::string permissions_document(const Subject& subject, const Validity& valid, const Grants& grants);
 
 }  // namespace aurasim::security

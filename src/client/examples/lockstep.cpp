@@ -22,7 +22,7 @@ void run(const std::string& domain) {
   std::printf("%s: %zu regions, %zu bodies\n", info.scene.c_str(), info.regions.size(), world.bodies().size());
 
   const auto ball = world.spawn({.shape = Shape::sphere(0.5), .mass_kg = 20, .position = {0.5, 0.5, 6}});
-  Bodies bodies = world.step(ball.step - world.bodies().step);  // the first state that it is in
+  Bodies bodies = world.step(ball.step - world.bodies().step);  // to the first state that contains the ball
   while (bodies.step < ball.step + 60) {
     bodies = world.step();
     const std::size_t row = row_of(bodies, *ball.body);

@@ -7,8 +7,8 @@
 //     ...
 //   }
 //
-// DDS is spoken by a process of its own, `aurasim agent`, that each World starts and that ends with it, however this
-// program ends. docs/client.md.
+// The DDS connection is in a process of its own, `aurasim agent`. Each World starts one, and it ends with the World,
+// however this program ends. docs/client.md.
 #pragma once
 
 #include <array>
@@ -36,29 +36,29 @@ inline constexpr Seconds kUsualTimeOut{60};
 
 struct ConnectOptions {
   std::vector<std::string> overrides = {};  ///< "key.path=value", as --set: the same as the run's nodes have
-  std::string as = {};                      ///< in a run with keys, a name of dds.security; empty: the first operator
-  Seconds time_out{15};                     ///< for the nodes to be found
+  std::string as = {};                      ///< name of dds.security to join a run with keys; empty: the first operator
+  Seconds time_out{15};                     ///< time for the nodes to be found
   std::string program = {};                 ///< `aurasim`; empty: $AURASIM_PROGRAM, beside this library, in $PATH
-  std::string log = {};                     ///< file for the words of the processes that are started; empty: none
-  /// Asked now and then while a call waits; if true the call ends with Interrupted.
+  std::string log = {};                     ///< file for the output of started processes; empty: none
+  /// Called now and then while a call waits. If it returns true the call ends with Interrupted.
   std::function<bool()> interrupted = {};
 };
 
 struct LaunchOptions {
   std::vector<std::string> overrides = {};
   std::string as = {};
-  Seconds time_out{60};  ///< for all nodes to have begun
+  Seconds time_out{60};  ///< time for all nodes to start
   std::string program = {};
   std::string log = {};
   std::function<bool()> interrupted = {};
-  bool paused = false;      ///< stands in state 0; with `load`, in the state that was saved
+  bool paused = false;      ///< pauses in state 0; with `load`, in the saved state
   std::string load = {};    ///< a saved world to go on from
   std::string report = {};  ///< folder for what the nodes record
   std::string saves = {};   ///< folder for the nodes' parts of saved worlds; empty: `saves`
-  int spares = 0;           ///< processes that wait to take over the region of a node that dies
+  int spares = 0;           ///< spare processes that wait to take over the region of a node that dies
 };
 
-/// Of a new body or static.
+/// Shape of a new body or static.
 struct AURASIM_API Shape {
   enum class Kind : std::uint8_t { kNone, kSphere, kBox, kCapsule, kMesh };
   Kind kind = Kind::kNone;
@@ -75,9 +75,9 @@ struct AURASIM_API Shape {
 };
 
 struct NewBody {
-  std::string prototype = {};  ///< one of the scene's kinds of bodies; or else
+  std::string prototype = {};  ///< a prototype of the scene; empty: `shape` and `mass_kg` count
   Shape shape = {};
-  double mass_kg = 1;  ///< of a shape
+  double mass_kg = 1;  ///< mass of a body with `shape`
   Vec3 position = {};  ///< m
   Quaternion rotation = {1, 0, 0, 0};
   Vec3 linear_velocity = {};   ///< m/s
@@ -90,22 +90,23 @@ struct NewStatic {
   Quaternion rotation = {1, 0, 0, 0};
 };
 
-/// What became of an act.
+/// Result of an act.
 struct Acknowledgement {
   std::int64_t step = 0;               ///< the first state that shows its effect
-  std::optional<std::uint64_t> body;   ///< that was made
-  std::optional<std::uint32_t> fixed;  ///< static that was made
-  std::string text;                    ///< for people
+  std::optional<std::uint64_t> body;   ///< id of the body that was made
+  std::optional<std::uint32_t> fixed;  ///< number of the static that was made
+  std::string text;                    ///< description for people
 };
 
-/// For some bodies: n ids, and n x 3 numbers, world frame. Without numbers they are let go of.
+/// Setpoints for some bodies: n ids, and n x 3 numbers in the world frame. Ids without numbers end the setpoints of
+/// these bodies.
 struct BodyVectors {
   std::vector<std::uint64_t> bodies;
   std::vector<double> values;
 };
 
-/// effort = stiffness (position - q) + damping (speed - dq/dt) + effort, at most max_effort either way, where q is how
-/// far a hinge has turned (rad), or a slider moved (m), from where it was in state 0.
+/// Drive of a joint: effort = stiffness (position - q) + damping (speed - dq/dt) + effort, limited to max_effort either
+/// way. q is how far a hinge has turned (rad), or a slider moved (m), since state 0.
 struct JointDrive {
   double position = 0;                                          ///< rad or m
   double speed = 0;                                             ///< rad/s or m/s
@@ -115,13 +116,14 @@ struct JointDrive {
   double max_effort = std::numeric_limits<double>::infinity();  ///< N m or N
 };
 
-/// For some joints, by their places in RunInfo::joints: a drive for each. Without drives they have the scene's again.
+/// Drives for some joints, which are named by their places in RunInfo::joints; one drive each. Without drives these
+/// joints get the scene's drives back.
 struct JointDrives {
   std::vector<std::uint32_t> joints;
   std::vector<JointDrive> drives;
 };
 
-/// Where a static goes: evenly from where it is, and then it stays. It pushes what is in its way.
+/// Goal of a static: it moves evenly from where it is and then stays. It pushes what is in its way.
 struct StaticGoal {
   std::variant<std::uint32_t, std::string> fixed = std::uint32_t{0};  ///< its number, or its name in the scene
   Vec3 position = {};                                                 ///< m
@@ -129,8 +131,8 @@ struct StaticGoal {
   std::int64_t states = 1;  ///< until it is there; 1: in the first state that shows it
 };
 
-/// What is wanted of bodies, joints and statics: holds until something else is said, or this World is gone (`control`
-/// of the launch file).
+/// Setpoints for bodies, joints and statics. They hold until they are replaced or this World is gone (`control` of the
+/// launch file).
 struct Control {
   BodyVectors forces = {};      ///< N, at the centre of mass
   BodyVectors torques = {};     ///< N m
@@ -142,7 +144,7 @@ struct Control {
 
 struct RayHit {
   bool hit = false;
-  bool complete = true;  ///< all regions have answered: there is nothing nearer
+  bool complete = true;  ///< all regions have answered, so nothing nearer exists
   std::int64_t step = 0;
   std::optional<std::uint64_t> body;
   std::optional<std::uint32_t> fixed;
@@ -153,19 +155,20 @@ struct RayHit {
 
 struct SavedWorld {
   std::int64_t step = 0;
-  std::string file;                ///< the whole world; empty: the parts are on other hosts, or in several folders
-  std::vector<std::string> parts;  ///< else
+  std::string file;  ///< file with the whole world; empty: the parts are on other hosts, or in several folders
+  std::vector<std::string> parts;  ///< files with the parts if `file` is empty
 };
 
-/// What World::observe() has begun; it ends with this, or with the World. Used as the World is.
+/// An observation begun by World::observe(). It ends with this object or with the World. Used by the same thread as the
+/// World.
 class AURASIM_API Observer {
  public:
   Observer(Observer&&) noexcept;
   Observer& operator=(Observer&&) noexcept;
   ~Observer();
 
-  /// The next state, in order; waits for it. One that has come is kept until it is asked for: up to 256 of them, then
-  /// the oldest go.
+  /// Returns the next state, in order; waits for it. Up to 256 states are kept until they are asked for; then the
+  /// oldest are dropped.
   Observation next(Seconds time_out = kUsualTimeOut);
   void close();
 
@@ -176,69 +179,70 @@ class AURASIM_API Observer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Used by one thread at a time. Every call throws one of errors.h, at the latest soon after its time-out. Where it
-/// says `at_step`: not before that state; 0: as soon as possible.
+/// A connection to a run. Used by one thread at a time. Every call throws one of the types in errors.h, at the latest
+/// soon after its time-out. `at_step`: the act does not take effect before that state; 0: as soon as possible.
 ///
-/// An act in a running world returns when its effect has been seen; in a paused one, or with `at_step`, when it is
-/// certain to come: in the state that it says.
+/// An act in a running world returns when its effect has been seen. In a paused world, or with `at_step`, it returns
+/// when it is certain to take effect in the state that it returns.
 class AURASIM_API World {
  public:
   /// Joins a run that was started elsewhere. `file`: its launch file, or the name of a shipped one.
   static World connect(const std::string& file, const ConnectOptions& options = {});
-  /// Starts one on this host: it ends when this World is closed, or this program ends.
+  /// Starts a run on this host. It ends when this World is closed or this program ends.
   static World launch(const std::string& file, const LaunchOptions& options = {});
 
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// Ends what it has started: a run that was launched ends in one state on all nodes and writes its report. Returns,
-  /// once all has ended, the launcher's exit code, or that of an agent that died before (128 + its signal); 0 where
-  /// none was launched, and when closed before.
+  /// Ends the connection. A run that was launched ends in one state on all nodes and writes its report. Returns, once
+  /// all has ended, the launcher's exit code, or that of an agent that died before (128 + its signal). Returns 0 if no
+  /// run was launched, or if it was closed before.
   int close(Seconds time_out = Seconds{30});
   bool closed() const;
-  /// Of the agent; 0: closed.
+  /// Process id of the agent; 0: closed.
   int agent_pid() const;
 
   // Sense.
   RunInfo info(Seconds time_out = kUsualTimeOut);
   std::vector<NodeStatus> nodes(Seconds time_out = kUsualTimeOut);
-  /// In a paused run the state in which it stands, or will within a second: a step of another client is waited for.
-  /// Else the newest that all regions have published.
+  /// Returns all bodies. In a paused run: of the state in which it is paused, or will be within a second (a step of
+  /// another client is waited for). Otherwise of the newest state that all regions have published.
   Bodies bodies(Seconds time_out = kUsualTimeOut);
-  /// What is first on the way from a point to another, m? All regions are asked.
+  /// Returns the first hit on the way from one point to another, m. All regions are asked.
   RayHit ray(const Vec3& from, const Vec3& to, Seconds time_out = kUsualTimeOut);
 
-  /// Begins to observe: only what is asked for is sent, up to every state. At most 16 observers at a time. Throws
-  /// Refused for what cannot be asked for.
+  /// Begins to observe. Only what `interest` names is sent, up to every state. At most 16 observers at a time. Throws
+  /// Refused for an invalid interest.
   Observer observe(const Interest& interest, Seconds time_out = kUsualTimeOut);
 
-  // Steer. All nodes do so in one state.
-  /// Returns the bodies of the state in which all stand.
+  // Steer. All nodes apply these in the same state.
+  /// Pauses the run. Returns the bodies of the state in which all nodes are paused.
   Bodies pause(Seconds time_out = kUsualTimeOut);
-  /// Computes `count` states more of a paused run; returns the bodies of the last one, once all regions have told it.
-  /// Steps of several clients add up: then it may be a later state. Throws Refused at once if the run is not paused.
+  /// Computes `count` more states of a paused run. Returns the bodies of the last one, once all regions have published
+  /// it. Steps of several clients add up, so it may be a later state. Throws Refused at once if the run is not paused.
   Bodies step(std::int64_t count = 1, Seconds time_out = kUsualTimeOut);
   void resume(Seconds time_out = kUsualTimeOut);
-  /// The scene, or the saved world that the run has begun with, begins anew. A paused run stands in its first state.
+  /// Restarts the scene, or the saved world that the run began with. A paused run stays paused, in the first state.
   void reset(Seconds time_out = kUsualTimeOut);
   void stop(Seconds time_out = kUsualTimeOut);
-  /// Simulated seconds per second, 0.01 to 10.
+  /// Sets the rate: simulated seconds per second, 0.01 to 10.
   Acknowledgement set_rate(double rate, Seconds time_out = kUsualTimeOut);
-  /// Begins anew with another scene beside the launch file's, or with the same one as its file is now. In a paused run
-  /// all stand in its state 0.
+  /// Restarts with another scene beside the launch file's, or with the same one, which is read again. A paused run
+  /// stays paused, in state 0.
   Acknowledgement set_scene(const std::string& name, Seconds time_out = kUsualTimeOut);
-  /// One box for each region, x0 y0 x1 y1, m; infinite sides allowed.
+  /// Sets the region map: one box for each region, x0 y0 x1 y1, m; infinite sides allowed.
   Acknowledgement set_regions(const std::vector<std::array<double, 4>>& boxes, Seconds time_out = kUsualTimeOut);
-  /// The region's node leaves, and another process takes it over. Returns that one's number.
+  /// Makes the region's node leave, and another process take over the region. Returns that process's number.
   std::uint32_t drain(std::uint32_t region, Seconds time_out = kUsualTimeOut);
 
   // Keep.
-  // A saved world has a name, of letters, digits, '.', '_' and '-', and is a file in the nodes' folder of saved worlds
-  // (LaunchOptions::saves). A path is Refused.
-  /// A paused run is saved in the state in which it stands, any other in the next one that all nodes can save.
+  // A saved world has a name of letters, digits, '.', '_' and '-'. It is a file in the nodes' folder of saved worlds
+  // (LaunchOptions::saves). A path instead of a name throws Refused.
+  /// Saves the world: a paused run in the state in which it is paused, any other in the next state that all nodes can
+  /// save.
   SavedWorld save(const std::string& name, Seconds time_out = kUsualTimeOut);
-  /// Goes on from a saved world; a paused run stands in its state.
+  /// Continues from a saved world. A paused run stays paused, in the saved state.
   Acknowledgement load(const std::string& name, Seconds time_out = kUsualTimeOut);
   /// Goes back to the newest earlier state that is kept.
   Acknowledgement back(Seconds time_out = kUsualTimeOut);
@@ -248,28 +252,29 @@ class AURASIM_API World {
   Acknowledgement add_static(const NewStatic& fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   Acknowledgement remove_body(std::uint64_t body, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
   Acknowledgement remove_static(std::uint32_t fixed, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
-  /// It goes evenly from where it is and stays there; `fixed`: its number, or the name that the scene gives it. It
-  /// pushes what is in its way. m, quaternion w x y z, s of simulated time.
+  /// Moves a static evenly from where it is; then it stays. `fixed`: its number, or its name in the scene. It pushes
+  /// what is in its way. Units: m, quaternion w x y z, s of simulated time.
   Acknowledgement move_static(const std::variant<std::uint32_t, std::string>& fixed, const Vec3& position,
                               const Quaternion& rotation, double duration, std::int64_t at_step = 0,
                               Seconds time_out = kUsualTimeOut);
-  /// N s, at a point (m) or the centre of mass. World frame.
+  /// Applies an impulse, N s, at a point (m) or at the centre of mass. World frame.
   Acknowledgement impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point = {},
                           std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
-  /// m/s and rad/s; without a spin it stays as it is.
+  /// Sets velocities, m/s and rad/s. Without `angular` the spin stays as it is.
   Acknowledgement set_velocity(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular = {},
                                std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
-  /// Steers bodies and joints, wherever they are hosted by then. Returns at once, with the first state that shows it.
-  /// In a paused run that is by itself the next state, else (0) lookahead + 1 states after each node has heard of it;
-  /// what comes after its state has been computed is late (NodeStatus::setpoints_late). Statics of a running world for
-  /// which no state is named take the time of an order. Throws Refused, and nothing acts, for an unknown body, joint or
-  /// static, or a number that is not finite or beyond 1e9.
+  /// Sends setpoints to bodies and joints, wherever they are hosted. Returns at once, with the first state that shows
+  /// them: in a paused run the next state, otherwise (`at_step` 0) lookahead + 1 states after each node has received
+  /// them. A setpoint that arrives after its state has been computed is late (NodeStatus::setpoints_late). Statics of a
+  /// running world without `at_step` take the time of an order. Throws Refused, without any effect, for an unknown
+  /// body, joint or static, and for a number that is not finite or beyond 1e9.
   std::int64_t control(const Control& control, std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
-  /// One for each body, asked for together: at most 300 between two states. `impulses`: n x 3. Throws Refused with the
-  /// first reason if any is refused; the others act.
+  /// Applies an impulse to each of `bodies` in one request: at most 300 between two states. `impulses`: n x 3, N s.
+  /// Throws Refused with the first reason if any is refused; the others take effect.
   std::vector<Acknowledgement> impulses(const std::vector<std::uint64_t>& bodies, const std::vector<double>& impulses,
                                         std::int64_t at_step = 0, Seconds time_out = kUsualTimeOut);
-  /// Likewise. `linear`: n x 3.
+  /// Sets the velocity of each of `bodies` in one request, with the limits and errors of impulses(). `linear`: n x 3,
+  /// m/s.
   std::vector<Acknowledgement> set_velocities(const std::vector<std::uint64_t>& bodies,
                                               const std::vector<double>& linear, std::int64_t at_step = 0,
                                               Seconds time_out = kUsualTimeOut);
@@ -278,10 +283,10 @@ class AURASIM_API World {
   friend class Observer;
   struct Impl;
   explicit World(std::shared_ptr<Impl> impl);
-  std::shared_ptr<Impl> impl_;  ///< observers look whether it is still there
+  std::shared_ptr<Impl> impl_;  ///< shared, so that observers can check whether it still exists
 };
 
-/// "0.1.0", of this library.
+/// Version of this library, e.g. "0.1.0".
 AURASIM_API const char* version();
 
 }  // namespace aurasim::client

@@ -1,4 +1,4 @@
-// What can go wrong between a program and a run, as types.
+// The errors between a program and a run, as types.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace aurasim::client {
 
-/// Of all that follow.
+/// Base of all errors below.
 class AURASIM_API Error : public std::runtime_error {
  public:
   explicit Error(const std::string& what);
@@ -22,56 +22,56 @@ class AURASIM_API BadFile : public Error {
   ~BadFile() override;
 };
 
-/// No node of this launch file was heard in its DDS domain.
+/// No node of this launch file was found in its DDS domain.
 class AURASIM_API NoSuchRun : public Error {
  public:
   using Error::Error;
   ~NoSuchRun() override;
 };
 
-/// There is a run in the DDS domain, of another launch file or with other overrides.
+/// The run in the DDS domain has another launch file or other overrides.
 class AURASIM_API RunDiffers : public Error {
  public:
   using Error::Error;
   ~RunDiffers() override;
 };
 
-/// The launcher has ended before the run had begun: its words.
+/// The launcher ended before the run had begun. what() holds its output.
 class AURASIM_API LaunchFailed : public Error {
  public:
   using Error::Error;
   ~LaunchFailed() override;
 };
 
-/// What was asked for is not done, as far as was seen within the time-out. It may still come.
+/// The request was not seen to take effect within the time-out. It may still do so.
 class AURASIM_API TimedOut : public Error {
  public:
   using Error::Error;
   ~TimedOut() override;
 };
 
-/// The run does not do that, and why.
+/// The run refuses the request; what() gives the reason.
 class AURASIM_API Refused : public Error {
  public:
   using Error::Error;
   ~Refused() override;
 };
 
-/// The run has ended, this World was closed, or the process that speaks for it has died.
+/// The run has ended, this World was closed, or its agent process has died.
 class AURASIM_API Ended : public Error {
  public:
   using Error::Error;
   ~Ended() override;
 };
 
-/// The program `aurasim` is not there, or is of another version than this library.
+/// The program `aurasim` was not found, or has another version than this library.
 class AURASIM_API NoProgram : public Error {
  public:
   using Error::Error;
   ~NoProgram() override;
 };
 
-/// A call was given up because ConnectOptions::interrupted said so.
+/// A call was cancelled because ConnectOptions::interrupted returned true.
 class AURASIM_API Interrupted : public Error {
  public:
   using Error::Error;

@@ -1,4 +1,4 @@
-// What a program wants to be told of a world, state by state, and what it is told.
+// What a program wants to observe of a world, state by state, and the observations that it receives.
 //
 //   aurasim::client::Interest interest;
 //   interest.patterns = {"crate*"};
@@ -20,12 +20,12 @@
 
 namespace aurasim::client {
 
-/// With sides along the world's axes, m.
+/// Box with sides along the world's axes, m.
 struct WorldBox {
   std::array<double, 3> low = {}, high = {};
 };
 
-/// Where a sensor's frame S is: in the frame of the body that carries it, or in the world.
+/// Pose of a sensor's frame S: in the frame of the body that carries it, or in the world.
 struct Mount {
   std::optional<std::uint64_t> body;
   std::array<double, 3> position = {};            ///< m
@@ -39,13 +39,13 @@ struct RayFan {
   double range_m = 0;              ///< up to 10 km
   std::int64_t every = 1;          ///< cast in states whose number is a multiple of it
 
-  /// rows x columns rays, row by row from the lowest elevation to the highest, each from the first azimuth to the last,
-  /// both included. Azimuth: from x to y; elevation: from there up; rad.
+  /// Returns the directions of rows x columns rays, row by row from the lowest elevation to the highest, each row from
+  /// the first azimuth to the last, both included. Azimuth: from x to y; elevation: from the x-y plane up; rad.
   AURASIM_API static std::vector<double> grid(double azimuth_from, double azimuth_to, int columns,
                                               double elevation_from = 0, double elevation_to = 0, int rows = 1);
 };
 
-/// Says which bodies have their origin in it; its carrier never is.
+/// A region of space that reports the bodies with their origin in it; never the body that carries it.
 struct Trigger {
   Mount mount;
   std::array<double, 3> size = {};  ///< sides along the axes of S, m, with S in the middle; or
@@ -53,20 +53,21 @@ struct Trigger {
 };
 
 struct Interest {
-  /// States whose number is a multiple of it. 0: only those in which the run stands, which all others include.
+  /// Observes states whose number is a multiple of it. 0: only states in which the run is paused. These are observed
+  /// with any value.
   std::uint32_t every = 1;
-  // A body is told of for any of these reasons.
+  // A body is included for any of these reasons.
   bool all = false;
   std::vector<std::uint64_t> bodies;
-  std::vector<std::string> patterns;  ///< of names of kinds of bodies: * ? [a-z]
-  std::vector<WorldBox> boxes;        ///< its origin is in one
-  bool contacts = false;              ///< of these bodies
-  bool joints = false;                ///< likewise
+  std::vector<std::string> patterns;  ///< patterns for names of prototypes: * ? [a-z]
+  std::vector<WorldBox> boxes;        ///< boxes; a body is included when its origin is in one
+  bool contacts = false;              ///< include contacts of these bodies
+  bool joints = false;                ///< include joints of these bodies
   std::vector<RayFan> fans;
   std::vector<Trigger> triggers;
 };
 
-/// What presses on what, summed up over the step. n rows. Of bodies that sleep, none.
+/// Contacts, summed up over the step. n rows. Sleeping bodies have none.
 struct Contacts {
   std::vector<std::int64_t> a;    ///< n: body
   std::vector<std::int64_t> b;    ///< n: body with a higher id; -1 - the number of a static
@@ -86,12 +87,12 @@ struct Joints {
   std::size_t size() const { return ids.size(); }
 };
 
-/// As RayFan::directions. n rows.
+/// Hits of a ray fan. n rows, in the order of RayFan::directions.
 struct FanHits {
   static constexpr std::int64_t kNothing = std::numeric_limits<std::int64_t>::min();
 
-  bool cast = false;                  ///< in this state; else without rows
-  bool complete = false;              ///< all that could be in the way was known
+  bool cast = false;                  ///< the fan was cast in this state; false: no rows
+  bool complete = false;              ///< everything that could be in the way was known
   std::vector<std::int64_t> objects;  ///< n: body; -1 - the number of a static; kNothing
   std::vector<double> distances;      ///< n: m; infinite: nothing
   std::vector<double> positions;      ///< n x 3, m
@@ -101,18 +102,20 @@ struct FanHits {
 };
 
 struct TriggerEvents {
-  bool complete = false;                             ///< all that could be in it was known
-  std::vector<std::uint64_t> inside, entered, left;  ///< bodies, ascending; since the observation before
+  bool complete = false;  ///< everything that could be in it was known
+  /// Ids of bodies, ascending; entered and left: since the observation before.
+  std::vector<std::uint64_t> inside, entered, left;
 };
 
-/// One state.
+/// Observation of one state.
 struct Observation {
-  Bodies bodies;  ///< those that were asked for; exact: nothing is missing
-  /// How often the run has been put back. A state may come again, under a higher count: then the earlier one is void.
+  Bodies bodies;  ///< the requested bodies; exact: nothing is missing
+  /// How often the run has been put back. A state may be observed again with a higher count, which makes the earlier
+  /// observation void.
   std::uint32_t redo = 0;
-  std::uint64_t skipped = 0;           ///< observations before this one that the program was too slow for
-  std::vector<std::uint64_t> missing;  ///< bodies under way, of which no region has said where they were; ascending
-  std::vector<std::uint32_t> silent;   ///< regions that have not told this state
+  std::uint64_t skipped = 0;           ///< observations dropped before this one, because the program was too slow
+  std::vector<std::uint64_t> missing;  ///< bodies being handed over whose place no region has published; ascending
+  std::vector<std::uint32_t> silent;   ///< regions that have not sent this state
   Contacts contacts;
   Joints joints;
   std::vector<FanHits> fans;            ///< as Interest::fans
