@@ -11,12 +11,8 @@ namespace {
 /// Command-line options that nodes and spares share.
 std::vector<std::string> command_line(const char* command, const config::Launch& launch, const LaunchOptions& options,
                                       std::uint64_t run) {
-  std::vector<std::string> words = {program_at("/proc/self/exe").string(),
-                                    command,
-                                    options.files.file,
-                                    "--run",
-                                    std::to_string(run),
-                                    "--has-launcher"};
+  std::vector<std::string> words = {own_program(),       command,         options.files.file, "--run",
+                                    std::to_string(run), "--has-launcher"};
   words.insert(words.end(), options.heartbeat.begin(), options.heartbeat.end());
   for (const std::string& change : options.files.overrides) words.insert(words.end(), {"--set", change});
   words.insert(words.end(), {"--set", "physics.threads=" + std::to_string(threads_of(launch, launch.regions.size()))});

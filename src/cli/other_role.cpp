@@ -76,9 +76,11 @@ std::filesystem::path program_at(const std::filesystem::path& link) {
   return text.substr(0, text.size() - kDeleted.size());
 }
 
+std::string own_program() { return program_at("/proc/self/exe").string(); }
+
 std::vector<std::string> own_words() {
   std::vector<std::string> words = own_command_line();
-  words.at(0) = program_at("/proc/self/exe").string();
+  words.at(0) = own_program();
   return words;
 }
 

@@ -27,6 +27,9 @@ std::vector<std::string> words_of_plain_node(std::vector<std::string> words);
 /// Path of the program that a link of /proc names, or of the file that has replaced it since.
 std::filesystem::path program_at(const std::filesystem::path& link);
 
+/// Full path of the program of this process.
+std::string own_program();
+
 /// Command line of this process, with the program's full path.
 std::vector<std::string> own_words();
 

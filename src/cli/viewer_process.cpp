@@ -23,7 +23,7 @@ void ViewerProcess::start(const FileArguments& files, const std::string& recordi
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return spdlog::warn("no viewer: cannot open a pipe");
   try {
-    std::vector<std::string> words = {program_at("/proc/self/exe").string(), "overseer", files.file};
+    std::vector<std::string> words = {own_program(), "overseer", files.file};
     for (const std::string& change : files.overrides) words.insert(words.end(), {"--set", change});
     if (!recording.empty()) words.insert(words.end(), {"--record", recording});
     pid_ = spawn(std::move(words), pipe[1]);

@@ -24,7 +24,7 @@ void nap() {
 }  // namespace
 
 LaunchedRun::LaunchedRun(const std::vector<std::string>& words) {
-  std::vector<std::string> all = {program_at("/proc/self/exe").string(), "launch"};
+  std::vector<std::string> all = {own_program(), "launch"};
   all.insert(all.end(), words.begin(), words.end());
   pid_ = spawn(std::move(all));
 }
