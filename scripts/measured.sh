@@ -16,16 +16,16 @@ declare -A measures=(
     :!src/lab/pareto.cpp scripts/correctness.sh"
   [docs/results.md#correctness_over_dds]="$simulation src/dds idl qos src/lab :!src/lab/stability
     :!src/lab/scale :!src/lab/speed :!src/lab/pareto.cpp scripts/correctness_over_dds.sh"
-  [docs/results.md#same_bits]="$uncounted src/config src/dds src/cli/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
+  [docs/results.md#same_bits]="$uncounted src/config src/dds src/process/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
   [docs/scalability.md]="$simulation src/dds idl src/lab/scale src/lab/measured_run.* src/lab/wire_post.*
     launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
-  [docs/results.md#saved_worlds]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/saved_world.cpp idl qos
+  [docs/results.md#saved_worlds]="$uncounted src/cut src/config src/dds src/process/node_process* src/cut/saved_world.cpp idl qos
     launch_configs src/lab/scenes tests/bench/save_bench.cpp scripts/saved_worlds.sh scripts/scene_regions.sh"
-  [docs/results.md#recovery]="$uncounted src/cut src/config src/dds src/cli/node_process* src/cli/checkpoints.* src/cli/restore_plan.*
-    src/cli/launcher.cpp idl qos launch_configs scripts/recovery.py scripts/recovery_cost.py"
-  [docs/results.md#security_cost]="$uncounted src/config src/dds src/security src/cli/node_process* src/cli/launcher.cpp idl qos
+  [docs/results.md#recovery]="$uncounted src/cut src/config src/dds src/process/node_process* src/process/checkpoints.* src/process/restore_plan.*
+    src/launch/launcher.cpp idl qos launch_configs scripts/recovery.py scripts/recovery_cost.py"
+  [docs/results.md#security_cost]="$uncounted src/config src/dds src/security src/process/node_process* src/launch/launcher.cpp idl qos
     launch_configs scripts/security_cost.py"
-  [docs/results.md#control_cost]="$uncounted src/dds src/client src/cli/agent src/cli/node_process* idl qos tests/bench/control_client.cpp
+  [docs/results.md#control_cost]="$uncounted src/dds src/client src/agent src/process/node_process* idl qos tests/bench/control_client.cpp
     scripts/control_cost.py"
   [docs/results.md#page_traffic]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h tests/web/traffic.mjs
     scripts/page_traffic.py"

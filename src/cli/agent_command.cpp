@@ -1,9 +1,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "cli/agent/agent.h"
+#include "agent/agent.h"
 #include "cli/commands.h"
-#include "cli/leave.h"
+#include "command_line/leave.h"
 
 namespace aurasim::cli {
 namespace {
@@ -19,16 +19,16 @@ int take_socket() {
 int serve_client() {
   const int socket = take_socket();
   agent::Agent agent(socket);
-  leave_after([&agent] {
+  command_line::leave_after([&agent] {
     agent.serve();
-    return ExitCode::kOk;
+    return command_line::ExitCode::kOk;
   });
 }
 
 }  // namespace
 
 /// For client libraries, which start it: nothing that people type.
-void add_agent(CLI::App& program, Action& action) {
+void add_agent(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("agent", "speak DDS for a client library, on standard input")->group("");
   command->callback([&action] { action = serve_client; });
 }

@@ -4,31 +4,31 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "cli/launch_setup.h"
-#include "cli/long_work.h"
-#include "cli/scene_warnings.h"
-#include "cli/web_setup.h"
+#include "setup/launch_setup.h"
+#include "host/long_work.h"
+#include "setup/scene_warnings.h"
+#include "overseer/web_setup.h"
 #include "config/launch.h"
 #include "config/shipped_files.h"
 
 namespace aurasim::cli {
 
-void add_check(CLI::App& program, Action& action) {
+void add_check(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("check", "validate a launch file and its scene");
-  const auto files = std::make_shared<FileArguments>();
+  const auto files = std::make_shared<command_line::FileArguments>();
   files->add_to(*command);
   command->footer("Example:\n  aurasim check demo --set regions.count=9");
   command->callback([files, &action] {
     action = [files] {
       const config::Launch launch = config::read_launch(files->file, files->overrides);
-      check_tls_of(launch);
+      overseer::check_tls_of(launch);
       fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
                  files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
-                 launch.regions.size(), launch.lookahead(), listening_distance_m(launch));
+                 launch.regions.size(), launch.lookahead(), setup::listening_distance_m(launch));
       std::fflush(stdout);
-      LongWork work("looking for bodies that overlap",
+      host::LongWork work("looking for bodies that overlap",
                     [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
-      for (const std::string& text : scene_warnings(launch, [&work](double share) { work.reached(share); })) {
+      for (const std::string& text : setup::scene_warnings(launch, [&work](double share) { work.reached(share); })) {
         fmt::print(stderr, "warning: {}\n", text);
       }
       return 0;

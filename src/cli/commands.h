@@ -6,28 +6,28 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/command_line.h"
+#include "command_line/command_line.h"
 
 namespace aurasim::cli {
 
-void add_agent(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_schema(CLI::App& program, Action& action);
-void add_export(CLI::App& program, Action& action);
-void add_import(CLI::App& program, Action& action);
-void add_keys(CLI::App& program, Action& action);
-void add_node(CLI::App& program, Action& action);
-void add_spare(CLI::App& program, Action& action);
-void add_launch(CLI::App& program, Action& action);
-void add_top(CLI::App& program, Action& action);
-void add_echo(CLI::App& program, Action& action);
-void add_cut(CLI::App& program, Action& action);
-void add_overseer(CLI::App& program, Action& action);
-void add_replay(CLI::App& program, Action& action);
-void add_report(CLI::App& program, Action& action);
-void add_compare(CLI::App& program, Action& action);
-void add_send(CLI::App& program, Action& action);
-void add_mesh_loader(CLI::App& program, Action& action);
+void add_agent(CLI::App& program, command_line::Action& action);
+void add_check(CLI::App& program, command_line::Action& action);
+void add_schema(CLI::App& program, command_line::Action& action);
+void add_export(CLI::App& program, command_line::Action& action);
+void add_import(CLI::App& program, command_line::Action& action);
+void add_keys(CLI::App& program, command_line::Action& action);
+void add_node(CLI::App& program, command_line::Action& action);
+void add_spare(CLI::App& program, command_line::Action& action);
+void add_launch(CLI::App& program, command_line::Action& action);
+void add_top(CLI::App& program, command_line::Action& action);
+void add_echo(CLI::App& program, command_line::Action& action);
+void add_cut(CLI::App& program, command_line::Action& action);
+void add_overseer(CLI::App& program, command_line::Action& action);
+void add_replay(CLI::App& program, command_line::Action& action);
+void add_report(CLI::App& program, command_line::Action& action);
+void add_compare(CLI::App& program, command_line::Action& action);
+void add_send(CLI::App& program, command_line::Action& action);
+void add_mesh_loader(CLI::App& program, command_line::Action& action);
 
 /// Options of a node, and of a spare that becomes one, for processes with a launcher. A launcher finds a successor when
 /// the process dies.

@@ -42,7 +42,7 @@ int compare(const CompareArguments& arguments) {
 
 }  // namespace
 
-void add_compare(CLI::App& program, Action& action) {
+void add_compare(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("compare", "are two reports of a scene the same run, bit by bit?");
   const auto arguments = std::make_shared<CompareArguments>();
   command->add_option("DIR_A", arguments->a, "a report")->required()->check(CLI::ExistingDirectory);

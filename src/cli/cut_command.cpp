@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
+#include "command_line/exit_code.h"
 #include "cut/part_store.h"
 
 namespace aurasim::cli {
@@ -23,10 +23,10 @@ template <class Work>
 int refusing_bad_files(Work&& work) {
   try {
     work();
-    return static_cast<int>(ExitCode::kOk);
+    return static_cast<int>(command_line::ExitCode::kOk);
   } catch (const cut::BadCut& bad) {
     fmt::print(stderr, "{}\n", bad.what());
-    return static_cast<int>(ExitCode::kBadConfig);
+    return static_cast<int>(command_line::ExitCode::kBadConfig);
   }
 }
 
@@ -68,7 +68,7 @@ int merge(const CutArguments& arguments) {
 
 }  // namespace
 
-void add_cut(CLI::App& program, Action& action) {
+void add_cut(CLI::App& program, command_line::Action& action) {
   CLI::App* cut_app = program.add_subcommand("cut", "look at saved worlds, and put their parts together");
   cut_app->require_subcommand(1);
   cut_app->footer("Example:\n  aurasim cut info world.cut");

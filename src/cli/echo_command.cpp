@@ -7,11 +7,11 @@
 #include <fnmatch.h>
 
 #include "cli/commands.h"
-#include "cli/key_choice.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/silence.h"
-#include "cli/stop_signal.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "setup/silence.h"
+#include "host/stop_signal.h"
 #include "dds/control.h"
 #include "dds/topic_echo.h"
 
@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 struct EchoArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   KeyArguments keys;
   std::string topic;
   std::string partition;  ///< empty: all of them
@@ -70,19 +70,19 @@ int echo(const EchoArguments& arguments) {
   const std::string partition =
       arguments.partition.empty() ? dds::every_partition_of_topic(arguments.topic) : arguments.partition;
   using security::Role;
-  const auto member = member_for(launch, arguments.keys.as,
+  const auto member = setup::member_for(launch, arguments.keys.as,
                                  {Role::kRecorder, Role::kViewer, Role::kOperator, Role::kSpare, Role::kRegion});
   check_permission(arguments.topic, partition, member);
-  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
+  dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::TopicEcho topic(participant, arguments.topic, partition);
   dds::ControlBus control(participant, {.only_watches = true});
-  catch_stop_signals();
+  host::catch_stop_signals();
   const auto begin = Clock::now();
   const auto end = begin + std::chrono::duration<double>(arguments.duration_s);
   std::uint64_t left = arguments.count;
   bool has_heard = false;
-  const auto nobody = [&] { return !has_heard && control.statuses().empty() && !stop_requested(); };
-  while (!stop_requested() && (arguments.duration_s <= 0 || Clock::now() < end)) {
+  const auto nobody = [&] { return !has_heard && control.statuses().empty() && !host::stop_requested(); };
+  while (!host::stop_requested() && (arguments.duration_s <= 0 || Clock::now() < end)) {
     if (const auto sample = topic.take()) {
       has_heard = true;
       print_sample(*sample, arguments.json);
@@ -90,16 +90,16 @@ int echo(const EchoArguments& arguments) {
     } else {
       topic.wait(50ms);
       control.wait(0ms);
-      if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
+      if (nobody() && Clock::now() - begin > setup::kPatienceWithSilence) break;
     }
   }
-  if (nobody()) fail_for_want_of_a_run(arguments.files, launch, participant);
-  leave(left == 0 ? 0 : 1);
+  if (nobody()) setup::fail_for_want_of_a_run(arguments.files, launch, participant);
+  command_line::leave(left == 0 ? 0 : 1);
 }
 
 }  // namespace
 
-void add_echo(CLI::App& program, Action& action) {
+void add_echo(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("echo", "print what is said on a topic of a run");
   const auto arguments = std::make_shared<EchoArguments>();
   command->add_option("TOPIC", arguments->topic, "its name")->required()->check(CLI::IsMember(dds::topic_names()));

@@ -20,7 +20,7 @@ struct ImportArguments {
 };
 
 struct ExportArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   std::string out;
   bool strict = false;
 };

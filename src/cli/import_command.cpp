@@ -2,21 +2,21 @@
 
 #include "cli/commands.h"
 #include "cli/import_arguments.h"
-#include "cli/launch_setup.h"
-#include "cli/spawn.h"
+#include "setup/launch_setup.h"
+#include "host/spawn.h"
 
 namespace aurasim::cli {
 namespace {
 
 /// With the same words.
 int become_importer() {
-  std::vector<std::string> words = own_command_line();
+  std::vector<std::string> words = host::own_command_line();
   words.at(0) =
-      program_beside("aurasim-import",
+      setup::program_beside("aurasim-import",
                      "The package of that name has it; from the sources, `scripts/setup.sh && scripts/build.sh "
                      "release aurasim-import` builds it")
           .string();
-  become(std::move(words));
+  host::become(std::move(words));
 }
 
 }  // namespace
@@ -52,12 +52,12 @@ CLI::App* add_export_words(CLI::App& program, ExportArguments& given) {
   return command;
 }
 
-void add_import(CLI::App& program, Action& action) {
+void add_import(CLI::App& program, command_line::Action& action) {
   const auto given = std::make_shared<ImportArguments>();
   add_import_words(program, *given)->callback([given, &action] { action = become_importer; });
 }
 
-void add_export(CLI::App& program, Action& action) {
+void add_export(CLI::App& program, command_line::Action& action) {
   const auto given = std::make_shared<ExportArguments>();
   add_export_words(program, *given)->callback([given, &action] { action = become_importer; });
 }

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/exit_code.h"
+#include "command_line/exit_code.h"
 #include "cli/text_files.h"
 #include "config/launch.h"
 #include "import/read_model.h"
@@ -111,7 +111,7 @@ int run_import(const ImportArguments& given) {
   const std::vector<importing::Instance> instances = instances_of(given);
   const importing::Model model = read_for_import(given);
   print_notes(model);
-  if (is_too_little(model.lost, given.strict)) return static_cast<int>(ExitCode::kBadConfig);
+  if (is_too_little(model.lost, given.strict)) return static_cast<int>(command_line::ExitCode::kBadConfig);
   const std::string file = given.out.empty() ? model.name + ".yaml" : given.out;
   const importing::SceneText scene = importing::scene_text(model, instances, file);
   write_texts(given.out, scene.yaml, scene.meshes);
@@ -124,12 +124,12 @@ int run_export(const ExportArguments& given) {
   for (const config::SceneSource& source : launch.body_sources) names.push_back(source.name);
   const std::string file = given.out.empty() ? launch.scene.name + ".sdf" : given.out;
   const importing::SdfText world = importing::sdf_text(launch.scene, names, file, physics::hull_triangles);
-  if (is_too_little(world.lost, given.strict)) return static_cast<int>(ExitCode::kBadConfig);
+  if (is_too_little(world.lost, given.strict)) return static_cast<int>(command_line::ExitCode::kBadConfig);
   write_texts(given.out, world.xml, world.meshes);
   return 0;
 }
 
-std::unique_ptr<CLI::App> make_import_program(Action& action) {
+std::unique_ptr<CLI::App> make_import_program(command_line::Action& action) {
   auto program = std::make_unique<CLI::App>("what aurasim import and aurasim export do", "aurasim-import");
   program->require_subcommand(1);
   const auto import = std::make_shared<ImportArguments>();

@@ -12,6 +12,6 @@ int run_import(const ImportArguments& given);
 int run_export(const ExportArguments& given);
 
 /// The commands `import` and `export`, as aurasim has them. Parsing sets `action`, which must outlive the result.
-std::unique_ptr<CLI::App> make_import_program(Action& action);
+std::unique_ptr<CLI::App> make_import_program(command_line::Action& action);
 
 }  // namespace aurasim::cli

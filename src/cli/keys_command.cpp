@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/spawn.h"
+#include "command_line/exit_code.h"
+#include "host/spawn.h"
 #include "config/launch.h"
 #include "security/key_store.h"
 
@@ -81,7 +81,7 @@ void pack(const KeysArguments& a) {
   const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (out < 0) throw security::BadKeys(fmt::format("{}: cannot create it: is it there already?", file));
   int status = -1;
-  ::waitpid(spawn(std::move(words), out), &status, 0);
+  ::waitpid(host::spawn(std::move(words), out), &status, 0);
   ::close(out);
   if (status != 0) {
     ::unlink(file.c_str());
@@ -122,13 +122,13 @@ int check(const KeysArguments& a) {
     fmt::print("{:<20} {:<9} until {}  {}\n", state.name, state.role, until, remark);
     problems += state.problem.empty() ? 0 : 1;
   }
-  return problems == 0 ? 0 : static_cast<int>(ExitCode::kBadConfig);
+  return problems == 0 ? 0 : static_cast<int>(command_line::ExitCode::kBadConfig);
 }
 
 using Arguments = std::shared_ptr<KeysArguments>;
 
 template <class Work>
-CLI::App* add_command(CLI::App& keys, Action& action, const Arguments& arguments, const char* name, const char* text,
+CLI::App* add_command(CLI::App& keys, command_line::Action& action, const Arguments& arguments, const char* name, const char* text,
                       const char* example, Work work) {
   CLI::App* command = keys.add_subcommand(name, text);
   command->add_option("DIR", arguments->folder, "folder of the keys")->required();
@@ -156,7 +156,7 @@ void add_days(CLI::App& command, const Arguments& arguments) {
 
 }  // namespace
 
-void add_keys(CLI::App& program, Action& action) {
+void add_keys(CLI::App& program, command_line::Action& action) {
   CLI::App* keys = program.add_subcommand("keys", "make, pack, check and revoke the keys of a run");
   keys->require_subcommand(1);
   keys->footer(

@@ -6,51 +6,51 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/host_room.h"
-#include "cli/kept_on_disk.h"
-#include "cli/key_choice.h"
-#include "cli/launcher.h"
-#include "cli/leave.h"
-#include "cli/part_writer.h"
-#include "cli/run_length.h"
-#include "cli/stop_signal.h"
-#include "cli/throw_away_keys.h"
-#include "cli/web_setup.h"
+#include "host/host_room.h"
+#include "cut/kept_on_disk.h"
+#include "setup/key_choice.h"
+#include "launch/launcher.h"
+#include "command_line/leave.h"
+#include "cut/part_writer.h"
+#include "setup/run_length.h"
+#include "host/stop_signal.h"
+#include "launch/throw_away_keys.h"
+#include "overseer/web_setup.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct LaunchArguments {
-  LaunchOptions options;
-  RunLength length;
+  setup::LaunchOptions options;
+  setup::RunLength length;
   std::string report;
   bool secure = false;
 };
 
 /// Refuses a launch that this host cannot run, before anything is started, and warns of one that may be slow.
-void look_at_host(const config::Launch& launch, const LaunchOptions& options) {
-  if (const auto problem = problem_with_regions(launch.regions.size(), launch.dds.domain)) {
+void look_at_host(const config::Launch& launch, const setup::LaunchOptions& options) {
+  if (const auto problem = host::problem_with_regions(launch.regions.size(), launch.dds.domain)) {
     throw config::BadConfig({fmt::format("{}: {}", options.files.file, *problem)});
   }
-  if (const auto warning = warning_of_turns(launch.regions.size(), std::thread::hardware_concurrency())) {
+  if (const auto warning = host::warning_of_turns(launch.regions.size(), std::thread::hardware_concurrency())) {
     spdlog::warn("{}", *warning);
   }
   if (options.headless && options.recording.empty()) return;
-  check_tls_of(launch);
-  const auto problem = problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
+  overseer::check_tls_of(launch);
+  const auto problem = host::problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
   if (problem) throw std::runtime_error(*problem);
-  if (!options.recording.empty()) check_recording(options.recording);
+  if (!options.recording.empty()) overseer::check_recording(options.recording);
 }
 
 /// Keys for this run alone, if the user asks for them. The started processes get them as any other keys.
-std::unique_ptr<ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
+std::unique_ptr<launch::ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
   if (!arguments.secure) return nullptr;
-  const FileArguments& files = arguments.options.files;
+  const command_line::FileArguments& files = arguments.options.files;
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   if (!launch.dds.security.empty()) {
     throw config::BadConfig({"--secure: found dds.security as well, allowed: one of them"});
   }
-  auto keys = std::make_unique<ThrowAwayKeys>(launch.regions.size());
+  auto keys = std::make_unique<launch::ThrowAwayKeys>(launch.regions.size());
   const std::string folder = "dds.security=" + keys->folder().string();
   spdlog::info("a run with keys; others on this host join it with --set {}", folder);
   arguments.options.files.overrides.push_back(folder);
@@ -60,50 +60,50 @@ std::unique_ptr<ThrowAwayKeys> keys_for(LaunchArguments& arguments) {
 /// Checks the keys before the start, because otherwise each process would report the same error in the middle of it.
 void look_at_keys(const config::Launch& launch) {
   for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
-    with_keys({}, launch, member_for_node(launch, "", core::RegionId{r}));
+    setup::with_keys({}, launch, setup::member_for_node(launch, "", core::RegionId{r}));
   }
 }
 
 /// Prepares the folders for saved worlds, and the world that the run goes on from.
-void prepare_saves(const config::Launch& launch, LaunchOptions& options) {
+void prepare_saves(const config::Launch& launch, setup::LaunchOptions& options) {
   if (options.resume) {
     options.save.folder_is_given = true;
-    options.load.file = world_to_resume(launch, options.save);
+    options.load.file = cut::world_to_resume(launch, options.save);
   }
-  check_room_for_saves(launch, options.save);
+  cut::check_room_for_saves(launch, options.save);
 }
 
 int run_launch(LaunchArguments arguments) {
-  for (const std::filesystem::path& folder : remove_keys_of_the_gone()) {
+  for (const std::filesystem::path& folder : launch::remove_keys_of_the_gone()) {
     spdlog::info("removed the keys of a launch that was killed: {}", folder.string());
   }
-  std::unique_ptr<ThrowAwayKeys> throw_away = keys_for(arguments);
+  std::unique_ptr<launch::ThrowAwayKeys> throw_away = keys_for(arguments);
   const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
   look_at_keys(launch);
   look_at_host(launch, arguments.options);
   prepare_saves(launch, arguments.options);
-  const auto world = load_world(arguments.options.load, launch);  // a bad file is refused before anything is started
+  const auto world = cut::load_world(arguments.options.load, launch);  // a bad file is refused before anything is started
   arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
-  Launcher launcher(launch, arguments.options);
-  leave_after([&] {
+  launch::Launcher launcher(launch, arguments.options);
+  command_line::leave_after([&] {
     const auto until_then = std::move(throw_away);  // leave() destroys no objects outside of this scope
-    const LaunchOptions& options = arguments.options;
-    const bool is_kept = kept_folder(launch, options.save).has_value();
+    const setup::LaunchOptions& options = arguments.options;
+    const bool is_kept = cut::kept_folder(launch, options.save).has_value();
     if (is_kept) {
       spdlog::info("its newest states are kept on disk: if all its processes end at once, `{}` goes on from there",
-                   resume_command(launch, options.save));
+                   cut::resume_command(launch, options.save));
     }
-    const ExitCode code = launcher.run();
-    if (code == ExitCode::kNotSaved) spdlog::error("{}", kNothingSaved);
-    conclude_kept(launch, options.save, launcher.number(), code != ExitCode::kOk || stop_requested());
+    const command_line::ExitCode code = launcher.run();
+    if (code == command_line::ExitCode::kNotSaved) spdlog::error("{}", kNothingSaved);
+    cut::conclude_kept(launch, options.save, launcher.number(), code != command_line::ExitCode::kOk || host::stop_requested());
     return code;
   });
 }
 
 }  // namespace
 
-void add_launch(CLI::App& program, Action& action) {
+void add_launch(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("launch", "run every region of a launch file on this host");
   const auto arguments = std::make_shared<LaunchArguments>();
   arguments->options.files.add_to(*command);

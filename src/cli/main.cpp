@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "cli/exit_code.h"
+#include "command_line/exit_code.h"
 #include "cli/program.h"
 
 using namespace aurasim;
@@ -10,9 +10,9 @@ using namespace aurasim;
 int main(int argc, char** argv) {
   if (const auto moved = cli::moved_command({argv + 1, argv + argc})) {
     std::fprintf(stderr, "%s\n", moved->c_str());
-    return static_cast<int>(cli::ExitCode::kBadConfig);
+    return static_cast<int>(command_line::ExitCode::kBadConfig);
   }
-  cli::Action action;
+  command_line::Action action;
   const std::unique_ptr<CLI::App> program = cli::make_program(action);
-  return cli::run_program(*program, action, argc, argv);
+  return command_line::run_program(*program, action, argc, argv);
 }

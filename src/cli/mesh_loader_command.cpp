@@ -1,11 +1,11 @@
-// The other side of cli/mesh_process.h. Not for people: it is not in the help.
+// The other side of overseer/mesh_process.h. Not for people: it is not in the help.
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/mesh_process.h"
+#include "overseer/mesh_process.h"
 #include "config/convex_parts.h"
 #include "config/meshes.h"
 
@@ -17,22 +17,22 @@ std::string all_of_stdin() {
   return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
-int tell(const MeshOrWhy& mesh) {
-  const std::string bytes = mesh_bytes(mesh);
+int tell(const overseer::MeshOrWhy& mesh) {
+  const std::string bytes = overseer::mesh_bytes(mesh);
   std::fwrite(bytes.data(), 1, bytes.size(), stdout);
   std::fflush(stdout);
   return 0;
 }
 
 int take_apart() {
-  const MeshOrWhy whole = mesh_of_bytes(all_of_stdin());
+  const overseer::MeshOrWhy whole = overseer::mesh_of_bytes(all_of_stdin());
   if (std::holds_alternative<std::string>(whole)) return tell(whole);
   return tell(config::decompose(std::get<core::TriangleMesh>(whole)));
 }
 
 }  // namespace
 
-void add_mesh_loader(CLI::App& program, Action& action) {
+void add_mesh_loader(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("mesh-loader", "read a mesh from standard input")->group("");
   command->require_subcommand(1);
   const auto name = std::make_shared<std::string>();

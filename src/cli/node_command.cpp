@@ -7,32 +7,32 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/going_run.h"
-#include "cli/kept_on_disk.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/long_work.h"
-#include "cli/node_process.h"
-#include "cli/other_role.h"
-#include "cli/run_length.h"
-#include "cli/saved_world.h"
-#include "cli/scene_warnings.h"
-#include "cli/spawn.h"
-#include "cli/stop_signal.h"
+#include "steering/going_run.h"
+#include "cut/kept_on_disk.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "host/long_work.h"
+#include "process/node_process.h"
+#include "host/other_role.h"
+#include "setup/run_length.h"
+#include "cut/saved_world.h"
+#include "setup/scene_warnings.h"
+#include "host/spawn.h"
+#include "host/stop_signal.h"
 #include "physics/region_world.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct NodeArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   KeyArguments keys;
   std::uint32_t region = 0;
   std::uint64_t run = 0;
-  RunLength length;
+  setup::RunLength length;
   std::string report;
-  LoadArguments load;
-  SaveArguments save;
+  cut::LoadArguments load;
+  cut::SaveArguments save;
   int start_time_out_s = 30;
   bool takes_over = false;
   LauncherArguments launcher;
@@ -41,11 +41,11 @@ struct NodeArguments {
 
 /// Does not return: the rest of the command line is that of the spare, or of the node.
 [[noreturn]] void become_node_or_spare(const config::Launch& launch, const NodeArguments& arguments) {
-  leave_after([&] {
-    const bool goes_on = a_run_goes_on(launch, arguments.keys.as, core::RegionId{arguments.region});
-    if (stop_requested()) return ExitCode::kOk;
+  command_line::leave_after([&] {
+    const bool goes_on = steering::a_run_goes_on(launch, arguments.keys.as, core::RegionId{arguments.region});
+    if (host::stop_requested()) return command_line::ExitCode::kOk;
     if (goes_on) spdlog::info("the run goes on without this process, which becomes a spare");
-    become(goes_on ? words_of_spare(own_words()) : words_of_plain_node(own_words()));
+    host::become(goes_on ? host::words_of_spare(host::own_words()) : host::words_of_plain_node(host::own_words()));
   });
 }
 
@@ -57,39 +57,39 @@ int run_node(const NodeArguments& arguments) {
   }
   spdlog::set_pattern(fmt::format("%H:%M:%S.%e %^%l%$ region {}: %v", arguments.region));
   if (arguments.or_spare) {
-    catch_stop_signals();
+    host::catch_stop_signals();
     become_node_or_spare(launch, arguments);
   }
   // Once in a run; `launch` starts this node as well.
   if (arguments.region == 0 && !arguments.takes_over) {
-    LongWork work("looking for bodies that overlap", [](const std::string& text) { spdlog::info("{}", text); });
-    for (const std::string& text : scene_warnings(launch, [&work](double share) { work.reached(share); })) {
+    host::LongWork work("looking for bodies that overlap", [](const std::string& text) { spdlog::info("{}", text); });
+    for (const std::string& text : setup::scene_warnings(launch, [&work](double share) { work.reached(share); })) {
       spdlog::warn("{}", text);
     }
   }
-  catch_stop_signals();
-  NodeOptions options;
+  host::catch_stop_signals();
+  process::NodeOptions options;
   options.region = core::RegionId{arguments.region};
   options.run = arguments.run;
   options.as = arguments.keys.as;
   options.start_time_out = std::chrono::seconds(arguments.start_time_out_s);
-  options.world = load_world(arguments.load, launch);
+  options.world = cut::load_world(arguments.load, launch);
   options.saves = arguments.save.folder;
   options.save_every = static_cast<core::Step>(std::llround(arguments.save.every_s * launch.time.step_hz));
   options.save_keep = arguments.save.keep;
-  options.kept = kept_folder(launch, arguments.save);
-  if (!arguments.launcher.is_there) check_room_for_saves(launch, arguments.save);
+  options.kept = cut::kept_folder(launch, arguments.save);
+  if (!arguments.launcher.is_there) cut::check_room_for_saves(launch, arguments.save);
   options.steps = arguments.length.last_step(launch, options.world ? options.world->step : 0);
   if (!arguments.report.empty()) options.report = arguments.report;
   options.takes_over = arguments.takes_over;
   options.has_launcher = arguments.launcher.is_there;
   options.heartbeat = arguments.launcher.heartbeat;
-  NodeProcess process(launch, options);
-  leave_after([&process] {
-    const ExitCode code = process.run();
+  process::NodeProcess process(launch, options);
+  command_line::leave_after([&process] {
+    const command_line::ExitCode code = process.run();
     if (!process.comes_back_as_spare()) return code;
     spdlog::info("comes back as a spare");
-    become(words_of_spare(own_words()));
+    host::become(host::words_of_spare(host::own_words()));
   });
 }
 
@@ -101,7 +101,7 @@ void LauncherArguments::add_to(CLI::App& command) {
   command.add_option("--heartbeat", heartbeat, "number of the pipe that it reads signs of life from")->group("");
 }
 
-void add_node(CLI::App& program, Action& action) {
+void add_node(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("node", "run one region");
   const auto arguments = std::make_shared<NodeArguments>();
   arguments->files.add_to(*command);

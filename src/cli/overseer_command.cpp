@@ -7,23 +7,23 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "cli/key_choice.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/mesh_process.h"
-#include "cli/run_command_sink.h"
-#include "cli/silence.h"
-#include "cli/stop_signal.h"
-#include "cli/web_setup.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "overseer/mesh_process.h"
+#include "overseer/run_command_sink.h"
+#include "setup/silence.h"
+#include "host/stop_signal.h"
+#include "overseer/web_setup.h"
 #include "overseer/overseer.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct OverseerArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   KeyArguments keys;
-  WebArguments web;
+  overseer::WebArguments web;
   std::string recording;
 };
 
@@ -42,35 +42,35 @@ class RefusingSink final : public overseer::CommandSink {
 
 int oversee(const OverseerArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  const overseer::WebSettings settings = web_settings(launch, arguments.web);
+  const overseer::WebSettings settings = overseer::web_settings(launch, arguments.web);
   overseer::ShapeStore shapes(read_mesh_apart);
-  const std::unique_ptr<overseer::WebServer> web = open_web_server(settings, arguments.web, shapes);
+  const std::unique_ptr<overseer::WebServer> web = overseer::open_web_server(settings, arguments.web, shapes);
   using security::Role;
-  const auto member = member_for(launch, arguments.keys.as, {Role::kOperator, Role::kViewer});
+  const auto member = setup::member_for(launch, arguments.keys.as, {Role::kOperator, Role::kViewer});
   const bool only_watches = member && member->role == Role::kViewer;
-  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
+  dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.map_version = launch.regions.version(),
                                         .agreement = launch.agreement(),
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size()),
                                         .only_watches = only_watches});
   std::unique_ptr<overseer::CommandSink> sink = std::make_unique<RefusingSink>();
-  if (!only_watches) sink = std::make_unique<RunCommandSink>(launch, participant, control, shapes);
+  if (!only_watches) sink = std::make_unique<overseer::RunCommandSink>(launch, participant, control, shapes);
   overseer::Overseer overseer(launch, participant, control, *web, *sink);
   if (!arguments.recording.empty()) overseer.record(arguments.recording);
-  catch_stop_signals();
-  SilenceWord silence(launch, participant);
-  leave_after([&] {
-    while (!stop_requested()) {
+  host::catch_stop_signals();
+  setup::SilenceWord silence(launch, participant);
+  command_line::leave_after([&] {
+    while (!host::stop_requested()) {
       overseer.turn();
       silence.look(!control.statuses().empty());
     }
-    return ExitCode::kOk;
+    return command_line::ExitCode::kOk;
   });
 }
 
 }  // namespace
 
-void add_overseer(CLI::App& program, Action& action) {
+void add_overseer(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("overseer", "serve the viewer of a run; start and stop it as you like");
   const auto arguments = std::make_shared<OverseerArguments>();
   arguments->files.add_to(*command);

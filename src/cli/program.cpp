@@ -8,9 +8,9 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
-#include "cli/completion.h"
-#include "cli/manual.h"
-#include "cli/version.h"
+#include "command_line/completion.h"
+#include "command_line/manual.h"
+#include "host/version.h"
 
 namespace aurasim::cli {
 namespace {
@@ -21,7 +21,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kMovedCom
 
 }  // namespace
 
-std::unique_ptr<CLI::App> make_program(Action& action) {
+std::unique_ptr<CLI::App> make_program(command_line::Action& action) {
   auto program = std::make_unique<CLI::App>("One world of rigid bodies, simulated by any number of nodes.", "aurasim");
   program->option_defaults()->always_capture_default();
   program->set_version_flag("--version", version_text, "what this program was made from");
@@ -48,12 +48,12 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_compare(*program, action);
   add_mesh_loader(*program, action);
   add_agent(*program, action);
-  add_completion(*program, action);
-  add_manual(
+  command_line::add_completion(*program, action);
+  command_line::add_manual(
       *program, action,
       "Each node owns one region of the world and runs Bullet for the bodies in it; nodes find each other and talk "
       "over DDS, and hand bodies over before two of them can touch across a border.");
-  hide_empty_defaults(*program);
+  command_line::hide_empty_defaults(*program);
   return program;
 }
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "command_line/command_line.h"
 
 namespace aurasim::cli {
 
 /// Every command with its options. Parsing sets `action`, which must outlive the result.
-std::unique_ptr<CLI::App> make_program(Action& action);
+std::unique_ptr<CLI::App> make_program(command_line::Action& action);
 
 /// The command to type instead, if `words` (without the program's name) begin with a command that has moved to another
 /// program. Otherwise nothing.

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/leave.h"
-#include "cli/mesh_process.h"
-#include "cli/stop_signal.h"
-#include "cli/web_setup.h"
+#include "command_line/leave.h"
+#include "overseer/mesh_process.h"
+#include "host/stop_signal.h"
+#include "overseer/web_setup.h"
 #include "overseer/page_messages.h"
 #include "overseer/replay.h"
 
@@ -23,7 +23,7 @@ constexpr auto kReplayStatusPeriod = 250ms;
 
 struct ReplayArguments {
   std::string file;
-  WebArguments web;
+  overseer::WebArguments web;
 };
 
 std::string replay_message(const overseer::Replay& replay) {
@@ -60,14 +60,14 @@ void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
 }
 
 int replay(const ReplayArguments& arguments) {
-  const overseer::WebSettings settings = web_settings({}, arguments.web);
+  const overseer::WebSettings settings = overseer::web_settings({}, arguments.web);
   overseer::Replay replay(arguments.file);
   overseer::ShapeStore shapes(read_mesh_apart);
-  const auto web = open_web_server(settings, arguments.web, shapes);
+  const auto web = overseer::open_web_server(settings, arguments.web, shapes);
   web->publish(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
-  catch_stop_signals();
+  host::catch_stop_signals();
   auto next_status = Clock::now();
-  while (!stop_requested()) {
+  while (!host::stop_requested()) {
     serve_requests(*web, replay);
     overseer::Replay::Output due =
         replay.advance(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
@@ -79,12 +79,12 @@ int replay(const ReplayArguments& arguments) {
     }
     std::this_thread::sleep_for(kReplayRound);
   }
-  leave(0);
+  command_line::leave(0);
 }
 
 }  // namespace
 
-void add_replay(CLI::App& program, Action& action) {
+void add_replay(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("replay", "show a recording in the viewer");
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("FILE", arguments->file, "what --record has written")->required()->check(CLI::ExistingFile);

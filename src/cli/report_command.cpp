@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "cli/merged_report.h"
+#include "launch/merged_report.h"
 #include "config/launch.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct ReportArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   std::string folder;
 };
 
@@ -33,12 +33,12 @@ int merge(const ReportArguments& arguments) {
   facts.step_s = launch.step_s();
   facts.died = node::regions_without_end(arguments.folder, facts.regions);
   return static_cast<int>(
-      merge_and_print(arguments.folder, facts, facts.died.empty() ? ExitCode::kOk : ExitCode::kFailed));
+      launch::merge_and_print(arguments.folder, facts, facts.died.empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed));
 }
 
 }  // namespace
 
-void add_report(CLI::App& program, Action& action) {
+void add_report(CLI::App& program, command_line::Action& action) {
   CLI::App* command =
       program.add_subcommand("report", "merge what the nodes of separate hosts have recorded, as launch does");
   const auto arguments = std::make_shared<ReportArguments>();

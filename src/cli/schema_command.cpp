@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
+#include "command_line/exit_code.h"
 #include "config/key_page.h"
 #include "config/key_schema.h"
 
@@ -28,12 +28,12 @@ int print_keys(const SchemaArguments& arguments) {
   std::fputs(text.c_str(), stdout);
   if (!text.empty()) return 0;
   std::fprintf(stderr, "no section has \"%s\" in its title; all of them: aurasim schema\n", arguments.section.c_str());
-  return static_cast<int>(ExitCode::kBadConfig);
+  return static_cast<int>(command_line::ExitCode::kBadConfig);
 }
 
 }  // namespace
 
-void add_schema(CLI::App& program, Action& action) {
+void add_schema(CLI::App& program, command_line::Action& action) {
   CLI::App* command =
       program.add_subcommand("schema", "every key of launch and scene files: unit, range, default, meaning");
   const auto arguments = std::make_shared<SchemaArguments>();

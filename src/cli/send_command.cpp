@@ -8,18 +8,18 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "cli/client_mesh.h"
-#include "cli/command_client.h"
+#include "steering/client_mesh.h"
+#include "steering/command_client.h"
 #include "cli/commands.h"
-#include "cli/drain.h"
-#include "cli/exit_code.h"
-#include "cli/key_choice.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/run_steering.h"
-#include "cli/saved_parts.h"
-#include "cli/saved_world.h"
-#include "cli/silence.h"
+#include "steering/drain.h"
+#include "command_line/exit_code.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "steering/run_steering.h"
+#include "cut/saved_parts.h"
+#include "cut/saved_world.h"
+#include "setup/silence.h"
 #include "core/limits.h"
 
 namespace aurasim::cli {
@@ -39,7 +39,7 @@ const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
                                                {"stop", Kind::kStop}};
 
 struct SendArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   KeyArguments keys;
   std::string what;
   std::int64_t count = 1;
@@ -62,7 +62,7 @@ struct SendArguments {
 
 [[noreturn]] void fail(const std::string& why) {
   spdlog::error("{}", why);
-  leave(static_cast<int>(ExitCode::kFailed));
+  command_line::leave(static_cast<int>(command_line::ExitCode::kFailed));
 }
 
 core::Vec3 vector(const Numbers& v) { return v.size() == 3 ? core::Vec3(v[0], v[1], v[2]) : core::Vec3::Zero(); }
@@ -76,8 +76,8 @@ core::Pose pose(const SendArguments& a) {
   return pose;
 }
 
-core::ClientShape shape(const SendArguments& a, core::MeshUse use, CommandClient& client) {
-  if (!a.mesh_file.empty()) return bring_mesh(a.mesh_file, use, client);
+core::ClientShape shape(const SendArguments& a, core::MeshUse use, steering::CommandClient& client) {
+  if (!a.mesh_file.empty()) return steering::bring_mesh(a.mesh_file, use, client);
   if (a.size.size() == 3) return core::Box{vector(a.size) / 2};
   if (a.radius_m > 0 && a.height_m > 0) return core::Capsule{a.radius_m, a.height_m};
   if (a.radius_m > 0) return core::Sphere{a.radius_m};
@@ -94,11 +94,11 @@ core::StaticId static_named(const std::string& named, const core::Scene& scene) 
 }
 
 std::string sound_name(const std::string& name) {
-  if (const std::string why = refused_save_name(name); !why.empty()) fail(why);
+  if (const std::string why = cut::refused_save_name(name); !why.empty()) fail(why);
   return name;
 }
 
-core::Ask ask_for(const SendArguments& a, const core::Scene& scene, CommandClient& client) {
+core::Ask ask_for(const SendArguments& a, const core::Scene& scene, steering::CommandClient& client) {
   if (a.what == "spawn") {
     core::NewBody body;
     body.prototype = a.prototype;
@@ -138,13 +138,13 @@ nlohmann::json json_list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Joins the parts into one file, if all of them are on this host.
 nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::string& name) {
-  const PutTogether made = put_together(parts, name);
+  const cut::PutTogether made = cut::put_together(parts, name);
   if (!made.file.empty()) return {{"file", made.file}, {"bytes", made.bytes}};
   spdlog::warn("the parts are on their nodes' hosts: `aurasim cut merge {} PART...` puts them together", name);
   return {{"parts", parts}};
 }
 
-[[noreturn]] void print_delivery(const Delivery& delivery, const SendArguments& arguments) {
+[[noreturn]] void print_delivery(const steering::Delivery& delivery, const SendArguments& arguments) {
   if (!delivery.done) fail(delivery.text);
   nlohmann::json out = {{"step", delivery.at_step}};
   if (delivery.is_save && !delivery.files.empty()) out.update(whole_or_parts(delivery.files, arguments.save_name));
@@ -160,12 +160,12 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
     }
   }
   fmt::print("{}\n", out.dump());
-  leave(0);
+  command_line::leave(0);
 }
 
 [[noreturn]] void carry(const SendArguments& arguments, dds::Participant& participant, dds::ControlBus& control,
                         const config::Launch& launch) {
-  CommandClient client(participant, control, launch.agreement());
+  steering::CommandClient client(participant, control, launch.agreement());
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
   while (!client.all_listen() && in_time()) client.wait(20ms);
@@ -175,12 +175,12 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
   client.send(std::move(command));
   while (in_time()) {
     client.wait(20ms);
-    for (const Delivery& delivery : client.take()) print_delivery(delivery, arguments);
+    for (const steering::Delivery& delivery : client.take()) print_delivery(delivery, arguments);
   }
   fail("no answer");
 }
 
-[[noreturn]] void steer(const SendArguments& arguments, RunSteering& steering) {
+[[noreturn]] void steer(const SendArguments& arguments, steering::RunSteering& steering) {
   // A world that has gone back in a pause first computes up to the paused state again.
   if (arguments.what == "step" && !steering.wait_until_paused(kPatienceWithAPause))
     fail("steps are for a run that is paused");
@@ -189,12 +189,12 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
     fail(fmt::format("{} was sent, but not every node shows its effect", arguments.what));
   }
   fmt::print("{}: done at step {}\n", arguments.what, command.at_step);
-  leave(0);
+  command_line::leave(0);
 }
 
 /// Drains a region. Done when another process computes the region and the run goes on.
 [[noreturn]] void drain(const SendArguments& arguments, dds::ControlBus& control) {
-  Drain leaving(control, core::RegionId{arguments.region});
+  steering::Drain leaving(control, core::RegionId{arguments.region});
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   while (std::chrono::steady_clock::now() < deadline) {
     control.wait(20ms);
@@ -202,25 +202,25 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
     if (successor == nullptr) continue;
     fmt::print("drain: process {} has taken region {} over by step {}\n", successor->pid, arguments.region,
                successor->step);
-    leave(0);
+    command_line::leave(0);
   }
   fail("nobody has taken the region over: is there a spare, or a launcher?");
 }
 
 int send(const SendArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  const auto member = member_for(launch, arguments.keys.as, {security::Role::kOperator});
-  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
+  const auto member = setup::member_for(launch, arguments.keys.as, {security::Role::kOperator});
+  dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.agreement = launch.agreement(),
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size())});
-  RunSteering steering(launch, control);
+  steering::RunSteering steering(launch, control);
   if (!steering.find_run(5s)) {
     const bool differs = !control.strangers().empty();
     fail(fmt::format("no run of {} in DDS domain {}{}{}", arguments.files.file, launch.dds.domain,
                      differs ? ", but one that differs: give the same file and --set as its nodes have" : "",
-                     word_about_keys(participant.peers_by_keys(), launch)));
+                     setup::word_about_keys(participant.peers_by_keys(), launch)));
   }
-  leave_after([&]() -> ExitCode {
+  command_line::leave_after([&]() -> command_line::ExitCode {
     if (arguments.what == "drain") drain(arguments, control);
     if (kSteering.contains(arguments.what)) steer(arguments, steering);
     carry(arguments, participant, control, launch);
@@ -316,7 +316,7 @@ std::string example_of(const std::string& kind) {
 
 }  // namespace
 
-void add_send(CLI::App& program, Action& action) {
+void add_send(CLI::App& program, command_line::Action& action) {
   CLI::App* send_app = program.add_subcommand("send", "tell a run what to do");
   send_app->require_subcommand(1);
   send_app->footer("Example:\n  aurasim send spawn demo --radius 0.5 --p 0 0 10 --v 5 0 0");

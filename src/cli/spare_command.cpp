@@ -11,15 +11,15 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/key_choice.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/other_role.h"
-#include "cli/run_length.h"
-#include "cli/saved_world.h"
-#include "cli/silence.h"
-#include "cli/spawn.h"
-#include "cli/stop_signal.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "host/other_role.h"
+#include "setup/run_length.h"
+#include "cut/saved_world.h"
+#include "setup/silence.h"
+#include "host/spawn.h"
+#include "host/stop_signal.h"
 #include "dds/control.h"
 #include "dds/random_id.h"
 
@@ -32,13 +32,13 @@ constexpr auto kRound = 50ms;
 constexpr auto kStatusPeriod = 100ms;
 
 struct SpareArguments {
-  FileArguments files;
+  command_line::FileArguments files;
   KeyArguments keys;
   std::uint64_t run = 0;
   std::string report;
-  RunLength length;
-  LoadArguments load;
-  SaveArguments save;
+  setup::RunLength length;
+  cut::LoadArguments load;
+  cut::SaveArguments save;
   LauncherArguments launcher;  // passed on to the node that the spare becomes
 };
 
@@ -46,7 +46,7 @@ class Spare {
  public:
   Spare(const config::Launch& launch, const std::string& as, std::uint64_t run)
       : launch_(launch),
-        participant_(with_keys(dds_settings(launch), launch, member_for(launch, as, {security::Role::kSpare}))),
+        participant_(setup::with_keys(setup::dds_settings(launch), launch, setup::member_for(launch, as, {security::Role::kSpare}))),
         control_(participant_, {.region = dds::kNoRegion,
                                 .agreement = launch.agreement(),
                                 .run = run_if_known(run),
@@ -65,8 +65,8 @@ class Spare {
   /// Waits for the command to take a region over. Nothing if the run has ended, or this process was asked to stop.
   std::optional<dds::RunCommand> wait() {
     bool has_seen_it = false;
-    SilenceWord silence(launch_, participant_);
-    while (!stop_requested()) {
+    setup::SilenceWord silence(launch_, participant_);
+    while (!host::stop_requested()) {
       const auto& statuses = control_.statuses();
       const auto lives = [](const auto& entry) { return entry.second.is_live(); };
       const auto live = std::ranges::find_if(statuses, lives);
@@ -110,19 +110,19 @@ class Spare {
 
 int run_spare(const SpareArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
-  load_world(arguments.load, launch);  // a bad file is refused now, not at the take-over
+  cut::load_world(arguments.load, launch);  // a bad file is refused now, not at the take-over
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
-  catch_stop_signals();
+  host::catch_stop_signals();
   Spare spare(launch, arguments.keys.as, arguments.run);
   const std::optional<dds::RunCommand> take = spare.wait();
-  if (!take) leave(0);  // without deleting the participant, as nodes do
+  if (!take) command_line::leave(0);  // without deleting the participant, as nodes do
   spdlog::info("takes over region {}", core::value_of(take->region));
-  become(words_of_successor(own_words(), take->region, take->run));
+  host::become(host::words_of_successor(host::own_words(), take->region, take->run));
 }
 
 }  // namespace
 
-void add_spare(CLI::App& program, Action& action) {
+void add_spare(CLI::App& program, command_line::Action& action) {
   CLI::App* command =
       program.add_subcommand("spare", "wait for a run, and take over a region whose node dies or leaves");
   const auto arguments = std::make_shared<SpareArguments>();

@@ -1,12 +1,12 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/key_choice.h"
-#include "cli/launch_setup.h"
-#include "cli/leave.h"
-#include "cli/live_table.h"
-#include "cli/silence.h"
-#include "cli/stop_signal.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "command_line/leave.h"
+#include "launch/live_table.h"
+#include "setup/silence.h"
+#include "host/stop_signal.h"
 #include "dds/control.h"
 
 namespace aurasim::cli {
@@ -15,38 +15,38 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-int watch(const FileArguments& files, const KeyArguments& keys, double seconds) {
+int watch(const command_line::FileArguments& files, const KeyArguments& keys, double seconds) {
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   using security::Role;
   const auto member =
-      member_for(launch, keys.as, {Role::kViewer, Role::kOperator, Role::kRecorder, Role::kSpare, Role::kRegion});
-  dds::Participant participant(with_keys(dds_settings(launch), launch, member));
+      setup::member_for(launch, keys.as, {Role::kViewer, Role::kOperator, Role::kRecorder, Role::kSpare, Role::kRegion});
+  dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.agreement = launch.agreement(),
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size()),
                                         .only_watches = true});
-  TerminalView view;
-  catch_stop_signals();
+  launch::TerminalView view;
+  host::catch_stop_signals();
   const auto begin = Clock::now();
   const auto end = begin + std::chrono::duration<double>(seconds);
-  const auto nobody = [&] { return control.statuses().empty() && !stop_requested(); };
-  while (!stop_requested() && (seconds <= 0 || Clock::now() < end)) {
+  const auto nobody = [&] { return control.statuses().empty() && !host::stop_requested(); };
+  while (!host::stop_requested() && (seconds <= 0 || Clock::now() < end)) {
     const auto next = Clock::now() + (view.is_terminal() ? 250ms : 1000ms);
-    while (!stop_requested() && Clock::now() < next) control.wait(50ms);
-    const TerminalSize size = view.size();
-    if (!view.show(live_table(control.statuses(), size, std::chrono::steady_clock::now()) +
-                   listening_lines(control.statuses(), size)))
+    while (!host::stop_requested() && Clock::now() < next) control.wait(50ms);
+    const launch::TerminalSize size = view.size();
+    if (!view.show(launch::live_table(control.statuses(), size, std::chrono::steady_clock::now()) +
+                   launch::listening_lines(control.statuses(), size)))
       break;
-    if (nobody() && Clock::now() - begin > kPatienceWithSilence) break;
+    if (nobody() && Clock::now() - begin > setup::kPatienceWithSilence) break;
   }
-  if (nobody()) fail_for_want_of_a_run(files, launch, participant);
-  leave(0);
+  if (nobody()) setup::fail_for_want_of_a_run(files, launch, participant);
+  command_line::leave(0);
 }
 
 }  // namespace
 
-void add_top(CLI::App& program, Action& action) {
+void add_top(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("top", "watch the nodes of a run");
-  const auto files = std::make_shared<FileArguments>();
+  const auto files = std::make_shared<command_line::FileArguments>();
   const auto keys = std::make_shared<KeyArguments>();
   const auto seconds = std::make_shared<double>(0);
   files->add_to(*command);

@@ -1,4 +1,4 @@
-// Starts the agent's process (cli/agent/), asks it, and ends it.
+// Starts the agent's process (agent/), asks it, and ends it.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Messages between a client library and its agent (cli/agent/) over a pair of sockets: a head in JSON and a body of
+// Messages between a client library and its agent (agent/) over a pair of sockets: a head in JSON and a body of
 // bytes. The byte order is native, because both are always on one host.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Converts interests to the agent's form, and its answers to observations (cli/agent/observation_answer.cpp).
+// Converts interests to the agent's form, and its answers to observations (agent/observation_answer.cpp).
 #pragma once
 
 #include <aurasim/client.h>

@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/completion.h"
-#include "cli/manual.h"
-#include "cli/nearest_word.h"
-#include "cli/version.h"
+#include "command_line/completion.h"
+#include "command_line/manual.h"
+#include "command_line/nearest_word.h"
+#include "host/version.h"
 
 namespace aurasim::cli {
 namespace {
@@ -23,27 +23,27 @@ using Words = std::vector<std::string>;
 
 class Program : public ::testing::Test {
  protected:
-  std::string about(const Words& words) { return unknown_word(*program_, words).value_or(""); }
+  std::string about(const Words& words) { return command_line::unknown_word(*program_, words).value_or(""); }
 
   template <class Visit>
   void for_each(const CLI::App& app, const Visit& visit) {
-    for (const CLI::App* command : commands_of(app)) {
+    for (const CLI::App* command : command_line::commands_of(app)) {
       visit(*command);
       for_each(*command, visit);
     }
   }
 
-  Action action_;
+  command_line::Action action_;
   std::unique_ptr<CLI::App> program_ = make_program(action_);
 };
 
 TEST(NearestWord, CountsLettersAndSwaps) {
-  EXPECT_EQ(typing_distance("launch", "launch"), 0U);
-  EXPECT_EQ(typing_distance("lunch", "launch"), 1U);
-  EXPECT_EQ(typing_distance("alunch", "launch"), 1U);
-  EXPECT_EQ(typing_distance("", "top"), 3U);
-  EXPECT_EQ(nearest_word("lanuch", {"check", "launch", "top"}), "launch");
-  EXPECT_EQ(nearest_word("fly", {"check", "launch"}), std::nullopt);
+  EXPECT_EQ(command_line::typing_distance("launch", "launch"), 0U);
+  EXPECT_EQ(command_line::typing_distance("lunch", "launch"), 1U);
+  EXPECT_EQ(command_line::typing_distance("alunch", "launch"), 1U);
+  EXPECT_EQ(command_line::typing_distance("", "top"), 3U);
+  EXPECT_EQ(command_line::nearest_word("lanuch", {"check", "launch", "top"}), "launch");
+  EXPECT_EQ(command_line::nearest_word("fly", {"check", "launch"}), std::nullopt);
 }
 
 TEST_F(Program, AnUnknownCommandIsAnsweredWithTheNearest) {
@@ -89,12 +89,12 @@ TEST_F(Program, HelpShowsDefaultsButNotThoseThatMeanNone) {
 }
 
 TEST_F(Program, CompletionsAndManualNameEveryCommandAndOption) {
-  const std::string bash = bash_completion(*program_), zsh = zsh_completion(*program_),
-                    man = manual_page(*program_, "");
+  const std::string bash = command_line::bash_completion(*program_), zsh = command_line::zsh_completion(*program_),
+                    man = command_line::manual_page(*program_, "");
   const std::string read_man = std::regex_replace(man, std::regex(R"(\\-)"), "-");  // as a reader sees it
   for_each(*program_, [&](const CLI::App& command) {
     for (const std::string& text : {bash, zsh, read_man}) EXPECT_THAT(text, HasSubstr(command.get_name()));
-    for (const CLI::Option* option : options_of(command)) {
+    for (const CLI::Option* option : command_line::options_of(command)) {
       if (option->get_positional() || name_of(*option) == "--help") continue;
       EXPECT_THAT(bash, HasSubstr(name_of(*option)));
       EXPECT_THAT(zsh, HasSubstr(name_of(*option)));
@@ -106,7 +106,7 @@ TEST_F(Program, CompletionsAndManualNameEveryCommandAndOption) {
 }
 
 TEST(Version, NamesCommitBuildAndCompiler) {
-  EXPECT_THAT(version_text(), AllOf(HasSubstr("aurasim 0."), HasSubstr(commit()), HasSubstr("GCC 1")));
+  EXPECT_THAT(host::version_text(), AllOf(HasSubstr("aurasim 0."), HasSubstr(host::commit()), HasSubstr("GCC 1")));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/launch_setup.h"
-#include "cli/scene_warnings.h"
+#include "setup/launch_setup.h"
+#include "setup/scene_warnings.h"
 #include "config/workspace.h"
 #include "node/node.h"
 #include "transport/memory_transport.h"
@@ -111,7 +111,7 @@ class SenselessValues : public testing::Test {
   static std::string fault_of(const config::Launch& launch) {
     constexpr core::Step kStates = 3;
     transport::MemoryNetwork network(std::vector<std::vector<core::RegionId>>(1), {}, 1);
-    node::NodeSetup setup = node_setup(launch, core::RegionId{0}, 0);
+    node::NodeSetup setup = setup::node_setup(launch, core::RegionId{0}, 0);
     node::Node node(setup, launch.scene, launch.regions, network.endpoint(core::RegionId{0}));
     std::string fault;
     const auto look = [&] {
@@ -151,7 +151,7 @@ class SenselessValues : public testing::Test {
         try {
           const config::Launch read = config::read_launch(file);
           const std::string fault = fault_of(read);
-          EXPECT_TRUE(fault.empty() || !scene_warnings(read).empty()) << what << ": " << fault;
+          EXPECT_TRUE(fault.empty() || !setup::scene_warnings(read).empty()) << what << ": " << fault;
           ++sound;
         } catch (const config::BadConfig& bad) {
           ++refused;

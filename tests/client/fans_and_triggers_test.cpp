@@ -1,5 +1,5 @@
 // Sensors that look at a state.
-#include "cli/agent/fans_and_triggers.h"
+#include "agent/fans_and_triggers.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace aurasim::cli::agent {
+namespace aurasim::agent {
 namespace {
 
 using core::BodyId;
@@ -74,4 +74,4 @@ TEST(Surroundings, FollowTheirCarrierNowAndThen) {
 }
 
 }  // namespace
-}  // namespace aurasim::cli::agent
+}  // namespace aurasim::agent

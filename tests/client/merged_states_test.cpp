@@ -1,10 +1,10 @@
 // States of a whole world, from what its regions say of them.
-#include "cli/agent/merged_states.h"
+#include "agent/merged_states.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace aurasim::cli::agent {
+namespace aurasim::agent {
 namespace {
 
 using core::BodyId;
@@ -252,4 +252,4 @@ TEST_F(Merged, TheHighestEpochOwns) {
 }
 
 }  // namespace
-}  // namespace aurasim::cli::agent
+}  // namespace aurasim::agent

@@ -9,13 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/agent/merged_states.h"
+#include "agent/merged_states.h"
 #include "cluster/cluster_sim.h"
 #include "cluster/scenes.h"
 #include "node/observation_feed.h"
 #include "physics/state_hash.h"
 
-namespace aurasim::cli::agent {
+namespace aurasim::agent {
 namespace {
 
 using core::RegionId;
@@ -208,4 +208,4 @@ TEST_P(Observation, AfterRedosIsThatOfOneNode) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Observation, testing::Range(1, kLastSeed + 1));
 
 }  // namespace
-}  // namespace aurasim::cli::agent
+}  // namespace aurasim::agent

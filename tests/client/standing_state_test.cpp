@@ -1,10 +1,10 @@
 // One state of a whole world from the key frames of its regions.
-#include "cli/agent/standing_state.h"
+#include "agent/standing_state.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace aurasim::cli::agent {
+namespace aurasim::agent {
 namespace {
 
 using core::BodyId;
@@ -129,4 +129,4 @@ TEST(StandingState, WhatARegionHadThatHasDiedSinceIsNotOfThisState) {
 }
 
 }  // namespace
-}  // namespace aurasim::cli::agent
+}  // namespace aurasim::agent

@@ -1,5 +1,5 @@
 // What becomes of a client's command, where replies are lost.
-#include "cli/command_client.h"
+#include "steering/command_client.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,8 +88,8 @@ class SaveInAPause : public ::testing::Test {
   PausedNode lead{test::own_domain(), 0}, other{test::own_domain(), 1};
   dds::Participant at_client{settings_for(test::own_domain())};
   dds::ControlBus control{at_client, {.agreement = kAgreement}};
-  CommandClient client{at_client, control, kAgreement};
-  std::vector<Delivery> ended;
+  steering::CommandClient client{at_client, control, kAgreement};
+  std::vector<steering::Delivery> ended;
 };
 
 /// The lead says that it has taken a save, and of which state, and right after it that its part is saved. The first

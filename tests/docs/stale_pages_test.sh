@@ -57,7 +57,7 @@ commit_to src/import/model.cpp
 commit_to README.md
 expect "WhatIsNotMeasuredMakesNoPageStale"
 
-commit_to src/cli/node_process.cpp
+commit_to src/process/node_process.cpp
 of_processes=(docs/results.md#{control_cost,recovery,same_bits,saved_worlds,security_cost})
 expect "AFileThatFiveSectionsMeasureMakesThoseStale" "${of_processes[@]}"
 stamp docs/results.md#control_cost

@@ -12,7 +12,7 @@ class ImportCommand : public ::testing::Test {
  protected:
   /// What the command returns; 2 where main() would return it for wrong input.
   int run(const std::string& words) {
-    cli::Action action;
+    command_line::Action action;
     const auto program = cli::make_import_program(action);
     try {
       program->parse("import " + words, false);

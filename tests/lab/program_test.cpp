@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/completion.h"
-#include "cli/manual.h"
+#include "command_line/completion.h"
+#include "command_line/manual.h"
 
 namespace aurasim::lab::commands {
 namespace {
@@ -19,19 +19,19 @@ class LabProgram : public ::testing::Test {
  protected:
   template <class Visit>
   void for_each(const CLI::App& app, const Visit& visit) {
-    for (const CLI::App* command : cli::commands_of(app)) {
+    for (const CLI::App* command : command_line::commands_of(app)) {
       visit(*command);
       for_each(*command, visit);
     }
   }
 
-  cli::Action action_;
+  command_line::Action action_;
   std::unique_ptr<CLI::App> program_ = make_program(action_);
 };
 
 TEST_F(LabProgram, HasEveryExperiment) {
   std::vector<std::string> names;
-  for (const CLI::App* command : cli::commands_of(*program_->get_subcommand("experiment"))) {
+  for (const CLI::App* command : command_line::commands_of(*program_->get_subcommand("experiment"))) {
     names.push_back(command->get_name());
   }
   EXPECT_THAT(names, ::testing::ElementsAre("collision", "loss", "stability", "pareto", "scalability", "bandwidth",
@@ -39,7 +39,7 @@ TEST_F(LabProgram, HasEveryExperiment) {
 }
 
 TEST_F(LabProgram, AnUnknownExperimentIsAnsweredWithTheNearest) {
-  EXPECT_THAT(cli::unknown_word(*program_, {"experiment", "colision"}).value_or(""),
+  EXPECT_THAT(command_line::unknown_word(*program_, {"experiment", "colision"}).value_or(""),
               AllOf(HasSubstr("aurasim-lab experiment: "), HasSubstr("did you mean 'collision'?")));
 }
 
@@ -51,12 +51,12 @@ TEST_F(LabProgram, EveryCommandHasAnExampleAndSaysWhatItIs) {
 }
 
 TEST_F(LabProgram, CompletionsAndManualAreItsOwn) {
-  EXPECT_THAT(cli::bash_completion(*program_),
+  EXPECT_THAT(command_line::bash_completion(*program_),
               AllOf(HasSubstr("'aurasim-lab experiment collision --sync') words='free_running bounded deterministic'"),
                     HasSubstr("complete -o default -F _aurasim_lab aurasim-lab\n")));
-  EXPECT_THAT(cli::zsh_completion(*program_), HasSubstr("#compdef aurasim-lab\n"));
+  EXPECT_THAT(command_line::zsh_completion(*program_), HasSubstr("#compdef aurasim-lab\n"));
   EXPECT_THAT(
-      cli::manual_page(*program_, "About it."),
+      command_line::manual_page(*program_, "About it."),
       AllOf(HasSubstr(".TH AURASIM\\-LAB 1\n"), HasSubstr("aurasim\\-lab experiment scenes"), HasSubstr("About it.")));
 }
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/launch_setup.h"
+#include "setup/launch_setup.h"
 #include "config/launch.h"
 #include "core/fnv1a.h"
 #include "lab/scenes/interference.h"
@@ -34,7 +34,7 @@ class Scenes : public testing::Test {
     TrialRules rules;
     rules.steps = steps;
     rules.setup_of = [](const config::Launch& launch, core::RegionId region) {
-      return cli::node_setup(launch, region, 0);
+      return setup::node_setup(launch, region, 0);
     };
     return rules;
   }

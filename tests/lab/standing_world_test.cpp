@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/launch_setup.h"
+#include "setup/launch_setup.h"
 #include "config/launch.h"
 #include "core/world_cut.h"
 #include "lab/launch_rules.h"
@@ -20,7 +20,7 @@ using core::Step;
 const std::atomic<bool> kGoOn = false;
 
 node::NodeSetup setup_of(const config::Launch& launch, core::RegionId region) {
-  return cli::node_setup(launch, region, 0);
+  return setup::node_setup(launch, region, 0);
 }
 
 config::Launch launch_of(const char* name, const std::string& sync = "deterministic") {

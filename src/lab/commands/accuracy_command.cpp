@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/exit_code.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/commands/target_list.h"
@@ -26,12 +26,12 @@ class Watch {
   bool operator()(double share) {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     bar_.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
-    return !cli::stop_requested();
+    return !host::stop_requested();
   }
   int end(const std::vector<lab::Target>& targets) const {
     bar_.end();
     print(targets);
-    return static_cast<int>(all_met(targets) && !cli::stop_requested() ? cli::ExitCode::kOk : cli::ExitCode::kFailed);
+    return static_cast<int>(all_met(targets) && !host::stop_requested() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
   }
 
  private:
@@ -49,14 +49,14 @@ std::string problem_with_case(const std::string& name) {
 }
 
 int run_stability(const lab::StabilityPlan& plan, const std::string& out) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   Watch watch;
   const auto rows = lab::run_stability(plan, [&](double share, const std::string&) { return watch(share); });
   return watch.end(lab::write_stability(rows, out));
 }
 
 int run_pareto(const lab::ParetoPlan& plan, const std::string& out) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   Watch watch;
   const auto points = lab::run_pareto(plan, [&](double share) { return watch(share); });
   return watch.end(lab::write_pareto(points, plan, out));
@@ -64,7 +64,7 @@ int run_pareto(const lab::ParetoPlan& plan, const std::string& out) {
 
 }  // namespace
 
-void add_stability(CLI::App& experiments, cli::Action& action) {
+void add_stability(CLI::App& experiments, command_line::Action& action) {
   CLI::App* command = experiments.add_subcommand("stability", "hard cases against closed forms, also on a border");
   const auto plan = std::make_shared<lab::StabilityPlan>();
   const auto out = std::make_shared<std::string>();
@@ -78,7 +78,7 @@ void add_stability(CLI::App& experiments, cli::Action& action) {
   command->callback([plan, out, &action] { action = [plan, out] { return run_stability(*plan, *out); }; });
 }
 
-void add_pareto(CLI::App& experiments, cli::Action& action) {
+void add_pareto(CLI::App& experiments, command_line::Action& action) {
   CLI::App* command =
       experiments.add_subcommand("pareto", "error against CPU time: solver, iterations, substeps, nodes");
   const auto plan = std::make_shared<lab::ParetoPlan>();

@@ -4,21 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "command_line/command_line.h"
 
 namespace aurasim::lab::commands {
 
 /// The command `experiment` itself, with all that are below it.
-void add_experiment(CLI::App& program, cli::Action& action);
+void add_experiment(CLI::App& program, command_line::Action& action);
 
-void add_stability(CLI::App& experiment, cli::Action& action);
-void add_pareto(CLI::App& experiment, cli::Action& action);
-void add_scalability(CLI::App& experiment, cli::Action& action);
-void add_bandwidth(CLI::App& experiment, cli::Action& action);
-void add_scenes(CLI::App& experiment, cli::Action& action);
-void add_endurance(CLI::App& experiment, cli::Action& action);
-void add_speed(CLI::App& experiment, cli::Action& action);
-void add_speed_errors(CLI::App& experiment, cli::Action& action);
+void add_stability(CLI::App& experiment, command_line::Action& action);
+void add_pareto(CLI::App& experiment, command_line::Action& action);
+void add_scalability(CLI::App& experiment, command_line::Action& action);
+void add_bandwidth(CLI::App& experiment, command_line::Action& action);
+void add_scenes(CLI::App& experiment, command_line::Action& action);
+void add_endurance(CLI::App& experiment, command_line::Action& action);
+void add_speed(CLI::App& experiment, command_line::Action& action);
+void add_speed_errors(CLI::App& experiment, command_line::Action& action);
 
 /// Allowed values of options that choose a solver.
 std::vector<std::string> solver_names();

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/exit_code.h"
-#include "cli/launch_setup.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "setup/launch_setup.h"
+#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/scenes/endurance.h"
 
@@ -33,32 +33,32 @@ void print_line(const lab::Endured& so_far, std::chrono::steady_clock::time_poin
   std::fflush(stdout);
 }
 
-int run_endurance(const cli::FileArguments& files, lab::EndurancePlan plan) {
-  cli::FileArguments wanted = files;
+int run_endurance(const command_line::FileArguments& files, lab::EndurancePlan plan) {
+  command_line::FileArguments wanted = files;
   wanted.overrides.emplace_back("time.sync=deterministic");
   const config::Launch launch = config::read_launch(wanted.file, wanted.overrides);
-  plan.setup_of = [](const config::Launch& of, core::RegionId region) { return cli::node_setup(of, region, 0); };
-  cli::catch_stop_signals();
+  plan.setup_of = [](const config::Launch& of, core::RegionId region) { return setup::node_setup(of, region, 0); };
+  host::catch_stop_signals();
   std::atomic<bool> stop = false;
   const std::jthread watch([&stop](const std::stop_token& done) {
     for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
-      if (cli::stop_requested()) stop = true;
+      if (host::stop_requested()) stop = true;
     }
   });
   const auto begin = std::chrono::steady_clock::now();
   const lab::Endured end = lab::endure(
       launch, plan, [begin](const lab::Endured& so_far) { print_line(so_far, begin); }, stop);
-  return static_cast<int>(end.failure.empty() ? cli::ExitCode::kOk : cli::ExitCode::kFailed);
+  return static_cast<int>(end.failure.empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
 }
 
 }  // namespace
 
-void add_endurance(CLI::App& experiment, cli::Action& action) {
+void add_endurance(CLI::App& experiment, command_line::Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "endurance",
       "hours of a run in virtual time in which nodes die and worlds are saved and loaded, state by state "
       "beside one node; a line of JSON every so often");
-  const auto files = std::make_shared<cli::FileArguments>();
+  const auto files = std::make_shared<command_line::FileArguments>();
   const auto plan = std::make_shared<lab::EndurancePlan>();
   files->add_to(*command);
   command->add_option("--hours", plan->hours, "simulated")->check(CLI::Range(1e-3, 1e6));

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/exit_code.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "host/stop_signal.h"
 #include "config/shipped_files.h"
 #include "lab/aura_radius.h"
 #include "lab/collision.h"
@@ -49,7 +49,7 @@ void choose(const std::vector<std::string>& names, Named&& named, std::vector<Va
 
 /// The flag follows the signal, which the threads of the laboratory cannot ask for themselves.
 bool run_to_the_end(const lab::Campaign& campaign, const TrialArguments& arguments) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   std::atomic<bool> stop = false;
   ProgressBar bar;
   lab::RealLaboratory over_dds(arguments.domain, config::shipped_profiles());
@@ -59,7 +59,7 @@ bool run_to_the_end(const lab::Campaign& campaign, const TrialArguments& argumen
       campaign, arguments.out, run, arguments.in_virtual_time ? arguments.threads : 1,
       [&](const lab::Progress& progress) {
         bar.show(progress);
-        if (cli::stop_requested()) stop = true;
+        if (host::stop_requested()) stop = true;
       },
       stop);
   bar.end();
@@ -74,15 +74,15 @@ int run_trials(TrialArguments arguments, bool loss) {
   campaign.over_dds = !arguments.in_virtual_time;
   if (!run_to_the_end(campaign, arguments)) {
     spdlog::warn("stopped; the same command goes on from here");
-    return static_cast<int>(cli::ExitCode::kFailed);
+    return static_cast<int>(command_line::ExitCode::kFailed);
   }
   if (!loss) lab::write_aura_radius(arguments.out, arguments.plan.substeps);
   const std::vector<lab::Target> targets = lab::summarise(campaign, arguments.out);
   print(targets);
-  return static_cast<int>(all_met(targets) ? cli::ExitCode::kOk : cli::ExitCode::kFailed);
+  return static_cast<int>(all_met(targets) ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
 }
 
-void add_trials(CLI::App& parent, cli::Action& action, const std::string& name, const std::string& about, bool loss) {
+void add_trials(CLI::App& parent, command_line::Action& action, const std::string& name, const std::string& about, bool loss) {
   CLI::App* command = parent.add_subcommand(name, about);
   const auto a = std::make_shared<TrialArguments>();
   a->pairs = loss ? std::vector<std::string>{"head_on"}
@@ -122,7 +122,7 @@ void add_trials(CLI::App& parent, cli::Action& action, const std::string& name, 
 
 }  // namespace
 
-void add_experiment(CLI::App& program, cli::Action& action) {
+void add_experiment(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("experiment", "the laboratory: the thesis's experiments");
   command->require_subcommand(1);
   command->footer("Example:\n  aurasim-lab experiment collision --virtual --repeats 20 --out out");

@@ -6,7 +6,7 @@
 using namespace aurasim;
 
 int main(int argc, char** argv) {
-  cli::Action action;
+  command_line::Action action;
   const std::unique_ptr<CLI::App> program = lab::commands::make_program(action);
-  return cli::run_program(*program, action, argc, argv);
+  return command_line::run_program(*program, action, argc, argv);
 }

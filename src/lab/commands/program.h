@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "cli/command_line.h"
+#include "command_line/command_line.h"
 
 namespace aurasim::lab::commands {
 
 /// Every command with its options. Parsing sets `action`, which must outlive the result.
-std::unique_ptr<CLI::App> make_program(cli::Action& action);
+std::unique_ptr<CLI::App> make_program(command_line::Action& action);
 
 }  // namespace aurasim::lab::commands

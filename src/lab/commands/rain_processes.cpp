@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-#include "cli/launch_setup.h"
-#include "cli/spawn.h"
+#include "setup/launch_setup.h"
+#include "host/spawn.h"
 #include "lab/scale/rain_run.h"
 #include "node/report_rows.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 /// Runs a program and waits for its end. True if it succeeded.
 bool run_program(std::vector<std::string> words) {
-  const pid_t pid = cli::spawn(std::move(words));
+  const pid_t pid = host::spawn(std::move(words));
   int status = 0;
   while (::waitpid(pid, &status, 0) != pid) {
   }
@@ -70,7 +70,7 @@ std::optional<std::vector<lab::Window>> run_processes(const lab::Rain& rain, con
   overrides.insert(overrides.end(), more.begin(), more.end());
   const config::Launch launch = config::read_launch(launch_file, overrides);
   std::filesystem::create_directories(report);
-  std::vector<std::string> words = {cli::program_beside("aurasim", "`scripts/build.sh release` builds it.").string(),
+  std::vector<std::string> words = {setup::program_beside("aurasim", "`scripts/build.sh release` builds it.").string(),
                                     "launch",
                                     launch_file.string(),
                                     "--headless",

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/exit_code.h"
-#include "cli/launch_setup.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "setup/launch_setup.h"
+#include "host/stop_signal.h"
 #include "config/shipped_files.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
@@ -34,7 +34,7 @@ lab::RainPlace place_of(const RainArguments& arguments) {
   lab::RainPlace place;
   place.launch_file = arguments.launch_file;
   place.setup_of = [](const config::Launch& launch, core::RegionId region) {
-    return cli::node_setup(launch, region, 0);
+    return setup::node_setup(launch, region, 0);
   };
   return place;
 }
@@ -53,14 +53,14 @@ void print_speed_ups(const nlohmann::json& speed_ups) {
 
 /// Runs the rains. False when the user has stopped it.
 bool run(const std::vector<lab::Rain>& rains, const RainArguments& arguments) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   std::atomic<bool> stop = false;
   ProgressBar bar;
   const bool finished = lab::run_rains(
       rains, place_of(arguments), arguments.out, arguments.threads,
       [&](const lab::Progress& progress) {
         bar.show(progress);
-        if (cli::stop_requested()) stop = true;
+        if (host::stop_requested()) stop = true;
       },
       stop);
   bar.end();
@@ -82,7 +82,7 @@ bool run_as_processes(const std::vector<lab::Rain>& rains, const RainArguments& 
   return true;
 }
 
-int exit_code(bool finished) { return static_cast<int>(finished ? cli::ExitCode::kOk : cli::ExitCode::kFailed); }
+int exit_code(bool finished) { return static_cast<int>(finished ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed); }
 
 int run_scalability(const RainArguments& arguments) {
   const std::vector<lab::Rain> rains = lab::rains_of(arguments.plan);
@@ -125,7 +125,7 @@ void add_options(CLI::App& command, const std::shared_ptr<RainArguments>& a, con
 
 }  // namespace
 
-void add_scalability(CLI::App& experiment, cli::Action& action) {
+void add_scalability(CLI::App& experiment, command_line::Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "scalability", "rain on 1 to 10 nodes: CPU time of each node and step, in virtual time (thesis 5.1)");
   const auto a = std::make_shared<RainArguments>();
@@ -137,7 +137,7 @@ void add_scalability(CLI::App& experiment, cli::Action& action) {
   command->callback([a, &action] { action = [a] { return run_scalability(*a); }; });
 }
 
-void add_bandwidth(CLI::App& experiment, cli::Action& action) {
+void add_bandwidth(CLI::App& experiment, command_line::Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "bandwidth", "bytes of auras and hand-offs by speed and aura, and what narrow links do, in virtual time");
   const auto a = std::make_shared<RainArguments>();

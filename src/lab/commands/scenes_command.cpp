@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/exit_code.h"
-#include "cli/launch_setup.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "setup/launch_setup.h"
+#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/conditions.h"
@@ -47,7 +47,7 @@ lab::ScenesPlan plan_of(const ScenesArguments& arguments) {
   plan.rules.bad_network = arguments.network != "good";
   plan.rules.partitions = arguments.network == "cut";
   plan.rules.setup_of = [](const config::Launch& launch, core::RegionId region) {
-    return cli::node_setup(launch, region, 0);
+    return setup::node_setup(launch, region, 0);
   };
   if (arguments.no_shrink) plan.shrink_s = 0;
   return plan;
@@ -69,15 +69,15 @@ int run_case(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
   fmt::print("{} redos, {} states computed again\n", o.redos, o.computed_again);
   if (!o.first_fault.empty()) fmt::print("{}\n", o.first_fault);
   fmt::print("{:.2f} s of CPU on regions, {:.2f} s on one node\n", o.regions_s, o.one_s);
-  return static_cast<int>(o.has_failed() ? cli::ExitCode::kFailed : cli::ExitCode::kOk);
+  return static_cast<int>(o.has_failed() ? command_line::ExitCode::kFailed : command_line::ExitCode::kOk);
 }
 
 int run_seeds(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   std::atomic<bool> stop = false;
   const std::jthread watch([&stop](const std::stop_token& done) {  // a world may be made smaller for a minute
     for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
-      if (cli::stop_requested()) stop = true;
+      if (host::stop_requested()) stop = true;
     }
   });
   ProgressBar bar;
@@ -90,7 +90,7 @@ int run_seeds(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
              sums["unflagged"].get<int>());
   if (!sums["failed_seeds"].empty()) fmt::print("failed: {}\n", sums["failed_seeds"].dump());
   if (!finished) spdlog::warn("stopped; the same command goes on from here");
-  return static_cast<int>(finished && sums["failed_seeds"].empty() ? cli::ExitCode::kOk : cli::ExitCode::kFailed);
+  return static_cast<int>(finished && sums["failed_seeds"].empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
 }
 
 int run_scenes_command(const ScenesArguments& arguments) {
@@ -124,7 +124,7 @@ void add_rules(CLI::App& command, const std::shared_ptr<ScenesArguments>& a) {
 
 }  // namespace
 
-void add_scenes(CLI::App& experiment, cli::Action& action) {
+void add_scenes(CLI::App& experiment, command_line::Action& action) {
   CLI::App* command = experiment.add_subcommand(
       "scenes", "random worlds, each on its regions and on one node: every state must have the same bits");
   const auto a = std::make_shared<ScenesArguments>();

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/exit_code.h"
-#include "cli/stop_signal.h"
+#include "command_line/exit_code.h"
+#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/speed/speed.h"
@@ -24,13 +24,13 @@ void print_speed(const lab::SpeedRun& run) {
 }
 
 int run_speed(const lab::SpeedPlan& plan, const std::string& out) {
-  cli::catch_stop_signals();
+  host::catch_stop_signals();
   const auto begin = std::chrono::steady_clock::now();
   ProgressBar bar;
   const auto runs = lab::run_speed(plan, out, [&](double share) {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     bar.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
-    return !cli::stop_requested();
+    return !host::stop_requested();
   });
   bar.end();
   if (!runs.empty()) {
@@ -38,12 +38,12 @@ int run_speed(const lab::SpeedPlan& plan, const std::string& out) {
                "at the end", "body-steps/s");
   }
   for (const lab::SpeedRun& run : runs) print_speed(run);
-  return static_cast<int>(cli::stop_requested() ? cli::ExitCode::kFailed : cli::ExitCode::kOk);
+  return static_cast<int>(host::stop_requested() ? command_line::ExitCode::kFailed : command_line::ExitCode::kOk);
 }
 
 }  // namespace
 
-void add_speed(CLI::App& experiments, cli::Action& action) {
+void add_speed(CLI::App& experiments, command_line::Action& action) {
   CLI::App* command = experiments.add_subcommand("speed", "CPU time of a step in scenes that other engines run, too");
   const auto plan = std::make_shared<lab::SpeedPlan>();
   const auto out = std::make_shared<std::string>();
@@ -69,7 +69,7 @@ void add_speed(CLI::App& experiments, cli::Action& action) {
   });
 }
 
-void add_speed_errors(CLI::App& experiments, cli::Action& action) {
+void add_speed_errors(CLI::App& experiments, command_line::Action& action) {
   CLI::App* command =
       experiments.add_subcommand("speed-errors", "what is wrong with the states that runs of any engine have left");
   const auto out = std::make_shared<std::string>();
@@ -78,7 +78,7 @@ void add_speed_errors(CLI::App& experiments, cli::Action& action) {
   command->callback([out, &action] {
     action = [out] {
       lab::write_speed_errors(*out);
-      return static_cast<int>(cli::ExitCode::kOk);
+      return static_cast<int>(command_line::ExitCode::kOk);
     };
   });
 }

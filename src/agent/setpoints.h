@@ -1,0 +1,13 @@
+// Reads clients' setpoints for bodies, joints and statics from their messages.
+#pragma once
+
+#include "client/message.h"
+#include "config/launch.h"
+#include "core/setpoint.h"
+
+namespace aurasim::agent {
+
+/// The setpoints of a message. Throws Problem (kRefused) with the error; then no setpoint takes effect.
+core::Setpoints setpoints_of(const client::Message& message, const config::Launch& launch);
+
+}  // namespace aurasim::agent

@@ -1,0 +1,128 @@
+#include "cut/saved_world.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "host/version.h"
+#include "physics/region_world.h"
+
+namespace aurasim::cut {
+namespace {
+
+/// Whole worlds of this run, newest first.
+std::vector<cut::StoredWorld> worlds_in(const std::filesystem::path& folder, const SavedBy& by) {
+  std::vector<cut::StoredWorld> worlds = cut::PartStore(folder).list().whole;
+  std::erase_if(worlds, [&](const cut::StoredWorld& world) {
+    return world.header.identity.world != by.world || std::ranges::find(by.runs, world.header.run) == by.runs.end();
+  });
+  return worlds;
+}
+
+bool can_be_read(const cut::StoredWorld& world) {
+  try {
+    cut::PartStore::read(world);
+    return true;
+  } catch (const cut::BadCut&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+cut::Identity identity_of(const config::Launch& launch) {
+  return {.program = host::version_and_commit(),
+          .launch = launch.file.filename().string(),
+          .scene = launch.scene.name,
+          .physics = fmt::format("{}, {} substeps, {:g} steps/s", launch.physics.solver, launch.time.substeps,
+                                 launch.time.step_hz),
+          .world = launch.world_identity()};
+}
+
+CLI::Option* LoadArguments::add_to(CLI::App& command) {
+  CLI::Option* load = command.add_option("--load", file, "a saved world to go on from (aurasim send save)");
+  command.add_flag("--other-build", other_build, "also load a world that another build has saved");
+  return load;
+}
+
+void SaveArguments::add_to(CLI::App& command) {
+  command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds")
+      ->each([this](const std::string&) { folder_is_given = true; });
+  command.add_option("--save-every", every_s, "save the world so often, in simulated seconds. 0: only when asked to")
+      ->check(CLI::Range(0.0, 1e9));
+  command.add_option("--save-keep", keep, "with --save-every: so many of them stay, the newest")
+      ->check(CLI::Range(1, 1'000'000));
+}
+
+std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch) {
+  if (arguments.file.empty()) return nullptr;
+  try {
+    cut::SavedWorld world = cut::read_world(arguments.file);
+    const std::string differs =
+        cut::check_identity(arguments.file, world.identity, identity_of(launch), arguments.other_build);
+    if (!differs.empty()) spdlog::warn("{}: {}: bits may differ", arguments.file, differs);
+    return std::make_shared<const core::WorldCut>(std::move(world.cut));
+  } catch (const cut::BadCut& bad) {
+    throw config::BadConfig({bad.what()});
+  }
+}
+
+const char* problem_with_save_name(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
+  };
+  if (name.empty() || name.size() > 100) return "a saved world's name has 1 to 100 letters";
+  if (!std::ranges::all_of(name, fits) || name.front() == '.' || name.front() == '-') {
+    return "a saved world's name has letters, digits, '.', '_' and '-', and does not begin with '.' or '-'";
+  }
+  return nullptr;
+}
+
+std::string refused_save_name(const std::string& name) {
+  const char* const problem = problem_with_save_name(name);
+  if (problem == nullptr) return {};
+  return fmt::format("{}: found '{}'. It is a file in the nodes' folder of saved worlds (--saves)", problem, name);
+}
+
+std::optional<cut::StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders,
+                                                   const SavedBy& by) {
+  std::vector<cut::StoredWorld> worlds;
+  for (const std::filesystem::path& folder : folders) {
+    for (cut::StoredWorld& world : worlds_in(folder, by)) worlds.push_back(std::move(world));
+  }
+  std::ranges::stable_sort(worlds, cut::is_newer);
+  const auto newest = std::ranges::find_if(worlds, can_be_read);
+  return newest == worlds.end() ? std::nullopt : std::optional(std::move(*newest));
+}
+
+std::string say_newest_saved(const std::vector<std::filesystem::path>& folders, const SavedBy& by) {
+  const std::optional<cut::StoredWorld> saved = newest_saved_world(folders, by);
+  if (!saved) return "No whole world of this run is saved on this host.";
+  return fmt::format("The newest saved world of this run is of state {}: `{} --load {}` goes on from it.",
+                     saved->header.cut.step, by.command, saved->file.string());
+}
+
+std::string world_is_lost(const std::vector<std::filesystem::path>& folders, const SavedBy& by) {
+  return "nobody knows the world any more: all nodes have died. " + say_newest_saved(folders, by);
+}
+
+SavedState newest_saved_until(const std::filesystem::path& folder, const SavedBy& by, core::Step latest) {
+  std::vector<cut::StoredWorld> worlds = worlds_in(folder, by);
+  std::erase_if(worlds, [latest](const cut::StoredWorld& world) { return world.header.cut.step > latest; });
+  std::ranges::stable_sort(worlds, std::ranges::greater(),
+                           [](const cut::StoredWorld& world) { return world.header.cut.step; });
+  for (const cut::StoredWorld& world : worlds) {
+    std::string name = world.file.filename().string();
+    if (problem_with_save_name(name) == nullptr && can_be_read(world)) {
+      return {world.header.cut.step, std::move(name)};
+    }
+  }
+  return {};
+}
+
+}  // namespace aurasim::cut

@@ -1,0 +1,40 @@
+#include "launch/closing_line.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace aurasim::launch {
+
+std::string closing_line(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t regions, bool has_begun,
+                         double step_s) {
+  if (!has_begun) return "the run has not begun\n";
+  std::uint64_t bodies = 0, hand_offs = 0, late = 0, missed = 0;
+  core::Step step = 0;
+  std::vector<std::uint32_t> unknown;
+  for (std::uint32_t r = 0; r < regions; ++r) {
+    const auto seen = statuses.find(core::RegionId{r});
+    if (seen == statuses.end() || seen->second.status.state != dds::NodeState::kFinished) {
+      unknown.push_back(r);
+      continue;
+    }
+    const dds::Status& status = seen->second.status;
+    step = std::max(step, status.step);
+    bodies += status.bodies;
+    hand_offs += status.hand_offs_out;
+    late += status.late_collisions;
+    missed += status.missed_collisions;
+  }
+  if (unknown.size() == regions) {
+    return fmt::format("the run has broken off: no node has said that it came to its end (--report DIR records it)\n");
+  }
+  const std::string lacking =
+      unknown.empty() ? ""
+                      : fmt::format("; without regions [{}], whose bodies are not known", fmt::join(unknown, ", "));
+  return fmt::format("ended with state {}, {:.2f} s: {} bodies, {} hand-offs, {} late and {} missed collisions{}\n",
+                     step, static_cast<double>(step) * step_s, bodies, hand_offs, late, missed, lacking);
+}
+
+}  // namespace aurasim::launch

@@ -1,0 +1,48 @@
+#include "launch/merged_report.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "host/terminal.h"
+
+namespace aurasim::launch {
+
+std::string closing_line(const node::Accounts& accounts) {
+  if (accounts.incomplete.empty()) {
+    return fmt::format(
+        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+        accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
+        accounts.real_time_factor);
+  }
+  std::vector<std::uint32_t> regions;
+  for (const node::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
+  return fmt::format(
+      "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
+      "[{}] "
+      "end before the run; at least {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+      accounts.bodies, accounts.duplicated, accounts.unaccounted, fmt::join(regions, ", "), accounts.hand_offs,
+      accounts.thrashed, accounts.reclaimed, accounts.real_time_factor);
+}
+
+command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, command_line::ExitCode so_far) {
+  const node::Accounts accounts = node::merge_report(folder, facts);
+  host::print(fmt::format("report: {}\n", (folder / "summary.json").string()));
+  host::print(closing_line(accounts));
+  for (const node::DeadRegion& dead : accounts.dead) {
+    host::print(fmt::format("region {} died and took {} bodies with it\n", core::value_of(dead.region), dead.bodies));
+  }
+  for (const node::IncompleteRegion& region : accounts.incomplete) {
+    spdlog::error("the records of region {} end after step {}: {}", core::value_of(region.region), region.after_step,
+                  region.why);
+  }
+  for (const std::string& file : accounts.not_merged) {
+    spdlog::error("no room for {}; the rows are in {}", (folder / file).string(), (folder / "region_*").string());
+  }
+  const bool complete = accounts.incomplete.empty() && accounts.not_merged.empty();
+  return accounts.lost + accounts.duplicated == 0 && complete ? so_far : command_line::ExitCode::kFailed;
+}
+
+}  // namespace aurasim::launch

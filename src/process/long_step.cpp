@@ -1,0 +1,45 @@
+#include "process/long_step.h"
+
+#include <fmt/format.h>
+
+#include "process/patience.h"
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLongStep = 2s;  // statuses come ten times a second
+constexpr auto kTellAfter = 10s;
+
+/// How long the node has computed its step: the time since its last status, which it published before the step.
+std::optional<std::chrono::steady_clock::duration> computes_for(const dds::SeenStatus& seen,
+                                                                std::chrono::steady_clock::time_point now) {
+  const bool computes = !seen.lost && seen.status.state == dds::NodeState::kRunning;
+  if (!computes || now < seen.seen + kLongStep) return std::nullopt;
+  return now - seen.seen;
+}
+
+}  // namespace
+
+std::optional<std::string> long_step(const dds::SeenStatus& seen, std::chrono::steady_clock::time_point now) {
+  const auto time = computes_for(seen, now);
+  if (!time) return std::nullopt;
+  return fmt::format("computes one step for {} s", whole_seconds(*time));
+}
+
+std::optional<std::string> LongSteps::news(const dds::SeenStatus& seen, Clock::time_point now) {
+  const auto time = computes_for(seen, now);
+  const auto told = told_.find(seen.status.region);
+  if (!time) {
+    if (told != told_.end()) told_.erase(told);
+    return std::nullopt;
+  }
+  const Clock::duration next = told == told_.end() ? Clock::duration(kTellAfter) : 2 * told->second;
+  if (*time < next) return std::nullopt;
+  told_[seen.status.region] = *time;
+  return fmt::format("the node of region {} (process {}) computes one step for {} s, after state {}",
+                     core::value_of(seen.status.region), seen.status.pid, whole_seconds(*time), seen.status.step);
+}
+
+}  // namespace aurasim::process

@@ -1,0 +1,309 @@
+// One node as a process: joins the DDS domain, waits for its neighbours, keeps pace, executes run commands, records.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "process/checkpoints.h"
+#include "process/command_server.h"
+#include "command_line/exit_code.h"
+#include "process/fence.h"
+#include "process/hold.h"
+#include "process/node_phase.h"
+#include "cut/part_writer.h"
+#include "process/patience.h"
+#include "process/recovery.h"
+#include "process/replica_publisher.h"
+#include "process/ros2_link.h"
+#include "process/run_control_limits.h"
+#include "cut/saved_world.h"
+#include "process/world_meant.h"
+#include "config/launch.h"
+#include "dds/control.h"
+#include "dds/dds_transport.h"
+#include "dds/participant.h"
+#include "dds/setpoint_bus.h"
+#include "node/node.h"
+#include "node/pacer.h"
+#include "node/recorder.h"
+
+namespace aurasim::process {
+
+struct NodeOptions {
+  core::RegionId region{};
+  std::uint64_t run = 0;  ///< number of the run, the same on all its nodes and on no others; 0: none was drawn
+  std::optional<core::Step> steps;  ///< last state to compute; nothing: run until a stop command
+  std::optional<std::filesystem::path> report;
+  std::chrono::seconds start_time_out{30};      ///< longest time without progress of the other nodes at the start
+  std::shared_ptr<const core::WorldCut> world;  ///< saved world that the run goes on from; a reset goes back to it
+  std::filesystem::path saves = "saves";        ///< folder for this node's parts of saved worlds
+  core::Step save_every = 0;                    ///< in states; 0: worlds are saved only on request
+  std::size_t save_keep = 3;                    ///< how many regularly saved worlds stay
+  /// Folder where runs keep their newest states on disk (kept_folder); nothing: they keep none.
+  std::optional<std::filesystem::path> kept;
+  bool takes_over = false;    ///< this process replaces the dead node of its region in a run that goes on
+  bool has_launcher = false;  ///< a launcher replaces nodes that die, and ends all processes
+  int heartbeat = -1;         ///< number of the launcher's pipe for signs of life (heartbeat.h)
+  std::string as;             ///< name of this node's key, in a run with keys; empty: the region's own key
+};
+
+/// Settings of the transport between a region and its neighbours.
+dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
+
+/// Thrown when a node has died while all nodes were about to act together. All nodes then go back to a state that is
+/// kept.
+class SomebodyDied : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class NodeProcess {
+ public:
+  NodeProcess(const config::Launch& launch, const NodeOptions& options);
+
+  command_line::ExitCode run();
+  /// To be called after run(). True if another process has this region now, so that this process may serve the run as a
+  /// spare.
+  bool comes_back_as_spare() const;
+
+ private:
+  struct Window {  ///< durations of about the last second's steps, milliseconds
+    std::vector<double> frame, physics, protocol, transport;
+    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  };
+
+  FenceSettings fence_settings() const;
+  std::map<core::RegionId, node::PeerSign> peer_signs();
+  bool fence_is_open();
+  command_line::ExitCode meet_and_run();
+  command_line::ExitCode take_over();
+  bool domain_is_free();
+  bool hears_another_node();
+  double share_of_nodes();
+  bool meet_neighbours();
+  bool another_run_is_here();
+  bool another_agreement_is_here();
+  bool the_same_run_is_here();
+  void name_the_dead();
+  std::uint64_t met();
+  std::string who_does_not_wait();
+  void start_when_all_wait();
+  void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
+  bool wait_for_start();
+  /// `begin`: the command that names the start time.
+  void begin_generation(core::Generation generation, const dds::RunCommand& begin);
+  std::unique_ptr<node::Node> make_node();
+  void begin_with(const node::StepReport& report);
+  dds::TransportSettings transport_settings();
+  command_line::ExitCode run_steps();
+  void run_until_end();
+  command_line::ExitCode end();
+  bool wait_until_due();
+  core::Step farthest_paused_step();
+  std::chrono::nanoseconds time_until(core::Step step) const;
+  void note_refusals();
+  void note_strangers();
+  void note_waiting();
+  bool somebody_computes_for_long();
+  void note_faults(const node::StepReport& report);
+  void compute_step();
+  void execute_commands();
+  core::Step first_step() const { return options_.world ? options_.world->step : 0; }
+  void save_parts();
+  void begin_to_save();
+  void keep_on_disk(const core::WorldCut& part);
+  void note_saves();
+  void conclude_saves();
+  core::Step kept_every() const;
+  cut::SaveOf save_of() const;
+  cut::SavedBy saved_by() const;
+  std::vector<std::filesystem::path> save_folders() const;
+  void save_regularly();
+  void save_as_it_stands();
+  void look_at_doubtful_saves(std::optional<core::Step> back_to);
+  void compute_until_change();
+  void step_back(const RunView& run);
+  void send_back(dds::RunCommand restore, const core::Command& back);
+  cut::SavedWorld as_saved(core::WorldCut part) const;
+  void plan_checkpoint();
+  void keep_checkpoints();
+  bool recovers() const;
+  std::optional<std::string> death();
+  void look_for_deaths();
+  bool has_successor();
+  std::vector<core::RegionId> keepers();
+  bool leaves_now() { return drains_ && may_leave(); }
+  bool may_leave();
+  bool can_leave_to_others();
+  void leave_if_asked();
+  command_line::ExitCode leave_to_successor();
+  void recover(const std::string& why);
+  void begin_to_recover();
+  bool agree_on_restore();
+  void meet_anew();
+  void note_unheard(const SeenNodes& nodes);
+  bool has_to_leave_recovery(const SeenNodes& nodes);
+  RecoveryView recovery_view(const SeenNodes& nodes, bool may_go_on) const;
+  SeenNodes nodes_and_self();
+  std::string what_recovery_waits_for(const std::vector<core::RegionId>& vacant);
+  void give_up(const std::vector<core::RegionId>& vacant);
+  void break_off(const std::string& why);
+  command_line::ExitCode end_without_world();
+  bool call_spare(core::RegionId region);
+  void stand_in(const std::vector<core::RegionId>& regions);
+  void hear_of_drain(const dds::RunCommand& drain);
+  void lead_recovery();
+  bool may_begin_again(core::Generation era);
+  void hear_of_restore(const dds::RunCommand& restore);
+  void hear_of_end(const dds::RunCommand& end);
+  void give_way(core::Step step);
+  void throw_away_after(core::Step step);
+  void repeat_commands(const dds::RunCommand& restore);
+  void go_back(const dds::RunCommand& restore);
+  void take_map_of(const dds::RunCommand& restore);
+  void wait_in_recovery(std::chrono::steady_clock::time_point deadline, const char* for_what);
+  core::WorldCut gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
+  core::WorldCut decode_part(const std::string& octets) const;
+  void record_after(std::optional<core::Step> step);
+  void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+                      const std::map<core::RegionId, std::string>& parts);
+  void serve_clients();
+  void hear_programs();
+  bool has_heard_what_steps_name();
+  void open_ros2();
+  void tell_ros2();
+  void change_rate(double rate);
+  void hold_in(core::Step state);
+  void step_on(const dds::RunCommand& step);
+  void apply_orders();
+  void execute(const dds::RunCommand& command);
+  Worlds known_worlds() const;
+  void obey(const dds::RunCommand& command);
+  void obey_early_commands();
+  void obey_late_commands();
+  bool can_be_meant(const dds::RunCommand& command);
+  /// True if another world has begun.
+  bool reset_if_due();
+  bool change_if_due();
+  void change_scene(const std::string& name);
+  void change_world(const std::string& file);
+  void begin_anew();
+  void publish_map(core::Generation generation, core::Step from_step);
+  void change_regions(const std::vector<core::Rectangle>& boxes);
+  void settle_all();
+  void wait_until_all_stand();
+  void connect_for_change(const dds::TransportSettings& settings);
+  bool finished();
+  bool has_reached(core::Step step) const;
+  void keep_the_end();
+  bool is_about_to_change() const;
+  void record(std::span<const node::StepReport> reports);
+  void note_redo(const node::StepReport& report);
+  void linger();
+  bool all_have_left();
+  bool has_all_of_the_last_states();
+  dds::RunCommand with_clock_of(core::RegionId region, dds::RunCommand command);
+  void compare_clocks();
+  void watch_the_clock();
+  void watch_the_records();
+  void enter(NodeEvent event);
+  void publish(const std::string& text = {});
+  void publish_running();
+  void note(const node::StepReport& report, double frame_ms);
+  command_line::ExitCode refuse(const std::string& why);
+  command_line::ExitCode not_begun();
+  double real_time_factor() const;
+
+  NodePhase phase_ = NodePhase::kListening;
+  config::Launch launch_;
+  NodeOptions options_;
+  std::unique_ptr<dds::Participant> participant_;
+  dds::ControlBus control_;
+  Fence fence_;
+  std::optional<dds::DdsTransport> transport_;   ///< once the domain is known to be free
+  std::optional<ReplicaPublisher> observers_;    ///< likewise
+  std::optional<CommandServer> command_server_;  ///< likewise
+  std::optional<dds::SetpointReader> programs_;  ///< likewise
+  std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
+  std::vector<core::Order> run_orders_;          ///< orders about the run as a whole that are not due yet
+  cut::PartWriter saves_;
+  std::vector<std::uint64_t> saved_runs_;     ///< numbers of this run and of those that it goes on from
+  std::vector<StandingSave> standing_saves_;  ///< saves asked for in a pause and not written yet
+  std::vector<StandingSave> doubtful_saves_;  ///< saves written whose states a redo may still make void
+  core::Step saved_last_ = 0;                 ///< state of the last regular save; only the lead uses it
+  std::optional<Checkpoints> checkpoints_;    ///< once the domain is known to be free
+  core::Step checkpoint_ = 0;                 ///< the next state that is kept for a recovery
+  core::Step recorded_ = 0;                   ///< records up to this state have been given to `recorder_`
+  core::Step secured_ = 0;                    ///< records up to this state are on disk
+  std::unique_ptr<node::Node> node_;
+  std::optional<node::Recorder> recorder_;
+  node::Pacer pacer_;
+  node::ClockWatch clock_watch_{node::read_clocks()};
+  bool says_records_end_ = false, says_left_out_ = false;
+  std::string notice_;  ///< message for users, in the status while the node runs
+  core::Generation generation_ = 0;
+  std::optional<core::Generation> begun_;  ///< generation that node_ computes in, or has computed in last
+  std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
+  AskedSteps asked_steps_;                 ///< steps asked for since the run was paused
+  PauseFollower pause_follower_;
+  AwaitedWords awaited_words_;
+  std::optional<core::Step> stop_at_;
+  std::optional<dds::RunCommand> reset_;
+  RunControlLimits run_control_limits_;
+  std::optional<dds::RunCommand> start_;
+  core::Generation waits_to_start_ = 0;  ///< generation that a start command has to name
+  std::optional<core::Order> change_;    ///< order that changes the run as a whole, due now
+  struct BeforeChange {
+    config::Launch launch;
+    std::shared_ptr<const core::WorldCut> world;
+  };
+  std::optional<BeforeChange> before_change_;  ///< set while a change is under way
+  std::vector<dds::RunCommand> early_;         ///< commands of a generation that has not begun here
+  std::vector<dds::RunCommand> late_;          ///< commands of generations before restore_'s, received since restore_
+  std::optional<dds::RunCommand> restore_;     ///< the newest restore command
+  core::Generation restoring_ = 0;             ///< generation that a recovery is about to begin, or has begun
+  int failed_changes_ = 0;                     ///< in a row
+  core::Generation life_ = 0;                  ///< generation with which the run went on after the last death or change
+  core::Generation life_of_node_ = 0;          ///< the life_ with which node_ has begun
+  std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
+  bool drains_ = false;  ///< this node gives its region to another process as soon as there is one
+  std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: the latest time to do so
+  std::set<std::uint64_t> leaving_;                                 ///< processes that drain
+  std::optional<core::Step> successor_since_;                       ///< state in which the successor was first seen
+  std::string broken_off_;          ///< why the run ends before its time: another region's node has died
+  bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
+  core::Generation stands_in_ = 0;  ///< generation published while waiting in a recovery
+  std::chrono::steady_clock::time_point recovering_since_;
+  Recovery recovery_;
+  std::set<std::uint64_t> taken_;  ///< processes of spares that were called
+  std::string asks_for_;           ///< decision that a user has to take before the run can go on; empty: none
+  bool stops_standing_ = false;    ///< stopped in a recovery: does not wait for the others
+  dds::Status status_;
+  Window window_;
+  double wait_ms_ = 0;
+  std::map<core::Step, node::FrameTimes> frame_times_;  ///< frame times of states that are not recorded yet
+  core::Step hurry_until_ = 0;      ///< a client waits for this state: until then the pace is at least real time
+  std::size_t refusals_noted_ = 0;  ///< number of the protocol's refusals that have been logged
+  std::uint64_t unheard_setpoints_ = 0, unbearable_setpoints_ = 0;  ///< since the start
+  bool says_late_ = false, says_refused_ = false;  ///< the message about late or refused setpoints has been given
+  std::uint64_t broken_bodies_ = 0;                ///< bodies removed here since the start because they broke down
+  std::string fault_;                              ///< the last fault, as a message for users
+  std::string waiting_;                            ///< the nodes that this one waits for, if it takes long
+  std::optional<std::chrono::steady_clock::time_point> waiting_since_;
+  std::chrono::steady_clock::time_point computed_at_;  ///< when the last state was computed
+  std::chrono::steady_clock::time_point began_;
+  std::chrono::steady_clock::duration paused_{};
+  std::chrono::steady_clock::time_point last_published_;
+  std::set<core::RegionId> missed_;  ///< regions whose nodes died while the nodes met; each is logged once
+};
+
+}  // namespace aurasim::process

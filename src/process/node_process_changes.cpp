@@ -1,0 +1,234 @@
+// The changes of a whole run while it runs: another scene, another world, other regions. All nodes come to a change
+// after the same state.
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "setup/launch_setup.h"
+#include "process/node_process.h"
+#include "host/stop_signal.h"
+#include "config/launch_variants.h"
+#include "dds/replica_bus.h"
+#include "node/repartition.h"
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPatienceWithOthers = 20s;
+constexpr auto kRound = 5ms;
+constexpr int kMostFailedChanges = 3;  // in a row
+
+/// Thrown when a change of the run fails, with what went wrong and the regions concerned.
+class ChangeFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Collects from all regions the bodies that they host.
+std::vector<node::Resident> take_census(const node::RepartitionSettings& settings, Clock::time_point deadline,
+                                        dds::Participant& participant, const node::Node& node,
+                                        const std::function<void()>& look_for_deaths) {
+  dds::ObserverSettings watched;
+  watched.map_version = settings.map->version();
+  watched.region_count = static_cast<std::uint32_t>(settings.map->size());
+  watched.prototype_count = static_cast<std::uint32_t>(node.scene().prototypes.size());
+  dds::ReplicaReader reader(participant, watched);
+  node::Census census(settings, node.current_step());
+  while (!census.complete()) {
+    if (Clock::now() > deadline) {
+      throw ChangeFailed(fmt::format("new regions: regions {} have not published what they host", census.silent()));
+    }
+    look_for_deaths();
+    reader.wait(kRound);
+    for (const core::Replica& replica : reader.take()) census.accept(replica);
+  }
+  return census.take();
+}
+
+}  // namespace
+
+/// Applies the orders about the run as a whole whose state has been computed.
+void NodeProcess::apply_orders() {
+  std::erase_if(run_orders_, [this](const core::Order& order) {
+    const bool changes = core::changes_the_run(order.action);
+    if (changes ? !has_reached(order.at_step) : node_->current_step() < order.at_step) return false;
+    if (changes) {
+      record(node_->finish(order.at_step));
+      change_ = order;
+    }
+    return true;
+  });
+}
+
+bool NodeProcess::change_if_due() {
+  if (!change_) return false;
+  const core::Order order = *std::exchange(change_, std::nullopt);
+  before_change_ = BeforeChange{launch_, options_.world};
+  const bool stands = hold_at_.has_value();
+  try {
+    if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
+    if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
+    if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
+  } catch (const ChangeFailed& failed) {
+    // All nodes are here and can go back to the world before the change, so the change is tried once more.
+    if (!recovers() || host::stop_requested() || ++failed_changes_ > kMostFailedChanges) throw;
+    throw SomebodyDied(failed.what());
+  }
+  failed_changes_ = 0;
+  life_of_node_ = life_;
+  before_change_.reset();
+  if (stands) hold_in(node_->current_step());
+  return true;
+}
+
+/// Changes to another scene. Bodies of the old one are dropped; the regions stay.
+void NodeProcess::change_scene(const std::string& name) {
+  launch_ = config::with_scene(launch_, name);
+  options_.world.reset();
+  spdlog::info("scene {} after step {}", name, node_->current_step());
+  begin_anew();
+}
+
+/// Changes to a saved world. The regions stay, whatever they were when it was saved.
+void NodeProcess::change_world(const std::string& file) {
+  options_.world = cut::load_world({(options_.saves / file).string(), false}, launch_);
+  spdlog::info("{}, state {}, after step {}", file, first_step(), node_->current_step());
+  begin_anew();
+}
+
+/// Publishes the map and scene of a generation. The agreement stays that of the run's beginning.
+void NodeProcess::publish_map(core::Generation generation, core::Step from_step) {
+  dds::WorldMap map = setup::world_map(launch_);
+  map.agreement = status_.agreement;
+  map.generation = generation;
+  map.from_step = from_step;
+  control_.publish_map(map);
+}
+
+void NodeProcess::begin_anew() {
+  wait_until_all_stand();
+  waits_to_start_ = generation_ + 1;
+  publish_map(waits_to_start_, first_step());  // first, so that observers read the new scene before its bodies come
+  node_.reset();
+  connect_for_change(neighbour_transport(launch_, options_.region));
+  begin_generation(waits_to_start_, *start_);
+}
+
+/// Waits until all nodes wait in the state of the change. No node may close its transport earlier, because its messages
+/// may have to be retransmitted.
+void NodeProcess::wait_until_all_stand() {
+  enter(NodeEvent::kChanges);
+  last_published_ = {};  // publish the status at once, because the others wait for it
+  auto deadline = Clock::now() + kPatienceWithOthers;
+  const auto stands = [this](const auto& entry) {
+    const dds::Status& status = entry.second.status;
+    const bool is_here = status.state == dds::NodeState::kPaused && status.generation == generation_ &&
+                         status.step >= node_->current_step();
+    return entry.first == options_.region || is_here || status.generation > generation_;
+  };
+  for (;;) {
+    publish();
+    const auto& statuses = control_.statuses();
+    if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
+    execute_commands();
+    look_for_deaths();
+    if (somebody_computes_for_long()) deadline = Clock::now() + kPatienceWithOthers;
+    if (Clock::now() > deadline || host::stop_requested()) {
+      throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
+    }
+    control_.wait(5ms);
+  }
+}
+
+/// Waits until every body that was on its way to this node has arrived.
+void NodeProcess::settle_all() {
+  if (node_->settled()) return;
+  const auto deadline = Clock::now() + kPatienceWithOthers;
+  while (!node_->ready_to_settle()) {
+    look_for_deaths();
+    if (Clock::now() > deadline || host::stop_requested()) {
+      throw ChangeFailed("new regions: a neighbour has not come to this state");
+    }
+    transport_->wait_for_arrival(5ms);
+  }
+  const node::StepReport& report = node_->settle();
+  if (recorder_) recorder_->write_settling(report);
+}
+
+void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
+  const auto deadline = Clock::now() + kPatienceWithOthers;
+  connect_anew(settings, [&](const char* for_what) {
+    if (host::stop_requested()) throw ChangeFailed("told to stop while the run changes");
+    if (Clock::now() > deadline) throw ChangeFailed(fmt::format("a change has waited in vain for {}", for_what));
+    if (phase_ == NodePhase::kWaiting) publish();  // before, others still wait for the last state's status
+    execute_commands();
+    look_for_deaths();
+    control_.wait(10ms);
+  });
+}
+
+void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
+  settle_all();
+  wait_until_all_stand();
+  const auto deadline = Clock::now() + kPatienceWithOthers;
+  const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
+  const node::RepartitionSettings settings = {options_.region, generation_ + 1, setup::aura_rules(*changed),
+                                              &changed->regions};
+  observers_->use_map(changed->regions.version());  // so that observers of the old map do not receive it
+  observers_->publish_census(*node_, settings.census);
+  const std::vector<core::Departure> departures = node::find_new_hosts(
+      settings, take_census(settings, deadline, *participant_, *node_, [this] { look_for_deaths(); }), *node_);
+
+  dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
+  to_all.neighbours.clear();
+  for (std::uint32_t r = 0; r < changed->regions.size(); ++r) {
+    if (core::RegionId{r} != options_.region) to_all.neighbours.push_back(core::RegionId{r});
+  }
+  waits_to_start_ = settings.census;
+  connect_for_change(to_all);
+  node::StepReport moved;
+  moved.step = node_->current_step();
+  node::Exchange exchange(settings, departures, *transport_, *node_);
+  while (!exchange.ready()) {
+    look_for_deaths();
+    if (Clock::now() > deadline) {
+      throw ChangeFailed(fmt::format("new regions: regions {} have not sent their bodies", exchange.silent()));
+    }
+    transport_->wait_for_arrival(kRound);
+  }
+  for (const node::HandOffRow& row : exchange.finish()) {
+    (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
+  }
+  wait_until_all_stand();
+  if (recorder_) recorder_->write_settling(moved);
+  status_.hand_offs_out += moved.departures.size();
+  status_.hand_offs_in += moved.arrivals.size();
+
+  launch_ = *changed;
+  status_.map_version = launch_.regions.version();
+  status_.footprint = launch_.regions.region(options_.region);
+  waits_to_start_ = settings.census + 1;
+  connect_for_change(neighbour_transport(launch_, options_.region));
+  const node::NodeSetup setup = setup::node_setup(launch_, options_.region, generation_);
+  observers_->begin_generation(generation_);
+  command_server_->change_map(generation_, node_->current_step());
+  served_map_ = launch_.regions.version();
+  control_.use_map(launch_.regions.version());
+  refusals_noted_ = 0;
+  const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
+  observers_->after_step(*node_, report);
+  record(node_->confirmed());
+  pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
+  publish_map(generation_, node_->current_step());
+  spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
+               moved.arrivals.size());
+}
+
+}  // namespace aurasim::process

@@ -1,0 +1,404 @@
+// What the nodes do when one of them has died: all wait until a process has taken its region over, go back to the
+// newest state of which the parts of all regions are kept, and compute on from there (docs/design.md, "When a node
+// dies").
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "setup/launch_setup.h"
+#include "process/node_process.h"
+#include "process/restore_plan.h"
+#include "steering/run_steering.h"
+#include "cut/saved_world.h"
+#include "host/stop_signal.h"
+#include "config/launch_variants.h"
+#include "dds/link_mtu.h"
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Kind = dds::Checkpoint::Kind;
+
+constexpr auto kInRecovery = 5ms;
+constexpr auto kPatienceWithParts = 10s;
+/// Time for which a stop does not break off a recovery. One that is about to succeed ends first, and all stop together
+/// soon after it.
+constexpr auto kShortStand = 5s;
+
+}  // namespace
+
+void NodeProcess::recover(const std::string& why) {
+  spdlog::warn("region {} stands at state {}: {}", core::value_of(options_.region),
+               node_ ? node_->current_step() : first_step(), why);
+  begin_to_recover();
+  while (!host::stop_requested() && !fence_.closed() && broken_off_.empty()) {
+    enter(node_ ? NodeEvent::kDeath : NodeEvent::kJoins);
+    stands_in_ = std::max(generation_, restoring_);
+    is_going_back_ = false;
+    try {
+      if (!agree_on_restore()) return;
+      go_back(*restore_);
+      return;
+    } catch (const SomebodyDied& again) {
+      spdlog::warn("region {}: {}, once more", core::value_of(options_.region), again.what());
+    }
+  }
+}
+
+/// Begins to wait for a recovery. A change of the run that had begun is dropped; its client has to ask again.
+void NodeProcess::begin_to_recover() {
+  recovering_since_ = Clock::now();
+  recovery_.begin(recovering_since_);
+  stops_standing_ = false;
+  fence_.watch_closely();
+  if (before_change_) {
+    launch_ = std::move(before_change_->launch);
+    options_.world = std::move(before_change_->world);
+    before_change_.reset();
+  }
+  run_orders_.clear();
+  change_.reset();
+  frame_times_.clear();
+}
+
+/// Waits until all nodes agree on a state to go back to. False when the run ends, or this node has to leave it.
+bool NodeProcess::agree_on_restore() {
+  while (!restore_ || restore_->generation <= std::max(generation_, restoring_)) {
+    if (!broken_off_.empty()) return false;
+    if (host::stop_requested() || (stops_standing_ && Clock::now() > recovering_since_ + kShortStand)) return false;
+    leave_if_asked();
+    if (leaves_by_ && Clock::now() > *leaves_by_) return false;
+    if (node_) node_->ready();
+    const bool may_go_on = !node_ || fence_is_open();
+    if (fence_.closed()) return false;
+    const SeenNodes nodes = nodes_and_self();
+    if (!node_ && has_to_leave_recovery(nodes)) return false;
+    const RecoveryActs acts = recovery_.look(recovery_view(nodes, may_go_on), Clock::now());
+    if (acts.replaced_in && node_) {
+      give_way(*acts.replaced_in);
+      return false;
+    }
+    if (acts.gives_up) {
+      give_up(acts.vacant);
+      return false;
+    }
+    note_unheard(nodes);
+    publish(what_recovery_waits_for(acts.vacant));
+    if (acts.meets_anew && dds::all_links_are_up(dds::interfaces_of_this_host(), participant_->settings().interfaces)) {
+      meet_anew();
+    }
+    stand_in(acts.stand_ins);
+    for (const core::RegionId region : acts.call_spares) call_spare(region);
+    if (may_go_on && node_) lead_recovery();
+    execute_commands();
+    control_.wait(kInRecovery);
+  }
+  asks_for_.clear();
+  return true;
+}
+
+/// Publishes the regions that this node does not receive from, at once when they change. The others wait for a node
+/// that does not receive from all.
+void NodeProcess::note_unheard(const SeenNodes& nodes) {
+  std::vector<core::RegionId> unheard =
+      unheard_regions(nodes, options_.region, static_cast<std::uint32_t>(launch_.regions.size()));
+  if (unheard == status_.dead) return;
+  status_.dead = std::move(unheard);
+  last_published_ = {};
+}
+
+/// Leaves DDS and joins it again as a new participant, with the world that this node has (Recovery::meets_anew).
+void NodeProcess::meet_anew() {
+  spdlog::warn("region {}: some others do not hear this node, or it hears too few of them: it joins DDS anew",
+               core::value_of(options_.region));
+  auto anew = std::make_unique<dds::Participant>(participant_->settings());
+  ros2_.reset();
+  programs_.reset();
+  control_.move_to(*anew);
+  checkpoints_->move_to(*anew);
+  if (observers_) observers_.emplace(launch_, *anew, options_.region);
+  if (command_server_) command_server_.emplace(launch_, *anew, options_.region, options_.saves);
+  if (transport_) transport_.emplace(*anew, transport_settings());
+  participant_ = std::move(anew);
+  programs_.emplace(*participant_);
+  open_ros2();
+  if (node_) publish_map(generation_, first_step());
+  publish();
+}
+
+/// True if this process has come to take a region over and is not needed. Throws when no process knows the world.
+bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
+  if (recovery_.is_not_needed(nodes, Clock::now())) return true;
+  if (recovery_.nobody_knows_the_world(nodes, Clock::now()))
+    throw std::runtime_error(cut::world_is_lost(save_folders(), saved_by()));
+  return false;
+}
+
+RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) const {
+  return {nodes,
+          leaving_,
+          status_.process,
+          node_ != nullptr,
+          may_go_on,
+          fence_.is_cut_off(),
+          node_ ? node_->current_step() : first_step()};
+}
+
+/// The statuses of all nodes, with this node's own as the others see it.
+SeenNodes NodeProcess::nodes_and_self() {
+  SeenNodes nodes = control_.statuses();
+  nodes[options_.region].status = status_;
+  return nodes;
+}
+
+std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionId>& vacant) {
+  if (fence_.is_cut_off()) return "hears too few of the others, and waits for them";
+  if (!asks_for_.empty()) return asks_for_;
+  std::vector<std::uint32_t> regions;
+  for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
+  if (!regions.empty()) return fmt::format("waits for whoever takes over regions [{}]", fmt::join(regions, ", "));
+  for (const core::RegionId region : status_.dead) regions.push_back(core::value_of(region));
+  if (!regions.empty()) return fmt::format("does not hear regions [{}], which others hear", fmt::join(regions, ", "));
+  return "waits until all others stand";
+}
+
+/// Ends the run because no process has come for these regions, after all attempts. All nodes end with the same reason.
+void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
+  for (const core::RegionId region : vacant) {
+    control_.send(steering::about_process(dds::RunCommandKind::kEnd, options_.run, region, 0));
+  }
+  std::vector<std::uint32_t> regions;
+  for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
+  break_off(fmt::format("nobody takes over regions [{}], whose nodes have died", fmt::join(regions, ", ")));
+}
+
+/// Ends the run on this node before its time, and names the newest saved world.
+void NodeProcess::break_off(const std::string& why) {
+  if (!broken_off_.empty()) return;
+  broken_off_ = why;
+  spdlog::error("region {}: the run ends in state {}: {}. {}", core::value_of(options_.region),
+                node_ ? node_->current_step() : first_step(), why, cut::say_newest_saved(save_folders(), saved_by()));
+}
+
+/// Sends the restore command once each region has a process. The lowest region that knows the world sends it.
+void NodeProcess::lead_recovery() {
+  const SeenNodes nodes = nodes_and_self();
+  recovery_.note_kept(nodes, status_.era);
+  std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
+  if (!plan || plan->lead != options_.region) return;
+  dds::RunCommand restore = plan->command;
+  restore.generation = std::max(restore.generation, std::max(generation_, restoring_) + 1);
+  if (restore.count == 1 && !may_begin_again(restore.era)) return;
+  if (restore.count == 1) restore.at_step = first_step();
+  restore.run = options_.run;
+  restore.region = options_.region;
+  const node::Instant now = node::read_clocks();
+  restore.epoch_ns = now.wall_ns + std::chrono::nanoseconds(pacer_.due(restore.at_step) - now.steady).count();
+  restore.rate = pacer_.rate();
+  publish_map(restore.generation, restore.at_step);
+  restore.request = control_.send(restore);
+  restore_ = restore;
+  repeat_commands(restore);
+}
+
+/// True if the run may begin again from the first state because no state is kept whole. If no later state was ever kept
+/// whole, nothing is lost. Otherwise a user has to decide, because the missing part may be on a host that is down.
+bool NodeProcess::may_begin_again(core::Generation era) {
+  if (recovery_.may_begin_again(era)) return true;
+  if (reset_) {
+    spdlog::warn("region {}: all begin again from state {}, as they were told to", core::value_of(options_.region),
+                 first_step());
+    reset_.reset();
+    return true;
+  }
+  const std::string asks = fmt::format(
+      "nobody keeps all parts of a state, though state {} was kept. Start the processes that had them again, or begin "
+      "again from state {} with `aurasim send reset`. {}",
+      *recovery_.kept(), first_step(), cut::say_newest_saved(save_folders(), saved_by()));
+  if (asks != asks_for_) spdlog::error("region {} stands: {}", core::value_of(options_.region), asks);
+  asks_for_ = asks;
+  return false;
+}
+
+/// Receives a restore command. It names the processes that go on, so this process may be left out of the run.
+void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
+  if (restore.members.size() != launch_.regions.size()) return;
+  const core::Generation begun = node_ ? generation_ : 0;
+  const core::Generation known = std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
+  const RestoreMeaning meaning = meaning_of(restore, options_.region, status_.process, begun, known);
+  if (meaning == RestoreMeaning::kGoBack) restore_ = with_clock_of(restore.region, restore);
+  if (meaning == RestoreMeaning::kLeftOut) recovery_.note_left_out(restore);
+  if (meaning == RestoreMeaning::kReplaced && node_) give_way(restore.at_step);
+}
+
+/// Closes the fence, because another process has this region since state `step`.
+void NodeProcess::give_way(core::Step step) {
+  fence_.close(
+      fmt::format("another process has taken over region {} in state {}", core::value_of(options_.region), step));
+  throw_away_after(step);
+}
+
+/// Drops the states after `step` that this process has computed and recorded alone. The run's world went on without
+/// them.
+void NodeProcess::throw_away_after(core::Step step) {
+  if (node_->current_step() > step) {
+    spdlog::warn("region {}: states {} to {} of this process are thrown away", core::value_of(options_.region),
+                 step + 1, node_->current_step());
+  }
+  const bool has_successor = recorder_ && recorder_->is_replaced();
+  if (has_successor) return recorder_.reset();
+  record_after(step);
+}
+
+/// Sends pause and reset commands again. A process that takes a region over has not received the pause, and the other
+/// nodes would drop the reset.
+void NodeProcess::repeat_commands(const dds::RunCommand& restore) {
+  dds::RunCommand command;
+  command.generation = restore.generation;
+  command.run = options_.run;
+  const auto repeat = [&](dds::RunCommandKind kind, core::Step at_step) {
+    command.kind = kind;
+    command.at_step = at_step;
+    command.request = 0;
+    control_.send(command);
+  };
+  if (reset_) repeat(dds::RunCommandKind::kReset, std::max(reset_->at_step, restore.at_step));
+  if (hold_at_) repeat(dds::RunCommandKind::kPause, *hold_at_);
+  if (stop_at_) repeat(dds::RunCommandKind::kStop, *stop_at_);
+}
+
+/// Goes back to the state that the restore names. Throws SomebodyDied when a node dies meanwhile.
+void NodeProcess::go_back(const dds::RunCommand& restore) {
+  restoring_ = restore.generation;
+  is_going_back_ = true;
+  take_map_of(restore);
+  std::map<core::RegionId, std::string> parts;
+  const core::WorldCut world = gather(restore, parts);
+  waits_to_start_ = restore.generation;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  connect_anew(transport_settings(), [&](const char* for_what) { wait_in_recovery(deadline, for_what); });
+  begin_restored(restore, world, parts);
+  is_going_back_ = false;
+}
+
+/// Takes the scene and the regions that the run goes on with from the published map.
+void NodeProcess::take_map_of(const dds::RunCommand& restore) {
+  const dds::WorldMap* map = nullptr;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  while (map == nullptr) {
+    for (const auto& [version, known] : control_.maps()) {
+      if (known.generation == restore.generation && known.agreement == status_.agreement) map = &known;
+    }
+    if (map == nullptr) wait_in_recovery(deadline, "the map");
+  }
+  if (map->scene != launch_.scene.name) launch_ = config::with_scene(launch_, map->scene);
+  if (map->map_version != launch_.regions.version()) launch_ = config::with_regions(launch_, map->regions);
+  status_.map_version = launch_.regions.version();
+  status_.footprint = launch_.regions.region(options_.region);
+  control_.use_map(launch_.regions.version());
+  open_ros2();
+  if (observers_ && command_server_ && programs_ && served_map_ == launch_.regions.version()) return;
+  observers_.emplace(launch_, *participant_, options_.region);
+  command_server_.emplace(launch_, *participant_, options_.region, options_.saves);
+  programs_.emplace(*participant_);
+  served_map_ = launch_.regions.version();
+}
+
+void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
+  if (host::stop_requested()) throw SomebodyDied("told to stop");
+  if (fence_.closed()) throw SomebodyDied(fence_.reason());
+  if (!broken_off_.empty()) throw SomebodyDied(broken_off_);
+  if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));
+  execute_commands();
+  look_for_deaths();
+  publish();
+  control_.wait(kInRecovery);
+}
+
+/// Puts the world together from all parts, with all orders that any node knows by now.
+core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  const std::size_t regions = launch_.regions.size();
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  const auto give = [&](core::RegionId region, Kind kind, const std::string& octets) {
+    checkpoints_->give({region, kind, restore.generation, restore.at_step, octets});
+  };
+  core::WorldCut whole;
+  if (from_first) {
+    whole = options_.world ? *options_.world : node::first_world(launch_.scene, launch_.lookahead(), launch_.step_s());
+  } else {
+    for (std::uint32_t r = 0; r < regions; ++r) {
+      const core::RegionId region{r};
+      if (restore.members[r].holder != options_.region) continue;
+      if (const std::string* octets = checkpoints_->find(region, restore.at_step)) give(region, Kind::kGoBack, *octets);
+    }
+    while (checkpoints_->given(restore.generation, Kind::kGoBack).size() < regions) {
+      wait_in_recovery(deadline, "the parts of the world");
+    }
+    parts = checkpoints_->given(restore.generation, Kind::kGoBack);
+    std::vector<core::WorldCut> cuts;
+    for (const auto& [region, octets] : parts) cuts.push_back(decode_part(octets));
+    whole = core::merge(std::move(cuts));
+  }
+  std::size_t survivors = 0;
+  for (const dds::RunCommand::Member& member : restore.members) survivors += member.survives;
+  if (restore.members.at(core::value_of(options_.region)).survives && node_) {
+    give(options_.region, Kind::kOrders, cut::encode(as_saved(node_->orders_now(whole))));
+  }
+  while (checkpoints_->given(restore.generation, Kind::kOrders).size() < survivors) {
+    wait_in_recovery(deadline, "the orders that others know");
+  }
+  std::vector<core::WorldCut> all = {std::move(whole)};
+  for (const auto& [region, octets] : checkpoints_->given(restore.generation, Kind::kOrders)) {
+    all.push_back(decode_part(octets));
+  }
+  return core::merge(std::move(all));
+}
+
+core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
+  cut::SavedWorld part = cut::decode(octets);
+  const std::string differs = cut::check_identity("checkpoint", part.identity, cut::identity_of(launch_), true);
+  if (!differs.empty()) spdlog::warn("region {}: {}: bits may differ", core::value_of(options_.region), differs);
+  return std::move(part.cut);
+}
+
+/// Opens the records to go on after state `step`. The run goes on even if that fails.
+void NodeProcess::record_after(std::optional<core::Step> step) {
+  recorder_.reset();  // or it would write the rest of its rows into the files of the next
+  if (!options_.report) return;
+  try {
+    recorder_.emplace(*options_.report, options_.region, step);
+  } catch (const std::runtime_error& error) {
+    fault_ = fmt::format("nothing is recorded from here on: {}", error.what());
+    spdlog::error("region {}: {}", core::value_of(options_.region), fault_);
+  }
+}
+
+void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+                                 const std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  node_ = make_node();
+  life_of_node_ = life_;
+  command_server_->go_back(*node_, generation_);
+  record_after(from_first ? std::nullopt : std::optional(restore.at_step));
+  pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
+  status_.rate = restore.rate;
+  fence_.begin_anew();
+  checkpoints_->go_back(restore.era, restore.at_step, parts);
+  status_.era = restore.era;
+  reset_.reset();
+  if (restore.region != options_.region) hold_at_.reset();  // the node that sent the restore repeats the pause
+  if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
+  begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
+  const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();
+  notice_ = fmt::format("went back to state {} after {:.2f} s", node_->current_step(), stood_s);
+  spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+}
+
+}  // namespace aurasim::process

@@ -1,0 +1,62 @@
+// Publishes to each observer what it asked for of the node's world (node/observation_feed.h), over topic observation
+// (dds/observation_bus.h). Does nothing while nobody observes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "process/observer_pace.h"
+#include "config/launch.h"
+#include "dds/observation_bus.h"
+#include "node/node.h"
+#include "node/observation_feed.h"
+
+namespace aurasim::process {
+
+class ObservationPublisher {
+ public:
+  ObservationPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
+
+  void begin_generation(core::Generation generation, std::uint64_t map_version);
+  /// To be called when the run goes back. States are published again when they have been computed again.
+  void put_back() { feed_.reset(); }
+  /// To be called after the first state and after every step.
+  void after_step(node::Node& node, const node::StepReport& report);
+  /// Publishes the state in which the run is paused to observers that have not received it. May be called as often as
+  /// wanted.
+  void while_paused(node::Node& node);
+
+ private:
+  bool look(node::Node& node);
+  /// Publishes to one observer. False if it takes no more now.
+  bool tell(node::Node& node, const dds::ObservationServer::Asked& asked);
+  void tell_made_up(const node::Node& node, const node::StepReport& report);
+  void tell_foreseen(node::Node& node);
+
+  struct State {
+    std::uint64_t arrivals = 0;
+    core::Generation generation = 0;
+    std::uint32_t redo = 0;
+    core::Step step = -1;
+
+    bool operator==(const State&) const = default;
+  };
+  struct Told {
+    State state;
+    std::size_t hand_offs = 0;  ///< hand-offs that had come without effect yet; their bodies were published, too
+  };
+
+  struct Served {
+    Told told;  ///< what was published last
+    ObserverPace pace;
+  };
+
+  node::FeedSettings settings_;
+  dds::ObservationServer server_;
+  std::optional<node::ObservationFeed> feed_;  ///< set while somebody observes
+  std::map<std::uint64_t, Served> served_;     ///< by observer
+  bool is_observed_ = false;
+};
+
+}  // namespace aurasim::process

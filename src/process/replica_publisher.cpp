@@ -1,0 +1,83 @@
+#include "process/replica_publisher.h"
+
+#include "node/cluster_graph.h"
+
+namespace aurasim::process {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kKeyFramePeriod = std::chrono::seconds(1);
+constexpr auto kClusterGraphPeriod = std::chrono::milliseconds(250);  // period of the cluster graph in a paused run
+
+}  // namespace
+
+ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region)
+    : region_(region),
+      map_version_(launch.regions.version()),
+      tick_steps_(node::tick_steps(launch.time.step_hz, launch.observe.tick_hz)),
+      writer_(participant, region),
+      graphs_(participant, region),
+      observations_(launch, participant, region) {}
+
+void ReplicaPublisher::begin_generation(core::Generation generation) {
+  feed_.emplace(region_, generation, map_version_);
+  generation_ = generation;
+  published_ = -1;
+  observations_.begin_generation(generation, map_version_);
+}
+
+void ReplicaPublisher::put_back() {
+  if (feed_) feed_->forget();
+  last_key_frame_ = {};
+  observations_.put_back();
+}
+
+void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
+  observations_.after_step(node, report);
+  if (!writer_.anybody_listens()) {
+    feed_->forget();
+    return;
+  }
+  feed_->note(report);
+  if (report.step % tick_steps_ == 0 && report.step > published_) publish(node);
+}
+
+void ReplicaPublisher::while_paused(node::Node& node) {
+  observations_.while_paused(node);
+  if (!writer_.anybody_listens()) return;
+  // The cluster graph is repeated, because lost samples are not retransmitted.
+  if (Clock::now() - last_graph_ >= kClusterGraphPeriod) publish_cluster_graph(node);
+  if (published_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) publish(node);
+}
+
+/// True if a key frame is due. A new observer gets one at once, because the last one may be older than its arrival.
+bool ReplicaPublisher::key_frame_is_due() const {
+  if (arrivals_ != writer_.arrivals()) return true;
+  return feed_->changed_since_key_frame() && Clock::now() - last_key_frame_ >= kKeyFramePeriod;
+}
+
+void ReplicaPublisher::publish_census(node::Node& node, core::Generation generation) {
+  begin_generation(generation);
+  writer_.send(feed_->compose_changes(node.world().snapshot()));  // a key frame follows a tick
+  writer_.send(feed_->compose_key_frame(node.world().snapshot(), {}));
+}
+
+void ReplicaPublisher::publish(node::Node& node) {
+  const core::Snapshot& snapshot = node.world().snapshot();
+  published_ = snapshot.step;
+  writer_.send(feed_->compose_changes(snapshot));
+  publish_cluster_graph(node);
+  if (!key_frame_is_due()) return;
+  arrivals_ = writer_.arrivals();
+  last_key_frame_ = Clock::now();
+  writer_.send(feed_->compose_key_frame(snapshot, node.protocol().departures().open()));
+}
+
+void ReplicaPublisher::publish_cluster_graph(node::Node& node) {
+  if (!graphs_.anybody_listens()) return;
+  last_graph_ = Clock::now();
+  graphs_.send(node::cluster_graph_of(node, generation_, map_version_));
+}
+
+}  // namespace aurasim::process

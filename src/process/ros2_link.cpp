@@ -1,0 +1,91 @@
+#include "process/ros2_link.h"
+
+#include <utility>
+
+#include "setup/launch_setup.h"
+#include "node/replica_feed.h"
+
+namespace aurasim::process {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A listener that is known here may not know this node yet. In a run that stands it is told once more.
+constexpr auto kUntilKnown = std::chrono::milliseconds(300), kUntilToldAgain = std::chrono::milliseconds(1000);
+
+dds::Ros2Settings ros2_settings(const config::Launch& launch, core::RegionId region) {
+  dds::Ros2Settings settings;
+  settings.dds = setup::dds_settings(launch, region);
+  settings.dds.domain = static_cast<std::uint32_t>(launch.ros2.domain.value_or(launch.dds.domain));
+  settings.frame = launch.ros2.frame;
+  settings.cmd_vel = launch.ros2.cmd_vel;
+  return settings;
+}
+
+}  // namespace
+
+Ros2Link::Ros2Link(const config::Launch& launch, core::RegionId region)
+    : launch_(launch),
+      bus_(ros2_settings(launch, region)),
+      tick_steps_(node::tick_steps(launch.time.step_hz, launch.ros2.tf_hz)) {}
+
+void Ros2Link::begin(core::Generation generation) {
+  generation_ = generation;
+  names_.emplace(launch_);
+  joints_.emplace(launch_.scene);
+  next_ = 0;
+}
+
+/// States that are computed again are not told again: ROS's time would go back.
+bool Ros2Link::is_due(core::Step step) {
+  const Clock::time_point now = Clock::now();
+  const std::uint64_t arrivals = bus_.arrivals();
+  if (std::exchange(arrivals_, arrivals) != arrivals) somebody_came_at_ = now;
+  if (step >= next_) {
+    next_ = (step / tick_steps_ + 1) * tick_steps_;
+    if (somebody_came_at_ && now >= *somebody_came_at_ + kUntilKnown) somebody_came_at_.reset();
+    return true;
+  }
+  const bool again = somebody_came_at_ && now >= *somebody_came_at_ + kUntilToldAgain && step + tick_steps_ >= next_;
+  if (again) somebody_came_at_.reset();
+  return again;
+}
+
+void Ros2Link::tell(node::Node& node, core::Generation generation, bool leads) {
+  if (generation_ != generation) begin(generation);
+  if (!is_due(node.current_step())) return;
+  const dds::Ros2Time now = ros2_time(node.current_step(), launch_.time.step_hz);
+  if (leads && bus_.wants_clock()) bus_.say_clock(now);
+  const bool wants_joints = !joints_->empty() && bus_.wants_joints();
+  if (!wants_joints && !bus_.wants_tf()) return;
+  const core::Snapshot& snapshot = node.world().snapshot();
+  if (bus_.wants_tf()) tell_bodies(snapshot, now);
+  if (!wants_joints) return;
+  if (const dds::Ros2Joints joints = joints_->in(snapshot); !joints.name.empty()) bus_.say_joints(now, joints);
+}
+
+void Ros2Link::tell_bodies(const core::Snapshot& snapshot, dds::Ros2Time now) {
+  transforms_.clear();
+  for (const core::BodyState& body : snapshot.bodies) {
+    if (body.birth <= snapshot.step) transforms_.push_back({names_->of(body.id), body.pose});
+  }
+  bus_.say_tf(now, transforms_);
+}
+
+std::vector<core::Setpoints> Ros2Link::take(core::Generation generation) {
+  if (generation_ != generation) begin(generation);
+  std::vector<core::Setpoints> taken;
+  for (const dds::Ros2Twist& twist : bus_.take()) {
+    const auto body = names_->body(launch_.ros2.cmd_vel.at(twist.listener));
+    if (!body) continue;
+    core::Setpoints& setpoints = taken.emplace_back();
+    setpoints.client = twist.sender;
+    setpoints.sequence = twist.sequence;
+    setpoints.generation = generation;
+    const core::Vec3 driving(twist.linear.x(), twist.linear.y(), twist.angular.z());
+    setpoints.bodies.push_back({*body, core::Quantity::kDriving, driving});
+  }
+  return taken;
+}
+
+}  // namespace aurasim::process

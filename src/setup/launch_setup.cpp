@@ -1,0 +1,100 @@
+#include "setup/launch_setup.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
+
+#include "core/horizon.h"
+#include "core/make_aura.h"
+#include "node/setpoint_record.h"
+#include "physics/solver_names.h"
+
+namespace aurasim::setup {
+
+dds::Settings dds_settings(const config::Launch& launch, std::optional<core::RegionId> region) {
+  dds::Settings settings;
+  settings.domain = static_cast<std::uint32_t>(launch.dds.domain);
+  settings.profiles = launch.dds.profiles;
+  settings.interfaces = launch.dds.interfaces;
+  settings.peers = launch.dds.peers;
+  const config::Impair& impair = launch.dds.impair;
+  settings.impairment = {impair.delay_s, impair.jitter_s,  impair.loss, impair.bandwidth_B_s,
+                         impair.reorder, impair.discovery, impair.seed};
+  settings.impairment_stream = region ? core::value_of(*region) + std::uint64_t{1} : 0;
+  settings.discovery = launch.dds.discovery;
+  return settings;
+}
+
+core::AuraRules aura_rules(const config::Launch& launch) {
+  core::AuraRules rules;
+  rules.kind = launch.aura.radius;
+  rules.step_s = launch.step_s();
+  rules.substeps = launch.time.substeps;
+  rules.looks_once = launch.physics.looks_once();
+  rules.lookahead = launch.lookahead();
+  rules.top_speed_m_s = launch.tolerances.speed_m_s;
+  rules.frame_s = launch.tolerances.frame_s;
+  rules.latency_s = launch.tolerances.latency_s;
+  rules.uncertainty = launch.aura.uncertainty;
+  rules.gravity = launch.scene.gravity;
+  rules.sweeps = launch.physics.is_continuous();
+  rules.redo = launch.redoes();
+  return rules;
+}
+
+double listening_distance_m(const config::Launch& launch) {
+  double radius = 0;
+  for (const core::Prototype& prototype : launch.scene.prototypes) {
+    radius = std::max(radius, core::bounding_radius(launch.scene.shapes[prototype.shape].shape));
+  }
+  const core::NoShapes no_shapes;
+  const double zone_m = core::make_aura(aura_rules(launch), no_shapes)->listening_distance_m(radius);
+  return std::max(launch.neighbour_distance_m, zone_m);
+}
+
+int threads_of(const config::Launch& launch, std::size_t nodes) {
+  const std::size_t share = std::max(1U, std::thread::hardware_concurrency()) / nodes;
+  return launch.physics.threads.value_or(static_cast<int>(std::clamp<std::size_t>(share, 1, 64)));
+}
+
+node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {
+  node::NodeSetup setup;
+  setup.protocol.self = region;
+  setup.protocol.generation = generation;
+  setup.protocol.sync = launch.time.sync;
+  setup.protocol.aura = aura_rules(launch);
+  setup.protocol.neighbour_distance_m = listening_distance_m(launch);
+  setup.physics.step_s = launch.step_s();
+  setup.physics.substeps = launch.time.substeps;
+  setup.physics.top_speed_m_s = launch.tolerances.speed_m_s;
+  setup.physics.solver = physics::solver_named(launch.physics.solver);
+  setup.physics.solver_iterations = launch.physics.iterations;
+  setup.physics.friction_directions = launch.physics.friction_directions;
+  setup.physics.contact_erp = launch.physics.contact_erp;
+  setup.physics.continuous = launch.physics.is_continuous();
+  setup.physics.threads = threads_of(launch, 1);
+  setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
+  setup.control = launch.control_rules();
+  if (!launch.control.replay.empty()) setup.recorded = node::read_setpoints(launch.control.replay);
+  return setup;
+}
+
+dds::WorldMap world_map(const config::Launch& launch) {
+  dds::WorldMap map;
+  map.map_version = launch.regions.version();
+  map.agreement = launch.agreement();
+  map.scene = launch.scene.name;
+  for (std::uint32_t r = 0; r < launch.regions.size(); ++r)
+    map.regions.push_back(launch.regions.region(core::RegionId{r}));
+  return map;
+}
+
+std::filesystem::path program_beside(const std::string& name, const std::string& remedy) {
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  std::filesystem::path program = self.parent_path() / name;
+  if (!std::filesystem::exists(program)) throw std::runtime_error(program.string() + " is missing. " + remedy);
+  return program;
+}
+
+}  // namespace aurasim::setup

@@ -1,0 +1,23 @@
+// Makes a region's node leave, so that another process takes the region over.
+#pragma once
+
+#include "dds/control.h"
+
+namespace aurasim::steering {
+
+class Drain {
+ public:
+  /// Sends the drain command. Throws SteeringRefused if the region has no live node. `control` must outlive this
+  /// object.
+  Drain(dds::ControlBus& control, core::RegionId region);
+
+  /// Status of the process that has taken the region over, once the run goes on. Null before.
+  const dds::Status* successor();
+
+ private:
+  dds::ControlBus& control_;
+  core::RegionId region_;
+  std::uint64_t leaving_ = 0;
+};
+
+}  // namespace aurasim::steering
