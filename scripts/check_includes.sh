@@ -1,8 +1,15 @@
 #!/usr/bin/env bash
-# Includes go one way:
-#   core, security <- physics, transport, config <- dds, node <- cut, overseer <- cli <- lab
-#   core, physics, config <- import <- cli
-#   client (what programs of others are linked with: knows none of the others) <- python, cli
+# Includes go one way. A folder knows those of the lines above its own, and within a line nobody but itself:
+#   core, security
+#   physics, transport, config (core only)
+#   dds, node, host, command_line
+#   cut
+#   setup, steering, process, launch (each knows those before it)
+#   overseer, agent (knows overseer; neither knows process and launch)
+#   import (core, physics and config only)
+#   cli
+#   lab (not the processes of a run: only setup and what stands above it)
+#   client (what programs of others are linked with: knows none of the others) <- python, agent
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
 # Within a folder there is no circle: x.h and x.cpp are one unit, and no unit includes one that includes it, directly
 # or through others. (Not yet in config.)
@@ -22,19 +29,29 @@ awk '
     allow("config", "core config")
     allow("dds", "core security transport config dds")
     allow("node", "core physics transport node")
-    allow("cut", "core security dds cut")
-    below = "core security physics transport config dds node cut"
-    allow("overseer", below " overseer")
+    allow("host", "core host")
+    allow("command_line", "config host command_line")
+    allow("cut", "core security physics config dds host cut")
+    below = "core security physics transport config dds node host command_line cut setup"
+    allow("setup", below)
+    allow("steering", below " steering")
+    allow("process", below " steering process")
+    allow("launch", below " steering process launch")
+    allow("overseer", below " steering overseer")
+    allow("agent", below " steering overseer client agent")
     allow("import", "core physics config import")
     allow("client", "client")
     allow("python", "python")
-    allow("cli", below " overseer import client cli")
+    allow("cli", below " steering process launch overseer agent import cli")
     # The laboratory is a program of its own: no folder of the product knows it.
-    allow("lab", below " cli lab")
+    allow("lab", below " lab")
 
     wrap("physics", "BulletCollision BulletDynamics LinearMath bullet")
     wrap("dds", "fastdds fastrtps fastcdr")
     wrap("config", "yaml-cpp assimp")
+    wrap("command_line", "CLI")
+    wrap("setup", "CLI")
+    wrap("overseer", "CLI")
     wrap("cli", "CLI")
     wrap("security", "openssl")
     wrap("overseer", "boost openssl")

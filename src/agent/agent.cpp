@@ -14,12 +14,12 @@
 #include "agent/asks.h"
 #include "agent/observation_answer.h"
 #include "agent/setpoints.h"
-#include "setup/key_choice.h"
-#include "host/version.h"
 #include "config/shipped_files.h"
 #include "core/limits.h"
 #include "cut/cut_file.h"
 #include "dds/settings.h"
+#include "host/version.h"
+#include "setup/key_choice.h"
 
 namespace aurasim::agent {
 namespace {
@@ -165,8 +165,8 @@ RunLink& Agent::run() {
 json Agent::open(const json& asked, const Patience& patience) {
   if (asked.value("protocol", 0) != client::kAgentProtocol) {
     throw Problem(Kind::kNoProgram,
-                  fmt::format("{} speaks version {} of the agent's protocol, the library {}", host::version_and_commit(),
-                              client::kAgentProtocol, asked.value("protocol", 0)));
+                  fmt::format("{} speaks version {} of the agent's protocol, the library {}",
+                              host::version_and_commit(), client::kAgentProtocol, asked.value("protocol", 0)));
   }
   if (run_) throw Problem(Kind::kRefused, "this world is connected already");
   const std::string file = config::launch_file_named(asked.value("file", ""));
@@ -204,7 +204,8 @@ json Agent::act(const json& asked, const Patience& patience) {
     commands.push_back(std::move(command));
   }
   json acts = json::array();
-  for (const steering::Delivery& delivery : run_->act(std::move(commands), patience)) acts.push_back(act_json(delivery));
+  for (const steering::Delivery& delivery : run_->act(std::move(commands), patience))
+    acts.push_back(act_json(delivery));
   return {{"acts", std::move(acts)}};
 }
 

@@ -5,8 +5,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "cut/saved_parts.h"
 #include "core/sync_mode_names.h"
+#include "cut/saved_parts.h"
 
 namespace aurasim::agent {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "agent/problem.h"
-#include "steering/client_mesh.h"
 #include "cut/saved_world.h"
+#include "steering/client_mesh.h"
 
 namespace aurasim::agent {
 namespace {

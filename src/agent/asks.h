@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "steering/command_client.h"
 #include "core/command.h"
+#include "steering/command_client.h"
 
 namespace aurasim::agent {
 

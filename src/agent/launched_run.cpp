@@ -7,9 +7,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "client/last_words.h"
 #include "host/other_role.h"
 #include "host/spawn.h"
-#include "client/last_words.h"
 
 namespace aurasim::agent {
 namespace {

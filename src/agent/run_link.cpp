@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "steering/drain.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
 #include "setup/silence.h"
+#include "steering/drain.h"
 
 namespace aurasim::agent {
 namespace {

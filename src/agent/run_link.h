@@ -16,12 +16,12 @@
 #include "agent/observer.h"
 #include "agent/patience.h"
 #include "agent/standing_state.h"
-#include "steering/command_client.h"
-#include "steering/run_steering.h"
 #include "dds/observation_bus.h"
 #include "dds/setpoint_bus.h"
 #include "overseer/world_watch.h"
 #include "security/key_store.h"
+#include "steering/command_client.h"
+#include "steering/run_steering.h"
 
 namespace aurasim::agent {
 

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "setup/launch_setup.h"
-#include "host/long_work.h"
-#include "setup/scene_warnings.h"
-#include "overseer/web_setup.h"
 #include "config/launch.h"
 #include "config/shipped_files.h"
+#include "host/long_work.h"
+#include "overseer/web_setup.h"
+#include "setup/launch_setup.h"
+#include "setup/scene_warnings.h"
 
 namespace aurasim::cli {
 
@@ -27,7 +27,7 @@ void add_check(CLI::App& program, command_line::Action& action) {
                  launch.regions.size(), launch.lookahead(), setup::listening_distance_m(launch));
       std::fflush(stdout);
       host::LongWork work("looking for bodies that overlap",
-                    [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
+                          [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
       for (const std::string& text : setup::scene_warnings(launch, [&work](double share) { work.reached(share); })) {
         fmt::print(stderr, "warning: {}\n", text);
       }

@@ -29,20 +29,4 @@ void add_compare(CLI::App& program, command_line::Action& action);
 void add_send(CLI::App& program, command_line::Action& action);
 void add_mesh_loader(CLI::App& program, command_line::Action& action);
 
-/// Options of a node, and of a spare that becomes one, for processes with a launcher. A launcher finds a successor when
-/// the process dies.
-struct LauncherArguments {
-  bool is_there = false;
-  int heartbeat = -1;  ///< heartbeat.h
-
-  void add_to(CLI::App& command);
-};
-
-/// Option for the key with which a process joins a run with keys.
-struct KeyArguments {
-  std::string as;  ///< name of the key; empty: the first key of the right role
-
-  void add_to(CLI::App& command);
-};
-
 }  // namespace aurasim::cli

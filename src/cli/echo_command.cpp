@@ -7,13 +7,14 @@
 #include <fnmatch.h>
 
 #include "cli/commands.h"
-#include "setup/key_choice.h"
-#include "setup/launch_setup.h"
 #include "command_line/leave.h"
-#include "setup/silence.h"
-#include "host/stop_signal.h"
 #include "dds/control.h"
 #include "dds/topic_echo.h"
+#include "host/stop_signal.h"
+#include "setup/arguments.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "setup/silence.h"
 
 namespace aurasim::cli {
 namespace {
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 struct EchoArguments {
   command_line::FileArguments files;
-  KeyArguments keys;
+  setup::KeyArguments keys;
   std::string topic;
   std::string partition;  ///< empty: all of them
   std::uint64_t count = 0;
@@ -71,7 +72,7 @@ int echo(const EchoArguments& arguments) {
       arguments.partition.empty() ? dds::every_partition_of_topic(arguments.topic) : arguments.partition;
   using security::Role;
   const auto member = setup::member_for(launch, arguments.keys.as,
-                                 {Role::kRecorder, Role::kViewer, Role::kOperator, Role::kSpare, Role::kRegion});
+                                        {Role::kRecorder, Role::kViewer, Role::kOperator, Role::kSpare, Role::kRegion});
   check_permission(arguments.topic, partition, member);
   dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::TopicEcho topic(participant, arguments.topic, partition);

@@ -2,8 +2,8 @@
 
 #include "cli/commands.h"
 #include "cli/import_arguments.h"
-#include "setup/launch_setup.h"
 #include "host/spawn.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::cli {
 namespace {
@@ -13,8 +13,8 @@ int become_importer() {
   std::vector<std::string> words = host::own_command_line();
   words.at(0) =
       setup::program_beside("aurasim-import",
-                     "The package of that name has it; from the sources, `scripts/setup.sh && scripts/build.sh "
-                     "release aurasim-import` builds it")
+                            "The package of that name has it; from the sources, `scripts/setup.sh && scripts/build.sh "
+                            "release aurasim-import` builds it")
           .string();
   host::become(std::move(words));
 }

@@ -3,8 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "command_line/exit_code.h"
 #include "cli/import_program.h"
+#include "command_line/exit_code.h"
 #include "config/launch.h"
 
 using namespace aurasim;

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "command_line/exit_code.h"
 #include "cli/text_files.h"
+#include "command_line/exit_code.h"
 #include "config/launch.h"
 #include "import/read_model.h"
 #include "import/scene_writer.h"

@@ -17,8 +17,8 @@
 
 #include "cli/commands.h"
 #include "command_line/exit_code.h"
-#include "host/spawn.h"
 #include "config/launch.h"
+#include "host/spawn.h"
 #include "security/key_store.h"
 
 namespace aurasim::cli {
@@ -128,8 +128,8 @@ int check(const KeysArguments& a) {
 using Arguments = std::shared_ptr<KeysArguments>;
 
 template <class Work>
-CLI::App* add_command(CLI::App& keys, command_line::Action& action, const Arguments& arguments, const char* name, const char* text,
-                      const char* example, Work work) {
+CLI::App* add_command(CLI::App& keys, command_line::Action& action, const Arguments& arguments, const char* name,
+                      const char* text, const char* example, Work work) {
   CLI::App* command = keys.add_subcommand(name, text);
   command->add_option("DIR", arguments->folder, "folder of the keys")->required();
   command->footer(fmt::format("Example:\n  aurasim keys {} {}", name, example));

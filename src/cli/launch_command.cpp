@@ -6,16 +6,16 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
-#include "host/host_room.h"
-#include "cut/kept_on_disk.h"
-#include "setup/key_choice.h"
-#include "launch/launcher.h"
 #include "command_line/leave.h"
+#include "cut/kept_on_disk.h"
 #include "cut/part_writer.h"
-#include "setup/run_length.h"
+#include "host/host_room.h"
 #include "host/stop_signal.h"
+#include "launch/launcher.h"
 #include "launch/throw_away_keys.h"
 #include "overseer/web_setup.h"
+#include "setup/key_choice.h"
+#include "setup/run_length.h"
 
 namespace aurasim::cli {
 namespace {
@@ -37,7 +37,8 @@ void look_at_host(const config::Launch& launch, const setup::LaunchOptions& opti
   }
   if (options.headless && options.recording.empty()) return;
   overseer::check_tls_of(launch);
-  const auto problem = host::problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
+  const auto problem =
+      host::problem_with_listening(launch.overseer.bind, static_cast<std::uint16_t>(launch.overseer.port));
   if (problem) throw std::runtime_error(*problem);
   if (!options.recording.empty()) overseer::check_recording(options.recording);
 }
@@ -82,7 +83,8 @@ int run_launch(LaunchArguments arguments) {
   look_at_keys(launch);
   look_at_host(launch, arguments.options);
   prepare_saves(launch, arguments.options);
-  const auto world = cut::load_world(arguments.options.load, launch);  // a bad file is refused before anything is started
+  const auto world =
+      cut::load_world(arguments.options.load, launch);  // a bad file is refused before anything is started
   arguments.options.steps = arguments.length.last_step(launch, world ? world->step : 0);
   if (!arguments.report.empty()) arguments.options.report = arguments.report;
   launch::Launcher launcher(launch, arguments.options);
@@ -95,8 +97,9 @@ int run_launch(LaunchArguments arguments) {
                    cut::resume_command(launch, options.save));
     }
     const command_line::ExitCode code = launcher.run();
-    if (code == command_line::ExitCode::kNotSaved) spdlog::error("{}", kNothingSaved);
-    cut::conclude_kept(launch, options.save, launcher.number(), code != command_line::ExitCode::kOk || host::stop_requested());
+    if (code == command_line::ExitCode::kNotSaved) spdlog::error("{}", cut::kNothingSaved);
+    cut::conclude_kept(launch, options.save, launcher.number(),
+                       code != command_line::ExitCode::kOk || host::stop_requested());
     return code;
   });
 }
@@ -122,12 +125,12 @@ void add_launch(CLI::App& program, command_line::Action& action) {
       ->add_option("--spares", arguments->options.spares,
                    "processes that wait to take over the region of a node that dies; without, one is started then")
       ->check(CLI::Range(0, 64));
-  CLI::Option* const load = arguments->options.load.add_to(*command);
+  CLI::Option* const load = setup::add_to(*command, arguments->options.load);
   command
       ->add_flag("--resume", arguments->options.resume,
                  "go on from the newest state that is in --saves, or that a run has kept on disk (survival.disk)")
       ->excludes(load);
-  arguments->options.save.add_to(*command);
+  setup::add_to(*command, arguments->options.save);
   command->footer("Example:\n  aurasim launch demo --duration 30 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_launch(*arguments); }; });
 }

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "command_line/exit_code.h"
 #include "cli/program.h"
+#include "command_line/exit_code.h"
 
 using namespace aurasim;
 

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "overseer/mesh_process.h"
 #include "config/convex_parts.h"
 #include "config/meshes.h"
+#include "overseer/mesh_process.h"
 
 namespace aurasim::cli {
 namespace {

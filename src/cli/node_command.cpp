@@ -7,26 +7,27 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "steering/going_run.h"
-#include "cut/kept_on_disk.h"
-#include "setup/launch_setup.h"
 #include "command_line/leave.h"
-#include "host/long_work.h"
-#include "process/node_process.h"
-#include "host/other_role.h"
-#include "setup/run_length.h"
+#include "cut/kept_on_disk.h"
 #include "cut/saved_world.h"
-#include "setup/scene_warnings.h"
+#include "host/long_work.h"
+#include "host/other_role.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
 #include "physics/region_world.h"
+#include "process/node_process.h"
+#include "setup/arguments.h"
+#include "setup/launch_setup.h"
+#include "setup/run_length.h"
+#include "setup/scene_warnings.h"
+#include "steering/going_run.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct NodeArguments {
   command_line::FileArguments files;
-  KeyArguments keys;
+  setup::KeyArguments keys;
   std::uint32_t region = 0;
   std::uint64_t run = 0;
   setup::RunLength length;
@@ -35,7 +36,7 @@ struct NodeArguments {
   cut::SaveArguments save;
   int start_time_out_s = 30;
   bool takes_over = false;
-  LauncherArguments launcher;
+  setup::LauncherArguments launcher;
   bool or_spare = false;
 };
 
@@ -95,12 +96,6 @@ int run_node(const NodeArguments& arguments) {
 
 }  // namespace
 
-void LauncherArguments::add_to(CLI::App& command) {
-  command.add_flag("--has-launcher", is_there, "whoever has started this process starts another one when a node dies")
-      ->group("");
-  command.add_option("--heartbeat", heartbeat, "number of the pipe that it reads signs of life from")->group("");
-}
-
 void add_node(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("node", "run one region");
   const auto arguments = std::make_shared<NodeArguments>();
@@ -121,8 +116,8 @@ void add_node(CLI::App& program, command_line::Action& action) {
                     "if the run is there and goes on without this node, wait as a spare: for whatever starts a node "
                     "again that has ended");
   arguments->launcher.add_to(*command);
-  arguments->load.add_to(*command);
-  arguments->save.add_to(*command);
+  setup::add_to(*command, arguments->load);
+  setup::add_to(*command, arguments->save);
   command->footer("Example:\n  aurasim node demo --region 0 --report out");
   command->callback([arguments, &action] { action = [arguments] { return run_node(*arguments); }; });
 }

@@ -7,22 +7,23 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/commands.h"
+#include "command_line/leave.h"
+#include "host/stop_signal.h"
+#include "overseer/mesh_process.h"
+#include "overseer/overseer.h"
+#include "overseer/run_command_sink.h"
+#include "overseer/web_setup.h"
+#include "setup/arguments.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
-#include "command_line/leave.h"
-#include "overseer/mesh_process.h"
-#include "overseer/run_command_sink.h"
 #include "setup/silence.h"
-#include "host/stop_signal.h"
-#include "overseer/web_setup.h"
-#include "overseer/overseer.h"
 
 namespace aurasim::cli {
 namespace {
 
 struct OverseerArguments {
   command_line::FileArguments files;
-  KeyArguments keys;
+  setup::KeyArguments keys;
   overseer::WebArguments web;
   std::string recording;
 };
@@ -43,7 +44,7 @@ class RefusingSink final : public overseer::CommandSink {
 int oversee(const OverseerArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   const overseer::WebSettings settings = overseer::web_settings(launch, arguments.web);
-  overseer::ShapeStore shapes(read_mesh_apart);
+  overseer::ShapeStore shapes(overseer::read_mesh_apart);
   const std::unique_ptr<overseer::WebServer> web = overseer::open_web_server(settings, arguments.web, shapes);
   using security::Role;
   const auto member = setup::member_for(launch, arguments.keys.as, {Role::kOperator, Role::kViewer});

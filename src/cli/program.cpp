@@ -24,7 +24,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kMovedCom
 std::unique_ptr<CLI::App> make_program(command_line::Action& action) {
   auto program = std::make_unique<CLI::App>("One world of rigid bodies, simulated by any number of nodes.", "aurasim");
   program->option_defaults()->always_capture_default();
-  program->set_version_flag("--version", version_text, "what this program was made from");
+  program->set_version_flag("--version", host::version_text, "what this program was made from");
   program->require_subcommand(1);
   program->footer(
       "`aurasim COMMAND --help` has the options of a command. Examples:\n"

@@ -6,11 +6,11 @@
 
 #include "cli/commands.h"
 #include "command_line/leave.h"
-#include "overseer/mesh_process.h"
 #include "host/stop_signal.h"
-#include "overseer/web_setup.h"
+#include "overseer/mesh_process.h"
 #include "overseer/page_messages.h"
 #include "overseer/replay.h"
+#include "overseer/web_setup.h"
 
 namespace aurasim::cli {
 namespace {
@@ -62,7 +62,7 @@ void serve_requests(overseer::WebServer& web, overseer::Replay& replay) {
 int replay(const ReplayArguments& arguments) {
   const overseer::WebSettings settings = overseer::web_settings({}, arguments.web);
   overseer::Replay replay(arguments.file);
-  overseer::ShapeStore shapes(read_mesh_apart);
+  overseer::ShapeStore shapes(overseer::read_mesh_apart);
   const auto web = overseer::open_web_server(settings, arguments.web, shapes);
   web->publish(overseer::Notice::kHello, overseer::hello_message(hello_of(replay)));
   host::catch_stop_signals();

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "launch/merged_report.h"
 #include "config/launch.h"
+#include "launch/merged_report.h"
 
 namespace aurasim::cli {
 namespace {
@@ -32,8 +32,8 @@ int merge(const ReportArguments& arguments) {
   facts.regions = launch.regions.size();
   facts.step_s = launch.step_s();
   facts.died = node::regions_without_end(arguments.folder, facts.regions);
-  return static_cast<int>(
-      launch::merge_and_print(arguments.folder, facts, facts.died.empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed));
+  return static_cast<int>(launch::merge_and_print(
+      arguments.folder, facts, facts.died.empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed));
 }
 
 }  // namespace

@@ -8,19 +8,20 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "steering/client_mesh.h"
-#include "steering/command_client.h"
 #include "cli/commands.h"
-#include "steering/drain.h"
 #include "command_line/exit_code.h"
-#include "setup/key_choice.h"
-#include "setup/launch_setup.h"
 #include "command_line/leave.h"
-#include "steering/run_steering.h"
+#include "core/limits.h"
 #include "cut/saved_parts.h"
 #include "cut/saved_world.h"
+#include "setup/arguments.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
 #include "setup/silence.h"
-#include "core/limits.h"
+#include "steering/client_mesh.h"
+#include "steering/command_client.h"
+#include "steering/drain.h"
+#include "steering/run_steering.h"
 
 namespace aurasim::cli {
 namespace {
@@ -40,7 +41,7 @@ const std::map<std::string, Kind> kSteering = {{"pause", Kind::kPause},
 
 struct SendArguments {
   command_line::FileArguments files;
-  KeyArguments keys;
+  setup::KeyArguments keys;
   std::string what;
   std::int64_t count = 1;
   core::Step at_step = 0;

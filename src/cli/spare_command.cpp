@@ -11,17 +11,18 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "setup/key_choice.h"
-#include "setup/launch_setup.h"
 #include "command_line/leave.h"
-#include "host/other_role.h"
-#include "setup/run_length.h"
 #include "cut/saved_world.h"
-#include "setup/silence.h"
-#include "host/spawn.h"
-#include "host/stop_signal.h"
 #include "dds/control.h"
 #include "dds/random_id.h"
+#include "host/other_role.h"
+#include "host/spawn.h"
+#include "host/stop_signal.h"
+#include "setup/arguments.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
+#include "setup/run_length.h"
+#include "setup/silence.h"
 
 namespace aurasim::cli {
 namespace {
@@ -33,20 +34,21 @@ constexpr auto kStatusPeriod = 100ms;
 
 struct SpareArguments {
   command_line::FileArguments files;
-  KeyArguments keys;
+  setup::KeyArguments keys;
   std::uint64_t run = 0;
   std::string report;
   setup::RunLength length;
   cut::LoadArguments load;
   cut::SaveArguments save;
-  LauncherArguments launcher;  // passed on to the node that the spare becomes
+  setup::LauncherArguments launcher;  // passed on to the node that the spare becomes
 };
 
 class Spare {
  public:
   Spare(const config::Launch& launch, const std::string& as, std::uint64_t run)
       : launch_(launch),
-        participant_(setup::with_keys(setup::dds_settings(launch), launch, setup::member_for(launch, as, {security::Role::kSpare}))),
+        participant_(setup::with_keys(setup::dds_settings(launch), launch,
+                                      setup::member_for(launch, as, {security::Role::kSpare}))),
         control_(participant_, {.region = dds::kNoRegion,
                                 .agreement = launch.agreement(),
                                 .run = run_if_known(run),
@@ -132,8 +134,8 @@ void add_spare(CLI::App& program, command_line::Action& action) {
   command->add_option("--report", arguments->report, "folder for what it records as a node");
   arguments->launcher.add_to(*command);
   arguments->length.add_to(*command);
-  arguments->load.add_to(*command);
-  arguments->save.add_to(*command);
+  setup::add_to(*command, arguments->load);
+  setup::add_to(*command, arguments->save);
   command->footer("Example:\n  aurasim spare demo");
   command->callback([arguments, &action] { action = [arguments] { return run_spare(*arguments); }; });
 }

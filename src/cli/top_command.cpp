@@ -1,13 +1,14 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "command_line/leave.h"
+#include "dds/control.h"
+#include "host/stop_signal.h"
+#include "launch/live_table.h"
+#include "setup/arguments.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
-#include "command_line/leave.h"
-#include "launch/live_table.h"
 #include "setup/silence.h"
-#include "host/stop_signal.h"
-#include "dds/control.h"
 
 namespace aurasim::cli {
 namespace {
@@ -15,11 +16,11 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-int watch(const command_line::FileArguments& files, const KeyArguments& keys, double seconds) {
+int watch(const command_line::FileArguments& files, const setup::KeyArguments& keys, double seconds) {
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   using security::Role;
-  const auto member =
-      setup::member_for(launch, keys.as, {Role::kViewer, Role::kOperator, Role::kRecorder, Role::kSpare, Role::kRegion});
+  const auto member = setup::member_for(launch, keys.as,
+                                        {Role::kViewer, Role::kOperator, Role::kRecorder, Role::kSpare, Role::kRegion});
   dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
   dds::ControlBus control(participant, {.agreement = launch.agreement(),
                                         .region_count = static_cast<std::uint32_t>(launch.regions.size()),
@@ -47,7 +48,7 @@ int watch(const command_line::FileArguments& files, const KeyArguments& keys, do
 void add_top(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("top", "watch the nodes of a run");
   const auto files = std::make_shared<command_line::FileArguments>();
-  const auto keys = std::make_shared<KeyArguments>();
+  const auto keys = std::make_shared<setup::KeyArguments>();
   const auto seconds = std::make_shared<double>(0);
   files->add_to(*command);
   keys->add_to(*command);

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cut/saved_world.h"
 #include "config/launch.h"
+#include "cut/saved_world.h"
 
 namespace aurasim::cut {
 

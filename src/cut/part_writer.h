@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "cut/save_ledger.h"
 #include "config/launch.h"
 #include "core/order.h"
 #include "core/world_cut.h"
 #include "cut/part_store.h"
+#include "cut/save_ledger.h"
 
 namespace aurasim::cut {
 

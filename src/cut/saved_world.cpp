@@ -4,7 +4,6 @@
 #include <functional>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -41,21 +40,6 @@ cut::Identity identity_of(const config::Launch& launch) {
           .physics = fmt::format("{}, {} substeps, {:g} steps/s", launch.physics.solver, launch.time.substeps,
                                  launch.time.step_hz),
           .world = launch.world_identity()};
-}
-
-CLI::Option* LoadArguments::add_to(CLI::App& command) {
-  CLI::Option* load = command.add_option("--load", file, "a saved world to go on from (aurasim send save)");
-  command.add_flag("--other-build", other_build, "also load a world that another build has saved");
-  return load;
-}
-
-void SaveArguments::add_to(CLI::App& command) {
-  command.add_option("--saves", folder, "folder for the nodes' parts of saved worlds")
-      ->each([this](const std::string&) { folder_is_given = true; });
-  command.add_option("--save-every", every_s, "save the world so often, in simulated seconds. 0: only when asked to")
-      ->check(CLI::Range(0.0, 1e9));
-  command.add_option("--save-keep", keep, "with --save-every: so many of them stay, the newest")
-      ->check(CLI::Range(1, 1'000'000));
 }
 
 std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch) {

@@ -25,9 +25,6 @@ cut::Identity identity_of(const config::Launch& launch);
 struct LoadArguments {
   std::string file;
   bool other_build = false;
-
-  /// Returns the option --load.
-  CLI::Option* add_to(CLI::App& command);
 };
 
 /// Command-line options for where and how often nodes save their parts.
@@ -36,8 +33,6 @@ struct SaveArguments {
   bool folder_is_given = false;
   double every_s = 0;    ///< simulated seconds; 0: only on request
   std::size_t keep = 3;  ///< how many regularly saved worlds stay
-
-  void add_to(CLI::App& command);
 };
 
 /// The world that --load names. Null if the option is not given. Throws config::BadConfig, with the reason, if the file

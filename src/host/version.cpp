@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/commit.h"
+#include "host/commit.h"
 
 namespace aurasim::host {
 

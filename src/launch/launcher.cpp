@@ -10,17 +10,17 @@
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
-#include "launch/closing_line.h"
-#include "setup/guard_log.h"
 #include "cut/kept_on_disk.h"
-#include "setup/key_choice.h"
-#include "setup/launch_setup.h"
-#include "launch/merged_report.h"
 #include "cut/saved_world.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
 #include "host/terminal.h"
+#include "launch/closing_line.h"
+#include "launch/merged_report.h"
 #include "node/report.h"
+#include "setup/guard_log.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::launch {
 namespace {
@@ -39,8 +39,8 @@ constexpr auto kOnePress = 500ms;  // `timeout` and some shells signal a process
 Launcher::Launcher(const config::Launch& launch, const setup::LaunchOptions& options)
     : launch_(launch),
       options_(options),
-      participant_(
-          setup::with_keys(setup::dds_settings(launch), launch, setup::member_for(launch, options.keys.as, {security::Role::kOperator}))),
+      participant_(setup::with_keys(setup::dds_settings(launch), launch,
+                                    setup::member_for(launch, options.keys.as, {security::Role::kOperator}))),
       control_(
           participant_,
           {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {
@@ -195,7 +195,7 @@ void Launcher::collect_exits() {
       } else {
         must_not_go_on_ = true;
         spdlog::error("{}", cut::world_is_lost(cut::folders_of_run(launch_, options_.save, run_),
-                                          {launch_.world_identity(), {run_}, cut::launch_command(launch_)}));
+                                               {launch_.world_identity(), {run_}, cut::launch_command(launch_)}));
       }
     }
   }
@@ -253,7 +253,7 @@ void Launcher::break_off(const std::string& why) {
   must_not_go_on_ = true;
   spdlog::error("the run ends: {}. {}", why,
                 cut::say_newest_saved(cut::folders_of_run(launch_, options_.save, run_),
-                                 {launch_.world_identity(), {run_}, cut::launch_command(launch_)}));
+                                      {launch_.world_identity(), {run_}, cut::launch_command(launch_)}));
 }
 
 /// True if the others wait for a process that takes the child's region over.
@@ -369,7 +369,8 @@ command_line::ExitCode Launcher::conclude() {
   command_line::ExitCode code = recording_broke_off ? command_line::ExitCode::kFailed : command_line::ExitCode::kOk;
   for (const Child& child : children_) {
     if (child.died) code = command_line::ExitCode::kFailed;
-    if (!child.died && child.exit_code != 0 && code == command_line::ExitCode::kOk) code = static_cast<command_line::ExitCode>(child.exit_code);
+    if (!child.died && child.exit_code != 0 && code == command_line::ExitCode::kOk)
+      code = static_cast<command_line::ExitCode>(child.exit_code);
   }
   if (!options_.report) {
     host::print(closing_line(control_.statuses(), children_.size(), has_begun_, launch_.step_s()));

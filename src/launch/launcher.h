@@ -9,16 +9,16 @@
 #include <sys/types.h>
 
 #include "command_line/exit_code.h"
+#include "dds/random_id.h"
 #include "host/folder_lock.h"
 #include "host/heartbeat.h"
-#include "setup/launch_options.h"
 #include "launch/live_table.h"
-#include "process/long_step.h"
-#include "process/node_ending.h"
-#include "steering/run_steering.h"
 #include "launch/start_watch.h"
 #include "launch/viewer_process.h"
-#include "dds/random_id.h"
+#include "process/long_step.h"
+#include "process/node_ending.h"
+#include "setup/launch_options.h"
+#include "steering/run_steering.h"
 
 namespace aurasim::launch {
 

@@ -7,8 +7,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "process/long_step.h"
 #include "host/terminal.h"
+#include "process/long_step.h"
 
 namespace aurasim::launch {
 namespace {

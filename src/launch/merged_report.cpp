@@ -27,7 +27,8 @@ std::string closing_line(const node::Accounts& accounts) {
       accounts.thrashed, accounts.reclaimed, accounts.real_time_factor);
 }
 
-command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, command_line::ExitCode so_far) {
+command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts,
+                                       command_line::ExitCode so_far) {
   const node::Accounts accounts = node::merge_report(folder, facts);
   host::print(fmt::format("report: {}\n", (folder / "summary.json").string()));
   host::print(closing_line(accounts));

@@ -14,6 +14,7 @@ std::string closing_line(const node::Accounts& accounts);
 
 /// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or hosted twice, or when
 /// records are missing.
-command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts, command_line::ExitCode so_far);
+command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts,
+                                       command_line::ExitCode so_far);
 
 }  // namespace aurasim::launch

@@ -5,7 +5,7 @@
 
 #include <sys/types.h>
 
-#include "cli/commands.h"
+#include "setup/arguments.h"
 
 namespace aurasim::launch {
 

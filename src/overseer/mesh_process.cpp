@@ -88,7 +88,8 @@ MeshOrWhy mesh_of_bytes(std::string_view bytes) {
 
 MeshOrWhy MeshProcess::read(const std::string& name, std::string_view bytes) const {
   return outcome(
-      host::run_child({{program, "mesh-loader", "read", "mesh" + ending_of(name)}, limit, kMostBytes, kMostMemory}, bytes),
+      host::run_child({{program, "mesh-loader", "read", "mesh" + ending_of(name)}, limit, kMostBytes, kMostMemory},
+                      bytes),
       limit);
 }
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "steering/command_client.h"
-#include "overseer/part_finder.h"
-#include "steering/run_steering.h"
 #include "overseer/commands.h"
+#include "overseer/part_finder.h"
 #include "overseer/shape_store.h"
+#include "steering/command_client.h"
+#include "steering/run_steering.h"
 
 namespace aurasim::overseer {
 

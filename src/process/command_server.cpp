@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "steering/command_limits.h"
-#include "cut/saved_world.h"
 #include "config/meshes.h"
 #include "core/static_moves.h"
+#include "cut/saved_world.h"
 #include "node/scene_additions.h"
+#include "steering/command_limits.h"
 
 namespace aurasim::process {
 namespace {
@@ -121,7 +121,8 @@ void CommandServer::answer(const core::Command& command, const core::Ray& ray, c
 /// (take_wanted_rate).
 void CommandServer::take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node) {
   const steering::CommandContext context{launch_, node.scene(), node.current_step(), 0, std::nullopt};
-  if (std::string why = steering::problem_with(command, context); !why.empty()) return refuse(command.request, std::move(why));
+  if (std::string why = steering::problem_with(command, context); !why.empty())
+    return refuse(command.request, std::move(why));
   wanted_rate_ = ask.rate;
   reply_done(command.request, node.current_step());
 }

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "process/order_issuer.h"
-#include "cut/part_writer.h"
 #include "config/launch.h"
 #include "core/command.h"
+#include "cut/part_writer.h"
 #include "dds/command_bus.h"
 #include "dds/scene_additions_bus.h"
 #include "node/node.h"
+#include "process/order_issuer.h"
 
 namespace aurasim::process {
 

@@ -10,14 +10,14 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "setup/guard_log.h"
-#include "host/heartbeat.h"
-#include "setup/key_choice.h"
-#include "setup/launch_setup.h"
-#include "process/long_step.h"
-#include "host/stop_signal.h"
 #include "core/command.h"
 #include "dds/random_id.h"
+#include "host/heartbeat.h"
+#include "host/stop_signal.h"
+#include "process/long_step.h"
+#include "setup/guard_log.h"
+#include "setup/key_choice.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::process {
 namespace {
@@ -52,8 +52,8 @@ RecoverySettings recovery_settings(const config::Launch& launch, const NodeOptio
 /// DDS settings of a node. A launcher on this host that receives the heartbeat knows which of its processes live, and
 /// ends those that hang; then nothing else judges that.
 dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& options) {
-  dds::Settings settings =
-      setup::with_keys(setup::dds_settings(launch, options.region), launch, setup::member_for_node(launch, options.as, options.region));
+  dds::Settings settings = setup::with_keys(setup::dds_settings(launch, options.region), launch,
+                                            setup::member_for_node(launch, options.as, options.region));
   const bool is_watched = options.has_launcher && options.heartbeat >= 0;
   settings.believes_silence = !is_watched;
   settings.show_life = [heartbeat = host::Heartbeat(options.heartbeat)] { heartbeat.beat(); };

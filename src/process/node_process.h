@@ -13,21 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "process/checkpoints.h"
-#include "process/command_server.h"
 #include "command_line/exit_code.h"
-#include "process/fence.h"
-#include "process/hold.h"
-#include "process/node_phase.h"
-#include "cut/part_writer.h"
-#include "process/patience.h"
-#include "process/recovery.h"
-#include "process/replica_publisher.h"
-#include "process/ros2_link.h"
-#include "process/run_control_limits.h"
-#include "cut/saved_world.h"
-#include "process/world_meant.h"
 #include "config/launch.h"
+#include "cut/part_writer.h"
+#include "cut/saved_world.h"
 #include "dds/control.h"
 #include "dds/dds_transport.h"
 #include "dds/participant.h"
@@ -35,6 +24,17 @@
 #include "node/node.h"
 #include "node/pacer.h"
 #include "node/recorder.h"
+#include "process/checkpoints.h"
+#include "process/command_server.h"
+#include "process/fence.h"
+#include "process/hold.h"
+#include "process/node_phase.h"
+#include "process/patience.h"
+#include "process/recovery.h"
+#include "process/replica_publisher.h"
+#include "process/ros2_link.h"
+#include "process/run_control_limits.h"
+#include "process/world_meant.h"
 
 namespace aurasim::process {
 

@@ -8,12 +8,12 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "setup/launch_setup.h"
-#include "process/node_process.h"
-#include "host/stop_signal.h"
 #include "config/launch_variants.h"
 #include "dds/replica_bus.h"
+#include "host/stop_signal.h"
 #include "node/repartition.h"
+#include "process/node_process.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::process {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include "host/stop_signal.h"
 #include "process/long_step.h"
 #include "process/node_process.h"
-#include "host/stop_signal.h"
 
 namespace aurasim::process {
 namespace {

@@ -141,8 +141,8 @@ void NodeProcess::send_back(dds::RunCommand restore, const core::Command& back) 
 }
 
 cut::SavedWorld NodeProcess::as_saved(core::WorldCut part) const {
-  return {cut::identity_of(launch_), core::value_of(options_.region), static_cast<std::uint32_t>(launch_.regions.size()), 0,
-          std::move(part)};
+  return {cut::identity_of(launch_), core::value_of(options_.region),
+          static_cast<std::uint32_t>(launch_.regions.size()), 0, std::move(part)};
 }
 
 /// The regions that keep this node's parts, chosen by the hosts of the present nodes.

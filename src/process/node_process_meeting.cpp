@@ -6,9 +6,9 @@
 #include <spdlog/spdlog.h>
 
 #include "host/long_work.h"
+#include "host/stop_signal.h"
 #include "process/node_process.h"
 #include "setup/silence.h"
-#include "host/stop_signal.h"
 
 namespace aurasim::process {
 namespace {

@@ -9,14 +9,14 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "setup/launch_setup.h"
+#include "config/launch_variants.h"
+#include "cut/saved_world.h"
+#include "dds/link_mtu.h"
+#include "host/stop_signal.h"
 #include "process/node_process.h"
 #include "process/restore_plan.h"
+#include "setup/launch_setup.h"
 #include "steering/run_steering.h"
-#include "cut/saved_world.h"
-#include "host/stop_signal.h"
-#include "config/launch_variants.h"
-#include "dds/link_mtu.h"
 
 namespace aurasim::process {
 namespace {

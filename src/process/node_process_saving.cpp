@@ -18,7 +18,9 @@ cut::SaveOf NodeProcess::save_of() const {
   return {options_.run != 0 ? options_.run : start, start + generation_};
 }
 
-cut::SavedBy NodeProcess::saved_by() const { return {launch_.world_identity(), saved_runs_, cut::launch_command(launch_)}; }
+cut::SavedBy NodeProcess::saved_by() const {
+  return {launch_.world_identity(), saved_runs_, cut::launch_command(launch_)};
+}
 
 std::vector<std::filesystem::path> NodeProcess::save_folders() const {
   std::vector<std::filesystem::path> folders = {options_.saves};
@@ -70,7 +72,7 @@ void NodeProcess::conclude_saves() {
       cut::PartStore(cut::kept_folder_of(*options_.kept, run)).remove_all_of(core::value_of(options_.region));
     }
   }
-  if (saves_.regular_ones_failed() && !options_.has_launcher) spdlog::error("{}", kNothingSaved);
+  if (saves_.regular_ones_failed() && !options_.has_launcher) spdlog::error("{}", cut::kNothingSaved);
 }
 
 }  // namespace aurasim::process

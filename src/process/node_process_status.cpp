@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "setup/guard_log.h"
-#include "process/node_process.h"
 #include "node/durations.h"
+#include "process/node_process.h"
+#include "setup/guard_log.h"
 
 namespace aurasim::process {
 namespace {

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "process/node_process.h"
 #include "host/other_role.h"
-#include "steering/run_steering.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
+#include "process/node_process.h"
+#include "steering/run_steering.h"
 
 namespace aurasim::process {
 namespace {
@@ -107,7 +107,8 @@ bool NodeProcess::can_leave_to_others() {
 void NodeProcess::leave_if_asked() {
   if (!host::asked_to_leave() || leaves_by_) return;
   leaves_by_ = Clock::now() + kPatienceWithSuccessor;
-  dds::RunCommand drain = steering::about_process(dds::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
+  dds::RunCommand drain =
+      steering::about_process(dds::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
   control_.send(drain);
   hear_of_drain(drain);
 }

@@ -6,11 +6,11 @@
 #include <map>
 #include <optional>
 
-#include "process/observer_pace.h"
 #include "config/launch.h"
 #include "dds/observation_bus.h"
 #include "node/node.h"
 #include "node/observation_feed.h"
+#include "process/observer_pace.h"
 
 namespace aurasim::process {
 

@@ -78,8 +78,9 @@ Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, con
   if (closed_) return refusal("the run is being changed; ask again in a moment");
   if (changes_the_run && !run.complete) return refusal("a node has died: ask again once its region has a node");
   const core::ClientShape* const own_shape = shape_in(command.ask);
-  const steering::CommandContext context{launch_, node.scene(), node.current_step(), run.bodies,
-                               own_shape != nullptr ? shape_of(*own_shape, meshes, node.scene()) : std::nullopt};
+  const steering::CommandContext context{
+      launch_, node.scene(), node.current_step(), run.bodies,
+      own_shape != nullptr ? shape_of(*own_shape, meshes, node.scene()) : std::nullopt};
   if (std::string why = steering::problem_with(command, context); !why.empty()) return refusal(std::move(why));
   if (const auto* body = std::get_if<core::NewBody>(&command.ask)) return spawn(command, *body, node);
   if (const auto* fixed = std::get_if<core::NewStatic>(&command.ask)) return place(command, *fixed, node);

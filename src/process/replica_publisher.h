@@ -5,12 +5,12 @@
 #include <chrono>
 #include <optional>
 
-#include "process/observation_publisher.h"
 #include "config/launch.h"
 #include "dds/overlay_bus.h"
 #include "dds/replica_bus.h"
 #include "node/node.h"
 #include "node/replica_feed.h"
+#include "process/observation_publisher.h"
 
 namespace aurasim::process {
 

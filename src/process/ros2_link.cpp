@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "setup/launch_setup.h"
 #include "node/replica_feed.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::process {
 namespace {

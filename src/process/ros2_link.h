@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "process/ros2_view.h"
 #include "config/launch.h"
 #include "core/setpoint.h"
 #include "dds/ros2_bus.h"
 #include "node/node.h"
+#include "process/ros2_view.h"
 
 namespace aurasim::process {
 

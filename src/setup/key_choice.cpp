@@ -7,8 +7,6 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "cli/commands.h"
-
 namespace aurasim::setup {
 namespace {
 
@@ -37,10 +35,6 @@ security::Member member_named(const security::KeyStore& store, const std::string
 }
 
 }  // namespace
-
-void KeyArguments::add_to(CLI::App& command) {
-  command.add_option("--as", as, "in a run with keys, join it as this name of dds.security")->type_name("NAME");
-}
 
 std::optional<security::Member> member_for(const config::Launch& launch, const std::string& as, const Roles& roles) {
   if (launch.dds.security.empty()) return std::nullopt;

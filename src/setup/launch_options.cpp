@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "setup/launch_setup.h"
 #include "host/other_role.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::setup {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 /// Command-line options that nodes and spares share.
 std::vector<std::string> command_line(const char* command, const config::Launch& launch, const LaunchOptions& options,
                                       std::uint64_t run) {
-  std::vector<std::string> words = {host::own_program(),       command,         options.files.file, "--run",
+  std::vector<std::string> words = {host::own_program(), command,         options.files.file, "--run",
                                     std::to_string(run), "--has-launcher"};
   words.insert(words.end(), options.heartbeat.begin(), options.heartbeat.end());
   for (const std::string& change : options.files.overrides) words.insert(words.end(), {"--set", change});

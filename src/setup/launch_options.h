@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cut/saved_world.h"
 #include "config/launch.h"
+#include "cut/saved_world.h"
+#include "setup/arguments.h"
 
 namespace aurasim::setup {
 
 struct LaunchOptions {
   command_line::FileArguments files;
-  cli::KeyArguments keys;
+  KeyArguments keys;
   std::optional<core::Step> steps;
   std::optional<std::filesystem::path> report;
   bool headless = false;

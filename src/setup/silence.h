@@ -4,9 +4,9 @@
 #include <chrono>
 #include <string>
 
-#include "cli/commands.h"
 #include "config/launch.h"
 #include "dds/participant.h"
+#include "setup/arguments.h"
 
 namespace aurasim::setup {
 

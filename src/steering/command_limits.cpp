@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "setup/launch_setup.h"
-#include "cut/saved_world.h"
 #include "config/launch_variants.h"
 #include "config/shapes.h"
 #include "core/limits.h"
+#include "cut/saved_world.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::steering {
 namespace {

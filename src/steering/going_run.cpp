@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "dds/control.h"
+#include "host/stop_signal.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
-#include "host/stop_signal.h"
-#include "dds/control.h"
 
 namespace aurasim::steering {
 namespace {
@@ -39,7 +39,8 @@ bool goes_on(const std::map<core::RegionId, dds::SeenStatus>& statuses) {
 
 bool a_run_goes_on(const config::Launch& launch, const std::string& as, core::RegionId region) {
   Ear& ear = *new Ear(launch, as, region);
-  for (const auto end = Clock::now() + kPatience; Clock::now() < end && !host::stop_requested(); ear.control.wait(50ms)) {
+  for (const auto end = Clock::now() + kPatience; Clock::now() < end && !host::stop_requested();
+       ear.control.wait(50ms)) {
     if (goes_on(ear.control.statuses())) return true;
   }
   return false;

@@ -95,9 +95,9 @@ TEST_F(Program, CompletionsAndManualNameEveryCommandAndOption) {
   for_each(*program_, [&](const CLI::App& command) {
     for (const std::string& text : {bash, zsh, read_man}) EXPECT_THAT(text, HasSubstr(command.get_name()));
     for (const CLI::Option* option : command_line::options_of(command)) {
-      if (option->get_positional() || name_of(*option) == "--help") continue;
-      EXPECT_THAT(bash, HasSubstr(name_of(*option)));
-      EXPECT_THAT(zsh, HasSubstr(name_of(*option)));
+      if (option->get_positional() || command_line::name_of(*option) == "--help") continue;
+      EXPECT_THAT(bash, HasSubstr(command_line::name_of(*option)));
+      EXPECT_THAT(zsh, HasSubstr(command_line::name_of(*option)));
     }
   });
   EXPECT_THAT(bash,

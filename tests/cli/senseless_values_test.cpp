@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "setup/launch_setup.h"
-#include "setup/scene_warnings.h"
 #include "config/workspace.h"
 #include "node/node.h"
+#include "setup/launch_setup.h"
+#include "setup/scene_warnings.h"
 #include "transport/memory_transport.h"
 
 namespace aurasim::cli {

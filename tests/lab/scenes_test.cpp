@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "setup/launch_setup.h"
 #include "config/launch.h"
 #include "core/fnv1a.h"
 #include "lab/scenes/interference.h"
 #include "lab/scenes/random_world.h"
 #include "lab/scenes/shrink.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab {
 namespace {

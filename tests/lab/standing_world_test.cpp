@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "setup/launch_setup.h"
 #include "config/launch.h"
 #include "core/world_cut.h"
 #include "lab/launch_rules.h"
 #include "lab/scenes/endurance.h"
 #include "lab/scenes/play.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab {
 namespace {

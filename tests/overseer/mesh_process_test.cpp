@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "host/child_program.h"
 #include "config/meshes.h"
+#include "host/child_program.h"
 
 namespace aurasim::overseer {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "process/order_issuer.h"
 #include "cluster/cluster_sim.h"
 #include "cluster/scenes.h"
 #include "core/limits.h"
+#include "process/order_issuer.h"
 
 namespace aurasim::process {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "outage_process.h"
 #include "process/keepers.h"
 #include "process/restore_plan.h"
-#include "outage_process.h"
 
 namespace aurasim::process::test {
 namespace {

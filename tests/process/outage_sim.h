@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "dds/node_roster.h"
 #include "process/fence.h"
 #include "process/recovery.h"
-#include "dds/node_roster.h"
 
 namespace aurasim::process::test {
 

@@ -31,7 +31,8 @@ class Watch {
   int end(const std::vector<lab::Target>& targets) const {
     bar_.end();
     print(targets);
-    return static_cast<int>(all_met(targets) && !host::stop_requested() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
+    return static_cast<int>(all_met(targets) && !host::stop_requested() ? command_line::ExitCode::kOk
+                                                                        : command_line::ExitCode::kFailed);
   }
 
  private:

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/exit_code.h"
-#include "setup/launch_setup.h"
 #include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/scenes/endurance.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
 namespace {

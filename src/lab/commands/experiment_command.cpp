@@ -9,8 +9,8 @@
 #include <spdlog/spdlog.h>
 
 #include "command_line/exit_code.h"
-#include "host/stop_signal.h"
 #include "config/shipped_files.h"
+#include "host/stop_signal.h"
 #include "lab/aura_radius.h"
 #include "lab/collision.h"
 #include "lab/commands/commands.h"
@@ -82,7 +82,8 @@ int run_trials(TrialArguments arguments, bool loss) {
   return static_cast<int>(all_met(targets) ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
 }
 
-void add_trials(CLI::App& parent, command_line::Action& action, const std::string& name, const std::string& about, bool loss) {
+void add_trials(CLI::App& parent, command_line::Action& action, const std::string& name, const std::string& about,
+                bool loss) {
   CLI::App* command = parent.add_subcommand(name, about);
   const auto a = std::make_shared<TrialArguments>();
   a->pairs = loss ? std::vector<std::string>{"head_on"}

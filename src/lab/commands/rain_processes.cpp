@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-#include "setup/launch_setup.h"
 #include "host/spawn.h"
 #include "lab/scale/rain_run.h"
 #include "node/report_rows.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
 namespace {

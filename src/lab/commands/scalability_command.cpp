@@ -8,15 +8,15 @@
 #include <spdlog/spdlog.h>
 
 #include "command_line/exit_code.h"
-#include "setup/launch_setup.h"
-#include "host/stop_signal.h"
 #include "config/shipped_files.h"
+#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/commands/rain_processes.h"
 #include "lab/scale/message_sizes.h"
 #include "lab/scale/rain_summary.h"
 #include "lab/scale/scalability.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
 namespace {
@@ -82,7 +82,9 @@ bool run_as_processes(const std::vector<lab::Rain>& rains, const RainArguments& 
   return true;
 }
 
-int exit_code(bool finished) { return static_cast<int>(finished ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed); }
+int exit_code(bool finished) {
+  return static_cast<int>(finished ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
+}
 
 int run_scalability(const RainArguments& arguments) {
   const std::vector<lab::Rain> rains = lab::rains_of(arguments.plan);

@@ -9,12 +9,12 @@
 #include <spdlog/spdlog.h>
 
 #include "command_line/exit_code.h"
-#include "setup/launch_setup.h"
 #include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/conditions.h"
 #include "lab/scenes/scenes.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
 namespace {
@@ -90,7 +90,8 @@ int run_seeds(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
              sums["unflagged"].get<int>());
   if (!sums["failed_seeds"].empty()) fmt::print("failed: {}\n", sums["failed_seeds"].dump());
   if (!finished) spdlog::warn("stopped; the same command goes on from here");
-  return static_cast<int>(finished && sums["failed_seeds"].empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed);
+  return static_cast<int>(finished && sums["failed_seeds"].empty() ? command_line::ExitCode::kOk
+                                                                   : command_line::ExitCode::kFailed);
 }
 
 int run_scenes_command(const ScenesArguments& arguments) {
