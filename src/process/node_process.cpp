@@ -83,7 +83,7 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       control_(*participant_, {launch.regions.version(), options.region, launch.agreement(), options.run,
                                static_cast<std::uint32_t>(launch.regions.size())}),
       fence_(fence_settings(), [this] { return peer_signs(); }),
-      saves_({options.saves, {}}, options.region, launch.regions.size(), options.save_keep),
+      saving_(launch_, options_),
       pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
       recovery_(recovery_settings(launch, options, !participant_->stays_on_this_host())) {
   status_.region = options.region;
@@ -235,22 +235,20 @@ void NodeProcess::begin_with(const node::StepReport& report) {
   hurry_until_ = 0;
   refusals_noted_ = 0;
   frame_times_.clear();
-  checkpoint_ = recorded_ = secured_ = 0;
-  saved_last_ = std::min(saved_last_, node_->current_step());
-  begin_to_save();
+  saving_.begin(start_->request, generation_, node_->current_step());
   if (launch_.regions.size() > 1) checkpoints_->use_keepers(keepers(), life_);
   observers_->begin_generation(generation_);
   observers_->after_step(*node_, report);
   record(node_->confirmed());
   command_server_->after_step(report);
-  plan_checkpoint();
+  saving_.plan_checkpoint(*node_);
 }
 
 void NodeProcess::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     note_faults(report);
     unbearable_setpoints_ += report.unbearable;
-    if (!report.put_back_from) recorded_ = std::max(recorded_, report.step);
+    if (!report.put_back_from) saving_.note_recorded(report.step);
     const auto times = frame_times_.find(report.step);
     if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : node::FrameTimes{});
     if (times != frame_times_.end() && !report.put_back_from) frame_times_.erase(times);
@@ -282,14 +280,14 @@ void NodeProcess::run_until_end() {
     look_for_deaths();
     obey_late_commands();
     serve_clients();
-    save_parts();
+    keep_parts();
     if (reset_if_due() || change_if_due()) continue;
     tell_ros2();
     hear_programs();
     if (!wait_until_due()) continue;  // true: the step is due without waiting
     look_for_deaths();
     compute_step();
-    plan_checkpoint();
+    saving_.plan_checkpoint(*node_);
   }
 }
 
@@ -355,12 +353,12 @@ void NodeProcess::compute_step() {
   control_.note_state();
   programs_->note_state();
   if (report.put_back_from) return note_redo(report);
-  if (!doubtful_saves_.empty()) look_at_doubtful_saves(std::nullopt);
+  saving_.look_at_doubtful(*node_, std::nullopt);
   command_server_->after_step(report);  // before observers_, because observers need the additions
   observers_->after_step(*node_, report);
   run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
   for (const core::Order& order : report.orders) {
-    if (std::holds_alternative<core::Save>(order.action)) saves_.expect(order);
+    if (std::holds_alternative<core::Save>(order.action)) saving_.expect(order);
   }
   const double frame_ms = milliseconds(Clock::now() - begin);
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
@@ -386,7 +384,8 @@ void NodeProcess::note_redo(const node::StepReport& report) {
                   report.put_back_for.size() > 1 ? fmt::format(" and {} more pairs", report.put_back_for.size() - 1)
                                                  : std::string());
   spdlog::info("region {} {}", core::value_of(options_.region), notice_);
-  look_at_doubtful_saves(report.step);
+  saving_.look_at_doubtful(*node_, report.step);
+  note_words_of_saves();
   status_.redos = node_->redos();
   observers_->put_back();
   record(node_->confirmed());

@@ -15,7 +15,6 @@
 
 #include "command_line/exit_code.h"
 #include "config/launch.h"
-#include "cut/part_writer.h"
 #include "cut/saved_world.h"
 #include "dds/control.h"
 #include "dds/dds_transport.h"
@@ -28,33 +27,17 @@
 #include "process/command_server.h"
 #include "process/fence.h"
 #include "process/hold.h"
+#include "process/node_options.h"
 #include "process/node_phase.h"
 #include "process/patience.h"
 #include "process/recovery.h"
 #include "process/replica_publisher.h"
 #include "process/ros2_link.h"
 #include "process/run_control_limits.h"
+#include "process/saving.h"
 #include "process/world_meant.h"
 
 namespace aurasim::process {
-
-struct NodeOptions {
-  core::RegionId region{};
-  std::uint64_t run = 0;  ///< number of the run, the same on all its nodes and on no others; 0: none was drawn
-  std::optional<core::Step> steps;  ///< last state to compute; nothing: run until a stop command
-  std::optional<std::filesystem::path> report;
-  std::chrono::seconds start_time_out{30};      ///< longest time without progress of the other nodes at the start
-  std::shared_ptr<const core::WorldCut> world;  ///< saved world that the run goes on from; a reset goes back to it
-  std::filesystem::path saves = "saves";        ///< folder for this node's parts of saved worlds
-  core::Step save_every = 0;                    ///< in states; 0: worlds are saved only on request
-  std::size_t save_keep = 3;                    ///< how many regularly saved worlds stay
-  /// Folder where runs keep their newest states on disk (kept_folder); nothing: they keep none.
-  std::optional<std::filesystem::path> kept;
-  bool takes_over = false;    ///< this process replaces the dead node of its region in a run that goes on
-  bool has_launcher = false;  ///< a launcher replaces nodes that die, and ends all processes
-  int heartbeat = -1;         ///< number of the launcher's pipe for signs of life (heartbeat.h)
-  std::string as;             ///< name of this node's key, in a run with keys; empty: the region's own key
-};
 
 /// Settings of the transport between a region and its neighbours.
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
@@ -118,25 +101,13 @@ class NodeProcess {
   void compute_step();
   void execute_commands();
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
-  void save_parts();
-  void begin_to_save();
-  void keep_on_disk(const core::WorldCut& part);
-  void note_saves();
-  void conclude_saves();
-  core::Step kept_every() const;
-  cut::SaveOf save_of() const;
-  cut::SavedBy saved_by() const;
-  std::vector<std::filesystem::path> save_folders() const;
-  void save_regularly();
-  void save_as_it_stands();
-  void look_at_doubtful_saves(std::optional<core::Step> back_to);
   void compute_until_change();
   void step_back(const RunView& run);
   void send_back(dds::RunCommand restore, const core::Command& back);
-  cut::SavedWorld as_saved(core::WorldCut part) const;
-  void plan_checkpoint();
-  void keep_checkpoints();
-  bool recovers() const;
+  void keep_parts();
+  void note_words_of_saves();
+  void conclude_saves();
+  bool recovers() const { return process::recovers(launch_); }
   std::optional<std::string> death();
   void look_for_deaths();
   bool has_successor();
@@ -235,20 +206,13 @@ class NodeProcess {
   std::optional<dds::SetpointReader> programs_;  ///< likewise
   std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
   std::vector<core::Order> run_orders_;          ///< orders about the run as a whole that are not due yet
-  cut::PartWriter saves_;
-  std::vector<std::uint64_t> saved_runs_;     ///< numbers of this run and of those that it goes on from
-  std::vector<StandingSave> standing_saves_;  ///< saves asked for in a pause and not written yet
-  std::vector<StandingSave> doubtful_saves_;  ///< saves written whose states a redo may still make void
-  core::Step saved_last_ = 0;                 ///< state of the last regular save; only the lead uses it
-  std::optional<Checkpoints> checkpoints_;    ///< once the domain is known to be free
-  core::Step checkpoint_ = 0;                 ///< the next state that is kept for a recovery
-  core::Step recorded_ = 0;                   ///< records up to this state have been given to `recorder_`
-  core::Step secured_ = 0;                    ///< records up to this state are on disk
+  Saving saving_;
+  std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
   std::unique_ptr<node::Node> node_;
   std::optional<node::Recorder> recorder_;
   node::Pacer pacer_;
   node::ClockWatch clock_watch_{node::read_clocks()};
-  bool says_records_end_ = false, says_left_out_ = false;
+  bool says_records_end_ = false;
   std::string notice_;  ///< message for users, in the status while the node runs
   core::Generation generation_ = 0;
   std::optional<core::Generation> begun_;  ///< generation that node_ computes in, or has computed in last

@@ -219,6 +219,7 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   const node::NodeSetup setup = setup::node_setup(launch_, options_.region, generation_);
   observers_->begin_generation(generation_);
   command_server_->change_map(generation_, node_->current_step());
+  saving_.change_map(start_->request, generation_);
   served_map_ = launch_.regions.version();
   control_.use_map(launch_.regions.version());
   refusals_noted_ = 0;

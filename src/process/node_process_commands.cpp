@@ -186,9 +186,9 @@ void NodeProcess::serve_clients() {
   };
   run.holds_at = hold_at_;
   command_server_->serve(*node_, run);
-  save_as_it_stands();
+  saving_.save_as_it_stands(*node_, *command_server_);
   if (run.leads) {
-    save_regularly();
+    saving_.save_regularly(*node_, first_step());
     compute_until_change();
     step_back(run);
   }

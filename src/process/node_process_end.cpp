@@ -66,7 +66,7 @@ command_line::ExitCode NodeProcess::end() {
   if (!comes_to_its_end) return command_line::ExitCode::kBrokenOff;
   enter(NodeEvent::kSettled);
   if (broken_bodies_ > 0) return command_line::ExitCode::kBroken;
-  return saves_.regular_ones_failed() ? command_line::ExitCode::kNotSaved : command_line::ExitCode::kOk;
+  return saving_.regular_ones_failed() ? command_line::ExitCode::kNotSaved : command_line::ExitCode::kOk;
 }
 
 /// Ends a process of a run that has broken off, which has no world yet.

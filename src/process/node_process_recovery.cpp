@@ -136,7 +136,7 @@ void NodeProcess::meet_anew() {
 bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
   if (recovery_.is_not_needed(nodes, Clock::now())) return true;
   if (recovery_.nobody_knows_the_world(nodes, Clock::now()))
-    throw std::runtime_error(cut::world_is_lost(save_folders(), saved_by()));
+    throw std::runtime_error(cut::world_is_lost(saving_.folders(), saving_.saved_by()));
   return false;
 }
 
@@ -183,7 +183,8 @@ void NodeProcess::break_off(const std::string& why) {
   if (!broken_off_.empty()) return;
   broken_off_ = why;
   spdlog::error("region {}: the run ends in state {}: {}. {}", core::value_of(options_.region),
-                node_ ? node_->current_step() : first_step(), why, cut::say_newest_saved(save_folders(), saved_by()));
+                node_ ? node_->current_step() : first_step(), why,
+                cut::say_newest_saved(saving_.folders(), saving_.saved_by()));
 }
 
 /// Sends the restore command once each region has a process. The lowest region that knows the world sends it.
@@ -220,7 +221,7 @@ bool NodeProcess::may_begin_again(core::Generation era) {
   const std::string asks = fmt::format(
       "nobody keeps all parts of a state, though state {} was kept. Start the processes that had them again, or begin "
       "again from state {} with `aurasim send reset`. {}",
-      *recovery_.kept(), first_step(), cut::say_newest_saved(save_folders(), saved_by()));
+      *recovery_.kept(), first_step(), cut::say_newest_saved(saving_.folders(), saving_.saved_by()));
   if (asks != asks_for_) spdlog::error("region {} stands: {}", core::value_of(options_.region), asks);
   asks_for_ = asks;
   return false;
@@ -349,7 +350,7 @@ core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core
   std::size_t survivors = 0;
   for (const dds::RunCommand::Member& member : restore.members) survivors += member.survives;
   if (restore.members.at(core::value_of(options_.region)).survives && node_) {
-    give(options_.region, Kind::kOrders, cut::encode(as_saved(node_->orders_now(whole))));
+    give(options_.region, Kind::kOrders, cut::encode(saving_.as_saved(node_->orders_now(whole))));
   }
   while (checkpoints_->given(restore.generation, Kind::kOrders).size() < survivors) {
     wait_in_recovery(deadline, "the orders that others know");

@@ -72,8 +72,8 @@ void NodeProcess::publish(const std::string& text) {
   status_.step = node_ ? node_->current_step() : 0;
   if (checkpoints_) status_.parts = checkpoints_->parts();
   if (recovers() && node_) recovery_.note_kept(control_.statuses(), status_.era);
-  status_.saved = saves_.ledger().saved();
-  status_.not_saved = saves_.ledger().not_saved();
+  status_.saved = saving_.ledger().saved();
+  status_.not_saved = saving_.ledger().not_saved();
   control_.publish_status(status_);
   setup::log_new_refusals(*participant_);
 }

@@ -22,10 +22,6 @@ constexpr auto kPatienceWithSuccessor = 20s;
 
 }  // namespace
 
-bool NodeProcess::recovers() const {
-  return launch_.survival.on_death == config::OnDeath::kRecover && launch_.regions.size() > 1;
-}
-
 /// Why this node must not compute its next state (why_stand).
 std::optional<std::string> NodeProcess::death() {
   if (launch_.regions.size() == 1) return std::nullopt;
