@@ -1,4 +1,4 @@
-# Sourced by the scripts that measure what a page of docs/ says, and by stale_pages.sh: which page is measured from what,
+# Sourced by the scripts that measure what a page of docs/ says: which page is measured from what,
 # and the line by which a page says with what it was measured. Run from the repository's root.
 # shellcheck shell=bash
 
@@ -6,19 +6,9 @@
 simulation="CMakeLists.txt src/core src/physics src/node src/transport"
 # Counts what is late, and changes nothing: for pages of bits, errors and times.
 uncounted="$simulation :!src/node/collision_watch.*"
-# Files of records, and new regions in a run: for pages of simulations within one process.
-in_one_process=":!src/node/recorder.* :!src/node/row_file.* :!src/node/repartition.*"
 # shellcheck disable=SC2034
 declare -A measures=(
-  [docs/accuracy.md]="$uncounted $in_one_process src/config src/lab/stability src/lab/pareto.cpp
-    src/lab/measured_run.* src/lab/case.h scripts/accuracy.sh"
-  [docs/correctness.md]="$simulation $in_one_process src/lab :!src/lab/stability :!src/lab/scale :!src/lab/speed
-    :!src/lab/pareto.cpp scripts/correctness.sh"
-  [docs/results.md#correctness_over_dds]="$simulation src/dds idl qos src/lab :!src/lab/stability
-    :!src/lab/scale :!src/lab/speed :!src/lab/pareto.cpp scripts/correctness_over_dds.sh"
   [docs/results.md#same_bits]="$uncounted src/config src/dds src/process/node_process* idl qos launch_configs scripts/same_bits.sh scripts/scene_regions.sh"
-  [docs/scalability.md]="$simulation src/dds idl src/lab/scale src/lab/measured_run.* src/lab/wire_post.*
-    launch_configs/columns_rain.yaml launch_configs/scenes/columns_rain.yaml scripts/scalability.sh"
   [docs/results.md#saved_worlds]="$uncounted src/cut src/config src/dds src/process/node_process* src/cut/saved_world.cpp idl qos
     launch_configs src/lab/scenes tests/bench/save_bench.cpp scripts/saved_worlds.sh scripts/scene_regions.sh"
   [docs/results.md#recovery]="$uncounted src/cut src/config src/dds src/process/node_process* src/process/checkpoints.* src/process/restore_plan.*
@@ -29,10 +19,6 @@ declare -A measures=(
     scripts/control_cost.py"
   [docs/results.md#page_traffic]="src/overseer src/node/replica_feed.* src/dds/replica_codec.* src/dds/body_columns.h tests/web/traffic.mjs
     scripts/page_traffic.py"
-  # Of core, what physics computes with; the compiler and its flags are in the line itself.
-  [docs/speed.md]="src/core/body_state.h src/core/scene.* src/core/joint.h src/core/limits.h src/physics src/lab/speed src/config/presets.h tests/bench/peers
-    launch_configs/scenes/columns_rain.yaml launch_configs/scenes/ragdoll_stairs.yaml src/lab/stability/piles.cpp
-    scripts/peers.sh"
   # Packages, megabytes and minutes of a fresh Debian 12.
   [docs/installing.md]="CMakeLists.txt CMakePresets.json scripts/setup.sh scripts/demo.sh scripts/build.sh scripts/build_web.sh
     scripts/fetch_npm.cmake"

@@ -13,6 +13,7 @@
 #include "host/version.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
+#include "lab/commands/rain_suites.h"
 #include "lab/commands/target_list.h"
 #include "lab/suites/results_file.h"
 #include "lab/suites/suites.h"
@@ -26,8 +27,14 @@ struct RunArguments {
   bool full = false;
 };
 
-const lab::Suite& suite_named(const std::string& name) {
-  for (const lab::Suite& suite : lab::suites()) {
+std::vector<lab::Suite> all_suites() {
+  std::vector<lab::Suite> all(lab::suites().begin(), lab::suites().end());
+  for (const lab::Suite& suite : rain_suites()) all.push_back(suite);
+  return all;
+}
+
+lab::Suite suite_named(const std::string& name) {
+  for (const lab::Suite& suite : all_suites()) {
     if (suite.name == name) return suite;
   }
   throw std::invalid_argument("no suite of this name: " + name);
@@ -47,15 +54,14 @@ bool compare(const std::filesystem::path& file, const std::vector<lab::ResultRow
 
 int run_suite(const RunArguments& arguments) {
   host::catch_stop_signals();
-  const lab::Suite& suite = suite_named(arguments.suite);
+  const lab::Suite suite = suite_named(arguments.suite);
   const auto begin = std::chrono::steady_clock::now();
   ProgressBar bar;
-  const auto results =
-      suite.run(arguments.full ? lab::Effort::kFull : lab::Effort::kQuick, [&](double share) {
-        const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        bar.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
-        return !host::stop_requested();
-      });
+  const auto results = suite.run(arguments.full ? lab::Effort::kFull : lab::Effort::kQuick, [&](double share) {
+    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    bar.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
+    return !host::stop_requested();
+  });
   bar.end();
   if (host::stop_requested()) {
     spdlog::warn("stopped before the end; nothing was stored. Run the same command again");
@@ -76,17 +82,18 @@ void add_run(CLI::App& program, command_line::Action& action) {
   const auto arguments = std::make_shared<RunArguments>();
   std::vector<std::string> names;
   std::string about;
-  for (const lab::Suite& suite : lab::suites()) {
+  for (const lab::Suite& suite : all_suites()) {
     names.emplace_back(suite.name);
-    about += fmt::format("  {:<12} {}\n", suite.name, suite.about);
+    about += fmt::format("  {:<21} {}\n", suite.name, suite.about);
   }
   command->add_option("SUITE", arguments->suite, "what to measure")->required()->check(CLI::IsMember(names));
   command->add_flag("--full,!--quick", arguments->full,
                     "everything that the page shows; a quick run measures some of it, and says where it differs from "
                     "the stored full run");
   command->add_option("--results", arguments->results, "folder with SUITE.jsonl, to which the rows are appended");
-  command->footer(about + "scripts/render_pages.py puts stored results into the pages. Example:\n"
-                          "  aurasim-lab run accuracy --full");
+  command->footer(about +
+                  "scripts/render_pages.py puts stored results into the pages. Example:\n"
+                  "  aurasim-lab run accuracy --full");
   command->callback([arguments, &action] { action = [arguments] { return run_suite(*arguments); }; });
 }
 

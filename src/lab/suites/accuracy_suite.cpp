@@ -13,8 +13,9 @@ namespace {
 constexpr double kStabilityShare = 0.7;
 
 /// Cases with few bodies.
-const std::vector<std::string> kQuickCases = {"free_fall", "spring",     "dzhanibekov",    "sliding_box",    "bouncing_ball_1",
-                                              "wedge",     "stack_5",    "mass_ratio_100", "newtons_cradle", "chain_50"};
+const std::vector<std::string> kQuickCases = {"free_fall",       "spring",  "dzhanibekov", "sliding_box",
+                                              "bouncing_ball_1", "wedge",   "stack_5",     "mass_ratio_100",
+                                              "newtons_cradle",  "chain_50"};
 
 std::string setting_of(const StabilityRow& row) {
   if (row.is_standing) return fmt::format("{}, {:g} s", row.preset, row.what.duration_s);
@@ -44,9 +45,10 @@ std::string name_of(const ParetoPoint& point) {
   }
   const bool is_soft = point.rules.solver == physics::Solver::kSoftStep;
   const std::string_view solver = physics::name_of(point.rules.solver);
-  std::string name = is_soft ? fmt::format("{}, {} substeps", solver, point.rules.substeps)
-                             : fmt::format("{}, {} iterations x {} substeps, friction in {}", solver,
-                                           point.rules.iterations, point.rules.substeps, point.rules.friction_directions);
+  std::string name = is_soft
+                         ? fmt::format("{}, {} substeps", solver, point.rules.substeps)
+                         : fmt::format("{}, {} iterations x {} substeps, friction in {}", solver,
+                                       point.rules.iterations, point.rules.substeps, point.rules.friction_directions);
   if (!point.preset.empty()) name += " (" + point.preset + ")";
   return (point.on_front || !point.preset.empty() ? "front/" : "others/") + name;
 }
@@ -76,10 +78,12 @@ SuiteResults run_accuracy_suite(Effort effort, const SuiteProgress& progress) {
     pareto.nodes = false;
   }
   SuiteResults results;
-  const auto rows = run_stability(stability, [&](double share, const std::string&) { return progress(kStabilityShare * share); });
+  const auto rows =
+      run_stability(stability, [&](double share, const std::string&) { return progress(kStabilityShare * share); });
   add_stability_rows(rows, results.rows);
   add_targets(results, stability_targets(rows));
-  const auto points = run_pareto(pareto, [&](double share) { return progress(kStabilityShare + (1 - kStabilityShare) * share); });
+  const auto points =
+      run_pareto(pareto, [&](double share) { return progress(kStabilityShare + (1 - kStabilityShare) * share); });
   add_pareto_rows(points, results.rows);
   add_targets(results, pareto_targets(points));
   return results;

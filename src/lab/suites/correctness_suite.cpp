@@ -1,17 +1,16 @@
-// The experiments collision and loss, in virtual time, as rows of results.
+// The experiments collision and loss, in virtual time and over DDS, as rows of results.
 #include <atomic>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
-#include <stdexcept>
-#include <system_error>
-#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "config/shipped_files.h"
 #include "lab/aura_radius.h"
 #include "lab/loss.h"
+#include "lab/real_trials.h"
 #include "lab/suites/suites.h"
+#include "lab/suites/trial_folder.h"
 #include "lab/thesis_tables.h"
 #include "lab/trial_file.h"
 
@@ -21,40 +20,21 @@ namespace {
 /// Share of the time that the collision experiment takes of both.
 constexpr double kCollisionShare = 0.9;
 constexpr int kThreads = 2;
-
-/// A new folder for the trials, removed with all that is in it.
-class TrialFolder {
- public:
-  TrialFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "aurasim-lab-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder like " + name);
-    path_ = name;
-  }
-  ~TrialFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TrialFolder(const TrialFolder&) = delete;
-  TrialFolder& operator=(const TrialFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+constexpr std::uint32_t kDomain = 61;  ///< of DDS, for trials in real time
 
 /// Trials of one cell of a table; `late` and so on are those of Tally.
 using Cells = std::map<std::string, Tally>;
 
 struct Trials {
   Tallies tallies;
-  Cells by_series;  ///< head-on pairs: "within/speed, 32 m/s/swept, bounded"
+  Cells by_series;  ///< head-on pairs: "within/speed, 32 m per s/swept, bounded"
   Cells by_pairs;   ///< "pairs/corner/swept, bounded, within"
   Cells by_loss;    ///< "loss/15%/swept, bounded"
-  Cells by_value;   ///< head-on pairs of two series: "late by speed, 32 m/s/40/swept, bounded"
+  Cells by_value;   ///< head-on pairs of two series: "late by speed, 32 m per s/40/swept, free_running"
 };
 
-std::string unit_of(const std::string& series) { return series[0] == 's' ? "m/s" : "ms"; }
+/// Without a slash, which divides the parts of a case.
+std::string unit_of(const std::string& series) { return series[0] == 's' ? "m per s" : "ms"; }
 
 std::string title_of(const Trial& trial) {
   const std::string factor = trial.series.substr(0, trial.series.find('_'));
@@ -81,21 +61,35 @@ void add(const Trial& trial, Trials& all) {
   }
   if (trial.pairs != PairKind::kHeadOn || trial.variant.central) return;
   all.by_series[fmt::format("{}/{}/{}", kept, title_of(trial), variant)].add(trial);
-  if (trial.series == "speed_32m_s" || trial.series == "frame_15ms") {
+  const bool is_shown =
+      trial.variant.sync == core::SyncMode::kFreeRunning && trial.variant.aura != AuraChoice::kTightAtThesisSize;
+  if (is_shown && (trial.series == "speed_32m_s" || trial.series == "frame_15ms")) {
     all.by_value[fmt::format("late by {}/{:g}/{}", title_of(trial), trial.value, variant)].add(trial);
   }
 }
 
-/// Runs a campaign to its end. False if it was stopped.
-bool run(const Campaign& campaign, const SuiteProgress& progress, double before, double part, Trials& all) {
-  const TrialFolder folder;
-  std::atomic<bool> stop = false;
-  const bool finished = run_campaign(
-      campaign, folder.path(), run_job, kThreads,
-      [&](const Progress& now) { stop = stop || !progress(before + part * now.share); }, stop);
-  if (finished) read_trials(folder.path() / "collisions.csv", [&](const Trial& trial) { add(trial, all); });
-  return finished;
-}
+/// Runs campaigns, adds up their trials, and shows how far it is.
+class Runner {
+ public:
+  Runner(JobRunner run_job, int threads, const SuiteProgress& progress)
+      : run_job_(std::move(run_job)), threads_(threads), progress_(progress) {}
+
+  /// Runs a campaign to its end, which is `part` of the work after the share `before`. False if it was stopped.
+  bool run(const Campaign& campaign, double before, double part, Trials& all) const {
+    const TrialFolder folder;
+    std::atomic<bool> stop = false;
+    const bool finished = run_campaign(
+        campaign, folder.path(), run_job_, threads_,
+        [&](const Progress& now) { stop = stop || !progress_(before + part * now.share); }, stop);
+    if (finished) read_trials(folder.path() / "collisions.csv", [&](const Trial& trial) { add(trial, all); });
+    return finished;
+  }
+
+ private:
+  JobRunner run_job_;
+  int threads_;
+  const SuiteProgress& progress_;
+};
 
 class Rows {
  public:
@@ -177,27 +171,64 @@ CollisionPlan full_plan() {
   return plan;
 }
 
+void add_loss(const Trials& loss, SuiteResults& results) {
+  add_rows(loss, results.rows);
+  SuiteResults of_loss;
+  add_targets(of_loss, loss_targets(loss.tallies));
+  for (ResultRow& row : of_loss.rows) results.rows.push_back({"loss, " + row.what, row.metric, row.value, row.unit});
+  results.targets.insert(results.targets.end(), of_loss.targets.begin(), of_loss.targets.end());
+}
+
 }  // namespace
 
 SuiteResults run_correctness_suite(Effort effort, const SuiteProgress& progress) {
   CollisionPlan plan = full_plan();
   const bool is_full = effort == Effort::kFull;
   if (!is_full) plan.pairs = {PairKind::kCorner};
+  const Runner runner(run_job, kThreads, progress);
   SuiteResults results;
   Trials collision, loss;
-  if (!run(collision_campaign(plan), progress, 0, kCollisionShare, collision)) return results;
+  if (!runner.run(collision_campaign(plan), 0, kCollisionShare, collision)) return results;
   add_rows(collision, results.rows);
   add_aura_sizes(results.rows);
   if (!is_full) return results;  // a sum over a part of the pairs is no sum of the stored run
   add_thesis(results.rows);
   add_targets(results, collision_targets(collision.tallies));
   plan.pairs = {PairKind::kHeadOn};
-  if (!run(loss_campaign(plan), progress, kCollisionShare, 1 - kCollisionShare, loss)) return results;
-  add_rows(loss, results.rows);
-  SuiteResults of_loss;
-  add_targets(of_loss, loss_targets(loss.tallies));
-  for (ResultRow& row : of_loss.rows) results.rows.push_back({"loss, " + row.what, row.metric, row.value, row.unit});
-  results.targets.insert(results.targets.end(), of_loss.targets.begin(), of_loss.targets.end());
+  if (!runner.run(loss_campaign(plan), kCollisionShare, 1 - kCollisionShare, loss)) return results;
+  add_loss(loss, results);
+  return results;
+}
+
+SuiteResults run_correctness_over_dds_suite(Effort effort, const SuiteProgress& progress) {
+  CollisionPlan plan = full_plan();
+  plan.pairs = {PairKind::kHeadOn};
+  plan.auras = {AuraChoice::kNone, AuraChoice::kTight, AuraChoice::kSwept};
+  plan.repeats = 20;
+  plan.values_of_head_on_pairs = 4;
+  const bool is_full = effort == Effort::kFull;
+  RealLaboratory laboratory(kDomain, config::shipped_profiles());
+  const Runner runner([&](const Campaign& all, const Job& job) { return laboratory.run_job(all, job); }, 1, progress);
+  const double share = is_full ? kCollisionShare : 0;
+  SuiteResults results;
+  Trials collision, loss;
+  Campaign campaign = collision_campaign(plan);
+  campaign.over_dds = true;
+  if (is_full) {
+    if (!runner.run(campaign, 0, share, collision)) return results;
+    add_rows(collision, results.rows);
+    add_targets(results, collision_targets(collision.tallies));
+  }
+  plan.values_of_head_on_pairs = 5;
+  campaign = loss_campaign(plan);
+  campaign.over_dds = true;
+  if (!runner.run(campaign, share, 1 - share, loss)) return results;
+  if (is_full) {
+    add_loss(loss, results);
+  } else {  // trials in real time scatter: only the requirements are compared
+    add_targets(results, loss_targets(loss.tallies));
+    results.rows.clear();
+  }
   return results;
 }
 

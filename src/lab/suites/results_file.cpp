@@ -72,9 +72,14 @@ void append_results(const std::filesystem::path& file, const std::vector<ResultR
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   std::ofstream out(file, std::ios::app);
   for (const ResultRow& row : rows) {
-    const Json line = {{"case", row.what},        {"metric", row.metric}, {"value", rounded_value(row.value)},
-                       {"unit", row.unit},        {"n", row.n},           {"commit", from.commit},
-                       {"date", from.date},       {"machine", from.machine},
+    const Json line = {{"case", row.what},
+                       {"metric", row.metric},
+                       {"value", rounded_value(row.value)},
+                       {"unit", row.unit},
+                       {"n", row.n},
+                       {"commit", from.commit},
+                       {"date", from.date},
+                       {"machine", from.machine},
                        {"run", from.quick ? "quick" : "full"}};
     out << line.dump() << "\n";
   }

@@ -10,6 +10,8 @@ std::span<const Suite> suites() {
             run_accuracy_suite},
       Suite{"correctness", "do bodies collide across borders as in one world? (docs/correctness.md)",
             run_correctness_suite},
+      Suite{"correctness_over_dds", "a part of it in real time, over DDS on loopback (docs/correctness.md)",
+            run_correctness_over_dds_suite},
       Suite{"solvers", "can the soft step replace sequential_impulse? (docs/accuracy.md)", run_solvers_suite},
   };
   return kSuites;

@@ -31,6 +31,8 @@ std::span<const Suite> suites();
 
 SuiteResults run_accuracy_suite(Effort effort, const SuiteProgress& progress);
 SuiteResults run_correctness_suite(Effort effort, const SuiteProgress& progress);
+/// Real nodes over DDS on loopback, in real time: 15 minutes, nearly all of it waiting.
+SuiteResults run_correctness_over_dds_suite(Effort effort, const SuiteProgress& progress);
 SuiteResults run_solvers_suite(Effort effort, const SuiteProgress& progress);
 
 /// Adds each target as a case "requirement/NAME" with what was found and what is allowed.
