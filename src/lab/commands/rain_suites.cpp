@@ -203,7 +203,9 @@ void add_requirements(SuiteResults& results) {
 SuiteResults run_scalability(Effort effort, const SuiteProgress& progress) {
   RainPlace place;
   place.launch_file = rain_launch_file();
-  place.setup_of = [](const config::Launch& launch, core::RegionId region) { return setup::node_setup(launch, region, 0); };
+  place.setup_of = [](const config::Launch& launch, core::RegionId region) {
+    return setup::node_setup(launch, region, 0);
+  };
   SuiteResults results;
   const std::vector<Part> parts = parts_of(effort);
   for (std::size_t i = 0; i < parts.size(); ++i) {
