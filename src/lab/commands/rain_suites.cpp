@@ -183,7 +183,7 @@ double found_in(const std::vector<ResultRow>& rows, const std::string& what, con
   throw std::logic_error("the suite scalability has no " + what);
 }
 
-/// What several nodes are for. docs/scalability.md names what is wanted beyond it.
+/// What several nodes are for. docs/speed.md names what is wanted beyond it.
 void add_requirements(SuiteResults& results) {
   const auto& rows = results.rows;
   std::vector<Target> targets;
@@ -257,8 +257,8 @@ SuiteResults run_scalability_clock(Effort effort, const SuiteProgress& progress)
 }  // namespace
 
 std::vector<Suite> rain_suites() {
-  return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/scalability.md)", run_scalability},
-          {"scalability_clock", "rain on one and two real nodes, by the wall clock (docs/scalability.md)",
+  return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/speed.md)", run_scalability},
+          {"scalability_clock", "rain on one and two real nodes, by the wall clock (docs/speed.md)",
            run_scalability_clock}};
 }
 
