@@ -55,7 +55,7 @@ TEST_F(StoredResults, AFolderThatCannotBeWrittenIsNamed) {
 TEST_F(StoredResults, AnErrorThatChangedIsADifferenceAndATimeThatScattersIsNot) {
   store({{"stack", "sunk", 0.1, "m"}, {"stack", "time", 100, "us"}, {"stack", "times", 1, "ratio"}});
   EXPECT_THAT(differences(file(), {{"stack", "sunk", 0.1, "m"}, {"stack", "time", 160, "us"}}), IsEmpty());
-  const auto found = differences(file(), {{"stack", "sunk", 0.101, "m"},
+  const auto found = differences(file(), {{"stack", "sunk", 0.102, "m"},
                                           {"stack", "time", 250, "us"},
                                           {"stack", "times", 0.6, "ratio"},
                                           {"stack", "new metric", 1, "m"}});

@@ -12,14 +12,14 @@ first=$(wc -l <"$rows")
 ((first > 100)) || fail "ARunAppendsItsRows: $first rows"
 ! grep -q '"run":"full"' "$rows" || fail "AQuickRunIsCalledQuick"
 
-# The same rows as those of a full run, with one error that is another by a hundredth, and one time by a hundredth.
+# The same rows as those of a full run, with one error and all times larger by a fiftieth.
 sed -i 's/"run":"quick"/"run":"full"/' "$rows"
 /usr/bin/python3 - "$rows" <<'PY'
 import json, sys
 rows = [json.loads(line) for line in open(sys.argv[1])]
 for row in rows:
     if (row["case"], row["metric"]) == ("spring/1_60 s", "distance from the sine") or row["metric"] == "CPU time of a step":
-        row["value"] *= 1.01
+        row["value"] *= 1.02
 open(sys.argv[1], "w").writelines(json.dumps(row) + "\n" for row in rows)
 PY
 code=0

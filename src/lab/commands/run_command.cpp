@@ -46,8 +46,9 @@ int fail() { return static_cast<int>(command_line::ExitCode::kFailed); }
 bool compare(const std::filesystem::path& file, const std::vector<lab::ResultRow>& rows) {
   const auto found = lab::differences(file, rows);
   for (const lab::Difference& d : found) {
-    fmt::print("DIFFERS {}, {}: {:.4g} {} now, {:.4g} stored (commit {}), more than {:g}% apart\n", d.now.what,
-               d.now.metric, d.now.value, d.now.unit, d.stored, d.stored_commit, 100 * lab::tolerance_of(d.now));
+    const std::string unit = d.now.unit == "1" ? "" : " " + d.now.unit;
+    fmt::print("DIFFERS {}, {}: {:.4g}{} now, {:.4g}{} stored (commit {}), more than {:g}% apart\n", d.now.what,
+               d.now.metric, d.now.value, unit, d.stored, unit, d.stored_commit, 100 * lab::tolerance_of(d.now));
   }
   return found.empty();
 }

@@ -14,8 +14,8 @@ struct ResultRow {
   int n = 1;         ///< how many measurements the value is the median or sum of
 };
 
-/// Largest relative difference between two runs of the same code that is not worth a word. Times and their ratios
-/// scatter, everything else is computed from the same bits and rounded to six digits.
+/// Largest relative difference from a stored value that is not worth a word. Times and their ratios scatter. Everything
+/// else is computed from the same bits, and pages show three digits of it.
 double tolerance_of(const ResultRow& row);
 
 }  // namespace aurasim::lab

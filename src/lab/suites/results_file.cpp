@@ -61,7 +61,7 @@ StoredRows newest_full_rows(const std::filesystem::path& file) {
 double tolerance_of(const ResultRow& row) {
   const auto is = [&](const char* unit) { return row.unit == unit; };
   if (is("us") || is("ms") || is("s")) return 0.5;
-  return is("ratio") ? 0.3 : 1e-4;
+  return is("ratio") ? 0.3 : 0.01;
 }
 
 Provenance provenance_here(std::string commit, bool quick) {
