@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """What it costs to steer 1,000 bodies: balls that roll about over four regions, left alone and with a torque on each of
-them, 60 times a second, by one client; by turns. Writes DIR/runs.jsonl and docs/results.md#control_cost."""
+them, 60 times a second, by one client; by turns. Writes DIR/runs.jsonl, and the medians as the suite
+control_cost. About 15 minutes on 2 cores, where nothing else runs."""
 import argparse
 import json
 import pathlib
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -13,43 +13,7 @@ import time
 
 import numpy as np
 
-from page_sections import put_section
-from report_parts import machine_line, measured_line, table
-
-TEXT = """## What steering costs
-
-{measured}
-
-Written by `scripts/control_cost.sh`; do not edit. {machine}.
-
-{bodies} balls roll about in a pen over four regions of one host, `deterministic`, for {seconds} s paced by the clock. Each kind of
-run was made {repeats} times, by turns. The table has medians of the runs; frames are those of the nodes while the client was there.
-
-- *left alone*: no client.
-- *looked at*: a client only observes ([`World.connect`](client.md)).
-- *told*: the client sets a torque of {weak:g} N m on each ball, anew 60 times a second. That is too weak to change where a ball
-  goes, so the simulated motion is the same.
-- *pushed*: the same with {strong:g} N m. The balls gather speed, meet more often and change their hosts.
-- *replayed*: the record of *pushed* is replayed ([`control.replay`](client.md)): the same motion without the client.
-
-{costs}
-Slowest frames (p99): told against the client alone {told}; pushed against replayed {pushed}. Four nodes, an agent and a client
-share the processors here, and all nodes begin their frames at the same moment. A frame is slow where one waits for another.
-Nodes that replay a record read it first, begin late, and catch up. The next table therefore has the same world in one region,
-whose node has a processor for itself:
-
-{alone}
-Here {alone_p50} at p50 and {alone_p99} at p99. Setpoints that came late: {late} of
-{heard}; refused: {refused}. On the wire each torque takes 33 bytes: {per_step} bytes a state for {bodies} of them, to each node, in
-{messages} messages.
-
-### How soon it acts
-
-A Python program observes each state of the demo on four nodes, paced by the clock (`World.observe`). It answers each with a force
-on each of {answered} bodies, for a state that is so many states later. Each node counts as late what arrives after it has computed
-that state. The lookahead K is {lookahead} in the demo; neighbours have to know of a force K states ahead, for their auras.
-
-{delays}"""
+from stored_rows import Rows, build
 
 KINDS = ("left alone", "looked at", "told", "pushed", "replayed")
 KINDS_ALONE = ("looked at", "told")
@@ -172,36 +136,23 @@ def measure(options):
                 print(json.dumps(row), flush=True)
 
 
-def write(options):
-    rows = [json.loads(line) for line in (options.out / "runs.jsonl").read_text().splitlines()]
+WANTED = (("real-time factor", "real_time_factor", "1"), ("hand-offs", "hand_offs", "1"), ("frame p50", "p50", "ms"),
+          ("frame p99", "p99", "ms"), ("setpoints heard", "heard", "1"), ("setpoints late", "late", "1"),
+          ("setpoints refused", "refused", "1"))
 
-    def of(kind, key, regions="four"):
-        return statistics.median(row[key] for row in rows if (row["regions"], row["kind"]) == (regions, kind))
 
-    wanted = [("real-time factor", "real_time_factor"), ("hand-offs", "hand_offs"), ("frame p50, ms", "p50"),
-              ("p99", "p99")]
-    costs, alone = (
-        table(["", *kinds], [[name, *[f"{of(kind, key, regions):.3g}" for kind in kinds]] for name, key in wanted
-                             if regions == "four" or key != "hand_offs"])
-        for regions, kinds in (("four", KINDS), ("one", KINDS_ALONE)))
-    delays = [json.loads(line) for line in (options.out / "delays.jsonl").read_text().splitlines()]
-    rows_of_delays = [[row["lead"] if row["lead"] <= 2 else f"{row['lead']} = K + {row['lead'] - row['lookahead']}",
-                       row["answered"], row["heard"], row["late"]] for row in delays]
-    steered = [row for row in rows if row["kind"] in ("told", "pushed")]
-
-    def more(kind, base, key="p99", regions="four"):
-        return f"{100 * (of(kind, key, regions) / of(base, key, regions) - 1):+.0f}%"
-
-    text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=options.bodies,
-                       seconds=options.seconds, repeats=options.repeats, weak=WEAK_N_M, strong=STRONG_N_M, costs=costs,
-                       late=sum(row["late"] for row in steered), heard=sum(row["heard"] for row in steered),
-                       refused=sum(row["refused"] for row in steered), per_step=33 * options.bodies,
-                       messages=-(-options.bodies // 800),
-                       answered=options.answered, lookahead=delays[0]["lookahead"],
-                       delays=table(["states later", "states answered", "heard by nodes", "late"], rows_of_delays).strip() + "\n",
-                       alone=alone, alone_p50=more("told", "looked at", "p50", "one"),
-                       alone_p99=more("told", "looked at", "p99", "one"), told=more("told", "looked at"), pushed=more("pushed", "replayed"))
-    put_section(pathlib.Path("docs/results.md"), "control_cost", text)
+def store(options):
+    rows = Rows()
+    for line in (options.out / "runs.jsonl").read_text().splitlines():
+        run = json.loads(line)
+        for name, key, unit in WANTED:
+            rows.add(f"{run['regions']}/{run['kind']}", name, run.get(key), unit)
+    for line in (options.out / "delays.jsonl").read_text().splitlines():
+        run = json.loads(line)
+        lead = run["lead"] if run["lead"] <= 2 else f"{run['lead']} = K + {run['lead'] - run['lookahead']}"
+        for name, key in (("states answered", "answered"), ("heard by nodes", "heard"), ("late", "late")):
+            rows.add(f"states later/{lead}", name, run[key])
+    rows.store("control_cost")
 
 
 def main():
@@ -216,9 +167,10 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/control_cost"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    build("control_client", "aurasim_python")
     measure(options)
     measure_delays(options)
-    write(options)
+    store(options)
 
 
 if __name__ == "__main__":

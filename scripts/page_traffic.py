@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What a page is sent of many bodies that all move: a run with an overseer, and a page that says what its camera sees.
-Writes DIR/pages.jsonl and docs/results.md#page_traffic."""
+Writes DIR/pages.jsonl, and the suite page_traffic. About 3 minutes."""
 import argparse
 import json
 import pathlib
@@ -9,20 +9,7 @@ import subprocess
 import tempfile
 import time
 
-from page_sections import put_section
-from report_parts import machine_line, measured_line, table
-
-TEXT = """## What a page is sent
-
-{measured}
-
-Written by `scripts/page_traffic.sh`; do not edit. {machine}.
-
-{bodies} balls roll over a plane of {side:.0f} m x {side:.0f} m, on two nodes. The viewer shows them 20 times a second, in a picture of
-1280 x 800 pixels. A page says what its camera sees ([viewer.md](viewer.md)), and is sent only bodies that the picture may
-show. Bodies far away that would move by less than a pixel are sent less often. Counted is all that comes over TCP.
-
-{pages}"""
+from stored_rows import ROOT, Rows, build
 
 KINDS = (("all, as a page that does not say what it sees", []),
          ("the whole plane, from 1.5 widths away", ["--eye={far},0,{high}", "--towards={far_x},0,{far_z}"]),
@@ -83,13 +70,14 @@ def measure(options):
             run.wait(60)
 
 
-def write(options):
-    rows = [json.loads(line) for line in (options.out / "pages.jsonl").read_text().splitlines()]
-    pages = table(["what the page sees", "kB/s", "of all", "frames/s"],
-                  [[row["kind"], f"{row['kB_s']:.0f}", f"{100 * row['kB_s'] / rows[0]['kB_s']:.1f}%", row["frames_s"]] for row in rows])
-    text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), bodies=f"{options.bodies:,}",
-                       side=options.spacing * options.bodies**0.5, pages=pages.strip() + "\n")
-    put_section(pathlib.Path("docs/results.md"), "page_traffic", text)
+def store(options):
+    pages = [json.loads(line) for line in (options.out / "pages.jsonl").read_text().splitlines()]
+    rows = Rows()
+    for page in pages:
+        rows.add(f"page/{page['kind']}", "traffic", page["kB_s"], "kB/s")
+        rows.add(f"page/{page['kind']}", "of all", 100 * page["kB_s"] / pages[0]["kB_s"], "%")
+        rows.add(f"page/{page['kind']}", "frames a second", page["frames_s"])
+    rows.store("page_traffic")
 
 
 def main():
@@ -102,8 +90,10 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/page_traffic"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    build()
+    subprocess.run([ROOT / "scripts" / "build_web.sh", "--tests"], check=True)
     measure(options)
-    write(options)
+    store(options)
 
 
 if __name__ == "__main__":

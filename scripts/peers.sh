@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# The speed of our step beside that of other engines, on the same bodies in one run, and docs/speed.md.
+# The speed of our step beside that of other engines, on the same bodies in one run; docs/speed.md shows it.
 #   scripts/peers.sh [--out DIR] [--repeats N] [--cases A,B] [--settings A,B] [--once S] [--quick]
 # It builds no other engine. It links those of Jolt, box3d and Bullet that are installed, says which were found, and
 # leaves the others out. CMAKE_PREFIX_PATH in the environment names folders in which engines are installed.
-#   --out       results (build/speed); an interrupted run goes on where it stopped
-#   --repeats   runs of each, by turns, of which the page has the medians (5)
+#   --out       results (build/speed); an interrupted run of the same commit goes on where it stopped
+#   --repeats   runs of each, by turns, of which the medians are stored (5)
 #   --once      what takes more CPU seconds than this is run once: it averages by itself (120)
 #   --settings  of our step, as `aurasim-lab experiment speed` has them (fast,balanced,sequential_impulse); exact is slow
-#   --quick     small scenes, one run of each; the page goes to DIR instead of docs
+#   --quick     small scenes, one run of each; the results are stored in DIR instead of docs/results
 # Nothing else should run meanwhile. About two hours on 2 cores; a minute or two with --quick.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out=build/speed repeats=5 cases=rain,pyramid,hulls,ragdolls,card_houses,gas,sleepers once=120
-settings=fast,balanced,sequential_impulse page=docs quick=()
+settings=fast,balanced,sequential_impulse results=docs/results quick=()
 usage() { sed -n '2,/^set -/{/^#/s/^# \{0,1\}//p}' "scripts/peers.sh" >&2; exit 2; }
 while (($#)); do
   case $1 in
@@ -27,12 +27,11 @@ while (($#)); do
   esac
   shift
 done
-if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 page=$out; fi
-# shellcheck source=scripts/measured.sh
-source scripts/measured.sh
+if [[ ${#quick[@]} -gt 0 ]]; then repeats=1 results=$out; fi
 read -r load _ </proc/loadavg
 [[ ${#quick[@]} -gt 0 || ${load%.*} -eq 0 ]] || echo "peers.sh: something else runs here (load $load)" >&2
-begin_measuring docs/speed.md "$out" "double, of others also single" aurasim-lab
+scripts/build.sh release aurasim-lab >&2
+mkdir -p "$out"
 
 rm -rf build/peers/bin
 cmake -S tests/bench/peers -B build/peers -G Ninja >"$out/peers_build.log" 2>&1 ||
@@ -41,7 +40,7 @@ cmake --build build/peers -- -k 0 >>"$out/peers_build.log" 2>&1 ||
   echo "peers.sh: an engine that is installed cannot be linked, see $out/peers_build.log" >&2
 built() { [[ -x build/peers/bin/$1 ]]; } # PROGRAM
 
-# Which engines there are: the page says it.
+# Which engines there are: they are named on standard error, for the sentence of docs/speed.md about them.
 {
   [[ ${#quick[@]} == 0 ]] || echo "small scenes"
   while read -r engine found; do
@@ -86,6 +85,6 @@ for ((turn = 1; turn <= repeats; ++turn)); do
   done
 done
 
-build/release/aurasim-lab experiment speed-errors --out "$out"
-/usr/bin/python3 scripts/write_speed.py "$out" --out "$page"
-echo "written: $page/speed.md"
+build/release/aurasim-lab experiment speed-errors --out "$out" --results "$results"
+echo "stored: $results/speed.jsonl"
+[[ ${#quick[@]} -gt 0 ]] || scripts/render_pages.py docs/speed.md

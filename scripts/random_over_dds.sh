@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs random worlds (docs/laboratory.md) over real DDS processes, the first seed on 2 nodes, the next on 4, then 9, 2,
+# Runs random worlds (docs/development.md) over real DDS processes, the first seed on 2 nodes, the next on 4, then 9, 2,
 # ... and each on one node, and compares the hashes of all states. Prints a line for each; exit 1 if any differs. About 8 s
 # a seed on two cores.
 #   scripts/random_over_dds.sh [--seeds A-B=1-100] [--steps N=400] [--domain N=71] [--out DIR=build/random_over_dds]

@@ -3,7 +3,8 @@
 
 Each run has its own seed, which decides when which node is killed (SIGKILL), and what else happens meanwhile: orders with
 a state of their own, new regions, a drain, another death within the recovery. Writes DIR/runs.jsonl, a line for each run,
-and goes on where it was stopped. Everything stays on loopback, in the DDS domain that is given.
+and goes on where it was stopped. The sums are stored as the suite recovery. Fails where a run is not as the undisturbed
+one. Everything stays on loopback, in the DDS domain that is given.
 """
 import argparse
 import json
@@ -16,6 +17,8 @@ import subprocess
 import tempfile
 import threading
 import time
+
+from stored_rows import Rows, percentile
 
 REGIONS = 4
 HALVES = ["-40 -40 {x} 0", "{x} -40 40 0", "-40 0 {x} 40", "{x} 0 40 40"]
@@ -220,6 +223,23 @@ class Case:
                 result["refused"].append(f"{beside.args[2]}: no answer")
 
 
+def store(runs):
+    rows = Rows()
+    for kind, name in (("single", "one, or two shortly after each other"), ("pairs", "two at once")):
+        some = [run for run in runs if run["kind"] == kind]
+        deaths = [death for run in some for death in run["deaths"]]
+        times = [death["s"] for death in deaths if death["s"] is not None]
+        for metric, value in (("runs", len(some)), ("deaths", len(deaths)),
+                              ("nodes killed", sum(len(death["regions"]) for death in deaths)),
+                              ("orders", sum(run["orders"] for run in some)), ("drains", sum(run["drains"] for run in some)),
+                              ("from state 0", sum(death["state"] == 0 for death in deaths)),
+                              ("runs with other bits", sum(not run["equal"] for run in some))):
+            rows.add(f"deaths/{name}", metric, value)
+        for share, metric in ((0.5, "back p50"), (0.95, "back p95"), (1, "back max")):
+            rows.add(f"deaths/{name}", metric, percentile(times, share), "s")
+    rows.store("recovery")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default="build/release/aurasim")
@@ -247,6 +267,7 @@ def main():
                 print(json.dumps(result), flush=True)
             seed += 1
     bad = [r for r in done if not r["equal"] or r["exit"] != 0 or r["refused"]]
+    store(done)
     print(f"{len(done)} runs, {sum(len(r['deaths']) for r in done)} deaths or pairs, {len(bad)} runs not as undisturbed")
     return 1 if bad else 0
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Kills nodes of real runs at random, 100 times one and 20 times two at once, and compares every state with that of the run
-# that nobody disturbed; restarts all nodes one after the other; measures what keeping parts costs a healthy run. Writes
-# docs/results.md#recovery. About 35 minutes on 2 cores, where nothing else runs, those of the long run, and half an hour
+# that nobody disturbed; restarts all nodes one after the other; measures what keeping parts costs a healthy run. Stores the
+# suite recovery. About 35 minutes on 2 cores, where nothing else runs, those of the long run, and half an hour
 # for a day in virtual time; goes on where it was stopped.
 #   scripts/recovery.sh [--deaths N=100] [--pairs N=20] [--soak MINUTES=60] [--hours N=24] [--domain N=73]
 #                       [--out DIR=build/recovery]
@@ -22,9 +22,14 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 
-# shellcheck source=scripts/measured.sh
-source scripts/measured.sh
-begin_measuring docs/results.md#recovery "$out" double aurasim-lab
+scripts/build.sh release aurasim aurasim-lab >&2
+mkdir -p "$out"
+commit=$(git describe --always --dirty)
+if [[ -s $out/commit && $(<"$out/commit") != "$commit" ]]; then
+  echo "recovery.sh: $out holds results of $(<"$out/commit"), and this is $commit. Remove it, or name another folder" >&2
+  exit 2
+fi
+echo "$commit" >"$out/commit"
 failures=0
 /usr/bin/python3 scripts/recovery.py --deaths "$deaths" --pairs "$pairs" --domain "$domain" --out "$out" || failures=1
 [[ -s $out/rolling.jsonl ]] || /usr/bin/python3 scripts/recovery_rolling.py --domain "$domain" --out "$out" || failures=1
@@ -35,6 +40,4 @@ failures=0
   build/release/aurasim-lab experiment endurance tower --hours "$hours" >"$out/endurance.part" || failures=1
   mv "$out/endurance.part" "$out/endurance.jsonl"
 }
-/usr/bin/python3 scripts/write_recovery.py "$out"
-echo "written: docs/results.md#recovery" >&2
 exit "$failures"

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """What it costs a healthy run that its nodes keep parts of the world for each other: frames and bytes, with and without,
-by turns. Writes DIR/cost.jsonl."""
+by turns. Writes DIR/cost.jsonl, and the medians as the suite recovery."""
 import argparse
 import json
 import pathlib
 import subprocess
 import tempfile
+
+from stored_rows import Rows
 
 
 def frames(report):
@@ -13,6 +15,14 @@ def frames(report):
     regions = json.loads((pathlib.Path(report) / "summary.json").read_text())["regions"]
     middle = lambda name, part: sorted(r[name][part] for r in regions)[len(regions) // 2]
     return {"p50": middle("frame_ms", "p50"), "p99": middle("frame_ms", "p99")}
+
+
+def add(rows, run):
+    case = f"cost/{run['scene']}/{run['rule']}"
+    rows.add(case, "frame p50", run["p50"], "ms")
+    rows.add(case, "frame p99", run["p99"], "ms")
+    rows.add(case, "to neighbours", run["aura_bytes"] / run["seconds"] / 1e3, "kB/s")
+    rows.add(case, "to keepers", run["bytes"] / run["seconds"] / 1e3, "kB/s")
 
 
 def main():
@@ -24,6 +34,7 @@ def main():
     parser.add_argument("--domain", type=int, default=73)
     parser.add_argument("--out", default="build/recovery")
     options = parser.parse_args()
+    rows = Rows()
     with (pathlib.Path(options.out) / "cost.jsonl").open("w") as file:
         for scene in options.scenes.split(","):
             for repeat in range(options.repeats):
@@ -41,6 +52,11 @@ def main():
                         row["seconds"] = options.steps / 60
                         file.write(json.dumps(row) + "\n")
                         print(json.dumps(row), flush=True)
+                        add(rows, row)
+    for scene in options.scenes.split(","):
+        less, more = (rows.median(f"cost/{scene}/{rule}", "frame p99") for rule in ("stop", "recover"))
+        rows.add(f"cost/{scene}/recover", "p99 over that of stop", more / less, "ratio")
+    rows.store("recovery")
 
 
 if __name__ == "__main__":

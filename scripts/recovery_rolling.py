@@ -2,7 +2,8 @@
 """Runs whose nodes are changed one after the other (a rolling restart), and long ones whose nodes are killed, drained and
 saved at random, with the memory that they take. Both are compared with the run that nobody disturbed.
 
-Writes DIR/rolling.jsonl and, with --soak, DIR/soak.jsonl, a line for each run.
+Writes DIR/rolling.jsonl and, with --soak, DIR/soak.jsonl, a line for each run, and the medians as the suite
+recovery.
 """
 import argparse
 import json
@@ -13,6 +14,7 @@ import tempfile
 import time
 
 from recovery import REGIONS, Case, hashes
+from stored_rows import Rows
 
 WENT_BACK = re.compile(r"region (\d+) went back to state (\d+) after ([0-9.]+) s")
 
@@ -130,6 +132,19 @@ def act(case, run, dice, counts):
     counts["refused"] += told.returncode != 0
 
 
+def add(rows, kind, run):
+    if kind == "rolling":
+        rows.add("rolling/drains", "stood", max((d["stood_s"] for d in run["drains"] if d["stood_s"] is not None), default=None), "s")
+        rows.add("rolling/drains", "real-time factor", run["real_time_factor"])
+        return
+    for name, value in (("minutes", run["minutes"]), ("states", run["steps"]), *run["counts"].items()):
+        rows.add("long run/all", name, value)
+    for share, name in ((0.1, "a tenth"), (0.5, "half"), (1, "all")):
+        of_node, of_launcher = run["sizes"][min(len(run["sizes"]) - 1, int(share * len(run["sizes"])))][2:4]
+        rows.add(f"long run memory/{name} of the time", "largest node", of_node / 1024, "MiB")
+        rows.add(f"long run memory/{name} of the time", "launcher", of_launcher / 1024, "MiB")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default="build/release/aurasim")
@@ -143,7 +158,7 @@ def main():
     options = parser.parse_args()
     out = pathlib.Path(options.out)
     out.mkdir(parents=True, exist_ok=True)
-    good = True
+    good, rows = True, Rows()
     kinds = [("soak", soak)] if options.soak else [("rolling", rolling_restart)] * options.repeats
     with (out / f"{kinds[0][0]}.jsonl").open("w") as file:
         for _, make in kinds:
@@ -151,6 +166,8 @@ def main():
             good = good and row["equal"] and row["exit"] == 0 and row["bodies_lost"] == 0
             file.write(json.dumps(row) + "\n")
             print(json.dumps(row), flush=True)
+            add(rows, kinds[0][0], row)
+    rows.store("recovery")
     return 0 if good else 1
 
 

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # Runs shipped scenes in deterministic mode over real DDS processes on 1, 2, 4 and 9 nodes, twice, on a good network and
 # on a bad one (16 ms delay, 5 ms jitter, 10% loss on every datagram), and compares the state hash of every step with
-# the run on one node. Prints a table in Markdown; exit 1 if anything differs. With no SCENE also writes
-# docs/results.md#same_bits (the part of a network that is not asked for stays as it was). Takes about two hours for
-# everything, a good hour with --repetitions 1; goes on where it was stopped.
+# the run on one node. Prints a table in Markdown; exit 1 if anything differs. Takes about two hours for everything, a good
+# hour for one network; goes on where it was stopped, as long as DIR is there.
 #   scripts/same_bits.sh [--steps N=1800] [--repetitions N=1] [--network good|bad|both] [--domain N=70]
 #                        [--out DIR=build/same_bits] [SCENE ...]
 set -euo pipefail
@@ -22,10 +21,9 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 
-aurasim=build/release/aurasim
-# shellcheck source=scripts/measured.sh
-source scripts/measured.sh
-begin_measuring docs/results.md#same_bits "$out" double aurasim_bench
+aurasim=${AURASIM:-build/release/aurasim}
+[[ -n ${AURASIM_SKIP_BUILD:-} ]] || scripts/build.sh release aurasim >&2
+mkdir -p "$out"
 reports=$(mktemp -d)
 trap 'rm -rf "$reports"' EXIT
 
@@ -90,12 +88,4 @@ for scene in "${scenes[@]}"; do
     if [[ $on == good ]]; then row "$scene" "$nodes" good "$again"; else row "$scene" "$nodes" bad "$again" "${bad[@]}"; fi
   done
 done
-
-# What the page says besides.
-if [[ $# -eq 0 ]]; then
-  build/release/aurasim_bench --benchmark_filter='hand_off/|plain_bullet' --benchmark_format=json \
-    2>/dev/null >"$out/bench.json"
-  /usr/bin/python3 scripts/write_same_bits.py "$out" --steps "$steps"
-  echo "written: docs/results.md#same_bits" >&2
-fi
 exit $((failures > 0))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What keys cost: the demo open and with a store of keys made for it (`launch --secure`), by turns, and open beside an
-overseer that is left alone, with idle processors and busy ones, or attacked. Writes DIR/runs.jsonl and
-docs/results.md#security_cost."""
+overseer that is left alone, with idle processors and busy ones, or attacked. Writes DIR/runs.jsonl, and the medians as
+the suite security_cost. About 15 minutes on 2 cores, where nothing else runs. Fails where a run lost bodies or bits."""
 import argparse
 import contextlib
 import ctypes
@@ -20,40 +20,7 @@ import tempfile
 import time
 
 from recovery import REGIONS, Case, hashes
-from page_sections import put_section
-from report_parts import machine_line, measured_line, table
-
-TEXT = """## What keys cost
-
-{measured}
-
-Written by `scripts/security_cost.sh`; do not edit. {machine}.
-
-The demo on four nodes of one host, `deterministic`, {steps} states paced by the clock, runs open and with `launch --secure`,
-{repeats} times each by turns; the table has medians. With `--secure` keys are made first, every participant is authenticated,
-and discovery and data are encrypted ([security.md](security.md)).
-
-- *One state*: a run of a single state, from the command to its end.
-- *CPU*: of the launcher and all nodes.
-- *Frame*, *sending* and *waiting* (for neighbours): of each node and state.
-- *Back*: from the moment a node is killed (`kill -9`) until all have gone back and compute, with the launcher's new process,
-  and with a spare that was there before.
-
-{costs}
-
-The next table is of the same open run, with `aurasim overseer` beside the nodes.
-
-- *Left alone*: nobody asks the overseer for anything.
-- *Left alone, busy*: nobody attacks, but two processes compute without end. One is scheduled like the thread that serves the
-  overseer's pages (nice 10, slices of 0.1 ms), the other like the attack. What the nodes lose here is due to processors that
-  do something else as well, hyperthreads among them.
-- *Attacked*: `tests/web/attack.mjs` does at once all that the overseer has to withstand: 500 connections that drip, floods of
-  requests, messages, pings and malformed input, frames of 100 MB. The attack gets what the others leave of the processors, as if
-  it came from another host. The cost of an attack is what it adds to *left alone, busy*.
-
-{attacked}
-{verdict}
-"""
+from stored_rows import Rows, build
 
 KINDS = {"open": [], "keys": ["--secure"]}
 OVERSEERS = ("left alone", "left alone, busy", "attacked")
@@ -189,36 +156,23 @@ def measure(options):
                       **whole_run(case, [], lambda: overseer(case, kind))})
 
 
-def write(options):
-    rows = [json.loads(line) for line in (options.out / "runs.jsonl").read_text().splitlines()]
+FRAME = (("real-time factor", "real_time_factor", "1"), ("frame p50", "frame_ms.p50", "ms"), ("frame p99", "frame_ms.p99", "ms"))
+WANTED = (("one state", "one_state_s", "s"), ("CPU", "cpu_s", "s"), *FRAME, ("sending p50", "transport_ms.p50", "ms"),
+          ("sending p99", "transport_ms.p99", "ms"), ("waiting p50", "wait_ms.p50", "ms"), ("waiting p99", "wait_ms.p99", "ms"),
+          ("hand-offs", "migrations", "1"), ("back by the launcher", "launcher_s", "s"), ("back by a spare", "spare_s", "s"))
 
-    def of(kind, *path):
-        values = []
-        for row in rows:
-            if row["kind"] != kind:
-                continue
-            value = row
-            for key in path:
-                value = value[key]
-            if value is not None:
-                values.append(value)
-        return f"{statistics.median(values):.3g}" if values else "never"
 
-    frame = [("real-time factor", ["real_time_factor"]), ("frame p50, ms", ["frame_ms", "p50"]),
-             ("p99", ["frame_ms", "p99"])]
-    wanted = [("one state, s", ["one_state_s"]), ("CPU, s", ["cpu_s"]), *frame,
-              ("sending p50, ms", ["transport_ms", "p50"]), ("p99", ["transport_ms", "p99"]),
-              ("waiting p50, ms", ["wait_ms", "p50"]), ("p99", ["wait_ms", "p99"]), ("hand-offs", ["migrations"]),
-              ("back by the launcher, s", ["launcher_s"]), ("back by a spare, s", ["spare_s"])]
-    costs = table(["", *KINDS], [[name, *[of(kind, *path) for kind in KINDS]] for name, path in wanted])
-    attacked = table(["overseer", *OVERSEERS], [[name, *[of(kind, *path) for kind in OVERSEERS]] for name, path in frame])
-    equal = len({row["hashes"] for row in rows}) == 1
-    verdict = (f"The hash of every state is {'the same in all runs' if equal else 'NOT the same in all runs'}; bodies lost: "
-               f"{sum(row['bodies_lost'] for row in rows)}; runs that did not end well: {sum(row['exit'] != 0 for row in rows)}.")
-    text = TEXT.format(measured=measured_line(options.out), machine=machine_line(), steps=options.steps,
-                       repeats=options.repeats, costs=costs, attacked=attacked, verdict=verdict)
-    put_section(pathlib.Path("docs/results.md"), "security_cost", text)
-    return equal
+def store(options):
+    """False if a run has other bits than the others, has lost bodies or ended badly."""
+    runs = [json.loads(line) for line in (options.out / "runs.jsonl").read_text().splitlines()]
+    rows = Rows()
+    for run in runs:
+        group, wanted = ("keys", WANTED) if run["kind"] in KINDS else ("overseer", FRAME)
+        for name, path, unit in wanted:
+            key, _, part = path.partition(".")
+            rows.add(f"{group}/{run['kind']}", name, run[key][part] if part else run[key], unit)
+    rows.store("security_cost")
+    return len({run["hashes"] for run in runs}) == 1 and not any(run["bodies_lost"] or run["exit"] for run in runs)
 
 
 def main():
@@ -231,8 +185,9 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/security_cost"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    build()
     measure(options)
-    return 0 if write(options) else 1
+    return 0 if store(options) else 1
 
 
 if __name__ == "__main__":

@@ -180,16 +180,19 @@ std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress
   return points;
 }
 
-std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
-                                 const std::filesystem::path& directory) {
-  std::filesystem::create_directories(directory);
-  write_csv(points, directory / "pareto.csv");
+std::vector<Target> pareto_targets(const std::vector<ParetoPoint>& points) {
   double other_bits = 0;
   for (const ParetoPoint& p : points) {
     if (p.rules.sync == core::SyncMode::kDeterministic && !p.same_bits) ++other_bits;
   }
-  const std::vector<Target> targets = {
-      {"deterministic points whose bits differ from those of one node", other_bits, 0}};
+  return {{"deterministic points whose bits differ from those of one node", other_bits, 0}};
+}
+
+std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
+                                 const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  write_csv(points, directory / "pareto.csv");
+  const std::vector<Target> targets = pareto_targets(points);
   nlohmann::json summary;
   summary["simulated_s"] = plan.simulated_s;
   summary["points"] = points.size();

@@ -45,6 +45,8 @@ void mark_front(std::vector<ParetoPoint>& points);
 using ParetoProgress = std::function<bool(double share)>;
 std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress& progress);
 
+std::vector<Target> pareto_targets(const std::vector<ParetoPoint>& points);
+
 /// Writes pareto.csv and summary.json; returns the requirements.
 std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
                                  const std::filesystem::path& directory);

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# speed_test.sh LABORATORY: `experiment speed` of every case in small, the errors of what it leaves, and the page of both.
+# speed_test.sh LABORATORY: `experiment speed` of every case in small, the errors of what it leaves, and the rows of both.
 # shellcheck disable=SC2016 # columns of awk
 set -euo pipefail
 lab=$1
-scripts=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../scripts" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; exit 1; }
@@ -29,9 +28,7 @@ expect "CardHousesStand" card_houses '$9 == 0'
 expect "SleepersStayWhereTheyAre" sleepers '$7 < 0.01 && $8 < 0.01'
 expect "GasKeepsItsEnergy" gas '$11 < 1e-3 && $11 > -1e-3 && $10 == 0'
 
-echo "Measured: commit none; build none; precision double." >"$work/measured.txt"
-printf 'jolt left-out\nbox3d left-out\nbullet version 3.24\n' >"$work/engines.txt"
-/usr/bin/python3 "$scripts/write_speed.py" "$work" --out "$work"
-for text in "Measured: commit none" "Jolt: \*left out, it is not installed\*; box3d: .*; Bullet: version 3.24\." "| aurasim-fast | double |" "^## gas"; do
-  grep -q "$text" "$work/speed.md" || fail "the page does not say \"$text\""
+"$lab" experiment speed-errors --out "$work" --results "$work/results"
+for row in '"case":"gas/aurasim-fast, double","metric":"CPU"' '"case":"ragdolls/aurasim-sequential_impulse, double","metric":"widest joint gap"'; do
+  [[ $(grep -cF "$row" "$work/results/speed.jsonl") == 1 ]] || fail "speed.jsonl does not have $row once"
 done

@@ -1,4 +1,4 @@
-// One function per command of the laboratory. Each adds itself to `aurasim-lab experiment`.
+// One function per command of the laboratory. Each adds itself to `aurasim-lab experiment`, but for `run`.
 #pragma once
 
 #include <string>
@@ -10,6 +10,9 @@ namespace aurasim::lab::commands {
 
 /// The command `experiment` itself, with all that are below it.
 void add_experiment(CLI::App& program, command_line::Action& action);
+
+/// The command `run SUITE`, beside `experiment`.
+void add_run(CLI::App& program, command_line::Action& action);
 
 void add_stability(CLI::App& experiment, command_line::Action& action);
 void add_pareto(CLI::App& experiment, command_line::Action& action);

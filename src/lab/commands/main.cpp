@@ -1,4 +1,4 @@
-// aurasim-lab: the laboratory. docs/laboratory.md has what to type.
+// aurasim-lab: the laboratory. docs/development.md has what to type.
 #include <memory>
 
 #include "lab/commands/program.h"

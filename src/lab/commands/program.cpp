@@ -17,6 +17,7 @@ std::unique_ptr<CLI::App> make_program(command_line::Action& action) {
       "`aurasim-lab experiment COMMAND --help` has the options of an experiment. Example:\n"
       "  aurasim-lab experiment scenes --seeds 1-200 --out out");
   add_experiment(*program, action);
+  add_run(*program, action);
   command_line::add_completion(*program, action);
   command_line::add_manual(
       *program, action,

@@ -1,5 +1,6 @@
 // `aurasim-lab experiment speed` and `speed-errors`.
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,9 +9,12 @@
 
 #include "command_line/exit_code.h"
 #include "host/stop_signal.h"
+#include "host/version.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/speed/speed.h"
+#include "lab/suites/results_file.h"
+#include "lab/suites/speed_rows.h"
 
 namespace aurasim::lab::commands {
 namespace {
@@ -72,12 +76,17 @@ void add_speed(CLI::App& experiments, command_line::Action& action) {
 void add_speed_errors(CLI::App& experiments, command_line::Action& action) {
   CLI::App* command =
       experiments.add_subcommand("speed-errors", "what is wrong with the states that runs of any engine have left");
-  const auto out = std::make_shared<std::string>();
+  const auto out = std::make_shared<std::string>(), results = std::make_shared<std::string>();
   command->add_option("--out", *out, "folder with scenes and states; gets errors.csv")->required();
+  command->add_option("--results", *results, "also append times and errors to speed.jsonl in this folder");
   command->footer("Example:\n  aurasim-lab experiment speed-errors --out out");
-  command->callback([out, &action] {
-    action = [out] {
+  command->callback([out, results, &action] {
+    action = [out, results] {
       lab::write_speed_errors(*out);
+      if (!results->empty()) {
+        lab::append_results(std::filesystem::path(*results) / "speed.jsonl", lab::speed_rows(*out),
+                            lab::provenance_here(host::commit(), false));
+      }
       return static_cast<int>(command_line::ExitCode::kOk);
     };
   });

@@ -42,6 +42,9 @@ RunRules preset_rules(const std::string& preset);
 using StabilityProgress = std::function<bool(double share, const std::string& next)>;
 std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const StabilityProgress& progress);
 
+/// The requirements, of those cases that were run.
+std::vector<Target> stability_targets(const std::vector<StabilityRow>& rows);
+
 /// Writes stability.csv and summary.json; returns the requirements.
 std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory);
 

@@ -59,7 +59,9 @@ void require(std::vector<Target>& targets, const std::vector<StabilityRow>& rows
   }
 }
 
-std::vector<Target> targets_of(const std::vector<StabilityRow>& rows) {
+}  // namespace
+
+std::vector<Target> stability_targets(const std::vector<StabilityRow>& rows) {
   const auto other_bits = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !row.same_bits(); });
   std::vector<Target> targets = {
       {"runs whose bits on two nodes differ from those on one", static_cast<double>(other_bits), 0}};
@@ -80,12 +82,10 @@ std::vector<Target> targets_of(const std::vector<StabilityRow>& rows) {
   return targets;
 }
 
-}  // namespace
-
 std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
   write_csv(rows, directory / "stability.csv");
-  const std::vector<Target> targets = targets_of(rows);
+  const std::vector<Target> targets = stability_targets(rows);
   nlohmann::json summary;
   summary["runs"] = rows.size();
   summary["targets"] = json_of(targets);

@@ -1,0 +1,266 @@
+// The suites scalability (virtual time) and scalability_clock (processes over DDS by the wall clock).
+#include "lab/commands/rain_suites.h"
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "setup/launch_setup.h"
+#include "config/shipped_files.h"
+#include "lab/commands/rain_processes.h"
+#include "lab/scale/fit.h"
+#include "lab/scale/message_sizes.h"
+#include "lab/scale/rain_summary.h"
+#include "lab/scale/scalability.h"
+#include "lab/suites/trial_folder.h"
+
+namespace aurasim::lab::commands {
+namespace {
+
+constexpr int kRunsAtATime = 2;
+constexpr double kStep_ms = 1000.0 / 60;
+
+std::filesystem::path rain_launch_file() { return config::shipped_folder() / "launch_configs" / "columns_rain.yaml"; }
+
+/// What one repeat of a run was measured to be, by metric.
+struct Figure {
+  const char* metric;
+  const char* unit;
+  double value;
+};
+
+/// Bodies up to which the mean frame of every window so far was within a step.
+double bodies_in_real_time(const std::vector<Window>& windows) {
+  double bodies = 0;
+  for (const Window& w : windows) {
+    if (w.region >= 0) continue;
+    if (w.frame_mean_ms > kStep_ms) break;
+    bodies = static_cast<double>(w.mean.bodies);
+  }
+  return bodies;
+}
+
+std::vector<Figure> figures(const RainFigures& f) {
+  const auto count = [](auto n) { return static_cast<double>(n); };
+  return {{"bodies", "1", count(f.bodies)},
+          {"largest frame", "ms", f.frame_max_ms},
+          {"95th percentile", "ms", f.frame_p95_ms},
+          {"last 5 s", "ms", f.last_frame_ms},
+          {"physics, all nodes", "ms", f.physics_ms},
+          {"protocol", "ms", f.protocol_ms},
+          {"transport", "ms", f.transport_ms},
+          {"(protocol + transport) / physics", "ratio", f.overhead_share},
+          {"projecting bodies", "1", count(f.projecting)},
+          {"handed over", "1", count(f.hand_offs)},
+          {"back within a second", "%", 100 * count(f.returns) / std::max(1.0, count(f.hand_offs))},
+          {"largest cluster", "1", count(f.largest_cluster)},
+          {"most hosted over mean", "1", f.most_hosted_share},
+          {"violations", "1", count(f.violations)}};
+}
+
+std::vector<Figure> traffic(const Rain& rain, const RainFigures& f) {
+  const double node_steps = static_cast<double>(rain.regions.count) * static_cast<double>(rain.steps(1.0 / 60));
+  const auto per = [](std::uint64_t n, double of) { return static_cast<double>(n) / std::max(1.0, of); };
+  return {{"bytes per node and step", "B", per(f.link_bytes, node_steps)},
+          {"datagrams per node and step", "1", per(f.datagrams, node_steps)},
+          {"bytes per aura message", "B", per(f.aura_bytes, static_cast<double>(f.aura_updates))},
+          {"bytes per body handed over", "B", per(f.hand_off_bytes, static_cast<double>(f.hand_offs))},
+          {"time taken over simulated", "1", f.slow_down}};
+}
+
+/// The case of a run, without its repeat. '/' divides the parts of a case, so units are in words.
+std::string case_of(const Rain& rain, const std::string& group) {
+  std::string what;
+  if (rain.series == "columns" || rain.series == "cuts") {
+    what = fmt::format("{} nodes, {}", rain.regions.count, rain.aura);
+  } else if (rain.series == "border") {
+    what = fmt::format("{:g}% near the border", 100 * rain.border_share);
+  } else if (rain.series == "uncertainty") {
+    what = fmt::format("U = {:g}", rain.uncertainty);
+  } else if (rain.series == "lookahead") {
+    what = fmt::format("K = {}", rain.lookahead);
+  } else if (rain.series == "weak") {
+    what = fmt::format("{} nodes", rain.regions.count);
+  } else if (rain.series == "speed") {
+    what = fmt::format("{:g} m a second per axis, {}", rain.fall_m_s, rain.aura);
+  } else if (rain.series == "link") {
+    what = fmt::format("{:g} kB a second, {}", rain.bandwidth_B_s / 1e3, rain.aura);
+  } else {
+    what = rain.regions.name();
+  }
+  return rain.series + group + "/" + what;
+}
+
+/// Gathers the repeats of each case, and gives their medians.
+class Medians {
+ public:
+  void add(const std::string& what, const Figure& figure) {
+    const auto key = std::pair{what, std::string(figure.metric)};
+    if (values_.find(key) == values_.end()) order_.emplace_back(key, figure.unit);
+    values_[key].push_back(figure.value);
+  }
+  void rows_into(std::vector<ResultRow>& out) const {
+    for (const auto& [key, unit] : order_) {
+      const std::vector<double>& all = values_.at(key);
+      out.push_back({key.first, key.second, median(all), unit, static_cast<int>(all.size())});
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::pair<std::string, std::string>, std::string>> order_;
+  std::map<std::pair<std::string, std::string>, std::vector<double>> values_;
+};
+
+using Runs = std::vector<std::pair<Rain, std::vector<Window>>>;
+
+/// Each run in numbers, and how many times less its frames take than those of the same rain on one node.
+void add_runs(const Runs& runs, const std::string& group, bool is_traffic, std::vector<ResultRow>& out) {
+  Medians medians;
+  for (const auto& [rain, windows] : runs) {
+    const std::string what = case_of(rain, group);
+    const RainFigures f = figures_of(windows, rain.regions.count);
+    for (const Figure& figure : is_traffic ? traffic(rain, f) : figures(f)) medians.add(what, figure);
+    medians.add(what, {"bodies in real time", "1", bodies_in_real_time(windows)});
+    if (rain.regions.count == 1 || (rain.series != "columns" && rain.series != "cuts")) continue;
+    for (const auto& [other, others] : runs) {
+      if (other.regions.count != 1 || other.series != rain.series || other.repeat != rain.repeat) continue;
+      const RainFigures one = figures_of(others, 1);
+      medians.add(what, {"largest frame, times less", "ratio", one.frame_max_ms / f.frame_max_ms});
+      medians.add(what, {"95th percentile, times less", "ratio", one.frame_p95_ms / f.frame_p95_ms});
+      medians.add(what, {"last 5 s, times less", "ratio", one.last_frame_ms / f.last_frame_ms});
+    }
+  }
+  medians.rows_into(out);
+}
+
+/// One part of the suite: a plan, and what its cases are called.
+struct Part {
+  std::string group;
+  ScalabilityPlan plan;
+  bool is_traffic = false;
+};
+
+std::vector<Part> parts_of(Effort effort) {
+  ScalabilityPlan shorter, wide, narrow, bandwidth;
+  shorter.run_s = 20;
+  bandwidth.series = bandwidth_series();
+  bandwidth.run_s = 10;
+  if (effort == Effort::kQuick) {
+    shorter.series = {"border", "lookahead"};
+    return {{", 20 s", shorter}};
+  }
+  wide.series = {"columns", "cuts"};
+  wide.auras = {"swept"};
+  wide.repeats = 3;
+  narrow = wide;
+  narrow.series = {"columns"};
+  narrow.columns = {1, 2, 4, 8};
+  narrow.lookahead = 1;
+  return {{", K = 2", wide}, {", K = 1", narrow}, {", 20 s", shorter}, {"", bandwidth, true}};
+}
+
+void add_sizes(std::vector<ResultRow>& out) {
+  const auto bytes = [&](const std::string& what, double size) { out.push_back({"size/" + what, "bytes", size, "B"}); };
+  const nlohmann::json sizes = message_sizes();
+  bytes("aura batch with nothing in it", sizes["aura_batch"]);
+  for (const auto& [aura, size] : sizes["aura_update"].items()) bytes("each aura update, " + aura, size);
+  bytes("each aura deleted", sizes["aura_delete"]);
+  bytes("hand-off with nothing in it", sizes["hand_off"]);
+  bytes("each body handed over", sizes["hand_off_body"]);
+  bytes("each contact point handed over", sizes["hand_off_contact_point"]);
+  bytes("acknowledgement", sizes["ack"]);
+}
+
+double found_in(const std::vector<ResultRow>& rows, const std::string& what, const std::string& metric) {
+  for (const ResultRow& row : rows) {
+    if (row.what == what && row.metric == metric) return row.value;
+  }
+  throw std::logic_error("the suite scalability has no " + what);
+}
+
+/// What several nodes are for. docs/speed.md names what is wanted beyond it.
+void add_requirements(SuiteResults& results) {
+  const auto& rows = results.rows;
+  std::vector<Target> targets;
+  for (const char* k : {"2", "1"}) {
+    for (const auto& [nodes, wanted] : {std::pair{4, 7}, std::pair{8, 14}}) {
+      const double found =
+          found_in(rows, fmt::format("columns, K = {}/{} nodes, swept", k, nodes), "largest frame, times less");
+      targets.push_back({fmt::format("largest frame, {} nodes against 1, columns, K = {}", nodes, k), found,
+                         static_cast<double>(wanted), true});
+    }
+  }
+  targets.push_back({"bytes of an aura update, tight", found_in(rows, "size/each aura update, tight", "bytes"), 40});
+  targets.push_back({"bytes of an aura update, swept", found_in(rows, "size/each aura update, swept", "bytes"), 80});
+  add_targets(results, targets);
+}
+
+SuiteResults run_scalability(Effort effort, const SuiteProgress& progress) {
+  RainPlace place;
+  place.launch_file = rain_launch_file();
+  place.setup_of = [](const config::Launch& launch, core::RegionId region) {
+    return setup::node_setup(launch, region, 0);
+  };
+  SuiteResults results;
+  const std::vector<Part> parts = parts_of(effort);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const TrialFolder folder;
+    std::atomic<bool> stop = false;
+    const std::vector<Rain> rains = rains_of(parts[i].plan);
+    const bool finished = run_rains(
+        rains, place, folder.path(), kRunsAtATime,
+        [&](const Progress& now) {
+          stop = stop || !progress((static_cast<double>(i) + now.share) / static_cast<double>(parts.size()));
+        },
+        stop);
+    if (!finished) return results;
+    Runs runs;
+    for (const Rain& rain : rains) runs.emplace_back(rain, read_windows(windows_file(folder.path(), rain)));
+    add_runs(runs, parts[i].group, parts[i].is_traffic, results.rows);
+  }
+  add_sizes(results.rows);
+  if (effort == Effort::kFull) add_requirements(results);
+  return results;
+}
+
+/// One and two nodes. A quick run has one repeat with K = 1.
+SuiteResults run_scalability_clock(Effort effort, const SuiteProgress& progress) {
+  ScalabilityPlan plan;
+  plan.series = {"columns"};
+  plan.columns = {1, 2};
+  plan.auras = {"swept"};
+  const bool is_full = effort == Effort::kFull;
+  plan.repeats = is_full ? 3 : 1;
+  SuiteResults results;
+  double done = 0;
+  const std::vector<int> lookaheads = is_full ? std::vector{2, 1} : std::vector{1};
+  for (const int k : lookaheads) {
+    plan.lookahead = k;
+    const TrialFolder folder;
+    Runs runs;
+    const std::vector<Rain> rains = rains_of(plan);
+    for (const Rain& rain : rains) {
+      if (!progress(done++ / static_cast<double>(lookaheads.size() * rains.size()))) return results;
+      const auto windows = run_processes(rain, rain_launch_file(), {}, folder.path() / rain.name());
+      if (!windows) throw std::runtime_error("the run " + rain.name() + " failed; what it wrote is above");
+      runs.emplace_back(rain, *windows);
+    }
+    add_runs(runs, fmt::format(", K = {}, {:g} s", k, plan.run_s), false, results.rows);
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<Suite> rain_suites() {
+  return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/speed.md)", run_scalability},
+          {"scalability_clock", "rain on one and two real nodes, by the wall clock (docs/speed.md)",
+           run_scalability_clock}};
+}
+
+}  // namespace aurasim::lab::commands

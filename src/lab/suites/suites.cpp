@@ -1,0 +1,29 @@
+#include "lab/suites/suites.h"
+
+#include <array>
+
+namespace aurasim::lab {
+
+std::span<const Suite> suites() {
+  static constexpr std::array kSuites = {
+      Suite{"accuracy", "hard cases against closed forms, and error against CPU time (docs/accuracy.md)",
+            run_accuracy_suite},
+      Suite{"correctness", "do bodies collide across borders as in one world? (docs/correctness.md)",
+            run_correctness_suite},
+      Suite{"correctness_over_dds", "a part of it in real time, over DDS on loopback (docs/correctness.md)",
+            run_correctness_over_dds_suite},
+      Suite{"solvers", "can the soft step replace sequential_impulse? (docs/accuracy.md)", run_solvers_suite},
+  };
+  return kSuites;
+}
+
+void add_targets(SuiteResults& results, const std::vector<Target>& targets) {
+  for (const Target& target : targets) {
+    const std::string what = "requirement/" + target.name;
+    results.rows.push_back({what, "found", target.found, "1"});
+    results.rows.push_back({what, target.at_least ? "at least" : "at most", target.allowed, "1"});
+    results.targets.push_back(target);
+  }
+}
+
+}  // namespace aurasim::lab
