@@ -89,7 +89,8 @@ void Saving::keep_checkpoints(Checkpoints& checkpoints, node::Recorder* recorder
   if (checkpoints.left_out() == 0 || std::exchange(says_left_out_, true)) return;
   std::vector<std::uint32_t> keepers;
   for (const core::RegionId keeper : checkpoints.keepers()) keepers.push_back(core::value_of(keeper));
-  say(fmt::format("one of regions [{}], which keep copies of this region, takes longer to receive a part of the world "
+  say(
+      fmt::format("one of regions [{}], which keep copies of this region, takes longer to receive a part of the world "
                   "than from one checkpoint to the next: after a death all may have to go back farther "
                   "(survival.checkpoint)",
                   fmt::join(keepers, ", ")));

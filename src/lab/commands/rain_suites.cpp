@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "setup/launch_setup.h"
 #include "config/shipped_files.h"
 #include "lab/commands/rain_processes.h"
 #include "lab/scale/fit.h"
@@ -18,6 +17,7 @@
 #include "lab/scale/rain_summary.h"
 #include "lab/scale/scalability.h"
 #include "lab/suites/trial_folder.h"
+#include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
 namespace {
