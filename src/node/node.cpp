@@ -276,7 +276,6 @@ void Node::note_arrivals(const core::Adoption& adoption) {
     row.source = adoption.source;
     row.destination = region();
     row.reason = adoption.reason;
-    row.reclaimed = adoption.reclaimed;
   }
   watch_.join(adoption);
 }

@@ -44,7 +44,7 @@ struct NodeSetup {
   PhaseClock clock = PhaseClock::kWall;
 };
 
-/// One body's change of host, as the receiver or (on reclaim) the sender saw it.
+/// One body's change of host, as its sender or its receiver saw it.
 struct HandOffRow {
   core::Step stamp = 0;   ///< state in which it left
   core::Step joined = 0;  ///< state in whose computation it takes part first; 0 in the sender's rows
@@ -53,7 +53,6 @@ struct HandOffRow {
   core::RegionId source{};
   core::RegionId destination{};
   core::HandOffReason reason{};
-  bool reclaimed = false;
   bool touched = false;  ///< the body had a contact since its last change of host (sender's rows)
 
   bool is_pull() const { return reason == core::HandOffReason::kAuraCollision; }

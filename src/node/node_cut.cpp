@@ -87,7 +87,7 @@ std::optional<core::WorldCut> Node::present_part() const {
   Cut now = cut();
   for (const core::HandOff& to_come : protocol_->intake().to_come()) {
     if (to_come.stamp > current_step()) continue;
-    now.joining.push_back({to_come.source, to_come.stamp, to_come.sequence, to_come.reason, false, to_come.cluster});
+    now.joining.push_back({to_come.source, to_come.stamp, to_come.sequence, to_come.reason, to_come.cluster});
   }
   return part_of_world(std::move(now));
 }

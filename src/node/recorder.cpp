@@ -65,7 +65,7 @@ Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region, s
                   "violation_flagged\n",
                   up_to(after, 1)),
       migrations_(folder_ / "migrations.csv",
-                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n",
+                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched\n",
                   moves_up_to(after)),
       violations_(folder_ / "violations.csv", "region,step,kind,of_region,body,value,allowed\n", up_to(after, 1)),
       births_(folder_ / "births.csv", "region,body,birth_step\n", up_to(after, 2)),
@@ -111,9 +111,9 @@ void Recorder::write_settling(const StepReport& report) {
 
 void Recorder::write_hand_offs(const StepReport& report) {
   const auto row = [this](const char* direction, const HandOffRow& h) {
-    migrations_.add("{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp, h.joined,
+    migrations_.add("{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp, h.joined,
                     core::value_of(h.body), h.epoch, core::value_of(h.source), core::value_of(h.destination),
-                    name_of(h.reason), int{h.reclaimed}, int{h.touched});
+                    name_of(h.reason), int{h.touched});
   };
   for (const HandOffRow& h : report.departures) row("out", h);
   for (const HandOffRow& h : report.arrivals) row("in", h);
@@ -184,7 +184,6 @@ void Recorder::write_bodies(Node& node) {
   };
   if (!node.settled()) {
     for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
-    for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);
   }
   if (!bodies.flush()) end_records(bodies);
 }

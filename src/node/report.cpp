@@ -34,7 +34,6 @@ struct Move {
   std::uint64_t source = 0;
   std::uint64_t destination = 0;
   bool pulled = false;  ///< the reason was an aura collision
-  bool reclaimed = false;
   bool touched = true;
   bool adopted = false;  ///< its arrival is recorded, too
 
@@ -106,7 +105,7 @@ class Merge {
   void read_moves() {
     std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // key: body and epoch
     read_all("migrations.csv", [&](const Cells& c) {
-      if (c.size() != 11) return;
+      if (c.size() != 10) return;
       Move& move = moves[{whole(c[4]), whole(c[5])}];
       const bool departure = c[1] == "out";
       move.stamp = whole(c[2]);
@@ -115,8 +114,7 @@ class Merge {
       move.source = whole(c[6]);
       move.destination = whole(c[7]);
       move.pulled = c[8] == "aura_collision";
-      move.reclaimed = c[9] == "1";
-      if (departure) move.touched = c[10] == "1";
+      if (departure) move.touched = c[9] == "1";
       move.adopted = move.adopted || !departure;
     });
     for (const auto& [key, move] : moves) {
@@ -197,8 +195,7 @@ class Merge {
     for (auto& [body, moves] : moves_) {
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.epoch < b.epoch; });
       for (std::size_t i = 0; i < moves.size(); ++i) {
-        accounts_.hand_offs += !moves[i].reclaimed;
-        accounts_.reclaimed += moves[i].reclaimed;
+        ++accounts_.hand_offs;
         accounts_.thrashed += i > 0 && is_thrashing(moves[i - 1], moves[i]);
       }
     }
@@ -273,7 +270,6 @@ class Merge {
         {"incomplete_regions", incomplete_json()},
         {"not_merged", accounts_.not_merged},
         {"migrations", accounts_.hand_offs},
-        {"reclaimed", accounts_.reclaimed},
         {"thrashed", accounts_.thrashed},
         {"late_collisions", sum_over_nodes("late_collisions")},
         {"missed_collisions", sum_over_nodes("missed_collisions")},

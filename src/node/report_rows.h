@@ -91,7 +91,6 @@ struct MigrationRow {
   core::RegionId source{};
   core::RegionId destination{};
   std::string_view reason;
-  bool reclaimed = false;
   bool touched = false;  ///< known to the sender
 
   static constexpr auto columns() {
@@ -99,8 +98,7 @@ struct MigrationRow {
                       Column{"stamp", &MigrationRow::stamp},    Column{"joined_step", &MigrationRow::joined_step},
                       Column{"body", &MigrationRow::body},      Column{"epoch", &MigrationRow::epoch},
                       Column{"source", &MigrationRow::source},  Column{"destination", &MigrationRow::destination},
-                      Column{"reason", &MigrationRow::reason},  Column{"reclaimed", &MigrationRow::reclaimed},
-                      Column{"touched", &MigrationRow::touched}};
+                      Column{"reason", &MigrationRow::reason},  Column{"touched", &MigrationRow::touched}};
   }
 };
 

@@ -17,12 +17,6 @@
 
 namespace aurasim::test {
 
-struct Crash {
-  core::RegionId region{};
-  core::Step step = 0;  ///< after computing this state
-  double lease_s = 0.2;
-};
-
 /// One region's link to all others; what is sent meanwhile comes afterwards.
 struct LinkCut {
   core::RegionId region{};
@@ -43,7 +37,6 @@ struct ClusterOptions {
   double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
   core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often
-  std::optional<Crash> crash;
   std::optional<LinkCut> cut;
   core::Step overrun = 0;  ///< region 0 ends in the last state; the others go so many on, if they need not wait for it
   std::vector<core::Setpoints> recorded;  ///< of an earlier run
@@ -63,10 +56,9 @@ struct Outcome {
   std::uint64_t doubled = 0;  ///< bodies ever seen on two live nodes at once
   std::uint64_t lost = 0;
   std::uint64_t with_dead = 0;
-  std::uint64_t reclaimed = 0;
   std::uint64_t removed = 0;             ///< by orders, or because they broke down
   std::vector<physics::Removal> broken;  ///< of those the latter
-  std::vector<core::RegionId> fenced;    ///< nodes that the others hold for dead
+  std::vector<core::RegionId> dead;      ///< nodes that another one holds for dead; they compute no state after it
   std::uint64_t applied = 0;             ///< orders, by bodies
   std::uint64_t severed = 0;             ///< contacts cut by a hand-off
   std::uint64_t redos = 0;               ///< how often the run was put back
@@ -77,7 +69,7 @@ struct Outcome {
   std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
   std::vector<physics::Collision> contacts;                           ///< first contacts
   std::vector<core::Setpoints> effects;                               ///< of setpoints, as recorded
-  std::vector<std::uint64_t> hash;                                    ///< by step; only complete without a crash
+  std::vector<std::uint64_t> hash;                                    ///< by step; only complete if no node is held for dead
 };
 
 class ClusterSim {
@@ -107,7 +99,8 @@ class ClusterSim {
   void take_reports(Member& member);
   void take_report(Member& member, const node::StepReport& report);
   void check_single_host();
-  void maybe_crash(Member& member);
+  bool is_held_for_dead(core::RegionId region) const;
+  void end(Member& member);
   void settle();
   void account(Outcome& outcome);
   double chance();

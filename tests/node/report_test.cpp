@@ -29,7 +29,7 @@ class Merged : public ::testing::Test {
              "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,"
              "foreign_auras,projecting,largest_cluster,hand_offs_out,hand_offs_in,violations");
       append(region, "migrations.csv",
-             "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched");
+             "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched");
       append(region, "births.csv", "region,body,birth_step");
       append(region, "removals.csv", "region,body,removed_step");
       append(region, "bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz");
@@ -61,7 +61,7 @@ class Merged : public ::testing::Test {
   void moved(int teller, const char* direction, int body, int epoch, int source, int destination) const {
     append(teller, "migrations.csv",
            std::to_string(teller) + "," + direction + ",5,6," + std::to_string(body) + "," + std::to_string(epoch) +
-               "," + std::to_string(source) + "," + std::to_string(destination) + ",aura_collision,0,0");
+               "," + std::to_string(source) + "," + std::to_string(destination) + ",aura_collision,0");
   }
   Accounts merge(std::vector<RegionId> died = {}) {
     RunFacts facts;

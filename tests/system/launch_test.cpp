@@ -14,7 +14,7 @@ class Launch : public SystemTest {
  protected:
   void expect_no_broken_promise_to_bodies(const Report& report) const {
     expect_all_bodies_accounted_for(report);
-    for (const char* key : {"thrashed", "late_collisions", "missed_collisions", "severed_contacts", "reclaimed"}) {
+    for (const char* key : {"thrashed", "late_collisions", "missed_collisions", "severed_contacts"}) {
       EXPECT_EQ(report.count(key), 0) << key;
     }
   }
@@ -96,7 +96,7 @@ TEST_F(Launch, DemoHandsBodiesOver) {
                      "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
                      "violation_flagged"},
            std::pair{"migrations.csv",
-                     "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched"},
+                     "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched"},
            std::pair{"violations.csv", "region,step,kind,of_region,body,value,allowed"},
            std::pair{"state_hash.csv", "step,hash"},
        }) {
