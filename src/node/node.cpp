@@ -167,7 +167,7 @@ const StepReport& Node::step() {
   if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
   forget_cuts();
   forget_setpoints();
-  if (setup_.protocol.aura.redo) order_redo();
+  order_redo();
   order_recorded_moves();
   hold(report_);
   return report_;
@@ -288,7 +288,10 @@ void Node::finish_state() {
     snapshot = &world_.snapshot();
     core::Progress::mark();
   }
-  if (setup_.hash_states) report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
+  if (setup_.hash_states) {
+    const Timed timed(report_.durations.hash_s, setup_.clock);
+    report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
+  }
   count(*snapshot);
   const std::vector<core::Departure>* departures = nullptr;
   {

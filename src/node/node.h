@@ -94,7 +94,8 @@ struct Durations {
   double protocol_s = 0;   ///< receiving messages, interest matching
   double transport_s = 0;  ///< take, decode, encode, send
   double watch_s = 0;      ///< late and missed collisions, and counts; only the report needs them
-  double cut_s = 0;        ///< keeping a cut, so that a redo can go back to it
+  double cut_s = 0;        ///< keeping the state, to go back to it or to save it
+  double hash_s = 0;       ///< hashing the state. Hashes of states made up for late bodies count as physics
 };
 
 /// Returns the shape that a mesh reference names, or nothing if the process does not have that mesh.
@@ -296,6 +297,7 @@ class Node {
   bool redo_is_due() const { return redo_ && redo_->at_step <= current_step(); }
   void put_back();
   void take_cut();
+  bool may_go_back() const;
   Cut cut() const;
   void go_back_to(const Cut& cut);
   void forget_cuts();

@@ -5,6 +5,7 @@
 #include "core/horizon.h"
 #include "node/node.h"
 #include "node/scene_additions.h"
+#include "node/timed.h"
 
 namespace aurasim::node {
 namespace {
@@ -31,6 +32,7 @@ void Node::note_arrived() {
 }
 
 void Node::save_if_due() {
+  const Timed timed(report_.durations.cut_s, setup_.clock);
   for (Saving& saving : saving_) {
     if (saving.step == current_step()) saving.cut = cut();
   }

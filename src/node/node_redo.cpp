@@ -28,9 +28,12 @@ core::Step Node::confirmed_step() const {
   return protocol_->alarms_given_up() ? protocol_->confirmed_but_for_alarms() : protocol_->confirmed();
 }
 
-/// Keeps a cut of the present state. Without redo no run goes back to a cut, so none is taken.
+/// True if the run may go back to a cut. A node that is alone never does: no body is ever in two worlds.
+bool Node::may_go_back() const { return setup_.protocol.aura.redo && map_->size() > 1; }
+
+/// Keeps a cut of the present state, if the run may go back to it.
 void Node::take_cut() {
-  if (!setup_.protocol.aura.redo) return;
+  if (!may_go_back()) return;
   const Timed timed(report_.durations.cut_s, setup_.clock);
   cuts_.push_back(cut());
 }
@@ -50,7 +53,7 @@ void Node::keep(core::Step last) {
 /// Drops the cuts that are older than any that a redo can still go back to. All nodes go back to the same state, so no
 /// node may drop its cut, or the reports since, before all have confirmed later states.
 void Node::forget_cuts() {
-  if (!setup_.protocol.aura.redo) return;
+  if (!may_go_back()) return;
   const core::Step oldest = cut_before(protocol_->confirmed() + 1, kOlderCuts).step;
   while (cuts_.front().step < oldest) cuts_.pop_front();
   if (begun_with_ && cuts_.front().step > begun_with_->step) begun_with_.reset();
@@ -67,6 +70,7 @@ const Cut& Node::cut_before(core::Step touch, std::size_t farther) const {
 
 /// Orders a redo for the standing alarms. Does nothing except on the one node that takes orders.
 void Node::order_redo() {
+  if (!may_go_back()) return;
   const std::span<const core::Alarm> alarms = protocol_->alarms().standing();
   if (!protocol_->intake().dead_regions().empty()) give_up_redo();
   if (region() != core::RegionId{0} || redo_is_ordered_ || alarms.empty() || protocol_->alarms_given_up()) return;

@@ -159,7 +159,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   finish_state();
   setup_.hash_states = hashes;
   take_cut();
-  if (!setup_.protocol.aura.redo) begun_with_.reset();
+  if (!may_go_back()) begun_with_.reset();
   order_recorded_moves();
   hold(report_);
   return report_;

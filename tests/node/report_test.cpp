@@ -26,7 +26,7 @@ class Merged : public ::testing::Test {
     std::filesystem::remove_all(folder_);
     for (int region = 0; region < 2; ++region) {
       append(region, "steps.csv",
-             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,"
+             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,"
              "foreign_auras,projecting,largest_cluster,hand_offs_out,hand_offs_in,violations");
       append(region, "migrations.csv",
              "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched");
