@@ -166,7 +166,7 @@ TEST_F(Merged, HashesOfAStateAreAddedUpOverAllRowsAndRegions) {
 
 TEST_F(Merged, ASummaryFitsOnAFullDiskAndSaysWhatDoesNot) {
   for (int step = 0; step < 2000; ++step)
-    append(0, "steps.csv", "0," + std::to_string(step) + ",1,0,1,0,0,1,1,0,0,1,0,0,0");
+    append(0, "steps.csv", "0," + std::to_string(step) + ",1,0,1,0,0,0.25,0.5,1,1,0,0,1,0,0,0");
   reserve_summary(folder_);
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
@@ -179,7 +179,9 @@ TEST_F(Merged, ASummaryFitsOnAFullDiskAndSaysWhatDoesNot) {
   EXPECT_THAT(accounts.not_merged, ElementsAre("steps.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "steps.csv"));
   EXPECT_EQ(summary_.at("not_merged"), Json::array({"steps.csv"}));
-  EXPECT_EQ(summary_.at("regions").size(), 1U) << "frame times are read from the regions' own files";
+  ASSERT_EQ(summary_.at("regions").size(), 1U) << "frame times are read from the regions' own files";
+  EXPECT_EQ(summary_.at("regions")[0].at("cut_ms").at("p50"), 0.25);
+  EXPECT_EQ(summary_.at("regions")[0].at("hash_ms").at("p50"), 0.5);
 }
 
 TEST_F(Merged, ClearingLeavesWhatIsNotAReport) {
