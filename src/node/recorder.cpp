@@ -184,8 +184,8 @@ void Recorder::write_bodies(Node& node) {
   const auto row = [&](const core::BodyState& b, std::string_view where) {
     const core::Vec3& p = b.pose.p_WB;
     const core::Quat& q = b.pose.q_WB;
-    bodies.add(csv_line(
-        BodyRow{region_, b.id, b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
+    bodies.add(
+        csv_line(BodyRow{region_, b.id, b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
   };
   for (const core::BodyState& body : node.world().snapshot().bodies) row(body, BodyRow::kHere);
   const auto under_way = [&](const core::HandOff& h) {

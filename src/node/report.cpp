@@ -199,11 +199,13 @@ class Merge {
 
   Json frame_times() const {
     std::map<std::uint64_t, std::map<std::string, std::vector<double>>> columns;
-    const std::vector<std::pair<std::string, double StepRow::*>> wanted = {
-        {"frame_ms", &StepRow::frame_ms},         {"wait_ms", &StepRow::wait_ms},
-        {"physics_ms", &StepRow::physics_ms},     {"protocol_ms", &StepRow::protocol_ms},
-        {"transport_ms", &StepRow::transport_ms}, {"cut_ms", &StepRow::cut_ms},
-        {"hash_ms", &StepRow::hash_ms}};
+    const std::vector<std::pair<std::string, double StepRow::*>> wanted = {{"frame_ms", &StepRow::frame_ms},
+                                                                           {"wait_ms", &StepRow::wait_ms},
+                                                                           {"physics_ms", &StepRow::physics_ms},
+                                                                           {"protocol_ms", &StepRow::protocol_ms},
+                                                                           {"transport_ms", &StepRow::transport_ms},
+                                                                           {"cut_ms", &StepRow::cut_ms},
+                                                                           {"hash_ms", &StepRow::hash_ms}};
     read_all<StepRow>("steps.csv", [&](const StepRow& row) {
       if (row.step == 0) return;
       for (const auto& [name, time] : wanted) columns[core::value_of(row.region)][name].push_back(row.*time);

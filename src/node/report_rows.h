@@ -98,11 +98,11 @@ struct MigrationRow {
   bool touched = false;  ///< known to the sender
 
   static constexpr auto columns() {
-    return std::tuple{Column{"region", &MigrationRow::region},  Column{"direction", &MigrationRow::direction},
-                      Column{"stamp", &MigrationRow::stamp},    Column{"joined_step", &MigrationRow::joined_step},
-                      Column{"body", &MigrationRow::body},      Column{"epoch", &MigrationRow::epoch},
-                      Column{"source", &MigrationRow::source},  Column{"destination", &MigrationRow::destination},
-                      Column{"reason", &MigrationRow::reason},  Column{"touched", &MigrationRow::touched}};
+    return std::tuple{Column{"region", &MigrationRow::region}, Column{"direction", &MigrationRow::direction},
+                      Column{"stamp", &MigrationRow::stamp},   Column{"joined_step", &MigrationRow::joined_step},
+                      Column{"body", &MigrationRow::body},     Column{"epoch", &MigrationRow::epoch},
+                      Column{"source", &MigrationRow::source}, Column{"destination", &MigrationRow::destination},
+                      Column{"reason", &MigrationRow::reason}, Column{"touched", &MigrationRow::touched}};
   }
 };
 

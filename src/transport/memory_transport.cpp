@@ -9,23 +9,29 @@ class MemoryNetwork::Endpoint : public Transport {
   Endpoint(MemoryNetwork& network, core::RegionId region) : network_(network), region_(region) {}
 
   void take(core::Inbox& inbox) override {
+    if (crashed_) return;
     for (Message& message : arrived_) {
       std::visit([&](auto& m) { append(inbox, std::move(m)); }, message);
     }
     arrived_.clear();
   }
-  void send(const core::Outbox& outbox) override { network_.send(region_, outbox); }
+  void send(const core::Outbox& outbox) override {
+    if (!crashed_) network_.send(region_, outbox);
+  }
   void wait_for_arrival(std::chrono::nanoseconds) override {}
 
   void arrive(Message message) { arrived_.push_back(std::move(message)); }
+  void crash() { crashed_ = true; }
 
  private:
   static void append(core::Inbox& inbox, core::AuraBatch m) { inbox.auras.push_back(std::move(m)); }
   static void append(core::Inbox& inbox, core::HandOff m) { inbox.hand_offs.push_back(std::move(m)); }
   static void append(core::Inbox& inbox, core::HandOffAck m) { inbox.acks.push_back(m); }
+  static void append(core::Inbox& inbox, core::PeerEvent m) { inbox.peers.push_back(m); }
 
   MemoryNetwork& network_;
   core::RegionId region_;
+  bool crashed_ = false;
   std::vector<Message> arrived_;
 };
 
@@ -66,6 +72,13 @@ void MemoryNetwork::send(core::RegionId from, const core::Outbox& outbox) {
   for (const core::RegionId to : listeners) post(from, to, outbox.aura);
   for (const core::HandOff& hand_off : outbox.hand_offs) post(from, hand_off.destination, hand_off);
   for (const core::HandOffAck& ack : outbox.acks) post(from, ack.destination, ack);
+}
+
+void MemoryNetwork::crash(core::RegionId region, double lease_s) {
+  endpoints_.at(core::value_of(region))->crash();
+  for (const core::RegionId to : listeners_.at(core::value_of(region))) {
+    in_flight_.emplace(now_s_ + lease_s, Delivery{to, core::PeerEvent{region, core::PeerChange::kLost}});
+  }
 }
 
 }  // namespace aurasim::transport

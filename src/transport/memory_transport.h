@@ -33,11 +33,15 @@ class MemoryNetwork {
   void set_send_delay(double delay_s) { send_delay_s_ = delay_s; }
   double send_delay_s() const { return send_delay_s_; }
 
+  /// Ends the process of a region: it sends and takes nothing more. Messages that are on the link still arrive, those
+  /// before the link are lost. The other regions receive its death `lease_s` later.
+  void crash(core::RegionId region, double lease_s);
+
   FaultModel& faults() { return faults_; }
 
  private:
   class Endpoint;
-  using Message = std::variant<core::AuraBatch, core::HandOff, core::HandOffAck>;
+  using Message = std::variant<core::AuraBatch, core::HandOff, core::HandOffAck, core::PeerEvent>;
 
   void post(core::RegionId from, core::RegionId to, const Message& message);
   void send(core::RegionId from, const core::Outbox& outbox);

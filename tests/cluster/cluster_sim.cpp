@@ -125,6 +125,7 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   if (on_state) on_state(*member.node, member.node->report(), now);
   member.node->protocol().report_frame(next, frame);
   if (!options_.aura.redo) check_single_host();  // else some may have gone back already
+  maybe_crash(member);
 }
 
 void ClusterSim::take_report(Member& member, const node::StepReport& report) {
@@ -180,6 +181,13 @@ bool ClusterSim::is_held_for_dead(RegionId region) const {
   });
 }
 
+void ClusterSim::maybe_crash(Member& member) {
+  if (!options_.crash || member.node->region() != options_.crash->region || !member.alive) return;
+  if (member.node->current_step() < options_.crash->step) return;
+  network_->crash(member.node->region(), options_.crash->lease_s);
+  end(member);
+}
+
 void ClusterSim::end(Member& member) {
   member.alive = false;
   outcome_.dead.push_back(member.node->region());
@@ -229,6 +237,7 @@ void ClusterSim::account(Outcome& outcome) {
 
 Outcome run_central(const core::Scene& scene, ClusterOptions options, Step steps) {
   options.map = core::RegionMap::columns(1, 1);
+  options.crash.reset();
   return ClusterSim(scene, options).run(steps);
 }
 

@@ -17,6 +17,14 @@
 
 namespace aurasim::test {
 
+/// The end of a region's process. Others go on without it here, for tests of who watches a run; the nodes of a real run
+/// stand then.
+struct Crash {
+  core::RegionId region{};
+  core::Step step = 0;  ///< after computing this state
+  double lease_s = 0.2;
+};
+
 /// One region's link to all others; what is sent meanwhile comes afterwards.
 struct LinkCut {
   core::RegionId region{};
@@ -37,6 +45,7 @@ struct ClusterOptions {
   double frame_jitter_s = 0;  ///< uniform extra
   double neighbour_distance_m = 1e9;
   core::Step shuffle_ranks_steps = 0;  ///< who outranks whom changes about so often
+  std::optional<Crash> crash;
   std::optional<LinkCut> cut;
   core::Step overrun = 0;  ///< region 0 ends in the last state; the others go so many on, if they need not wait for it
   std::vector<core::Setpoints> recorded;  ///< of an earlier run
@@ -69,7 +78,7 @@ struct Outcome {
   std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
   std::vector<physics::Collision> contacts;                           ///< first contacts
   std::vector<core::Setpoints> effects;                               ///< of setpoints, as recorded
-  std::vector<std::uint64_t> hash;                                    ///< by step; only complete if no node is held for dead
+  std::vector<std::uint64_t> hash;  ///< by step; only complete if no node is held for dead
 };
 
 class ClusterSim {
@@ -100,6 +109,7 @@ class ClusterSim {
   void take_report(Member& member, const node::StepReport& report);
   void check_single_host();
   bool is_held_for_dead(core::RegionId region) const;
+  void maybe_crash(Member& member);
   void end(Member& member);
   void settle();
   void account(Outcome& outcome);

@@ -58,8 +58,8 @@ ClusterOptions options_for(const Layout& layout, int seed) {
 }
 
 std::string describe(int seed, const Outcome& o) {
-  std::string text = "seed " + std::to_string(seed) + ", late " + std::to_string(o.late) + ", missed " +
-                     std::to_string(o.missed);
+  std::string text =
+      "seed " + std::to_string(seed) + ", late " + std::to_string(o.late) + ", missed " + std::to_string(o.missed);
   for (const auto& [region, seen] : o.wrong) {
     text += "\n  region " + std::to_string(core::value_of(region)) + " step " + std::to_string(seen.collision.step) +
             " bodies " + std::to_string(core::value_of(seen.collision.a)) + " and " +

@@ -241,7 +241,8 @@ TEST_F(Strangers, TheDeadDoNotComeBack) {
   EXPECT_THAT(intake->dead_regions(), ElementsAre(region(2)));
 }
 
-/// Where all others go back to an earlier state, or the run ends, nobody takes such bodies back. They stay in the books.
+/// Where all others go back to an earlier state, or the run ends, nobody takes such bodies back. They stay in the
+/// books.
 TEST_F(Strangers, HandOffsToTheDeadStayOpen) {
   receive_all_until(5);
   send(2, 5, {record_of(1, 3)});

@@ -90,7 +90,8 @@ TEST_F(Launch, DemoHandsBodiesOver) {
   expect_every_departure_arrives_once(report, 480);
   for (const auto& [file, header] : {
            std::pair{"steps.csv",
-                     "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,foreign_auras,"
+                     "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,"
+                     "foreign_auras,"
                      "projecting,largest_cluster,hand_offs_out,hand_offs_in,violations"},
            std::pair{"collisions.csv",
                      "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"

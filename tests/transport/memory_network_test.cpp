@@ -151,5 +151,38 @@ TEST_F(MemoryNetworkTest, ACutHoldsMessagesUntilItEnds) {
   EXPECT_THAT(received(kA), ElementsAre(8));
 }
 
+TEST_F(MemoryNetworkTest, ACrashSilencesARegion) {
+  connect(slow(0.01));
+  publish(kA, 1);
+  network->crash(kB, 0.2);
+  network->advance_to(1);
+  publish(kB, 2);
+  network->advance_to(2);
+  EXPECT_THAT(received(kA), IsEmpty());
+  EXPECT_THAT(received(kB), IsEmpty()) << "it takes nothing either";
+}
+
+TEST_F(MemoryNetworkTest, WhatWasSentBeforeTheCrashStillArrives) {
+  connect(slow(0.1));
+  publish(kB, 1);
+  network->crash(kB, 0.2);
+  network->advance_to(0.15);
+  EXPECT_THAT(received(kA), ElementsAre(1));
+}
+
+TEST_F(MemoryNetworkTest, ACrashIsReportedAfterTheLeaseToThoseWhoListened) {
+  connect(slow(0.01));
+  network->advance_to(1);
+  network->crash(kA, 0.2);
+  network->advance_to(1.19);
+  EXPECT_TRUE(take(kB).peers.empty());
+  network->advance_to(1.21);
+  const core::Inbox inbox = take(kB);
+  ASSERT_EQ(inbox.peers.size(), 1u);
+  EXPECT_EQ(inbox.peers[0].region, kA);
+  EXPECT_EQ(inbox.peers[0].change, core::PeerChange::kLost);
+  EXPECT_TRUE(take(kC).peers.empty());
+}
+
 }  // namespace
 }  // namespace aurasim::transport::testing
