@@ -25,15 +25,6 @@ void DepartureLedger::due_again(Step now, Step patience, std::vector<HandOff>& o
   }
 }
 
-std::vector<HandOff> DepartureLedger::take_open(RegionId destination) {
-  std::vector<HandOff> taken;
-  for (HandOff& h : open_) {
-    if (h.destination == destination) taken.push_back(std::move(h));
-  }
-  std::erase_if(open_, [&](const HandOff& h) { return h.destination == destination; });
-  return taken;
-}
-
 std::uint64_t DepartureLedger::last_sequence(RegionId destination) const {
   const auto found = last_sequence_.find(destination);
   return found == last_sequence_.end() ? 0 : found->second;
@@ -52,22 +43,6 @@ bool ArrivalLedger::first_copy(RegionId source, std::uint64_t sequence) {
 bool ArrivalLedger::has_all_up_to(RegionId source, std::uint64_t sequence) const {
   const auto found = streams_.find(source);
   return sequence <= (found == streams_.end() ? 0 : found->second.contiguous);
-}
-
-void ArrivalLedger::adopted(RegionId source, Step now, const ClusterState& cluster) {
-  for (const BodyRecord& body : cluster.bodies) adoptions_.push_back({now, source, {body.id, body.epoch}});
-}
-
-void ArrivalLedger::forget_adoptions_before(Step step) {
-  while (!adoptions_.empty() && adoptions_.front().step < step) adoptions_.pop_front();
-}
-
-std::vector<BodyEpoch> ArrivalLedger::adopted_from(RegionId source) const {
-  std::vector<BodyEpoch> bodies;
-  for (const Adoption& a : adoptions_) {
-    if (a.source == source) bodies.push_back(a.body);
-  }
-  return bodies;
 }
 
 }  // namespace aurasim::core

@@ -1,5 +1,4 @@
-// Ledgers that make each hand-off take effect exactly once, also when its sender or receiver dies. (source,
-// destination, sequence) identifies a hand-off; the epochs in it say which copy of a body is the valid one.
+// Ledgers that make each hand-off take effect exactly once. (source, destination, sequence) identifies a hand-off; the epochs in it say which copy of a body is the valid one.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +23,6 @@ class DepartureLedger {
   /// Appends copies of the hand-offs that are due to be sent again: open for a multiple of `patience` steps.
   void due_again(Step now, Step patience, std::vector<HandOff>& out) const;
 
-  /// Removes and returns all open hand-offs to a region that died.
-  std::vector<HandOff> take_open(RegionId destination);
-
   std::uint64_t last_sequence(RegionId destination) const;
   const std::deque<HandOff>& open() const { return open_; }
 
@@ -35,7 +31,7 @@ class DepartureLedger {
   std::deque<HandOff> open_;
 };
 
-/// The receiver's side: distinguishes first copies from later ones, and remembers adoptions for a while.
+/// The receiver's side: distinguishes first copies from later ones.
 class ArrivalLedger {
  public:
   /// True for the first copy of a hand-off from `source`.
@@ -44,23 +40,12 @@ class ArrivalLedger {
   /// Have all hand-offs from `source` numbered up to `sequence` arrived?
   bool has_all_up_to(RegionId source, std::uint64_t sequence) const;
 
-  /// Remembers which bodies were adopted from `source`, so that nobody reclaims them when their previous host dies.
-  void adopted(RegionId source, Step now, const ClusterState& cluster);
-  void forget_adoptions_before(Step step);
-  std::vector<BodyEpoch> adopted_from(RegionId source) const;
-
  private:
   struct Stream {
     std::uint64_t contiguous = 0;
     std::set<std::uint64_t> ahead;
   };
-  struct Adoption {
-    Step step;
-    RegionId source;
-    BodyEpoch body;
-  };
   std::map<RegionId, Stream> streams_;
-  std::deque<Adoption> adoptions_;
 };
 
 }  // namespace aurasim::core

@@ -109,7 +109,6 @@ void Intake::accept(Inbox& inbox) {
   take_all(inbox.refusals, settings_, [this](const Refusal& refusal) { accept(refusal); });
   for (const PeerEvent& event : inbox.peers) accept(event);
   inbox.peers.clear();
-  receive_deaths();
 }
 
 void Intake::accept(HandOff& hand_off) {
@@ -158,26 +157,6 @@ void Intake::accept(const PeerEvent& event) {
 void Intake::mark_dead(Neighbour& neighbour) {
   neighbour.mark_dead();
   std::erase_if(waiting_, [&](const HandOff& h) { return h.source == neighbour.id(); });
-  for (HandOff& open : departures_.take_open(neighbour.id())) to_reclaim_.push_back(std::move(open));
-}
-
-/// A region that one neighbour has marked dead is marked dead here. Otherwise half of the nodes would wait for a region
-/// that the other half has given up.
-void Intake::receive_deaths() {
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const Neighbour& witness : neighbours_) {
-      if (!witness.alive()) continue;
-      for (const RegionId dead : witness.dead()) {
-        if (dead == vicinity_.self) fenced_ = true;
-        Neighbour* neighbour = find(dead);
-        if (neighbour && neighbour->alive()) {
-          mark_dead(*neighbour);
-          changed = true;
-        }
-      }
-    }
-  }
 }
 
 /// The stamp up to which all messages have to be here before state `n` is computed.
@@ -230,10 +209,8 @@ std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Se
     }
   }
   adopt_due(joining == Joining::kAll ? std::numeric_limits<Step>::max() : limit, n, violations);
-  reclaim(n, violations);
   constexpr Step kEarlyMemory = 256;
   forget_early(n - kEarlyMemory);
-  arrivals_.forget_adoptions_before(n - settings_.adoption_memory_steps);
   return std::exchange(adoptions_, {});
 }
 
@@ -248,53 +225,16 @@ void Intake::adopt_due(Step limit, Step n, ViolationLog& violations) {
           {ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp), double(settings_.lookahead)});
     }
     acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence, settings_.redo});
-    adopt(*due_end, n, false);
+    adopt(*due_end);
   }
   waiting_.erase(waiting_.begin(), due_end);
 }
 
-void Intake::adopt(HandOff& hand_off, Step n, bool reclaimed) {
+void Intake::adopt(HandOff& hand_off) {
   if (hand_off.cluster.bodies.empty()) return;
-  counters_.adopted += reclaimed ? 0 : hand_off.cluster.bodies.size();
-  counters_.reclaimed += reclaimed ? hand_off.cluster.bodies.size() : 0;
-  const RegionId source = reclaimed ? hand_off.destination : hand_off.source;
-  arrivals_.adopted(source, n, hand_off.cluster);
+  counters_.adopted += hand_off.cluster.bodies.size();
   adoptions_.push_back(
-      {source, hand_off.stamp, hand_off.sequence, hand_off.reason, reclaimed, std::move(hand_off.cluster)});
-}
-
-/// Takes back bodies on their way to a dead region, under a higher epoch. The region may have adopted them and sent
-/// them on before its death, unknown to us. So every live neighbour that it could have sent them to first has to know
-/// of the death (it then adopts nothing more from there), and to claim what it did adopt. Neighbours of the dead region
-/// that are not ours are out of reach of these bodies.
-void Intake::reclaim(Step n, ViolationLog& violations) {
-  const auto all_know = [this](RegionId dead) {
-    return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) {
-      return !q.alive() || !vicinity_.are_near(q.id(), dead) || q.holds_for_dead(dead);
-    });
-  };
-  const auto claims = [](std::span<const BodyEpoch> claims, const BodyRecord& body) {
-    return std::any_of(claims.begin(), claims.end(),
-                       [&](const BodyEpoch& c) { return c.id == body.id && c.epoch > body.epoch; });
-  };
-  std::erase_if(to_reclaim_, [&](HandOff& hand_off) {
-    if (!all_know(hand_off.destination)) return false;
-    const std::vector<BodyEpoch> came_back = arrivals_.adopted_from(hand_off.destination);
-    remove_bodies(hand_off.cluster, [&](const BodyRecord& body) {
-      return claims(came_back, body) || std::any_of(neighbours_.begin(), neighbours_.end(),
-                                                    [&](const Neighbour& q) { return claims(q.claims(), body); });
-    });
-    for (BodyRecord& body : hand_off.cluster.bodies) ++body.epoch;
-    // No node has published these bodies since they left, so others may have missed them.
-    violations.add({ViolationKind::kLatency,
-                    n,
-                    hand_off.destination,
-                    {},
-                    double(n - hand_off.stamp),
-                    double(settings_.lookahead)});
-    adopt(hand_off, n, true);
-    return true;
-  });
+      {hand_off.source, hand_off.stamp, hand_off.sequence, hand_off.reason, std::move(hand_off.cluster)});
 }
 
 std::vector<RegionId> Intake::dead_regions() const {
@@ -319,11 +259,6 @@ void Intake::fill(Outbox& outbox, Step stamp) {
     outbox.acks.push_back(ack);
   }
   acks_.clear();
-  outbox.aura.dead = dead_regions();
-  for (const RegionId dead : outbox.aura.dead) {
-    const std::vector<BodyEpoch> claims = arrivals_.adopted_from(dead);
-    outbox.aura.claims.insert(outbox.aura.claims.end(), claims.begin(), claims.end());
-  }
 }
 
 }  // namespace aurasim::core

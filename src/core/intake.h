@@ -1,5 +1,5 @@
 // The receiving half of the protocol. It sorts messages, decides when the next state may be computed and which bodies
-// join before it, and takes back bodies that were on their way to a region that died.
+// join before it, and marks neighbours dead.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,8 @@ struct IntakeSettings {
   std::uint32_t redo = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
-  Step start = 0;                     ///< the first state that any node publishes
-  bool knows_start = false;           ///< true: batches of `start` take effect in the next state instead of K later
-  Step adoption_memory_steps = 1200;  ///< how long adoptions are remembered against a host's death
+  Step start = 0;            ///< the first state that any node publishes
+  bool knows_start = false;  ///< true: batches of `start` take effect in the next state instead of K later
 };
 
 /// A cluster that joins this node, as it was in state `stamp`.
@@ -32,14 +31,12 @@ struct Adoption {
   Step stamp = 0;
   std::uint64_t sequence = 0;
   HandOffReason reason{};
-  bool reclaimed = false;  ///< this node had sent it to a region that died before it acknowledged
   ClusterState cluster;
 };
 
 /// Counts since the start.
 struct IntakeCounters {
   std::uint64_t adopted = 0;    ///< bodies
-  std::uint64_t reclaimed = 0;  ///< bodies
   std::uint64_t copies = 0;     ///< duplicate messages
   std::uint64_t strangers = 0;  ///< messages of non-neighbours: unknown, dead or differently configured senders
 };
@@ -70,14 +67,12 @@ class Intake {
   bool has_all(RegionId region, Step until) const;
 
   std::span<const Neighbour> neighbours() const { return neighbours_; }
+  /// Neighbours marked dead. They are not waited for, and nothing of them is accepted any more.
   std::vector<RegionId> dead_regions() const;
-  bool fenced() const { return fenced_; }
   /// Refused messages of live neighbours. Each of these neighbours has been marked dead for it.
   const std::vector<Refusal>& refusals() const { return refusals_; }
   /// Hand-offs that have arrived and do not take effect yet.
   std::span<const HandOff> to_come() const { return waiting_; }
-  /// Hand-offs to a region that died, whose bodies may not be taken back yet.
-  const std::vector<HandOff>& to_reclaim() const { return to_reclaim_; }
   const IntakeCounters& counters() const { return counters_; }
 
   /// Orders that took effect with the last receive(), by neighbour, each neighbour's in sequence.
@@ -88,8 +83,7 @@ class Intake {
   /// Makes `region` a neighbour, which publishes from its state `begin` on.
   void listen_to(RegionId region, Step begin);
 
-  /// Adds acknowledgements, deaths and claims of bodies to the step's outbox. Acknowledgements are given out once,
-  /// claims for as long as adoptions are remembered.
+  /// Adds the acknowledgements that have become due to the step's outbox, each once.
   void fill(Outbox& outbox, Step stamp);
 
  private:
@@ -106,10 +100,8 @@ class Intake {
   void accept(const Refusal& refusal);
   void accept(const PeerEvent& event);
   void mark_dead(Neighbour& neighbour);
-  void receive_deaths();
   void adopt_due(Step limit, Step n, ViolationLog& violations);
-  void adopt(HandOff& hand_off, Step n, bool reclaimed);
-  void reclaim(Step n, ViolationLog& violations);
+  void adopt(HandOff& hand_off);
   Step needed_for(Step n) const;
   Step effect_limit(Step n) const;
 
@@ -120,12 +112,10 @@ class Intake {
   Inbox early_;  ///< messages of regions that we do not listen to yet
   DepartureLedger& departures_;
   ArrivalLedger arrivals_;
-  std::vector<HandOff> waiting_;     ///< received, not yet in effect
-  std::vector<HandOff> to_reclaim_;  ///< to regions that died; taken back once every neighbour knows of the death
+  std::vector<HandOff> waiting_;  ///< received, not yet in effect
   std::vector<HandOffAck> acks_;
   std::vector<Adoption> adoptions_;
   std::vector<Refusal> refusals_;
-  bool fenced_ = false;
   IntakeCounters counters_;
 };
 

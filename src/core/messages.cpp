@@ -16,8 +16,6 @@ void Outbox::clear() {
   aura.updates.clear();
   aura.deletes.clear();
   aura.hand_offs.clear();
-  aura.dead.clear();
-  aura.claims.clear();
   hand_offs.clear();
   acks.clear();
 }

@@ -44,11 +44,6 @@ struct HandOffMark {
   std::uint64_t last_sequence = 0;
 };
 
-struct BodyEpoch {
-  BodyId id{};
-  Epoch epoch = 0;
-};
-
 /// One per node and step, even when nothing changed: it also means "this step is done".
 struct AuraBatch {
   RegionId source{};
@@ -66,9 +61,6 @@ struct AuraBatch {
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;
-  std::vector<RegionId> dead;  ///< regions that the source has marked dead
-  /// bodies that the source adopted from regions now dead, so that no other node reclaims them
-  std::vector<BodyEpoch> claims;
   std::vector<Order> orders;                ///< orders that the source received since its last batch, in sequence
   std::vector<Alarm> alarms;                ///< alarms that the source raised or received since its last batch
   std::vector<Introduction> introductions;  ///< regions that are to listen to each other, as of this state

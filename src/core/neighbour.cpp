@@ -30,10 +30,7 @@ void Neighbour::note_marks(const AuraBatch& batch) {
   for (const HandOffMark& mark : batch.hand_offs) {
     if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
   }
-  // Deaths, ranks and claims count on arrival. A node that waits for a dead region would otherwise wait for ever.
-  dead_ = batch.dead;
-  ranks_ = batch.ranks;
-  claims_ = batch.claims;
+  ranks_ = batch.ranks;  // claims of rank count on arrival
 }
 
 void Neighbour::apply(AuraBatch& batch) {
@@ -88,10 +85,6 @@ void Neighbour::mark_dead() {
   alive_ = false;
   auras_.clear();
   waiting_.clear();
-}
-
-bool Neighbour::holds_for_dead(RegionId region) const {
-  return std::find(dead_.begin(), dead_.end(), region) != dead_.end();
 }
 
 }  // namespace aurasim::core

@@ -56,9 +56,6 @@ class Neighbour {
   std::uint64_t violations() const { return violations_; }
   /// Rank claims of the newest batch received, in effect or not: claims count long after they are made.
   const RankClaims& ranks() const { return ranks_; }
-  bool holds_for_dead(RegionId region) const;
-  const std::vector<RegionId>& dead() const { return dead_; }
-  const std::vector<BodyEpoch>& claims() const { return claims_; }
   /// Orders in the batches that took effect since the last call.
   std::vector<Order> take_orders();
   std::vector<Alarm> take_alarms();
@@ -90,8 +87,6 @@ class Neighbour {
   double top_radius_m_ = 0;
   std::uint64_t violations_ = 0;
   RankClaims ranks_;
-  std::vector<RegionId> dead_;
-  std::vector<BodyEpoch> claims_;
   std::vector<Order> orders_;
   std::vector<Alarm> alarms_;
   std::vector<Introduced> introductions_;

@@ -93,7 +93,7 @@ void Protocol::take_if_newer(Adoption& adoption) {
     return false;
   });
   if (adoption.cluster.bodies.empty()) return;
-  if (adoption.reason == HandOffReason::kAuraCollision && !adoption.reclaimed) {
+  if (adoption.reason == HandOffReason::kAuraCollision) {
     const Step until = adoption.stamp + horizon::pull(aura_->rules().lookahead);
     for (const BodyRecord& body : adoption.cluster.bodies) pulled_.push_back({body.id, until});
   }

@@ -155,9 +155,6 @@ class Protocol {
   /// Reports that computing `step` took `frame_s` of wall-clock time. Longer than T_F counts as a violation.
   void report_frame(Step step, double frame_s);
 
-  /// A neighbour has marked this node dead. It has to stop, because its bodies have other hosts.
-  bool fenced() const { return intake_.fenced(); }
-
   const Intake& intake() const { return intake_; }
   const InterestMatching& matching() const { return matching_; }
   const Projection& projection() const { return projection_; }

@@ -21,12 +21,8 @@ namespace {
 using MaybeError = std::optional<WireError>;
 
 MaybeError check_shape(const wire::AuraBatch& in) {
-  if (std::max({in.deleted().size(), in.hand_off_destination().size(), in.dead().size(), in.claim_id().size()}) >
-      kMaxRows) {
-    return WireError::kTooLarge;
-  }
-  const bool fits =
-      in.hand_off_destination().size() == in.hand_off_last().size() && in.claim_id().size() == in.claim_epoch().size();
+  if (std::max(in.deleted().size(), in.hand_off_destination().size()) > kMaxRows) return WireError::kTooLarge;
+  const bool fits = in.hand_off_destination().size() == in.hand_off_last().size();
   return fits ? MaybeError{} : WireError::kLength;
 }
 
@@ -38,8 +34,7 @@ MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
       in.stamp() >= 0 && in.rank_held_stamp() >= 0 && in.rank_next_stamp() >= in.rank_held_stamp() &&
       in.rank_next_stamp() <= in.stamp() && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
       in.top_speed_m_s() <= bearable::kFastestReach_m_s && in.top_radius_m() <= bearable::kFarthestReach_m &&
-      all_below(in.claim_epoch(), bearable::kMostEpochs) && all_body_ids(in.deleted()) && all_body_ids(in.claim_id()) &&
-      all_below(in.dead(), expected.region_count) && all_below(in.hand_off_destination(), expected.region_count);
+      all_body_ids(in.deleted()) && all_below(in.hand_off_destination(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -83,9 +78,6 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   fill(out.deleted(), batch.deletes, [](BodyId id) { return value_of(id); });
   fill(out.hand_off_destination(), batch.hand_offs, [](const core::HandOffMark& m) { return value_of(m.destination); });
   fill(out.hand_off_last(), batch.hand_offs, [](const core::HandOffMark& m) { return m.last_sequence; });
-  fill(out.dead(), batch.dead, [](RegionId region) { return value_of(region); });
-  fill(out.claim_id(), batch.claims, [](const core::BodyEpoch& claim) { return value_of(claim.id); });
-  fill(out.claim_epoch(), batch.claims, [](const core::BodyEpoch& claim) { return claim.epoch; });
   encode_orders(batch.orders, out);
   encode_checks(batch, out);
 }
@@ -113,12 +105,8 @@ Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   batch.ranks = {{in.rank_held_weight(), in.rank_held_stamp()}, {in.rank_next_weight(), in.rank_next_stamp()}};
   batch.updates = decode_auras(in);
   fill(batch.deletes, in.deleted(), [](std::uint64_t id) { return static_cast<BodyId>(id); });
-  fill(batch.dead, in.dead(), [](std::uint32_t region) { return static_cast<RegionId>(region); });
   for (std::size_t i = 0; i < in.hand_off_last().size(); ++i) {
     batch.hand_offs.push_back({static_cast<RegionId>(in.hand_off_destination()[i]), in.hand_off_last()[i]});
-  }
-  for (std::size_t i = 0; i < in.claim_id().size(); ++i) {
-    batch.claims.push_back({static_cast<BodyId>(in.claim_id()[i]), in.claim_epoch()[i]});
   }
   return batch;
 }

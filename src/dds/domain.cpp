@@ -132,11 +132,6 @@ void Domain::Leave::operator()(eprosima::fastdds::dds::DomainParticipant* partic
   DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-std::chrono::nanoseconds Domain::lease() const {
-  const auto& config = participant_->get_qos().wire_protocol().builtin.discovery_config;
-  return std::chrono::nanoseconds(config.leaseDuration.to_ns());
-}
-
 void Domain::register_types() {
   const std::array types = {
       TypeSupport(new GuardedType<wire::AuraBatchPubSubType>()),

@@ -83,8 +83,6 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Speakers& speakers() { return speakers_; }
   /// Which of the other participants use keys.
   const PeerKeys& peer_keys() const { return peer_keys_; }
-  /// Lease: time after which peers forget a silent participant.
-  std::chrono::nanoseconds lease() const;
   /// True when no datagram leaves this host.
   bool loopback_only() const { return loopback_only_; }
   LivelinessAsserter& liveliness() { return *liveliness_; }

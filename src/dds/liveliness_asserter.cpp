@@ -43,7 +43,6 @@ void LivelinessAsserter::progress() { last_progress_ns_.store(now_ns(), std::mem
 
 void LivelinessAsserter::run() {
   std::unique_lock lock(mutex_);
-  std::int64_t woken_ns = now_ns();
   while (!stopping_) {
     look_at_computation();
     if (!owner_hangs()) {
@@ -52,18 +51,7 @@ void LivelinessAsserter::run() {
         writer->assert_liveliness();
       }
     }
-    const auto planned = interval_;
-    condition_.wait_for(lock, planned);
-    // The stall is measured from one waking to the next: a process may be stopped while it asserts as well as while it
-    // waits.
-    const std::int64_t previous_ns = std::exchange(woken_ns, now_ns());
-    note_stall(woken_ns - previous_ns - planned.count());
-  }
-}
-
-void LivelinessAsserter::note_stall(std::int64_t stall_ns) {
-  if (stall_ns > longest_stall_ns_.load()) {
-    longest_stall_ns_.store(stall_ns);
+    condition_.wait_for(lock, interval_);
   }
 }
 

@@ -32,12 +32,9 @@ class LivelinessAsserter {
 
   /// Marks progress of the owner. Callable from any thread.
   void progress();
-  /// The longest time so far that the process was held up (stopped, starved, suspended). Callable from any thread.
-  std::chrono::nanoseconds longest_stall() const { return std::chrono::nanoseconds(longest_stall_ns_.load()); }
 
  private:
   void run();
-  void note_stall(std::int64_t stall_ns);
   void look_at_computation();
   bool owner_hangs() const;
   static std::int64_t now_ns();
@@ -45,7 +42,6 @@ class LivelinessAsserter {
   const std::chrono::nanoseconds hang_limit_;
   const std::function<void()> show_life_;
   std::atomic<std::int64_t> last_progress_ns_;
-  std::atomic<std::int64_t> longest_stall_ns_{0};
   std::mutex mutex_;
   std::condition_variable condition_;
   bool stopping_ = false;

@@ -17,8 +17,6 @@ Participant::~Participant() = default;
 
 void Participant::progress() { domain_->liveliness().progress(); }
 
-bool Participant::outlived_its_lease() const { return domain_->liveliness().longest_stall() > domain_->lease(); }
-
 bool Participant::stays_on_this_host() const { return domain_->loopback_only(); }
 
 std::optional<Participant::ImpairmentReport> Participant::impairment() const {

@@ -27,11 +27,6 @@ class Participant {
   /// it itself. Callable from any thread.
   void progress();
 
-  /// True when this process was once held up (stopped, starved, suspended) for longer than its participant's lease. Its
-  /// peers have dropped it, and Fast DDS 2.9.1 does not always match it again (3 of 25 did not within 30 s), so it
-  /// should end. Callable from any thread.
-  bool outlived_its_lease() const;
-
   /// True when all traffic is on loopback. Loopback cannot be cut, so a process that is silent there is dead.
   bool stays_on_this_host() const;
 

@@ -13,18 +13,17 @@ namespace aurasim::launch {
 std::string closing_line(const node::Accounts& accounts) {
   if (accounts.incomplete.empty()) {
     return fmt::format(
-        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
-        accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.reclaimed,
-        accounts.real_time_factor);
+        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}\n", accounts.bodies,
+        accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.real_time_factor);
   }
   std::vector<std::uint32_t> regions;
   for (const node::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
   return fmt::format(
       "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
       "[{}] "
-      "end before the run; at least {} hand-offs, {} thrashed, {} taken back; real-time factor {:.3f}\n",
+      "end before the run; at least {} hand-offs, {} thrashed; real-time factor {:.3f}\n",
       accounts.bodies, accounts.duplicated, accounts.unaccounted, fmt::join(regions, ", "), accounts.hand_offs,
-      accounts.thrashed, accounts.reclaimed, accounts.real_time_factor);
+      accounts.thrashed, accounts.real_time_factor);
 }
 
 command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts,

@@ -11,19 +11,14 @@ namespace {
 /// are farther apart.
 constexpr core::Step kRemembered = 600;
 
-constexpr std::size_t kMostLateWords = 256;
-
 }  // namespace
 
 core::Heard Node::hear(const core::Setpoints& setpoints) {
   if (!can_go(setpoints.statics)) return core::Heard::kRefused;
   const core::Step notice = setup_.protocol.aura.lookahead + 1;
-  const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene_.joints.size());
+  const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene().joints.size());
   const bool is_late = heard == core::Heard::kLate && !(setpoints.bodies.empty() && setpoints.joints.empty());
-  if (is_late) {
-    late_words_.push_back({setpoints.at_step, current_step()});
-    if (late_words_.size() > kMostLateWords) late_words_.pop_front();
-  }
+  if (is_late) late_words_.note(setpoints.at_step, current_step());
   return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard);
 }
 
@@ -31,9 +26,8 @@ core::Heard Node::hear(const core::Setpoints& setpoints) {
 /// for one of these states may have been received there at another time. That host then computes another world, and no
 /// alarm shows it, so such setpoints are reported as violations.
 void Node::note_late_words(core::Step from, core::Step until) {
-  for (const LateWord& word : late_words_) {
-    const bool matters = word.heard >= from && word.at_step <= until;
-    if (matters) protocol_->report_late_word(word.at_step, word.heard + 1 - word.at_step);
+  for (const LateWords::Word& word : late_words_.that_matter(from, until)) {
+    protocol_->report_late_word(word.at_step, word.heard + 1 - word.at_step);
   }
 }
 
@@ -84,7 +78,7 @@ void Node::note_effects_on_arrivals() {
   }
   for (core::Step step = oldest; step <= n; ++step) {
     controls.for_each_joint(step, [&](core::JointId id, const auto& drive, bool is_new) {
-      const core::BodyId body = scene_.joints[core::value_of(id)].a;
+      const core::BodyId body = scene().joints[core::value_of(id)].a;
       const auto row = arrival(body);
       const bool has_come = row != report_.arrivals.end();
       const bool is_told = has_come ? step == row->stamp + 1 || (step > row->stamp && is_new) : step == n && is_new;
@@ -107,7 +101,7 @@ void Node::note_left_behind(const core::ClusterState& cluster) {
 
 void Node::forget_setpoints() {
   const core::Step n = current_step();
-  const core::Step oldest_cut = cuts_.empty() ? n : cuts_.front().step;
+  const core::Step oldest_cut = cuts_.empty() ? n : cuts_.oldest();
   world_.controls().forget_before(std::min(oldest_cut, n - kRemembered));
 }
 

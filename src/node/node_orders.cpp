@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "node/node.h"
-#include "node/scene_additions.h"
 
 namespace aurasim::node {
 
@@ -31,49 +30,27 @@ void Node::complete(core::Order& order) const {
       moves.add(*known, other.at_step, other.request);
   }
   const core::PlannedMove plan = core::planned({move.id, move.to, move.states}, order.at_step, moves,
-                                               scene_.statics.at(core::value_of(move.id)), setup_.physics.step_s);
+                                               scene().statics.at(core::value_of(move.id)), setup_.physics.step_s);
   order.at_step = plan.at_step;
   move = plan.move;
 }
 
 /// Applies the part of an order that takes effect at once. The rest waits for the state that the order names.
-void Node::heed(const core::Order& order) {
+void Node::execute(const core::Order& order) {
   report_.orders.push_back(order);
-  remember(order);
-  extend(scene_, order.action, meshes_);
-  if (changes_scene(order.action)) newest_scene_order_ = order.sequence;
+  scene_.execute(order, current_step());
   if (std::holds_alternative<core::Redo>(order.action)) {
     redo_ = order;
   } else if (std::holds_alternative<core::Save>(order.action)) {
     save(order.at_step);
   } else if (std::holds_alternative<core::Spawn>(order.action)) {
-    to_spawn_.push_back(order);
-    for (Cut& cut : cuts_) cut.to_spawn.push_back(order);
-    for (Saving& saving : saving_) {
-      if (saving.cut) saving.cut->to_spawn.push_back(order);
-    }
+    to_be_born_.spawns.push_back(order);
+    cuts_.note_spawn(order);
+    saved_.note_spawn(order);
   } else {
     const std::optional<core::Step> changed = world_.schedule(order);
     if (changed && *changed <= current_step()) doubt(*changed);
   }
-}
-
-/// Announces bodies that orders make. They are announced as births from injectors are, but in the state that the order
-/// names.
-void Node::announce_spawns(core::Step birth) {
-  std::erase_if(to_spawn_, [&](const core::Order& order) {
-    if (order.at_step > birth) return false;
-    const auto& spawn = std::get<core::Spawn>(order.action);
-    if (map_->owner(spawn.pose.p_WB) != region() || world_.contains(spawn.id)) return true;
-    core::BodyRecord record = record_of(spawn, order.at_step);
-    record.epoch = first_epoch_;
-    world_.schedule(order);  // the body's shape may be new
-    world_.add({&record, 1});
-    watch_.newborn(record.id, record.birth);
-    report_.births.push_back({record.id, record.birth});
-    report_.applied.push_back({order.request, order.at_step, core::ref_of(record.id)});
-    return true;
-  });
 }
 
 }  // namespace aurasim::node

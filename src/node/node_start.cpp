@@ -1,91 +1,145 @@
-// How a run begins on a node: with what the scene says, or with a saved world.
+// How a world comes into a node: the scene's, a saved one, or an earlier state of its own. In each case the node puts
+// in its part of one state (a Cut), and publishes that state. Under another map the present state is published anew.
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <utility>
+#include <variant>
 
 #include "core/horizon.h"
 #include "node/node.h"
+#include "node/saved_world_check.h"
 #include "node/scene_additions.h"
 
 namespace aurasim::node {
-namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument("the saved world does not fit the scene: " + what);
+core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_s) {
+  core::WorldCut world;
+  world.births_known = core::horizon::birth_notice(lookahead);
+  std::vector<core::BodyRecord>& records = world.bodies.bodies;
+  for (const core::InitialBody& body : scene.bodies) records.push_back(core::initial_record(body));
+  for (const core::Injector& injector : scene.injectors) {
+    const std::uint64_t count = core::injected_count(injector, world.births_known, step_s);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (auto record = core::injected_body(injector, i, step_s)) records.push_back(*record);
+    }
+  }
+  std::ranges::sort(records, {}, &core::BodyRecord::id);
+  return world;
 }
-
-/// Checks that everything that an order names exists when the order is executed.
-class OrderCheck {
- public:
-  explicit OrderCheck(const core::Scene& scene)
-      : shapes_(scene.shapes.size()), prototypes_(scene.prototypes.size()), statics_(scene.statics.size()) {}
-
-  void look(const core::Order& order) {
-    if (std::holds_alternative<core::DefineShape>(order.action)) ++shapes_;
-    if (const auto* kind = std::get_if<core::DefinePrototype>(&order.action)) {
-      if (kind->shape >= shapes_) refuse("an order names a shape that is not there");
-      ++prototypes_;
-    }
-    if (const auto* added = std::get_if<core::AddStatic>(&order.action)) {
-      if (added->shape >= shapes_ || core::value_of(added->id) != statics_) refuse("an order adds an unknown static");
-      ++statics_;
-    }
-    const auto* moved = std::get_if<core::MoveStatic>(&order.action);
-    if (moved != nullptr && core::value_of(moved->id) >= statics_) refuse("an order moves a static that is not there");
-    const auto* spawn = std::get_if<core::Spawn>(&order.action);
-    if (spawn != nullptr && core::value_of(spawn->prototype) >= prototypes_) {
-      refuse("an order makes a body of a kind that is not there");
-    }
-  }
-
- private:
-  std::size_t shapes_, prototypes_, statics_;
-};
-
-void check(const core::ClusterState& cluster, const core::Scene& scene) {
-  for (const core::BodyRecord& body : cluster.bodies) {
-    if (core::value_of(body.prototype) >= scene.prototypes.size()) {
-      refuse("body " + std::to_string(core::value_of(body.id)) + " is of a kind that is not there");
-    }
-  }
-  const auto is_known = [&](core::ObjectRef ref) {
-    return ref >= 0 || static_cast<std::size_t>(-1 - ref) < scene.statics.size();
-  };
-  for (const core::ManifoldRecord& manifold : cluster.manifolds) {
-    if (!is_known(manifold.object0) || !is_known(manifold.object1)) refuse("a body touches a static that is not there");
-  }
-  for (const core::JointRecord& joint : cluster.joints) {
-    if (core::value_of(joint.id) >= scene.joints.size()) refuse("there are more joints than the scene has");
-  }
-}
-
-}  // namespace
 
 const StepReport& Node::start() {
+  return start(first_world(scene(), setup_.protocol.aura.lookahead, setup_.physics.step_s));
+}
+
+const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   report_ = {};
-  confirmed_.clear();
-  host_initial_bodies();
-  finish_state();
+  held_.begin_step();
+  const bool is_later = world.step != setup_.protocol.start || world.last_order != setup_.protocol.last_order;
+  setup_.protocol.start = world.step;
+  setup_.protocol.last_order = world.last_order;
+  beginning_ = Beginning{std::move(world), {}};
+  execute_saved(beginning_->world);
+  world_.moves().give_up_expected(setup_.protocol.start + 1);
+  if (is_later) protocol_.emplace(setup_.protocol, *map_, *clearance_);  // else it may have announced orders already
+  const Cut part{setup_.protocol.start, our_part(), {}, to_be_born_, protocol_->claimer(), watch_.counts()};
+  protocol_->listen_to(setup_.protocol.related);
+  put_in(part);
+  for (const core::BodyRecord& body : part.bodies.bodies) {
+    report_.births.push_back({body.id, body.birth});
+    if (body.birth > part.step) watch_.newborn(body.id, body.birth);
+  }
+  begin_state(recorded);
   take_cut();
+  if (!may_go_back()) beginning_.reset();
   order_recorded_moves();
-  hold(report_);
+  hold();
   return report_;
 }
 
-/// Takes the bodies of state 0, and those born so soon after it that they could not be announced in time.
-void Node::host_initial_bodies() {
-  const core::Step notice = core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  for (const core::Injector& injector : scene_.injectors) {
-    next_injection_.push_back(core::injected_count(injector, notice, setup_.physics.step_s));
+const StepReport& Node::take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
+                                 transport::Transport& transport) {
+  clear_report();
+  held_.begin_step();
+  confirm_all();
+  const std::uint64_t last_order = protocol_->last_order();
+  setup_.protocol = settings;
+  setup_.protocol.start = current_step();
+  setup_.protocol.last_order = last_order;
+  settled_ = false;
+  is_changing_ = false;
+  map_ = &map;
+  transport_ = &transport;
+  inbox_.clear();
+  protocol_.emplace(setup_.protocol, map, *clearance_);
+  begin_state(Recorded::kYes);
+  take_cut();
+  hold();
+  return report_;
+}
+
+/// Puts this region's part of a state into the world, with the clusters that had been sent here in that state or
+/// before and join later.
+void Node::put_in(const Cut& part) {
+  world_.put_back(part.step, part.bodies);
+  watch_.put_back(part.collisions);
+  to_be_born_ = part.to_be_born;
+  std::uint32_t nth = 0;
+  for (const core::Adoption& adoption : part.joining) adopt(adoption, nth++);
+}
+
+/// Publishes the state that has been put in. Its hash is reported unless the records have it already.
+void Node::begin_state(Recorded recorded) {
+  const bool hashes = std::exchange(setup_.hash_states, setup_.hash_states && recorded == Recorded::kNo);
+  finish_state();
+  setup_.hash_states = hashes;
+}
+
+/// Executes the orders of a saved world: the scene gets its additions again, and orders for later states are scheduled.
+/// Collects in beginning_ the bodies that are born so soon that they could not be announced in time.
+void Node::execute_saved(const core::WorldCut& world) {
+  check_orders(world, scene());
+  for (const core::Setpoints& said : world.setpoints) world_.controls().recall(said);
+  const MeshSource from_saved = [&world, others = scene_.meshes()](const core::MeshRef& mesh) {
+    const auto found = std::ranges::find(world.shapes, mesh, &core::SavedShape::mesh);
+    if (found != world.shapes.end()) return std::optional(found->shape);
+    return others ? others(mesh) : std::nullopt;
+  };
+  MeshSource before = scene_.use_meshes(from_saved);
+  // Known in the first state, whatever lookahead the world was saved with.
+  const core::Step soon =
+      std::max(world.step + core::horizon::birth_notice(setup_.protocol.aura.lookahead), world.births_known);
+  std::vector<core::BodyRecord>& born_soon = beginning_->born_soon;
+  for (const core::Order& order : world.orders) {
+    const auto* const spawn = std::get_if<core::Spawn>(&order.action);
+    execute(order);
+    if (spawn == nullptr || order.at_step > soon) continue;
+    to_be_born_.spawns.pop_back();
+    world_.schedule(order);  // its shape may be new
+    if (order.at_step > world.births_known) born_soon.push_back(record_of(*spawn, order.at_step));
   }
-  const std::vector<core::BodyRecord> ours = initial_bodies();
-  protocol_->listen_to(setup_.protocol.related);
-  for (const core::BodyRecord& record : ours) {
-    report_.births.push_back({record.id, record.birth});
-    if (record.birth > 0) watch_.newborn(record.id, record.birth);
+  scene_.use_meshes(std::move(before));
+  to_be_born_.begin(scene(), soon, setup_.physics.step_s);
+  for (const core::BodyRecord& body : injected_between(scene(), world.births_known, soon, setup_.physics.step_s)) {
+    born_soon.push_back(body);
   }
-  world_.add(ours);
+  check_bodies(world, scene());
+}
+
+/// The bodies of the world of the beginning that this region hosts. The world is put together as if on one node, and
+/// then divided by the map.
+core::ClusterState Node::our_part() {
+  const core::WorldCut& world = beginning_->world;
+  world_.put_back(world.step, world.bodies);
+  for (const core::UnderWay& one : world.under_way) world_.adopt(one.cluster, one.stamp);
+  world_.add(beginning_->born_soon);
+  const core::Snapshot all = world_.snapshot();
+  const std::vector<core::RegionId> hosts = hosts_at_start(all);
+  std::vector<core::BodyId> ours;
+  for (std::size_t i = 0; i < hosts.size(); ++i) {
+    if (hosts[i] == region()) ours.push_back(all.bodies[i].id);
+  }
+  core::ClusterState part = world_.peek(ours);
+  for (core::BodyRecord& body : part.bodies) body.epoch += first_epoch_;
+  return part;
 }
 
 /// The host of each body of `all`, in the same order. Pairs that a redo brings together get one host at once. Also
@@ -105,129 +159,6 @@ std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
     setup_.protocol.related.push_back({related, setup_.protocol.start, {}});
   }
   return hosts;
-}
-
-core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_s) {
-  core::WorldCut world;
-  world.births_known = core::horizon::birth_notice(lookahead);
-  std::vector<core::BodyRecord>& records = world.bodies.bodies;
-  for (const core::InitialBody& body : scene.bodies) records.push_back(core::initial_record(body));
-  for (const core::Injector& injector : scene.injectors) {
-    const std::uint64_t count = core::injected_count(injector, world.births_known, step_s);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto record = core::injected_body(injector, i, step_s)) records.push_back(*record);
-    }
-  }
-  std::ranges::sort(records, {}, &core::BodyRecord::id);
-  return world;
-}
-
-/// The bodies of the scene's first world that this node hosts.
-std::vector<core::BodyRecord> Node::initial_bodies() {
-  const std::vector<core::BodyRecord> records =
-      first_world(scene_, setup_.protocol.aura.lookahead, setup_.physics.step_s).bodies.bodies;
-  core::Snapshot all;
-  for (const core::BodyRecord& record : records) all.bodies.push_back(core::state_of(record));
-  all.joints = core::joint_pairs(scene_, all.bodies);
-  const std::vector<core::RegionId> hosts = hosts_at_start(std::move(all));
-  std::vector<core::BodyRecord> ours;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (hosts[i] != region()) continue;
-    ours.push_back(records[i]);
-    ours.back().epoch = first_epoch_;
-  }
-  return ours;
-}
-
-const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
-  report_ = {};
-  confirmed_.clear();
-  begun_with_ = std::move(world);
-  heed_saved();
-  world_.moves().give_up_expected(begun_with_->step + 1);
-  setup_.protocol.start = begun_with_->step;
-  setup_.protocol.last_order = begun_with_->last_order;
-  protocol_.emplace(setup_.protocol, *map_, *clearance_);
-  const core::ClusterState ours = our_part();
-  protocol_->listen_to(setup_.protocol.related);
-  world_.put_back(begun_with_->step, ours);
-  for (const core::BodyRecord& body : ours.bodies) {
-    report_.births.push_back({body.id, body.birth});
-    if (body.birth > begun_with_->step) watch_.newborn(body.id, body.birth);
-  }
-  const bool hashes = std::exchange(setup_.hash_states, setup_.hash_states && recorded == Recorded::kNo);
-  finish_state();
-  setup_.hash_states = hashes;
-  take_cut();
-  if (!setup_.protocol.aura.redo) begun_with_.reset();
-  order_recorded_moves();
-  hold(report_);
-  return report_;
-}
-
-/// Executes the orders of a saved world: the scene gets its additions again, and orders for later states are scheduled.
-void Node::heed_saved() {
-  for (const core::Setpoints& said : begun_with_->setpoints) {
-    const auto is_unknown = [&](const core::JointSetpoint& joint) {
-      return core::value_of(joint.id) >= scene_.joints.size();
-    };
-    if (std::ranges::any_of(said.joints, is_unknown)) refuse("setpoints are of a joint that the scene has not");
-    world_.controls().recall(said);
-  }
-  OrderCheck check_order(scene_);
-  for (const core::Order& order : begun_with_->orders) check_order.look(order);
-  const MeshSource from_saved = [this, others = meshes_](const core::MeshRef& mesh) {
-    const auto found = std::ranges::find(begun_with_->shapes, mesh, &core::SavedShape::mesh);
-    if (found != begun_with_->shapes.end()) return std::optional(found->shape);
-    return others ? others(mesh) : std::nullopt;
-  };
-  const MeshSource before = std::exchange(meshes_, from_saved);
-  const core::Step soon = births_known_at_start();
-  for (const core::Order& order : begun_with_->orders) {
-    const auto* const spawn = std::get_if<core::Spawn>(&order.action);
-    heed(order);
-    if (spawn == nullptr || order.at_step > soon) continue;
-    to_spawn_.pop_back();
-    world_.schedule(order);  // its shape may be new
-    if (order.at_step <= begun_with_->births_known) continue;
-    born_soon_.push_back(record_of(*spawn, order.at_step));
-  }
-  meshes_ = before;
-  for (const core::Injector& injector : scene_.injectors) {
-    const double step_s = setup_.physics.step_s;
-    next_injection_.push_back(core::injected_count(injector, soon, step_s));
-    for (auto i = core::injected_count(injector, begun_with_->births_known, step_s); i < next_injection_.back(); ++i) {
-      if (auto record = core::injected_body(injector, i, step_s)) born_soon_.push_back(*record);
-    }
-  }
-  check(begun_with_->bodies, scene_);
-  for (const core::UnderWay& one : begun_with_->under_way) {
-    check(one.cluster, scene_);
-    if (one.stamp > begun_with_->step) refuse("a cluster left after the state that was saved");
-  }
-}
-
-/// Bodies born up to the returned state are known in the first state, whatever lookahead the world was saved with.
-core::Step Node::births_known_at_start() const {
-  const core::Step ours = begun_with_->step + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  return std::max(ours, begun_with_->births_known);
-}
-
-/// The bodies of the saved world that this region hosts. The world is put together as if on one node, and then divided
-/// by the map.
-core::ClusterState Node::our_part() {
-  world_.put_back(begun_with_->step, begun_with_->bodies);
-  for (const core::UnderWay& one : begun_with_->under_way) world_.adopt(one.cluster, one.stamp);
-  world_.add(born_soon_);
-  const core::Snapshot all = world_.snapshot();
-  const std::vector<core::RegionId> hosts = hosts_at_start(all);
-  std::vector<core::BodyId> ours;
-  for (std::size_t i = 0; i < hosts.size(); ++i) {
-    if (hosts[i] == region()) ours.push_back(all.bodies[i].id);
-  }
-  core::ClusterState part = world_.release(ours);
-  for (core::BodyRecord& body : part.bodies) body.epoch += first_epoch_;
-  return part;
 }
 
 }  // namespace aurasim::node

@@ -6,45 +6,16 @@
 #include <utility>
 #include <variant>
 
-#include "core/fnv1a.h"
 #include "node/node.h"
 
 namespace aurasim::node {
-namespace {
-
-/// Maximum number of move orders given in one state. The limit exists because every node repeats each order.
-constexpr std::size_t kMostMovesInAState = 256;
-
-/// A run that went back kMostDoubts times within kDoubtsWithin states, because setpoints of statics came late to some
-/// nodes, waits for orders instead.
-constexpr std::size_t kMostDoubts = 3;
-constexpr core::Step kDoubtsWithin = 1800;
-
-/// Request number of the order for a static's setpoint. It is the same on every node.
-std::uint64_t request_of(const core::Setpoints& said, core::StaticId id) {
-  core::Fnv1a hash;
-  for (const std::uint64_t part :
-       {said.client, said.sequence, static_cast<std::uint64_t>(said.at_step), std::uint64_t{core::value_of(id)}}) {
-    hash.add_word(part);
-  }
-  return std::max<std::uint64_t>(hash.value(), 1);
-}
-
-std::uint64_t request_of(const core::StaticEffect& recorded) {
-  core::Setpoints said;
-  said.client = core::kRecordedClient;
-  said.at_step = recorded.step;
-  return request_of(said, recorded.setpoint.id);
-}
-
-}  // namespace
 
 bool Node::can_go(std::span<const core::StaticSetpoint> statics) const {
   if (!statics.empty() && !setup_.physics.looks_once()) return false;
   return std::ranges::all_of(statics, [this](const core::StaticSetpoint& wanted) {
     const std::uint32_t index = core::value_of(wanted.id);
-    if (index >= scene_.statics.size() || !core::is_sound(wanted)) return false;
-    return !std::holds_alternative<core::Plane>(scene_.shapes[scene_.statics[index].shape].shape);
+    if (index >= scene().statics.size() || !core::is_sound(wanted)) return false;
+    return !std::holds_alternative<core::Plane>(scene().shapes[scene().statics[index].shape].shape);
   });
 }
 
@@ -59,9 +30,7 @@ bool Node::leads() const {
 /// differ.
 bool Node::believes_programs() const {
   if (protocol_->round() == 0) return true;
-  const auto lately =
-      std::ranges::count_if(doubted_, [this](core::Step step) { return step > current_step() - kDoubtsWithin; });
-  return protocol_->computes_again() && static_cast<std::size_t>(lately) < kMostDoubts;
+  return protocol_->computes_again() && statics_.are_believed(current_step());
 }
 
 core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard heard) {
@@ -80,7 +49,7 @@ core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard 
 
 void Node::expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
   const core::PlannedMove plan =
-      core::planned(wanted, at_step, world_.moves(), scene_.statics[core::value_of(wanted.id)], setup_.physics.step_s);
+      core::planned(wanted, at_step, world_.moves(), scene().statics[core::value_of(wanted.id)], setup_.physics.step_s);
   world_.moves().expect(plan.move, plan.at_step, request);
 }
 
@@ -98,8 +67,7 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
   const auto is_it = [request](const core::Order& order) { return order.request == request; };
   if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it))
     return core::Heard::kInTime;
-  if (std::exchange(moves_ordered_for_, current_step()) != current_step()) moves_ordered_ = 0;
-  if (is_changing_ || ++moves_ordered_ > kMostMovesInAState) return core::Heard::kRefused;
+  if (is_changing_ || !statics_.may_order(current_step())) return core::Heard::kRefused;
   const bool at_once = at_step != 0 && believes_programs();
   const core::Step earliest = at_once ? current_step() + 1 : protocol_->earliest_effect();
   const bool is_late = at_step != 0 && at_step < earliest;
@@ -110,8 +78,7 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
 
 /// Expects the moves of the record, which all nodes know from the beginning. Their orders are given for observers.
 void Node::expect_recorded_moves() {
-  std::ranges::stable_sort(recorded_moves_, {}, &core::StaticEffect::step);
-  for (const core::StaticEffect& recorded : recorded_moves_) {
+  for (const core::StaticEffect& recorded : statics_.recorded()) {
     if (!can_go({&recorded.setpoint, 1}))
       throw std::invalid_argument("the record moves a static that cannot move here");
     expect(recorded.setpoint, recorded.step, request_of(recorded));
@@ -120,11 +87,11 @@ void Node::expect_recorded_moves() {
 
 void Node::order_recorded_moves() {
   const core::Step until = protocol_->earliest_effect() + 1;
-  for (; next_recorded_move_ < recorded_moves_.size(); ++next_recorded_move_) {
-    const core::StaticEffect& recorded = recorded_moves_[next_recorded_move_];
-    if (recorded.step > until || (leads() && is_changing_)) return;
-    if (!leads() || recorded.step <= current_step() || ordered(request_of(recorded)) != nullptr) continue;
-    give_move(recorded.setpoint, recorded.step, request_of(recorded));
+  while (const core::StaticEffect* const recorded = statics_.next_recorded(until)) {
+    if (leads() && is_changing_) return;
+    statics_.pass();
+    if (!leads() || recorded->step <= current_step() || ordered(request_of(*recorded)) != nullptr) continue;
+    give_move(recorded->setpoint, recorded->step, request_of(*recorded));
   }
 }
 

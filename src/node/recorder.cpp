@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "node/csv.h"
+#include "node/report_rows.h"
 #include "node/setpoint_record.h"
 
 namespace aurasim::node {
@@ -18,8 +18,9 @@ constexpr std::size_t kLastWordBytes = 8 * 1024;
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max() / 2;  ///< above the step of any row
 constexpr std::array<const char*, core::kViolationKinds> kKindNames = {"speed", "latency", "frame", "promise", "span"};
 
-const char* name_of(core::HandOffReason reason) {
-  return reason == core::HandOffReason::kAuraCollision ? "aura_collision" : "boundary_traversal";
+std::string_view name_of(core::HandOffReason reason) {
+  return reason == core::HandOffReason::kAuraCollision ? MigrationRow::kAuraCollision
+                                                       : MigrationRow::kBoundaryTraversal;
 }
 
 /// Creates the region's folder with a node.json that says "died", as a killed node would leave it. It reserves room for
@@ -56,21 +57,13 @@ std::filesystem::path Recorder::region_folder(const std::filesystem::path& folde
 Recorder::Recorder(const std::filesystem::path& folder, core::RegionId region, std::optional<core::Step> after)
     : region_(region),
       folder_(make_folder(region_folder(folder, region), region)),
-      steps_(folder_ / "steps.csv",
-             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,projecting,"
-             "largest_cluster,hand_offs_out,hand_offs_in,violations\n",
-             up_to(after, 1)),
-      collisions_(folder_ / "collisions.csv",
-                  "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
-                  "violation_flagged\n",
-                  up_to(after, 1)),
-      migrations_(folder_ / "migrations.csv",
-                  "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched\n",
-                  moves_up_to(after)),
-      violations_(folder_ / "violations.csv", "region,step,kind,of_region,body,value,allowed\n", up_to(after, 1)),
-      births_(folder_ / "births.csv", "region,body,birth_step\n", up_to(after, 2)),
-      removals_(folder_ / "removals.csv", "region,body,removed_step\n", up_to(after, 2)),
-      hashes_(folder_ / "state_hash.csv", "step,hash\n", up_to(after, 0)),
+      steps_(folder_ / "steps.csv", csv_header<StepRow>(), up_to(after, 1)),
+      collisions_(folder_ / "collisions.csv", csv_header<CollisionRow>(), up_to(after, 1)),
+      migrations_(folder_ / "migrations.csv", csv_header<MigrationRow>(), moves_up_to(after)),
+      violations_(folder_ / "violations.csv", csv_header<ViolationRow>(), up_to(after, 1)),
+      births_(folder_ / "births.csv", csv_header<BirthRow>(), up_to(after, 2)),
+      removals_(folder_ / "removals.csv", csv_header<RemovalRow>(), up_to(after, 2)),
+      hashes_(folder_ / "state_hash.csv", csv_header<HashRow>(), up_to(after, 0)),
       setpoints_(folder_ / kSetpointsFile, std::string(kSetpointsHeader), up_to(after, 1)),
       flushed_(after.value_or(0)) {}
 
@@ -79,18 +72,15 @@ void Recorder::write(const StepReport& r, const FrameTimes& times) {
   if (end_) return;
   if (r.step <= last_) return write_settling(r);  // bodies that have joined since
   last_ = r.step;
-  steps_.add("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", core::value_of(region_), r.step,
-             times.frame_ms, times.wait_ms, 1e3 * r.durations.physics_s, 1e3 * r.durations.protocol_s,
-             1e3 * r.durations.transport_s, r.bodies, r.awake, r.foreign_auras, r.projecting, r.largest_cluster,
-             r.departures.size(), r.arrivals.size(), r.violations_total);
+  write_step(r, times);
   write_settling(r);
   write_collisions(r);
   write_violations(r);
   for (const Birth& birth : r.births) {
-    births_.add("{},{},{}\n", core::value_of(region_), core::value_of(birth.body), birth.birth);
+    births_.add(csv_line(BirthRow{region_, birth.body, birth.birth}));
   }
   for (const physics::Removal& removal : r.removals) {
-    removals_.add("{},{},{}\n", core::value_of(region_), core::value_of(removal.body), removal.step);
+    removals_.add(csv_line(RemovalRow{region_, removal.body, removal.step}));
   }
   // Births and removals are flushed at once: they are rare, and no other record has them.
   if (!r.births.empty() && !births_.flush()) end_records(births_);
@@ -98,34 +88,54 @@ void Recorder::write(const StepReport& r, const FrameTimes& times) {
   if (r.step >= flushed_ + kFlushEvery) flush(r.step);
 }
 
+void Recorder::write_step(const StepReport& r, const FrameTimes& times) {
+  StepRow row;
+  row.region = region_;
+  row.step = r.step;
+  row.frame_ms = times.frame_ms;
+  row.wait_ms = times.wait_ms;
+  row.physics_ms = 1e3 * r.durations.physics_s;
+  row.protocol_ms = 1e3 * r.durations.protocol_s;
+  row.transport_ms = 1e3 * r.durations.transport_s;
+  row.cut_ms = 1e3 * r.durations.cut_s;
+  row.hash_ms = 1e3 * r.durations.hash_s;
+  row.bodies = r.bodies;
+  row.awake = r.awake;
+  row.foreign_auras = r.foreign_auras;
+  row.projecting = r.projecting;
+  row.largest_cluster = r.largest_cluster;
+  row.hand_offs_out = r.departures.size();
+  row.hand_offs_in = r.arrivals.size();
+  row.violations = r.violations_total;
+  steps_.add(csv_line(row));
+}
+
 /// Writes rows of a state that is recorded already. A state's hash comes in parts, because bodies that join later have
 /// made up that state, too. The merge adds the parts up.
 void Recorder::write_settling(const StepReport& report) {
   if (end_) return;
   write_hand_offs(report);
-  for (const core::BodyEffect& effect : report.effects.bodies) setpoints_.add("{}", setpoint_row(region_, effect));
-  for (const core::JointEffect& effect : report.effects.joints) setpoints_.add("{}", setpoint_row(region_, effect));
-  for (const core::StaticEffect& effect : report.effects.statics) setpoints_.add("{}", setpoint_row(region_, effect));
-  for (const HashPart& part : report.hash) hashes_.add("{},{:016x}\n", part.step, part.sum);
+  for (const core::BodyEffect& effect : report.effects.bodies) setpoints_.add(setpoint_row(region_, effect));
+  for (const core::JointEffect& effect : report.effects.joints) setpoints_.add(setpoint_row(region_, effect));
+  for (const core::StaticEffect& effect : report.effects.statics) setpoints_.add(setpoint_row(region_, effect));
+  for (const HashPart& part : report.hash) hashes_.add(csv_line(HashRow{part.step, Hex64{part.sum}}));
 }
 
 void Recorder::write_hand_offs(const StepReport& report) {
-  const auto row = [this](const char* direction, const HandOffRow& h) {
-    migrations_.add("{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), direction, h.stamp, h.joined,
-                    core::value_of(h.body), h.epoch, core::value_of(h.source), core::value_of(h.destination),
-                    name_of(h.reason), int{h.reclaimed}, int{h.touched});
+  const auto row = [this](std::string_view direction, const HandOffRow& h) {
+    migrations_.add(csv_line(MigrationRow{region_, direction, h.stamp, h.joined, h.body, h.epoch, h.source,
+                                          h.destination, name_of(h.reason), h.touched}));
   };
-  for (const HandOffRow& h : report.departures) row("out", h);
-  for (const HandOffRow& h : report.arrivals) row("in", h);
+  for (const HandOffRow& h : report.departures) row(MigrationRow::kOut, h);
+  for (const HandOffRow& h : report.arrivals) row(MigrationRow::kIn, h);
 }
 
 void Recorder::write_collisions(const StepReport& report) {
   for (const SeenCollision& s : report.collisions) {
     const physics::Collision& c = s.collision;
     const double time_s = c.relative_speed_m_s > 0 ? c.penetration_m / c.relative_speed_m_s : 0;
-    collisions_.add("{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{}\n", core::value_of(region_), c.step, core::value_of(c.a),
-                    core::value_of(c.b), c.penetration_m, c.relative_speed_m_s, time_s, int{s.late}, int{s.missed},
-                    int{s.flagged});
+    collisions_.add(csv_line(CollisionRow{region_, c.step, c.a, c.b, c.penetration_m, c.relative_speed_m_s, time_s,
+                                          s.late, s.missed, s.flagged}));
   }
 }
 
@@ -137,9 +147,8 @@ void Recorder::note_redo(const StepReport& report) {
 
 void Recorder::write_violations(const StepReport& report) {
   for (const core::Violation& v : report.violations) {
-    violations_.add("{},{},{},{},{},{:.6g},{:.6g}\n", core::value_of(region_), v.step,
-                    kKindNames[static_cast<std::size_t>(v.kind)], core::value_of(v.region), core::value_of(v.body),
-                    v.value, v.allowed);
+    violations_.add(csv_line(ViolationRow{region_, v.step, kKindNames[static_cast<std::size_t>(v.kind)], v.region,
+                                          v.body, v.value, v.allowed}));
   }
 }
 
@@ -171,20 +180,19 @@ void Recorder::finish(Node& node, const Ending& ending) {
 }
 
 void Recorder::write_bodies(Node& node) {
-  RowFile bodies(folder_ / "bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz\n");
-  const auto row = [&](const core::BodyState& b, const char* where) {
+  RowFile bodies(folder_ / "bodies.csv", csv_header<BodyRow>());
+  const auto row = [&](const core::BodyState& b, std::string_view where) {
     const core::Vec3& p = b.pose.p_WB;
     const core::Quat& q = b.pose.q_WB;
-    bodies.add("{},{},{},{},{},{},{},{},{},{},{},{}\n", core::value_of(region_), core::value_of(b.id), b.epoch, b.birth,
-               where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    bodies.add(
+        csv_line(BodyRow{region_, b.id, b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
   };
-  for (const core::BodyState& body : node.world().snapshot().bodies) row(body, "here");
+  for (const core::BodyState& body : node.world().snapshot().bodies) row(body, BodyRow::kHere);
   const auto under_way = [&](const core::HandOff& h) {
-    for (const core::BodyRecord& body : h.cluster.bodies) row(core::state_of(body), "under_way");
+    for (const core::BodyRecord& body : h.cluster.bodies) row(core::state_of(body), BodyRow::kUnderWay);
   };
   if (!node.settled()) {
     for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
-    for (const core::HandOff& h : node.protocol().intake().to_reclaim()) under_way(h);
   }
   if (!bodies.flush()) end_records(bodies);
 }

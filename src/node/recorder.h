@@ -62,6 +62,7 @@ class Recorder {
   static std::filesystem::path region_folder(const std::filesystem::path& folder, core::RegionId region);
 
  private:
+  void write_step(const StepReport& report, const FrameTimes& times);
   void write_hand_offs(const StepReport& report);
   void write_collisions(const StepReport& report);
   void write_violations(const StepReport& report);

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "node/csv.h"
 #include "node/durations.h"
 #include "node/recorder.h"
+#include "node/report_rows.h"
 #include "node/row_file.h"
 #include "node/setpoint_record.h"
 #include "node/thrashing.h"
@@ -21,7 +21,6 @@ namespace aurasim::node {
 namespace {
 
 using Json = nlohmann::json;
-using Cells = std::vector<std::string_view>;
 
 constexpr std::uint64_t kMostSteps = 1'000'000'000;  // upper bound of a run's steps; a row with a higher step is broken
 constexpr std::size_t kSummaryBytes = 32 * 1024;     // room reserved for summary.json, enough for many regions
@@ -34,7 +33,6 @@ struct Move {
   std::uint64_t source = 0;
   std::uint64_t destination = 0;
   bool pulled = false;  ///< the reason was an aura collision
-  bool reclaimed = false;
   bool touched = true;
   bool adopted = false;  ///< its arrival is recorded, too
 
@@ -98,25 +96,23 @@ class Merge {
   }
 
   /// Reads the rows of all regions, whether or not there was room for a merged file.
-  template <class Row>
-  void read_all(const char* name, Row&& row) const {
-    for (std::size_t r = 0; r < facts_.regions; ++r) read_csv(of_region(folder_, r, name), row);
+  template <class Row, class Visit>
+  void read_all(const char* name, Visit&& visit) const {
+    for (std::size_t r = 0; r < facts_.regions; ++r) read_csv<Row>(of_region(folder_, r, name), visit);
   }
 
   void read_moves() {
     std::map<std::pair<std::uint64_t, std::uint64_t>, Move> moves;  // key: body and epoch
-    read_all("migrations.csv", [&](const Cells& c) {
-      if (c.size() != 11) return;
-      Move& move = moves[{whole(c[4]), whole(c[5])}];
-      const bool departure = c[1] == "out";
-      move.stamp = whole(c[2]);
-      move.body = whole(c[4]);
-      move.epoch = whole(c[5]);
-      move.source = whole(c[6]);
-      move.destination = whole(c[7]);
-      move.pulled = c[8] == "aura_collision";
-      move.reclaimed = c[9] == "1";
-      if (departure) move.touched = c[10] == "1";
+    read_all<MigrationRow>("migrations.csv", [&](const MigrationRow& row) {
+      Move& move = moves[{core::value_of(row.body), row.epoch}];
+      const bool departure = row.direction == MigrationRow::kOut;
+      move.stamp = static_cast<std::uint64_t>(row.stamp);
+      move.body = core::value_of(row.body);
+      move.epoch = row.epoch;
+      move.source = core::value_of(row.source);
+      move.destination = core::value_of(row.destination);
+      move.pulled = row.reason == MigrationRow::kAuraCollision;
+      if (departure) move.touched = row.touched;
       move.adopted = move.adopted || !departure;
     });
     for (const auto& [key, move] : moves) {
@@ -127,18 +123,16 @@ class Merge {
 
   void read_bodies() {
     for (std::size_t r = 0; r < facts_.regions; ++r) {
-      read_csv(of_region(folder_, r, "births.csv"), [&](const Cells& c) {
-        if (c.size() == 3) first_host_.try_emplace(whole(c[1]), whole(c[0]));
+      read_csv<BirthRow>(of_region(folder_, r, "births.csv"), [&](const BirthRow& row) {
+        first_host_.try_emplace(core::value_of(row.body), core::value_of(row.region));
       });
-      read_csv(of_region(folder_, r, "removals.csv"), [&](const Cells& c) {
-        if (c.size() == 3) removed_.insert(whole(c[1]));
-      });
+      read_csv<RemovalRow>(of_region(folder_, r, "removals.csv"),
+                           [&](const RemovalRow& row) { removed_.insert(core::value_of(row.body)); });
       // Bodies that a fenced node still records as its own have other hosts by now, or are written off.
-      read_csv(of_region(folder_, r, "bodies.csv"), [&](const Cells& c) {
-        if (c.size() != 12 || died(r)) return;
-        const std::uint64_t body = whole(c[1]);
-        if (c[4] == "here") ++hosts_[body];
-        alive_.insert(body);
+      read_csv<BodyRow>(of_region(folder_, r, "bodies.csv"), [&](const BodyRow& row) {
+        if (died(r)) return;
+        if (row.where == BodyRow::kHere) ++hosts_[core::value_of(row.body)];
+        alive_.insert(core::value_of(row.body));
       });
     }
     for (const std::uint64_t body : alive_) first_host_.try_emplace(body, 0);
@@ -156,16 +150,16 @@ class Merge {
 
   bool add_hashes() const {
     std::vector<std::optional<std::uint64_t>> sums;  // by step
-    read_all("state_hash.csv", [&](const Cells& c) {
-      const std::uint64_t step = whole(c[0]);
-      if (c.size() != 2 || step > kMostSteps) return;
+    read_all<HashRow>("state_hash.csv", [&](const HashRow& row) {
+      const auto step = static_cast<std::uint64_t>(row.step);
+      if (step > kMostSteps) return;
       if (step >= sums.size()) sums.resize(step + 1);
-      sums[step] = sums[step].value_or(0) + whole(c[1], 16);
+      sums[step] = sums[step].value_or(0) + static_cast<std::uint64_t>(row.hash);
     });
     std::ofstream out(folder_ / "state_hash.csv");
-    out << "step,hash\n";
+    out << csv_header<HashRow>();
     for (std::size_t step = 0; step < sums.size(); ++step) {
-      if (sums[step]) out << fmt::format("{},{:016x}\n", step, *sums[step]);
+      if (sums[step]) out << csv_line(HashRow{static_cast<core::Step>(step), Hex64{*sums[step]}});
     }
     return static_cast<bool>(out.flush());
   }
@@ -197,8 +191,7 @@ class Merge {
     for (auto& [body, moves] : moves_) {
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.epoch < b.epoch; });
       for (std::size_t i = 0; i < moves.size(); ++i) {
-        accounts_.hand_offs += !moves[i].reclaimed;
-        accounts_.reclaimed += moves[i].reclaimed;
+        ++accounts_.hand_offs;
         accounts_.thrashed += i > 0 && is_thrashing(moves[i - 1], moves[i]);
       }
     }
@@ -206,11 +199,16 @@ class Merge {
 
   Json frame_times() const {
     std::map<std::uint64_t, std::map<std::string, std::vector<double>>> columns;
-    const std::vector<std::pair<std::string, std::size_t>> wanted = {
-        {"frame_ms", 2}, {"wait_ms", 3}, {"physics_ms", 4}, {"protocol_ms", 5}, {"transport_ms", 6}};
-    read_all("steps.csv", [&](const Cells& c) {
-      if (c.size() < 15 || c[1] == "0") return;
-      for (const auto& [name, column] : wanted) columns[whole(c[0])][name].push_back(number(c[column]));
+    const std::vector<std::pair<std::string, double StepRow::*>> wanted = {{"frame_ms", &StepRow::frame_ms},
+                                                                           {"wait_ms", &StepRow::wait_ms},
+                                                                           {"physics_ms", &StepRow::physics_ms},
+                                                                           {"protocol_ms", &StepRow::protocol_ms},
+                                                                           {"transport_ms", &StepRow::transport_ms},
+                                                                           {"cut_ms", &StepRow::cut_ms},
+                                                                           {"hash_ms", &StepRow::hash_ms}};
+    read_all<StepRow>("steps.csv", [&](const StepRow& row) {
+      if (row.step == 0) return;
+      for (const auto& [name, time] : wanted) columns[core::value_of(row.region)][name].push_back(row.*time);
     });
     Json regions = Json::array();
     for (auto& [region, times] : columns) {
@@ -273,7 +271,6 @@ class Merge {
         {"incomplete_regions", incomplete_json()},
         {"not_merged", accounts_.not_merged},
         {"migrations", accounts_.hand_offs},
-        {"reclaimed", accounts_.reclaimed},
         {"thrashed", accounts_.thrashed},
         {"late_collisions", sum_over_nodes("late_collisions")},
         {"missed_collisions", sum_over_nodes("missed_collisions")},

@@ -37,7 +37,6 @@ struct Accounts {
   std::uint64_t duplicated = 0;
   std::uint64_t hand_offs = 0;
   std::uint64_t thrashed = 0;
-  std::uint64_t reclaimed = 0;
   double real_time_factor = 0;
   std::vector<DeadRegion> dead;
   std::vector<IncompleteRegion> incomplete;

@@ -20,6 +20,8 @@ struct StepRow {
   double physics_ms = 0;
   double protocol_ms = 0;
   double transport_ms = 0;
+  double cut_ms = 0;   ///< keeping the state, to go back to it or to save it
+  double hash_ms = 0;  ///< hashing the state
   std::uint64_t bodies = 0;
   std::uint64_t awake = 0;
   std::uint64_t foreign_auras = 0;
@@ -38,6 +40,8 @@ struct StepRow {
                       Column{"physics_ms", &StepRow::physics_ms, kTime},
                       Column{"protocol_ms", &StepRow::protocol_ms, kTime},
                       Column{"transport_ms", &StepRow::transport_ms, kTime},
+                      Column{"cut_ms", &StepRow::cut_ms, kTime},
+                      Column{"hash_ms", &StepRow::hash_ms, kTime},
                       Column{"bodies", &StepRow::bodies},
                       Column{"awake", &StepRow::awake},
                       Column{"foreign_auras", &StepRow::foreign_auras},
@@ -91,16 +95,14 @@ struct MigrationRow {
   core::RegionId source{};
   core::RegionId destination{};
   std::string_view reason;
-  bool reclaimed = false;
   bool touched = false;  ///< known to the sender
 
   static constexpr auto columns() {
-    return std::tuple{Column{"region", &MigrationRow::region},  Column{"direction", &MigrationRow::direction},
-                      Column{"stamp", &MigrationRow::stamp},    Column{"joined_step", &MigrationRow::joined_step},
-                      Column{"body", &MigrationRow::body},      Column{"epoch", &MigrationRow::epoch},
-                      Column{"source", &MigrationRow::source},  Column{"destination", &MigrationRow::destination},
-                      Column{"reason", &MigrationRow::reason},  Column{"reclaimed", &MigrationRow::reclaimed},
-                      Column{"touched", &MigrationRow::touched}};
+    return std::tuple{Column{"region", &MigrationRow::region}, Column{"direction", &MigrationRow::direction},
+                      Column{"stamp", &MigrationRow::stamp},   Column{"joined_step", &MigrationRow::joined_step},
+                      Column{"body", &MigrationRow::body},     Column{"epoch", &MigrationRow::epoch},
+                      Column{"source", &MigrationRow::source}, Column{"destination", &MigrationRow::destination},
+                      Column{"reason", &MigrationRow::reason}, Column{"touched", &MigrationRow::touched}};
   }
 };
 

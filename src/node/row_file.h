@@ -10,8 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
-
 namespace aurasim::node {
 
 class RowFile {
@@ -35,9 +33,8 @@ class RowFile {
 
   /// Adds one row; `row` includes the newline. The row is written with the next flush, or when kBuffered bytes have
   /// gathered.
-  template <class... Values>
-  void add(fmt::format_string<Values...> row, Values&&... values) {
-    fmt::format_to(std::back_inserter(buffer_), row, std::forward<Values>(values)...);
+  void add(std::string_view row) {
+    buffer_ += row;
     if (buffer_.size() > kBuffered) flush();
   }
 

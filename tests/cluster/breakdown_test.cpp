@@ -49,7 +49,7 @@ TEST_P(BreakdownInACluster, ABodyOutOfAllBoundsIsTakenOutInTheSameStateOnOneNode
     EXPECT_EQ(four.broken[i].step, one.broken[i].step);
     EXPECT_FALSE(one.broken[i].fault.empty());
   }
-  EXPECT_THAT(four.fenced, IsEmpty());
+  EXPECT_THAT(four.dead, IsEmpty());
   EXPECT_EQ(four.lost + four.doubled, 0u);
 }
 
@@ -63,7 +63,7 @@ TEST_P(BreakdownInACluster, ASpinThatNoWorldCanBearIsDeclined) {
   const Outcome o = cluster.run(kBreakdownSteps);
   EXPECT_EQ(declined, 2u);
   EXPECT_EQ(o.applied, 0u);
-  EXPECT_THAT(o.fenced, IsEmpty());
+  EXPECT_THAT(o.dead, IsEmpty());
 }
 
 /// An aura that is no number: whoever says it is held for dead, and the others go on.
@@ -79,9 +79,9 @@ TEST_P(BreakdownInACluster, WhoSendsWhatNobodyCanUseIsHeldForDead) {
     for (const core::Refusal& refusal : node.protocol().intake().refusals()) refusals.push_back(refusal);
   };
   const Outcome o = cluster.run(kBreakdownSteps);
-  ASSERT_EQ(o.fenced.size(), 1u);
+  ASSERT_EQ(o.dead.size(), 1u);
   ASSERT_FALSE(refusals.empty());
-  EXPECT_EQ(refusals[0].source, o.fenced[0]);
+  EXPECT_EQ(refusals[0].source, o.dead[0]);
   EXPECT_EQ(refusals[0].why, "range");
   EXPECT_EQ(o.lost + o.doubled, 0u);
 }

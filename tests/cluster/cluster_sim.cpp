@@ -111,12 +111,7 @@ void ClusterSim::step_if_due(Member& member, Step last) {
   const double now = network_->now_s();
   if (!member.alive || now < member.busy_until_s || has_done(*member.node, last)) return;
   const Step next = member.node->current_step() + 1;
-  if (member.node->protocol().fenced()) {
-    member.alive = false;
-    outcome_.fenced.push_back(member.node->region());
-    for (const core::BodyState& body : member.node->world().snapshot().bodies) with_dead_.insert(body.id);
-    return;
-  }
+  if (is_held_for_dead(member.node->region())) return end(member);
   if (now < static_cast<double>(next) * options_.aura.step_s || !member.node->ready()) return;
   const double frame = options_.frame_s + options_.frame_jitter_s * chance();
   network_->set_send_delay(frame);
@@ -179,11 +174,23 @@ void ClusterSim::check_single_host() {
   }
 }
 
+bool ClusterSim::is_held_for_dead(RegionId region) const {
+  return std::ranges::any_of(members_, [region](const Member& other) {
+    const std::vector<RegionId> dead = other.node->protocol().intake().dead_regions();
+    return std::ranges::find(dead, region) != dead.end();
+  });
+}
+
 void ClusterSim::maybe_crash(Member& member) {
-  if (!options_.crash || member.node->region() != options_.crash->region) return;
-  if (member.node->current_step() < options_.crash->step || !member.alive) return;
-  member.alive = false;
+  if (!options_.crash || member.node->region() != options_.crash->region || !member.alive) return;
+  if (member.node->current_step() < options_.crash->step) return;
   network_->crash(member.node->region(), options_.crash->lease_s);
+  end(member);
+}
+
+void ClusterSim::end(Member& member) {
+  member.alive = false;
+  outcome_.dead.push_back(member.node->region());
   for (const core::BodyState& body : member.node->world().snapshot().bodies) with_dead_.insert(body.id);
   for (const core::HandOff& open : member.node->protocol().departures().open()) {
     for (const core::BodyRecord& body : open.cluster.bodies) with_dead_.insert(body.id);
@@ -212,15 +219,11 @@ void ClusterSim::account(Outcome& outcome) {
       for (const core::BodyRecord& body : open.cluster.bodies) found.insert(body.id);
     }
     const core::Protocol& protocol = member.node->protocol();
-    for (const core::HandOff& open : protocol.intake().to_reclaim()) {
-      for (const core::BodyRecord& body : open.cluster.bodies) found.insert(body.id);
-    }
     outcome.late += member.node->collision_watch().late();
     outcome.missed += member.node->collision_watch().missed();
     outcome.unflagged += member.node->collision_watch().unflagged();
     outcome.violations += protocol.violations().total();
     outcome.late_words += protocol.violations().count(core::ViolationKind::kLatency);
-    outcome.reclaimed += protocol.intake().counters().reclaimed;
     outcome.severed += member.node->world().severed_contacts();
     outcome.bad_phases += protocol.projection().counters().bad_phase_changes;
   }

@@ -17,6 +17,8 @@
 
 namespace aurasim::test {
 
+/// The end of a region's process. Others go on without it here, for tests of who watches a run; the nodes of a real run
+/// stand then.
 struct Crash {
   core::RegionId region{};
   core::Step step = 0;  ///< after computing this state
@@ -63,10 +65,9 @@ struct Outcome {
   std::uint64_t doubled = 0;  ///< bodies ever seen on two live nodes at once
   std::uint64_t lost = 0;
   std::uint64_t with_dead = 0;
-  std::uint64_t reclaimed = 0;
   std::uint64_t removed = 0;             ///< by orders, or because they broke down
   std::vector<physics::Removal> broken;  ///< of those the latter
-  std::vector<core::RegionId> fenced;    ///< nodes that the others hold for dead
+  std::vector<core::RegionId> dead;      ///< nodes that another one holds for dead; they compute no state after it
   std::uint64_t applied = 0;             ///< orders, by bodies
   std::uint64_t severed = 0;             ///< contacts cut by a hand-off
   std::uint64_t redos = 0;               ///< how often the run was put back
@@ -77,7 +78,7 @@ struct Outcome {
   std::vector<std::pair<core::RegionId, node::SeenCollision>> wrong;  ///< late or missed, and who saw it
   std::vector<physics::Collision> contacts;                           ///< first contacts
   std::vector<core::Setpoints> effects;                               ///< of setpoints, as recorded
-  std::vector<std::uint64_t> hash;                                    ///< by step; only complete without a crash
+  std::vector<std::uint64_t> hash;  ///< by step; only complete if no node is held for dead
 };
 
 class ClusterSim {
@@ -107,7 +108,9 @@ class ClusterSim {
   void take_reports(Member& member);
   void take_report(Member& member, const node::StepReport& report);
   void check_single_host();
+  bool is_held_for_dead(core::RegionId region) const;
   void maybe_crash(Member& member);
+  void end(Member& member);
   void settle();
   void account(Outcome& outcome);
   double chance();

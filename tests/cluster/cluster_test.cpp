@@ -58,8 +58,8 @@ ClusterOptions options_for(const Layout& layout, int seed) {
 }
 
 std::string describe(int seed, const Outcome& o) {
-  std::string text = "seed " + std::to_string(seed) + ", late " + std::to_string(o.late) + ", missed " +
-                     std::to_string(o.missed) + ", reclaimed " + std::to_string(o.reclaimed);
+  std::string text =
+      "seed " + std::to_string(seed) + ", late " + std::to_string(o.late) + ", missed " + std::to_string(o.missed);
   for (const auto& [region, seen] : o.wrong) {
     text += "\n  region " + std::to_string(core::value_of(region)) + " step " + std::to_string(seen.collision.step) +
             " bodies " + std::to_string(core::value_of(seen.collision.a)) + " and " +
@@ -118,27 +118,6 @@ TEST_P(ClusterTest, WhoEndsFirstTakesInWhatComesFromLaterStates) {
   }
   EXPECT_GT(from_later_states, 0u) << "or this test proves nothing";
   std::cout << from_later_states << " bodies handed over in later states than the last one\n";
-}
-
-TEST_P(ClusterTest, WhenANodeDiesOnlyItsOwnBodiesAreGone) {
-  std::uint64_t gone = 0;
-  std::uint64_t reclaimed = 0;
-  for (int seed = 1; seed <= (seeds() + 2) / 3; ++seed) {
-    const core::Scene scene = scene_for(layout_, seed);
-    ClusterOptions options = options_for(layout_, seed);
-    const auto region = static_cast<std::uint32_t>(seed % static_cast<int>(layout_.map.size()));
-    options.crash = Crash{RegionId{region}, 40 + 7 * (seed % 9), 0.2};
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
-    expect_exactly_once(o, seed);
-    EXPECT_EQ(o.unflagged, 0u) << describe(seed, o);
-    if (o.reclaimed == 0) {
-      EXPECT_EQ(o.late + o.missed, 0u) << describe(seed, o);
-    }
-    gone += o.with_dead;
-    reclaimed += o.reclaimed;
-  }
-  EXPECT_GT(gone, 0u);
-  std::cout << (seeds() + 2) / 3 << " seeds, " << gone << " bodies with dead nodes, " << reclaimed << " taken back\n";
 }
 
 TEST_P(ClusterTest, InDeterministicModeEveryStateHasTheBitsOfTheCentralRun) {

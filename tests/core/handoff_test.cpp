@@ -10,8 +10,6 @@
 
 namespace aurasim::core {
 
-static bool operator==(const BodyEpoch& a, const BodyEpoch& b) { return a.id == b.id && a.epoch == b.epoch; }
-
 namespace testing {
 namespace {
 
@@ -85,19 +83,6 @@ TEST_F(Departures, AreDueAgainEverySoOftenWhileOpen) {
   EXPECT_THAT(due(25, 5), IsEmpty());
 }
 
-TEST_F(Departures, TowardsADeadRegionAreTakenOut) {
-  send(1, 10, {record_of(1, 1)});
-  send(2, 10, {record_of(2, 1)});
-  send(1, 11, {record_of(3, 1)});
-  ledger.acknowledge(region(1), 1);
-  const std::vector<HandOff> taken = ledger.take_open(region(1));
-  ASSERT_EQ(taken.size(), 1u);
-  EXPECT_EQ(taken.front().cluster.bodies.front().id, body(3));
-  EXPECT_EQ(open_bodies(ledger), 1u);
-  EXPECT_TRUE(ledger.take_open(region(1)).empty());
-  EXPECT_FALSE(ledger.acknowledge(region(1), 2));
-}
-
 TEST(Arrivals, TheFirstCopyIsToldFromLaterOnesInAnyOrder) {
   Random random("orders");
   for (int run = 0; run < 200; ++run) {
@@ -122,19 +107,6 @@ TEST(Arrivals, OfEachSourceAreCountedApart) {
   EXPECT_TRUE(ledger.first_copy(region(2), 1));
   EXPECT_FALSE(ledger.has_all_up_to(region(3), 1));
   EXPECT_TRUE(ledger.has_all_up_to(region(3), 0));
-}
-
-TEST(Arrivals, AdoptionsAreRememberedBySourceForAWhile) {
-  ArrivalLedger ledger;
-  ledger.adopted(region(1), 10, hand_off(1, 0, 9, {record_of(1, 3), record_of(2, 1)}).cluster);
-  ledger.adopted(region(2), 11, hand_off(2, 0, 9, {record_of(3, 1)}).cluster);
-  ledger.adopted(region(1), 12, hand_off(1, 0, 9, {record_of(4, 7)}).cluster);
-  EXPECT_THAT(ledger.adopted_from(region(1)),
-              ElementsAre(BodyEpoch{body(1), 3}, BodyEpoch{body(2), 1}, BodyEpoch{body(4), 7}));
-  EXPECT_THAT(ledger.adopted_from(region(2)), ElementsAre(BodyEpoch{body(3), 1}));
-  ledger.forget_adoptions_before(12);
-  EXPECT_THAT(ledger.adopted_from(region(1)), ElementsAre(BodyEpoch{body(4), 7}));
-  EXPECT_THAT(ledger.adopted_from(region(2)), IsEmpty());
 }
 
 }  // namespace

@@ -46,13 +46,6 @@ class IntakeTest : public ::testing::Test {
     receive_until(1, stamp);
     receive_until(2, stamp);
   }
-  /// In its next batch, `from` publishes whom it holds for dead, and whom it has adopted from them.
-  void receive_death(std::uint32_t from, std::uint32_t dead, std::vector<BodyEpoch> claims = {}) {
-    AuraBatch b = batch(from, intake->neighbours()[from - 1].received() + 1);
-    b.dead = {region(dead)};
-    b.claims = std::move(claims);
-    receive(b);
-  }
   void lose(std::uint32_t neighbour) {
     inbox.peers.push_back({region(neighbour), PeerChange::kLost});
     intake->accept(inbox);

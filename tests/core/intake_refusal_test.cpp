@@ -27,10 +27,9 @@ TEST_F(RefusedMessage, ItsSourceIsNotWaitedForAnyMore) {
   EXPECT_THAT(intake->missing(8), IsEmpty());
 }
 
-TEST_F(RefusedMessage, ItsSourceIsHeldForDeadAndToldSo) {
+TEST_F(RefusedMessage, ItsSourceIsHeldForDead) {
   refuse(1, 0);
   EXPECT_THAT(intake->dead_regions(), ElementsAre(region(1)));
-  EXPECT_THAT(publish().aura.dead, ElementsAre(region(1)));
 }
 
 TEST_F(RefusedMessage, IsNamed) {

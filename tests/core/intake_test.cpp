@@ -89,7 +89,6 @@ TEST_F(Effect, IsExactlyKStepsAfterTheStampInDeterministicMode) {
     ASSERT_EQ(ids_of(joined), std::vector<std::uint64_t>{1});
     EXPECT_EQ(joined[0].stamp, 10);
     EXPECT_EQ(joined[0].source, region(1));
-    EXPECT_FALSE(joined[0].reclaimed);
     EXPECT_THAT(receive(due + 1), IsEmpty());
   }
   EXPECT_EQ(violations.total(), 0u);
@@ -233,6 +232,23 @@ TEST_F(Strangers, TheDeadAreNotHeardAnyMore) {
   receive(hand_off(1, 0, 4, {record_of(2, 1)}), 2);
   EXPECT_EQ(intake->counters().strangers, 2u);
   EXPECT_THAT(receive(4), IsEmpty()) << "what came from the dead and has no effect yet never will have";
+}
+
+TEST_F(Strangers, TheDeadDoNotComeBack) {
+  lose(2);
+  inbox.peers.push_back({region(2), PeerChange::kJoined});
+  intake->accept(inbox);
+  EXPECT_THAT(intake->dead_regions(), ElementsAre(region(2)));
+}
+
+/// Where all others go back to an earlier state, or the run ends, nobody takes such bodies back. They stay in the
+/// books.
+TEST_F(Strangers, HandOffsToTheDeadStayOpen) {
+  receive_all_until(5);
+  send(2, 5, {record_of(1, 3)});
+  lose(2);
+  EXPECT_EQ(open_bodies(departures), 1u);
+  EXPECT_THAT(receive(6), IsEmpty());
 }
 
 TEST_F(Strangers, MessagesToOthersAreIgnored) {

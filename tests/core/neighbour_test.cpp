@@ -147,18 +147,6 @@ TEST_F(ANeighbour, MarksAreRememberedHoweverLongItHandsNothingOver) {
   EXPECT_EQ(neighbour.hand_offs_until(999), 2u);
 }
 
-TEST_F(ANeighbour, NewsOfADeathDoNotWaitForTheirTurn) {
-  AuraBatch b = batch(1, 0);
-  b.dead = {region(2)};
-  b.claims = {{body(7), 3}};
-  neighbour.accept(b);
-  EXPECT_EQ(neighbour.applied(), -1);
-  EXPECT_TRUE(neighbour.holds_for_dead(region(2)));
-  EXPECT_FALSE(neighbour.holds_for_dead(region(3)));
-  ASSERT_EQ(neighbour.claims().size(), 1u);
-  EXPECT_EQ(neighbour.claims()[0].id, body(7));
-}
-
 TEST_F(ANeighbour, ADeadOnesAurasAndUnheardBatchesAreForgotten) {
   publish(0, {aura(1)});
   publish(1, {aura(2)});

@@ -260,7 +260,6 @@ const Spoilt kSpoilt[] = {
     {"TopSpeedOutOfAnyWorld", [](Wire& w) { w.top_speed_m_s(1e300); }, WireError::kRange},
     {"OwnSpeedOutOfAnyWorld", [](Wire& w) { w.speed_m_s()[0] = 1e30F; }, WireError::kRange},
     {"EpochFarAhead", [](Wire& w) { w.epoch()[0] = 0xffff'ffffU; }, WireError::kRange},
-    {"ClaimedEpochFarAhead", [](Wire& w) { w.claim_epoch()[0] = 0xffff'ffffU; }, WireError::kRange},
     {"StateOfTheFuture", [](Wire& w) { w.elsewhere_stamp()[0] = w.stamp() + 1; }, WireError::kRange},
     {"BirthFarAhead",
      [](Wire& w) {
@@ -290,7 +289,6 @@ const Spoilt kSpoilt[] = {
     {"SpinLong", [](Wire& w) { w.w_WB().push_back(0); }, WireError::kLength},
     {"SpeedShort", [](Wire& w) { w.speed_m_s().pop_back(); }, WireError::kLength},
     {"MarksDiffer", [](Wire& w) { w.hand_off_last().pop_back(); }, WireError::kLength},
-    {"ClaimsDiffer", [](Wire& w) { w.claim_epoch().push_back(1); }, WireError::kLength},
     {"PositionNan",
      [](Wire& w) {
        w.grains_WB().clear();
@@ -323,11 +321,9 @@ const Spoilt kSpoilt[] = {
     {"NegativeTopRadius", [](Wire& w) { w.top_radius_m(-1); }, WireError::kRange},
     {"HostNotInTheMap", [](Wire& w) { w.elsewhere_host()[2] = 4; }, WireError::kRange},
     {"PrototypeNotInTheScene", [](Wire& w) { w.prototype()[2] = 7; }, WireError::kRange},
-    {"DeadNotInTheMap", [](Wire& w) { w.dead()[0] = 9; }, WireError::kRange},
     {"MarkNotInTheMap", [](Wire& w) { w.hand_off_destination()[0] = 9; }, WireError::kRange},
     {"BodyIdAboveSigned", [](Wire& w) { w.id()[0] = 1ULL << 63U; }, WireError::kRange},
     {"DeletedIdAboveSigned", [](Wire& w) { w.deleted()[0] = 1ULL << 63U; }, WireError::kRange},
-    {"ClaimIdAboveSigned", [](Wire& w) { w.claim_id()[0] = 1ULL << 63U; }, WireError::kRange},
 };
 INSTANTIATE_TEST_SUITE_P(All, SpoiltAuraBatch, ::testing::ValuesIn(kSpoilt),
                          [](const auto& info) { return info.param.name; });

@@ -154,14 +154,6 @@ TEST_F(Neighbour, ThatTakesItsLeaveIsLostAtOnce) {
   expect_event(0, PeerChange::kLost);
 }
 
-TEST_F(Neighbour, ThatWasStoppedForLongerThanTheParticipantsLeaseKnowsIt) {
-  meet("run");
-  there_->kill(SIGSTOP);
-  EXPECT_FALSE(wait_for_peer_events(2, kParticipantLease + 1s));
-  there_->kill(SIGCONT);
-  EXPECT_EQ(there_->read_line(), "outlived its lease");
-}
-
 TEST_F(Neighbour, WithFramesLongerThanTheLeaseIsNotLost) {
   meet("long_frames");
   EXPECT_FALSE(wait_for_peer_events(1, 4s));

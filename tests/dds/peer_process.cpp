@@ -1,5 +1,4 @@
-// A region in a process of its own, for tests that kill it. Prints "ready" when it is matched with its neighbour
-// and "outlived its lease" when that is so.
+// A region in a process of its own, for tests that kill it. Prints "ready" when it is matched with its neighbour.
 //   dds_peer_process DOMAIN REGION NEIGHBOUR run|watched|hang|computes|long_frames [MILLISECONDS]
 // run: a batch every 10 ms. watched: likewise, as a process whose silence nobody believes. hang: for the given time
 // like run, then its owner never calls again, with a hang limit of 0.5 s. computes: like hang, but its owner gets on
@@ -39,7 +38,6 @@ void take_part(const Arguments& arguments) {
   std::cout << "ready" << std::endl;
 
   const auto frame = arguments.mode == "long_frames" ? 2500ms : 10ms;
-  bool outlived = false;
   const auto start = std::chrono::steady_clock::now();
   for (core::Step step = 0;; ++step) {
     peer.send_batch(step);
@@ -48,10 +46,6 @@ void take_part(const Arguments& arguments) {
     status.step = step;
     status.pid = static_cast<std::uint32_t>(::getpid());
     control.publish_status(status);
-    if (!outlived && peer.participant.outlived_its_lease()) {
-      outlived = true;
-      std::cout << "outlived its lease" << std::endl;
-    }
     if (calls_no_more && std::chrono::steady_clock::now() - start > arguments.time) {
       while (arguments.mode == "computes") {
         core::Progress::mark();

@@ -92,8 +92,6 @@ class Stranger {
       batch.map_version = nodes_[r].map_version;
       batch.redo = 0;
       batch.orders.clear();
-      batch.dead.clear();
-      for (const Status& node : nodes_) batch.dead.push_back(node.region);
       for (core::Step ahead = 0; ahead < 200; ++ahead) {
         batch.stamp = newest().step + ahead;
         auras_[r]->send(batch);

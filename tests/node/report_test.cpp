@@ -26,10 +26,10 @@ class Merged : public ::testing::Test {
     std::filesystem::remove_all(folder_);
     for (int region = 0; region < 2; ++region) {
       append(region, "steps.csv",
-             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,"
+             "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,"
              "foreign_auras,projecting,largest_cluster,hand_offs_out,hand_offs_in,violations");
       append(region, "migrations.csv",
-             "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched");
+             "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched");
       append(region, "births.csv", "region,body,birth_step");
       append(region, "removals.csv", "region,body,removed_step");
       append(region, "bodies.csv", "region,body,epoch,birth_step,where,x_m,y_m,z_m,qw,qx,qy,qz");
@@ -61,7 +61,7 @@ class Merged : public ::testing::Test {
   void moved(int teller, const char* direction, int body, int epoch, int source, int destination) const {
     append(teller, "migrations.csv",
            std::to_string(teller) + "," + direction + ",5,6," + std::to_string(body) + "," + std::to_string(epoch) +
-               "," + std::to_string(source) + "," + std::to_string(destination) + ",aura_collision,0,0");
+               "," + std::to_string(source) + "," + std::to_string(destination) + ",aura_collision,0");
   }
   Accounts merge(std::vector<RegionId> died = {}) {
     RunFacts facts;
@@ -166,7 +166,7 @@ TEST_F(Merged, HashesOfAStateAreAddedUpOverAllRowsAndRegions) {
 
 TEST_F(Merged, ASummaryFitsOnAFullDiskAndSaysWhatDoesNot) {
   for (int step = 0; step < 2000; ++step)
-    append(0, "steps.csv", "0," + std::to_string(step) + ",1,0,1,0,0,1,1,0,0,1,0,0,0");
+    append(0, "steps.csv", "0," + std::to_string(step) + ",1,0,1,0,0,0.25,0.5,1,1,0,0,1,0,0,0");
   reserve_summary(folder_);
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
@@ -179,7 +179,9 @@ TEST_F(Merged, ASummaryFitsOnAFullDiskAndSaysWhatDoesNot) {
   EXPECT_THAT(accounts.not_merged, ElementsAre("steps.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "steps.csv"));
   EXPECT_EQ(summary_.at("not_merged"), Json::array({"steps.csv"}));
-  EXPECT_EQ(summary_.at("regions").size(), 1U) << "frame times are read from the regions' own files";
+  ASSERT_EQ(summary_.at("regions").size(), 1U) << "frame times are read from the regions' own files";
+  EXPECT_EQ(summary_.at("regions")[0].at("cut_ms").at("p50"), 0.25);
+  EXPECT_EQ(summary_.at("regions")[0].at("hash_ms").at("p50"), 0.5);
 }
 
 TEST_F(Merged, ClearingLeavesWhatIsNotAReport) {

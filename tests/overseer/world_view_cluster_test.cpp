@@ -225,6 +225,10 @@ TEST_P(ViewOfACluster, DropsTheBodiesOfADeadRegionAndNoOthers) {
     if (RegionId{r} == options.crash->region) continue;
     for (const core::BodyState& body : run.sim().node(r).world().snapshot().bodies)
       hosted[core::value_of(body.id)] = RegionId{r};
+    // Those on their way to the dead region stay in the ledger of their sender, and are seen where they left it.
+    for (const core::HandOff& open : run.sim().node(r).protocol().departures().open()) {
+      for (const core::BodyRecord& body : open.cluster.bodies) hosted[core::value_of(body.id)] = open.destination;
+    }
   }
   const auto seen = run.page().by_id();
   for (const auto& [id, region] : hosted) EXPECT_TRUE(seen.contains(id)) << "body " << id;

@@ -14,7 +14,7 @@ class Launch : public SystemTest {
  protected:
   void expect_no_broken_promise_to_bodies(const Report& report) const {
     expect_all_bodies_accounted_for(report);
-    for (const char* key : {"thrashed", "late_collisions", "missed_collisions", "severed_contacts", "reclaimed"}) {
+    for (const char* key : {"thrashed", "late_collisions", "missed_collisions", "severed_contacts"}) {
       EXPECT_EQ(report.count(key), 0) << key;
     }
   }
@@ -90,13 +90,14 @@ TEST_F(Launch, DemoHandsBodiesOver) {
   expect_every_departure_arrives_once(report, 480);
   for (const auto& [file, header] : {
            std::pair{"steps.csv",
-                     "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,bodies,awake,foreign_auras,"
+                     "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,"
+                     "foreign_auras,"
                      "projecting,largest_cluster,hand_offs_out,hand_offs_in,violations"},
            std::pair{"collisions.csv",
                      "region,step,body_a,body_b,penetration_m,relative_speed_m_s,penetration_time_s,late,missed,"
                      "violation_flagged"},
            std::pair{"migrations.csv",
-                     "region,direction,stamp,joined_step,body,epoch,source,destination,reason,reclaimed,touched"},
+                     "region,direction,stamp,joined_step,body,epoch,source,destination,reason,touched"},
            std::pair{"violations.csv", "region,step,kind,of_region,body,value,allowed"},
            std::pair{"state_hash.csv", "step,hash"},
        }) {

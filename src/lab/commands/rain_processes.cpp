@@ -31,7 +31,9 @@ lab::StepLoad load_of(const node::StepRow& row) {
   load.physics_ms = row.physics_ms;
   load.protocol_ms = row.protocol_ms;
   load.transport_ms = row.transport_ms;
-  load.watch_ms = std::max(0.0, row.frame_ms - row.physics_ms - row.protocol_ms - row.transport_ms);
+  load.cut_ms = row.cut_ms;
+  load.hash_ms = row.hash_ms;
+  load.watch_ms = std::max(0.0, row.frame_ms - load.frame_ms());
   load.bodies = row.bodies;
   load.awake = row.awake;
   load.foreign = row.foreign_auras;

@@ -35,6 +35,8 @@ StepLoad load_of(const node::StepReport& report, const Counts& before, const Cou
   load.protocol_ms = kMs * report.durations.protocol_s;
   load.transport_ms = kMs * report.durations.transport_s;
   load.watch_ms = kMs * report.durations.watch_s;
+  load.cut_ms = kMs * report.durations.cut_s;
+  load.hash_ms = kMs * report.durations.hash_s;
   load.bodies = report.bodies;
   load.awake = report.awake;
   load.projecting = report.projecting;

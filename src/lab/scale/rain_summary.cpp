@@ -37,6 +37,8 @@ json json_of(const Rain& rain, const RainFigures& f) {
           {"protocol_ms", f.protocol_ms},
           {"transport_ms", f.transport_ms},
           {"watch_ms", f.watch_ms},
+          {"cut_ms", f.cut_ms},
+          {"hash_ms", f.hash_ms},
           {"overhead_share", f.overhead_share},
           {"hand_offs", f.hand_offs},
           {"returns", f.returns},
@@ -143,6 +145,8 @@ RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes) {
   f.protocol_ms = n * last.mean.protocol_ms;
   f.transport_ms = n * last.mean.transport_ms;
   f.watch_ms = n * last.mean.watch_ms;
+  f.cut_ms = n * last.mean.cut_ms;
+  f.hash_ms = n * last.mean.hash_ms;
   f.overhead_share = (f.protocol_ms + f.transport_ms) / f.physics_ms;
   f.bodies = last.mean.bodies;
   f.awake = last.mean.awake;

@@ -21,7 +21,7 @@ struct RainFigures {
   double physics_ms = 0;       ///< means of the last window, summed over nodes
   double protocol_ms = 0;
   double transport_ms = 0;
-  double watch_ms = 0;
+  double watch_ms = 0, cut_ms = 0, hash_ms = 0;
   double overhead_share = 0;    ///< protocol and transport over physics, last window
   std::uint64_t hand_offs = 0;  ///< bodies
   std::uint64_t returns = 0;    ///< hand-offs that bring a body back within a second

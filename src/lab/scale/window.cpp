@@ -37,6 +37,8 @@ static constexpr auto columns() {
                     mean_of("protocol_ms", &StepLoad::protocol_ms, kTime),
                     mean_of("transport_ms", &StepLoad::transport_ms, kTime),
                     mean_of("watch_ms", &StepLoad::watch_ms, kTime),
+                    mean_of("cut_ms", &StepLoad::cut_ms, kTime),
+                    mean_of("hash_ms", &StepLoad::hash_ms, kTime),
                     mean_of("bodies", &StepLoad::bodies),
                     mean_of("awake", &StepLoad::awake),
                     mean_of("projecting", &StepLoad::projecting),
@@ -59,6 +61,8 @@ void add_times(StepLoad& sum, const StepLoad& load, double weight) {
   sum.protocol_ms += weight * load.protocol_ms;
   sum.transport_ms += weight * load.transport_ms;
   sum.watch_ms += weight * load.watch_ms;
+  sum.cut_ms += weight * load.cut_ms;
+  sum.hash_ms += weight * load.hash_ms;
 }
 
 void add_counts(StepLoad& sum, const StepLoad& load) {

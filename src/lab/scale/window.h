@@ -16,6 +16,8 @@ struct StepLoad {
   double protocol_ms = 0;
   double transport_ms = 0;
   double watch_ms = 0;
+  double cut_ms = 0;
+  double hash_ms = 0;
   std::size_t bodies = 0;
   std::size_t awake = 0;
   std::size_t projecting = 0;
@@ -32,7 +34,7 @@ struct StepLoad {
   std::uint64_t violations = 0;
   std::uint64_t late = 0;  ///< late or missed collisions
 
-  double frame_ms() const { return physics_ms + protocol_ms + transport_ms + watch_ms; }
+  double frame_ms() const { return physics_ms + protocol_ms + transport_ms + watch_ms + cut_ms + hash_ms; }
 };
 
 /// One window of one node, or of all nodes together (region -1). For all nodes, frames are those of the slowest node in

@@ -1,0 +1,99 @@
+// The states that a node keeps of itself: cuts, to go back to when the run is computed again, and the parts of the
+// world that have been asked for (docs/design.md, "The cut").
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/intake.h"
+#include "core/ranks.h"
+#include "core/redo.h"
+#include "node/births.h"
+#include "node/collision_watch.h"
+
+namespace aurasim::node {
+
+/// What a node needs to go back to a state: a part of a consistent cut through the run.
+struct Cut {
+  core::Step step = 0;
+  core::ClusterState bodies;            ///< hosted here; those that left in this state are taken out
+  std::vector<core::Adoption> joining;  ///< clusters sent here in this state or before that have not joined yet
+  ToBeBorn to_be_born;                  ///< also with the spawn orders received after the cut
+  core::RankClaimer claimer;
+  CollisionCounts collisions;
+
+  /// Adds a cluster that joins this node now, if it had been sent in the cut's state or before.
+  void note_arrival(const core::Adoption& adoption);
+};
+
+/// Cuts to go back to, ascending.
+class Cuts {
+ public:
+  /// `lookahead`: K.
+  explicit Cuts(int lookahead) : lookahead_(lookahead) {}
+
+  void keep(Cut cut) { cuts_.push_back(std::move(cut)); }
+  void clear() { cuts_.clear(); }
+  bool empty() const { return cuts_.empty(); }
+  /// Precondition: not empty.
+  core::Step oldest() const { return cuts_.front().step; }
+  void note_arrival(const core::Adoption& adoption);
+  void note_spawn(const core::Order& order);
+
+  /// Drops the cuts that are older than any that a redo can still go back to. All nodes go back to the same state, so
+  /// no node may drop its cut before all have confirmed later states. `alarms_given_up`: no alarm leads to a redo any
+  /// more, so one may stand for ever. Precondition: not empty.
+  void forget(core::Step confirmed, bool alarms_given_up);
+  /// The redo that brings the pairs of the alarms to one host. `together`: pairs that share a host already. If one of
+  /// them has raised the first alarm, the redo goes back farther than the last one. Preconditions: not empty, and
+  /// `alarms` is not.
+  core::Redo plan(std::span<const core::Alarm> alarms, std::vector<core::TogetherPair> together);
+  /// Drops the cuts after state `step` and returns the one of that state. Throws std::logic_error if there is none.
+  Cut& back_to(core::Step step);
+
+ private:
+  const Cut& before(core::Step touch, std::size_t farther) const;
+
+  int lookahead_;
+  std::deque<Cut> cuts_;
+  std::size_t stubborn_ = 0;  ///< number of redos in a row that have not brought a pair together
+};
+
+/// The states of which this node's part of the world has been asked for, and the state in which the run ends.
+class SavedStates {
+ public:
+  /// Asks for the part of a later state.
+  void ask(core::Step step) { states_.push_back({step, {}, false, false}); }
+  /// Keeps state `last`, because the run may end after it. Of several such states the earliest counts.
+  void end_with(core::Step last);
+  std::optional<core::Step> end() const;
+  /// The cut of the end, if the run ends in `last` and that state has been computed; null otherwise.
+  const Cut* end_cut(core::Step last) const;
+  void forget_end();
+
+  /// Keeps a cut of state `step`, made by `cut`, for all who have asked for it.
+  void take(core::Step step, const std::function<Cut()>& cut);
+  void note_arrival(const core::Adoption& adoption);
+  void note_spawn(const core::Order& order);
+  /// Notes which of the states are whole. `is_whole(step)`: every cluster that was under way in that state has arrived.
+  void note_whole(const std::function<bool(core::Step)>& is_whole);
+  /// To be called when the run goes back to state `step`. Later states will be kept anew.
+  void put_back(core::Step step);
+  /// Takes the whole states up to `confirmed` that have been asked for.
+  std::vector<Cut> take_whole(core::Step confirmed);
+
+ private:
+  struct State {
+    core::Step step = 0;
+    std::optional<Cut> cut;
+    bool is_whole = false;
+    bool is_the_end = false;  ///< take_whole() leaves it
+  };
+  std::vector<State> states_;
+};
+
+}  // namespace aurasim::node

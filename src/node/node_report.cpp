@@ -1,0 +1,69 @@
+// The rows of a node's report that follow from what has come, gone and been made up.
+#include <algorithm>
+#include <utility>
+
+#include "node/node.h"
+
+namespace aurasim::node {
+
+void Node::note_removals() {
+  report_.removals = world_.take_removed();
+  for (const std::uint64_t request : world_.take_applied()) report_.applied.push_back({request, current_step(), {}});
+  report_.declined = world_.take_declined();
+  report_.unbearable = world_.take_unbearable();
+}
+
+void Node::clear_report() {
+  report_.put_back_from.reset();
+  report_.put_back_for.clear();
+  report_.durations = {};
+  report_.departures.clear();
+  report_.departed.clear();
+  report_.let_go.clear();
+  report_.arrivals.clear();
+  report_.made_up.clear();
+  report_.collisions.clear();
+  report_.hash.clear();
+  report_.births.clear();
+  report_.removals.clear();
+  report_.orders.clear();
+  report_.applied.clear();
+  report_.declined.clear();
+  report_.effects = {};
+  report_.unbearable = 0;
+}
+
+/// Adds the contacts of the made-up states that have just been reported, in the order of these states.
+void Node::note_made_up_contacts() {
+  std::vector<physics::MadeUpContacts> contacts = world_.take_made_up_contacts();
+  const std::size_t first = report_.made_up.size() - std::min(report_.made_up.size(), contacts.size());
+  for (std::size_t i = 0; first + i < report_.made_up.size(); ++i) {
+    report_.made_up[first + i].contacts = std::move(contacts[i].contacts);
+  }
+}
+
+void Node::note_arrivals(const core::Adoption& adoption) {
+  for (const core::BodyRecord& body : adoption.cluster.bodies) {
+    HandOffRow& row = report_.arrivals.emplace_back();
+    row.stamp = adoption.stamp;
+    row.joined = current_step() + 1;
+    row.body = body.id;
+    row.epoch = body.epoch;
+    row.source = adoption.source;
+    row.destination = region();
+    row.reason = adoption.reason;
+  }
+  watch_.join(adoption);
+}
+
+void Node::count(const core::Snapshot& snapshot) {
+  report_.step = snapshot.step;
+  report_.bodies = report_.awake = 0;
+  for (const core::BodyState& body : snapshot.bodies) {
+    if (body.birth > snapshot.step) continue;
+    ++report_.bodies;
+    report_.awake += body.awake;
+  }
+}
+
+}  // namespace aurasim::node
