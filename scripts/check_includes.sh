@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Includes go one way:
-#   core, security <- physics, transport, config <- dds, node <- cut, overseer <- cli <- lab
+#   core, security <- physics, transport, config <- dds, node <- cut, steering <- overseer <- cli <- lab
 #   core, physics, config <- import <- cli
 #   client (what programs of others are linked with: knows none of the others) <- python, cli
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
@@ -23,7 +23,9 @@ awk '
     allow("dds", "core security transport config dds")
     allow("node", "core physics transport node")
     allow("cut", "core security dds cut")
-    below = "core security physics transport config dds node cut"
+    # What a run can be asked is declared here, for every folder in which a client of a run is served.
+    allow("steering", "core config dds steering")
+    below = "core security physics transport config dds node cut steering"
     allow("overseer", below " overseer")
     allow("import", "core physics config import")
     allow("client", "client")

@@ -8,13 +8,14 @@
 #include <fmt/ranges.h>
 #include <fnmatch.h>
 
-#include "agent/asks.h"
 #include "agent/problem.h"
+#include "steering/json_fields.h"
 
 namespace aurasim::agent {
 namespace {
 
 using nlohmann::json;
+using steering::vector_of;
 
 [[noreturn]] void refuse_field(const std::string& field, const std::string& found, const std::string& allowed) {
   throw Problem(Kind::kRefused, fmt::format("{}: found {}, allowed: {}", field, found, allowed));

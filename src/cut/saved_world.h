@@ -44,11 +44,6 @@ struct SaveArguments {
 /// cannot be used.
 std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch);
 
-/// Why a saved world may not have this name, which becomes a file's name on every node's host. Null if it may.
-const char* problem_with_save_name(const std::string& name);
-/// As problem_with_save_name(), as a full message for the user. Empty if the name is allowed.
-std::string refused_save_name(const std::string& name);
-
 /// Identifies the run that saved worlds have to belong to.
 struct SavedBy {
   std::uint64_t world = 0;          ///< config::Launch::world_identity

@@ -5,6 +5,9 @@
 
 namespace aurasim::steering {
 
+/// For users, when the region has been waited for in vain.
+inline constexpr const char* kNobodyTakesOver = "nobody has taken the region over: is there a spare, or a launcher?";
+
 class Drain {
  public:
   /// Sends the drain command. Throws SteeringRefused if the region has no live node. `control` must outlive this
