@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestShown = 50;
+constexpr std::size_t kLongestShown = 120;
 constexpr std::size_t kMostShown = 8;  ///< numbers of a list
 constexpr std::string_view kNameOrNumber = "the name or number of a static";
 
