@@ -22,6 +22,10 @@ std::string shown_text(const std::string& text) {
   return cut.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
+std::string below(std::string_view path, std::string_view key) {
+  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+}
+
 }  // namespace
 
 std::string shown(double value) { return fmt::format("{:g}", value); }
@@ -68,20 +72,21 @@ bool is_list(const Json& value, std::size_t size) {
          });
 }
 
-double number_of(const Json& of, std::string_view key, double low, double high) {
+double number_of(const Json& of, std::string_view key, double low, double high, std::string_view path) {
   const Json& found = member(of, key);
   const double value = found.is_number() ? found.get<double>() : std::numeric_limits<double>::quiet_NaN();
-  if (!(value >= low && value <= high)) refuse(key, shown(found), fmt::format("{:g} to {:g}", low, high));
+  if (!(value >= low && value <= high)) refuse(below(path, key), shown(found), fmt::format("{:g} to {:g}", low, high));
   return value;
 }
 
-std::uint64_t whole_of(const Json& of, std::string_view key, std::uint64_t low, std::uint64_t high) {
+std::uint64_t whole_of(const Json& of, std::string_view key, std::uint64_t low, std::uint64_t high,
+                       std::string_view path) {
   const Json& found = member(of, key);
   // A number that is not negative may be held as a signed one, where a program has made the JSON.
   const bool is_whole = found.is_number_unsigned() || (found.is_number_integer() && found.get<std::int64_t>() >= 0);
   const std::uint64_t value = is_whole ? found.get<std::uint64_t>() : 0;
   if (!is_whole || value < low || value > high) {
-    refuse(key, shown(found), fmt::format("a whole number from {} to {}", low, high));
+    refuse(below(path, key), shown(found), fmt::format("a whole number from {} to {}", low, high));
   }
   return value;
 }

@@ -24,9 +24,11 @@ void only(const nlohmann::json& of, std::initializer_list<std::string_view> keys
 /// True for a list of `size` finite numbers. NaN and infinity arrive as null.
 bool is_list(const nlohmann::json& value, std::size_t size);
 
-double number_of(const nlohmann::json& of, std::string_view key, double low, double high);
+/// `path`: what the object is called in the refusal; empty: nothing.
+double number_of(const nlohmann::json& of, std::string_view key, double low, double high, std::string_view path = {});
 /// A whole number. `high`: at most 2^53.
-std::uint64_t whole_of(const nlohmann::json& of, std::string_view key, std::uint64_t low, std::uint64_t high);
+std::uint64_t whole_of(const nlohmann::json& of, std::string_view key, std::uint64_t low, std::uint64_t high,
+                       std::string_view path = {});
 /// A flag; false if there is none.
 bool flag_of(const nlohmann::json& of, std::string_view key);
 /// A text of 1 to `longest` bytes.
