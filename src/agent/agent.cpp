@@ -1,7 +1,6 @@
 #include "agent/agent.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -11,15 +10,15 @@
 
 #include "agent/answers.h"
 #include "agent/asked_interest.h"
-#include "agent/asks.h"
 #include "agent/observation_answer.h"
 #include "agent/setpoints.h"
 #include "config/shipped_files.h"
-#include "core/limits.h"
 #include "cut/cut_file.h"
 #include "dds/settings.h"
 #include "host/version.h"
 #include "setup/key_choice.h"
+#include "steering/client_mesh.h"
+#include "steering/json_fields.h"
 
 namespace aurasim::agent {
 namespace {
@@ -55,6 +54,14 @@ std::vector<std::string> launch_words(const json& asked, const std::string& file
 }
 
 }  // namespace
+
+std::vector<steering::Ask> asks_of(const json& asked) {
+  const json& list = steering::member(asked, "asks");
+  if (!list.is_array()) steering::refuse("asks", steering::shown(list), "a list");
+  std::vector<steering::Ask> asks;
+  for (const json& ask : list) asks.push_back(steering::read_ask(ask, steering::MeshFiles::kAllowed));
+  return asks;
+}
 
 void Agent::serve() {
   try {
@@ -113,17 +120,8 @@ Message Agent::answer(const Message& question, const Patience& patience) {
 }
 
 Message Agent::answer_of_run(const std::string& what, const json& asked, const Patience& patience) {
-  const auto state = [this](const WorldState& world) { return state_message(world, run().launch().step_s()); };
-  if (what == "bodies") return state(run().state(patience));
-  if (what == "pause") return state(run().pause(patience));
-  if (what == "step") {
-    const auto count = asked.value("count", std::int64_t{1});
-    if (count < 1 || count > core::limits::kMostStepsAhead) {
-      throw Problem(Kind::kRefused,
-                    fmt::format("count: found {}, allowed: 1 to {}", count, core::limits::kMostStepsAhead));
-    }
-    return state(run().step(count, patience));
-  }
+  if (what == "ask") return answer_to_ask(asked, patience);
+  if (what == "bodies") return state_message(run().state(patience), run().launch().step_s());
   if (what == "info") return {info_json(run()), {}};
   if (what == "observe") {
     run().wait_for_listeners(patience);
@@ -138,22 +136,42 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return {json::object(), {}};
   }
   if (what == "nodes") return {nodes_json(run().nodes(patience)), {}};
-  if (what == "act") return {act(asked, patience), {}};
-  if (what == "ray") {
-    return {ray_json(act_alone(core::Ray{vector_of(asked, "from"), vector_of(asked, "to"), {}}, patience)), {}};
-  }
-  if (what == "save") {
-    const std::string name = save_name_of(asked);
-    return {save_json(act_alone(core::Save{name}, patience), name), {}};
-  }
-  if (what == "drain") return {{{"pid", run().drain(core::RegionId{asked.value("region", 0U)}, patience)}}, {}};
-  static const std::map<std::string, Steer> steering = {
-      {"resume", Steer::kResume}, {"reset", Steer::kReset}, {"stop", Steer::kStop}};
-  if (const auto kind = steering.find(what); kind != steering.end()) {
-    run().steer(kind->second, patience);
-    return {json::object(), {}};
-  }
   throw Problem(Kind::kRefused, "nothing is called '" + what + "'");
+}
+
+/// One ask, of any kind; or several commands at once, which are sent together.
+Message Agent::answer_to_ask(const json& asked, const Patience& patience) {
+  std::vector<steering::Ask> asks = asks_of(asked);
+  if (asks.size() == 1) {
+    if (const auto* steer = std::get_if<steering::Steer>(&asks.front().what)) return answer_to_steer(*steer, patience);
+    if (const auto* drain = std::get_if<steering::Drain>(&asks.front().what)) {
+      return {{{"pid", run().drain(drain->region, patience)}}, {}};
+    }
+  }
+  run().wait_for_listeners(patience);
+  std::vector<core::Command> commands;
+  for (steering::Ask& ask : asks) {
+    if (!std::holds_alternative<core::Ask>(ask.what)) {
+      throw Problem(Kind::kRefused, "pause, resume, step, reset, stop and drain: ask for one of them at a time");
+    }
+    commands.push_back(steering::command_of(std::move(ask), run().launch().scene, run().client()));
+  }
+  const core::Ask first = commands.empty() ? core::Ask() : commands.front().ask;
+  const std::vector<steering::Delivery> deliveries = run().act(std::move(commands), patience);
+  const auto* const save = std::get_if<core::Save>(&first);
+  if (deliveries.size() == 1 && save != nullptr) return {save_json(deliveries.front(), save->file), {}};
+  if (deliveries.size() == 1 && deliveries.front().is_ray) return {ray_json(deliveries.front()), {}};
+  json acts = json::array();
+  for (const steering::Delivery& delivery : deliveries) acts.push_back(act_json(delivery));
+  return {{{"acts", std::move(acts)}}, {}};
+}
+
+Message Agent::answer_to_steer(const steering::Steer& steer, const Patience& patience) {
+  const auto state = [this](const WorldState& world) { return state_message(world, run().launch().step_s()); };
+  if (steer.kind == Steer::kPause) return state(run().pause(patience));
+  if (steer.kind == Steer::kStep) return state(run().step(steer.count, patience));
+  run().steer(steer.kind, patience);
+  return {json::object(), {}};
 }
 
 RunLink& Agent::run() {
@@ -192,29 +210,6 @@ json Agent::open(const json& asked, const Patience& patience) {
 void Agent::begin_paused(const Patience& patience) {
   run_->pause(patience);
   run_->steer(Steer::kReset, patience);
-}
-
-json Agent::act(const json& asked, const Patience& patience) {
-  run().wait_for_listeners(patience);
-  std::vector<core::Command> commands;
-  for (const json& ask : asked.at("asks")) {
-    core::Command command;
-    command.at_step = asked.value("at", core::Step{0});
-    command.ask = ask_of(ask, run_->launch().scene, run_->client());
-    commands.push_back(std::move(command));
-  }
-  json acts = json::array();
-  for (const steering::Delivery& delivery : run_->act(std::move(commands), patience))
-    acts.push_back(act_json(delivery));
-  return {{"acts", std::move(acts)}};
-}
-
-steering::Delivery Agent::act_alone(core::Ask ask, const Patience& patience) {
-  core::Command command;
-  command.ask = std::move(ask);
-  std::vector<core::Command> commands;
-  commands.push_back(std::move(command));
-  return run().act(std::move(commands), patience).front();
 }
 
 json Agent::close(const Patience& patience) {

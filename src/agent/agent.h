@@ -2,11 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "agent/run_link.h"
 #include "client/message.h"
+#include "steering/ask.h"
 
 namespace aurasim::agent {
+
+/// The asks in a client's message. Throws steering::BadAsk.
+std::vector<steering::Ask> asks_of(const nlohmann::json& asked);
 
 class Agent {
  public:
@@ -22,10 +27,10 @@ class Agent {
   void reply(const client::Message& question);
   client::Message answer(const client::Message& question, const Patience& patience);
   client::Message answer_of_run(const std::string& what, const nlohmann::json& asked, const Patience& patience);
+  client::Message answer_to_ask(const nlohmann::json& asked, const Patience& patience);
+  client::Message answer_to_steer(const steering::Steer& steer, const Patience& patience);
   nlohmann::json open(const nlohmann::json& asked, const Patience& patience);
   void begin_paused(const Patience& patience);
-  nlohmann::json act(const nlohmann::json& asked, const Patience& patience);
-  steering::Delivery act_alone(core::Ask ask, const Patience& patience);
   nlohmann::json close(const Patience& patience);
   RunLink& run();
 

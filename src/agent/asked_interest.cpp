@@ -8,41 +8,16 @@
 #include <fmt/ranges.h>
 #include <fnmatch.h>
 
-#include "agent/asks.h"
-#include "agent/problem.h"
+#include "steering/json_fields.h"
 
 namespace aurasim::agent {
 namespace {
 
 using nlohmann::json;
-
-[[noreturn]] void refuse_field(const std::string& field, const std::string& found, const std::string& allowed) {
-  throw Problem(Kind::kRefused, fmt::format("{}: found {}, allowed: {}", field, found, allowed));
-}
-
-double number(const json& json, const char* key, double low, double high, const std::string& field) {
-  const auto found = json.find(key);
-  const double value = found != json.end() && found->is_number() ? found->get<double>() : std::nan("");
-  if (!(value >= low && value <= high)) {
-    refuse_field(field + "." + key, found != json.end() ? found->dump() : "nothing",
-                 fmt::format("{} to {}", low, high));
-  }
-  return value;
-}
-
-std::int64_t count(const json& json, const char* key, std::int64_t low, std::int64_t high, const std::string& field) {
-  const auto found = json.find(key);
-  const bool is_whole = found != json.end() && found->is_number_integer();
-  const auto value = is_whole ? found->get<std::int64_t>() : low - 1;
-  if (value < low || value > high) {
-    refuse_field(field.empty() ? key : field + "." + key, found != json.end() ? found->dump() : "nothing",
-                 fmt::format("{} to {}", low, high));
-  }
-  return value;
-}
+using steering::vector_of;
 
 void check_count(std::size_t found, std::size_t most, const std::string& field) {
-  if (found > most) refuse_field(field, std::to_string(found), fmt::format("at most {}", most));
+  if (found > most) steering::refuse(field, std::to_string(found), fmt::format("at most {}", most));
 }
 
 template <class T>
@@ -61,7 +36,8 @@ void add_prototypes(const std::string& pattern, const core::Scene& scene, std::v
     found = true;
   }
   if (!found)
-    refuse_field("patterns", '"' + pattern + '"', fmt::format("patterns of these names: {}", fmt::join(names, ", ")));
+    steering::refuse("patterns", '"' + pattern + '"',
+                     fmt::format("patterns of these names: {}", fmt::join(names, ", ")));
 }
 
 core::WorldBox box_of(const json& json) {
@@ -69,13 +45,13 @@ core::WorldBox box_of(const json& json) {
   const bool is_box = (box.low.array() <= box.high.array()).all() &&
                       box.low.cwiseAbs().maxCoeff() <= core::kFarthestBox_m &&
                       box.high.cwiseAbs().maxCoeff() <= core::kFarthestBox_m;
-  if (!is_box) refuse_field("boxes", json.dump(), fmt::format("low <= high, within {} m", core::kFarthestBox_m));
+  if (!is_box) steering::refuse("boxes", json.dump(), fmt::format("low <= high, within {} m", core::kFarthestBox_m));
   return box;
 }
 
 core::Interest selection_of(const json& asked, const core::Scene& scene) {
   core::Interest selection;
-  selection.every = static_cast<std::uint32_t>(count(asked, "every", 0, core::kMostStatesBetween, ""));
+  selection.every = static_cast<std::uint32_t>(steering::whole_of(asked, "every", 0, core::kMostStatesBetween));
   selection.all = asked.value("all", false);
   selection.contacts = asked.value("contacts", false);
   selection.joints = asked.value("joints", false);
@@ -101,7 +77,7 @@ Mount mount_of(const json& json, const std::string& field) {
   const auto q = json.value("q", std::vector<double>{1, 0, 0, 0});
   const double length = q.size() == 4 ? std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3])) : 0;
   if (!(length > 1e-9 && length < 1e9))
-    refuse_field(field + ".q", json.value("q", nlohmann::json()).dump(), "w x y z, not 0");
+    steering::refuse(field + ".q", json.value("q", nlohmann::json()).dump(), "w x y z, not 0");
   mount.X_CS.q_WB = core::Quat(q[0], q[1], q[2], q[3]).normalized();
   return mount;
 }
@@ -109,13 +85,13 @@ Mount mount_of(const json& json, const std::string& field) {
 std::vector<core::Vec3> directions_of(const json& json, const std::string& field) {
   const auto numbers = json.value("directions", std::vector<double>{});
   if (numbers.empty() || numbers.size() % 3 != 0)
-    refuse_field(field + ".directions", std::to_string(numbers.size()), "n x 3");
+    steering::refuse(field + ".directions", std::to_string(numbers.size()), "n x 3");
   check_count(numbers.size() / 3, kMostRays, field + ".directions");
   std::vector<core::Vec3> directions;
   for (std::size_t i = 0; i < numbers.size(); i += 3) {
     const core::Vec3 direction(numbers[i], numbers[i + 1], numbers[i + 2]);
     if (!direction.allFinite() || direction.norm() < 1e-9 || direction.norm() > 1e9) {
-      refuse_field(field + ".directions", fmt::format("row {}", i / 3), "finite numbers, not all 0");
+      steering::refuse(field + ".directions", fmt::format("row {}", i / 3), "finite numbers, not all 0");
     }
     directions.push_back(direction.normalized());
   }
@@ -123,21 +99,23 @@ std::vector<core::Vec3> directions_of(const json& json, const std::string& field
 }
 
 FanSpec fan_of(const json& json) {
-  FanSpec fan{mount_of(json, "fans"), directions_of(json, "fans"), number(json, "range", 1e-3, kFarthestRay_m, "fans"),
-              1};
-  fan.every = json.contains("every") ? count(json, "every", 1, core::kMostStatesBetween, "fans") : 1;
+  FanSpec fan{mount_of(json, "fans"), directions_of(json, "fans"),
+              steering::number_of(json, "range", 1e-3, kFarthestRay_m, "fans"), 1};
+  if (json.contains("every")) {
+    fan.every = static_cast<std::int64_t>(steering::whole_of(json, "every", 1, core::kMostStatesBetween, "fans"));
+  }
   return fan;
 }
 
 TriggerSpec trigger_of(const json& json) {
   TriggerSpec trigger{mount_of(json, "triggers"), core::Vec3::Zero(), 0};
   if (json.contains("radius")) {
-    trigger.radius_m = number(json, "radius", 1e-3, kFarthestRay_m, "triggers");
+    trigger.radius_m = steering::number_of(json, "radius", 1e-3, kFarthestRay_m, "triggers");
     return trigger;
   }
   trigger.half_extents = vector_of(json, "size") / 2;
   const bool is_box = trigger.half_extents.minCoeff() > 0 && trigger.half_extents.maxCoeff() <= kFarthestRay_m;
-  if (!is_box) refuse_field("triggers.size", json.value("size", nlohmann::json()).dump(), "three lengths > 0");
+  if (!is_box) steering::refuse("triggers.size", json.value("size", nlohmann::json()).dump(), "three lengths > 0");
   return trigger;
 }
 
@@ -153,7 +131,7 @@ AskedInterest asked_interest(const json& asked, const core::Scene& scene) {
   const core::Interest& selection = interest.selection;
   const bool is_empty = !selection.all && selection.bodies.empty() && selection.prototypes.empty() &&
                         selection.boxes.empty() && fans.empty() && triggers.empty();
-  if (is_empty) refuse_field("interest", "nothing", "all, bodies, patterns, boxes, fans or triggers");
+  if (is_empty) steering::refuse("interest", "nothing", "all, bodies, patterns, boxes, fans or triggers");
   return interest;
 }
 

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostRays = 100'000;  ///< rays of one fan
 inline constexpr std::size_t kMostTriggers = 64;
 inline constexpr double kFarthestRay_m = 1e4;
 
-/// Throws Problem (kRefused) with the field, what was found and what is allowed.
+/// Throws steering::BadAsk with the field, what was found and what is allowed.
 AskedInterest asked_interest(const nlohmann::json& json, const core::Scene& scene);
 
 }  // namespace aurasim::agent

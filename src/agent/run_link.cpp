@@ -287,10 +287,9 @@ std::vector<steering::Delivery> RunLink::act(std::vector<core::Command> commands
 }
 
 std::uint32_t RunLink::drain(core::RegionId region, const Patience& patience) {
-  steering::Drain leaving(control_, region);
+  steering::Draining leaving(control_, region);
   const dds::Status* successor = nullptr;
-  wait_until([&] { return (successor = leaving.successor()) != nullptr; }, patience,
-             "nobody has taken the region over: is there a spare, or a launcher?");
+  wait_until([&] { return (successor = leaving.successor()) != nullptr; }, patience, steering::kNobodyTakesOver);
   return successor->pid;
 }
 

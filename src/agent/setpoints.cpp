@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "agent/asks.h"
 #include "agent/problem.h"
 #include "core/limits.h"
 #include "core/order.h"
+#include "steering/json_fields.h"
 
 namespace aurasim::agent {
 namespace {
@@ -127,8 +127,8 @@ void take_statics(const json& head, const config::Launch& launch, core::Setpoint
       refuse(fmt::format("the solver {} knows no statics that move", launch.physics.solver));
     }
     core::StaticSetpoint& wanted = to.statics.emplace_back();
-    wanted.id = static_of(of, launch.scene);
-    wanted.to = pose_of(of);
+    wanted.id = steering::static_of(steering::member(of, "static"), launch.scene, "static");
+    wanted.to = {steering::vector_of(of, "p"), steering::rotation_of(of, "q")};
     wanted.states = of.value("states", core::Step{1});
     if (!(wanted.to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m)) {
       refuse(

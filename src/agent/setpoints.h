@@ -7,7 +7,7 @@
 
 namespace aurasim::agent {
 
-/// The setpoints of a message. Throws Problem (kRefused) with the error; then no setpoint takes effect.
+/// The setpoints of a message. Throws Problem (kRefused) or steering::BadAsk; then no setpoint takes effect.
 core::Setpoints setpoints_of(const client::Message& message, const config::Launch& launch);
 
 }  // namespace aurasim::agent

@@ -6,6 +6,7 @@
 #include "command_line/exit_code.h"
 #include "config/key_page.h"
 #include "config/key_schema.h"
+#include "steering/ask_page.h"
 
 namespace aurasim::cli {
 namespace {
@@ -13,12 +14,17 @@ namespace {
 struct SchemaArguments {
   std::string section;
   bool markdown = false;
+  bool asks = false;
   std::string json;
 };
 
 int print_keys(const SchemaArguments& arguments) {
   std::string text;
-  if (arguments.markdown) {
+  if (arguments.asks) {
+    text = steering::asks_as_markdown();
+  } else if (arguments.json == "asks") {
+    text = steering::ask_schema();
+  } else if (arguments.markdown) {
     text = config::keys_as_markdown();
   } else if (!arguments.json.empty()) {
     text = config::key_schema(arguments.json == "launch" ? config::launch_file_keys() : config::scene_file_keys());
@@ -39,9 +45,12 @@ void add_schema(CLI::App& program, command_line::Action& action) {
   const auto arguments = std::make_shared<SchemaArguments>();
   command->add_option("SECTION", arguments->section, "only sections with this in their title, e.g. time, injector");
   auto* markdown = command->add_flag("--markdown", arguments->markdown, "as docs/keys.md has them");
-  command->add_option("--json", arguments->json, "as a JSON schema for editors: of launch files, or of scene files")
-      ->check(CLI::IsMember({"launch", "scene"}))
-      ->excludes(markdown);
+  auto* asks = command->add_flag("--asks", arguments->asks, "what a run can be asked, as docs/commands.md has it")
+                   ->excludes(markdown);
+  command->add_option("--json", arguments->json, "as a JSON schema: of launch files, of scene files, or of asks")
+      ->check(CLI::IsMember({"launch", "scene", "asks"}))
+      ->excludes(markdown)
+      ->excludes(asks);
   command->footer("Example:\n  aurasim schema injector");
   command->callback([arguments, &action] { action = [arguments] { return print_keys(*arguments); }; });
 }

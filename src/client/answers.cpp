@@ -116,12 +116,6 @@ SavedWorld saved_world_of(const json& head) {
   return {head.value("step", std::int64_t{0}), head.value("file", ""), head.value("parts", std::vector<std::string>{})};
 }
 
-json box_json(const std::array<double, 4>& box) {
-  json sides = json::array();
-  for (const double side : box) sides.push_back(std::isfinite(side) ? json(side) : json(nullptr));
-  return sides;
-}
-
 std::vector<double> box_of(const json& sides) {
   std::vector<double> box;
   for (const json& side : sides) {

@@ -19,8 +19,7 @@ Acknowledgement acknowledgement_of(const nlohmann::json& head);
 RayHit ray_hit_of(const nlohmann::json& head);
 SavedWorld saved_world_of(const nlohmann::json& head);
 
-/// Converts a box. An infinite side becomes null, because JSON has no infinite numbers.
-nlohmann::json box_json(const std::array<double, 4>& box);
+/// Converts a box. A side that is null is infinite, because JSON has no infinite numbers.
 std::vector<double> box_of(const nlohmann::json& json);
 
 }  // namespace aurasim::client

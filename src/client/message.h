@@ -12,7 +12,7 @@
 namespace aurasim::client {
 
 /// Version of these messages. Changes with every change of them.
-inline constexpr int kAgentProtocol = 3;
+inline constexpr int kAgentProtocol = 4;
 
 struct Message {
   nlohmann::json head;

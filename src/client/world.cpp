@@ -1,9 +1,9 @@
-#include <filesystem>
 #include <utility>
 
 #include <aurasim/client.h>
 
 #include "client/answers.h"
+#include "client/asks.h"
 #include "client/connection.h"
 #include "client/observation.h"
 #include "client/program_file.h"
@@ -12,33 +12,6 @@ namespace aurasim::client {
 namespace {
 
 using nlohmann::json;
-
-/// Makes a path absolute, because this program may have changed its folder since the agent was started.
-std::string absolute(const std::string& file) { return std::filesystem::absolute(file).string(); }
-
-json shape_json(const Shape& shape) {
-  switch (shape.kind) {
-    case Shape::Kind::kNone:
-      return nullptr;
-    case Shape::Kind::kSphere:
-      return {{"radius", shape.radius_m}};
-    case Shape::Kind::kBox:
-      return {{"size", shape.size}};
-    case Shape::Kind::kCapsule:
-      return {{"radius", shape.radius_m}, {"height", shape.height_m}};
-    case Shape::Kind::kMesh:
-      return {{"mesh", absolute(shape.file)}, {"in_parts", shape.in_parts}};
-  }
-  return nullptr;
-}
-
-json impulse_json(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point) {
-  return {{"kind", "impulse"}, {"body", body}, {"J", impulse}, {"p", point ? json(*point) : json(nullptr)}};
-}
-
-json velocity_json(std::uint64_t body, const Vec3& linear, const std::optional<Vec3>& angular) {
-  return {{"kind", "velocity"}, {"body", body}, {"v", linear}, {"w", angular ? json(*angular) : json(nullptr)}};
-}
 
 /// Row i of an array of n x 3.
 Vec3 row(const std::vector<double>& array, std::size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
@@ -59,9 +32,16 @@ struct World::Impl {
   json ask(json head, Seconds time_out) { return connection.ask({std::move(head), {}}, time_out).head; }
   Bodies ask_bodies(json head, Seconds time_out) { return bodies_of(connection.ask({std::move(head), {}}, time_out)); }
 
+  /// Asks the run for one thing.
+  Message ask_run(json ask, Seconds time_out) {
+    return connection.ask({{{"do", "ask"}, {"asks", json::array({std::move(ask)})}}, {}}, time_out);
+  }
   /// Requests several acts at once. Returns their results in the same order.
   std::vector<Acknowledgement> act(json asks, std::int64_t at_step, Seconds time_out) {
-    const json head = ask({{"do", "act"}, {"asks", std::move(asks)}, {"at", at_step}}, time_out);
+    for (json& one : asks) {
+      if (at_step != 0) one["at"] = at_step;
+    }
+    const json head = ask({{"do", "ask"}, {"asks", std::move(asks)}}, time_out);
     std::vector<Acknowledgement> done;
     std::string refused;
     for (const json& one : head.value("acts", json::array())) {
@@ -130,7 +110,7 @@ RunInfo World::info(Seconds time_out) { return info_of(impl_->ask({{"do", "info"
 std::vector<NodeStatus> World::nodes(Seconds time_out) { return nodes_of(impl_->ask({{"do", "nodes"}}, time_out)); }
 Bodies World::bodies(Seconds time_out) { return impl_->ask_bodies({{"do", "bodies"}}, time_out); }
 RayHit World::ray(const Vec3& from, const Vec3& to, Seconds time_out) {
-  return ray_hit_of(impl_->ask({{"do", "ray"}, {"from", from}, {"to", to}}, time_out));
+  return ray_hit_of(impl_->ask_run({{"kind", "ray"}, {"from", from}, {"to", to}}, time_out).head);
 }
 
 struct Observer::Impl {
@@ -172,51 +152,39 @@ Observer World::observe(const Interest& interest, Seconds time_out) {
   return Observer(std::make_unique<Observer::Impl>(impl_, begun.value("observer", std::uint64_t{0})));
 }
 
-Bodies World::pause(Seconds time_out) { return impl_->ask_bodies({{"do", "pause"}}, time_out); }
+Bodies World::pause(Seconds time_out) { return bodies_of(impl_->ask_run(ask_json("pause"), time_out)); }
 Bodies World::step(std::int64_t count, Seconds time_out) {
-  return impl_->ask_bodies({{"do", "step"}, {"count", count}}, time_out);
+  return bodies_of(impl_->ask_run({{"kind", "step"}, {"count", count}}, time_out));
 }
-void World::resume(Seconds time_out) { impl_->ask({{"do", "resume"}}, time_out); }
-void World::reset(Seconds time_out) { impl_->ask({{"do", "reset"}}, time_out); }
-void World::stop(Seconds time_out) { impl_->ask({{"do", "stop"}}, time_out); }
+void World::resume(Seconds time_out) { impl_->ask_run(ask_json("resume"), time_out); }
+void World::reset(Seconds time_out) { impl_->ask_run(ask_json("reset"), time_out); }
+void World::stop(Seconds time_out) { impl_->ask_run(ask_json("stop"), time_out); }
 Acknowledgement World::set_rate(double rate, Seconds time_out) {
-  return impl_->act_one({{"kind", "rate"}, {"rate", rate}}, 0, time_out);
+  return impl_->act_one({{"kind", "rate"}, {"value", rate}}, 0, time_out);
 }
 Acknowledgement World::set_scene(const std::string& name, Seconds time_out) {
   return impl_->act_one({{"kind", "scene"}, {"name", name}}, 0, time_out);
 }
 Acknowledgement World::set_regions(const std::vector<std::array<double, 4>>& boxes, Seconds time_out) {
-  json list = json::array();
-  for (const auto& box : boxes) list.push_back(box_json(box));
-  return impl_->act_one({{"kind", "regions"}, {"boxes", std::move(list)}}, 0, time_out);
+  return impl_->act_one(regions_json(boxes), 0, time_out);
 }
 std::uint32_t World::drain(std::uint32_t region, Seconds time_out) {
-  return impl_->ask({{"do", "drain"}, {"region", region}}, time_out).value("pid", 0U);
+  return impl_->ask_run({{"kind", "drain"}, {"region", region}}, time_out).head.value("pid", 0U);
 }
 
 SavedWorld World::save(const std::string& name, Seconds time_out) {
-  return saved_world_of(impl_->ask({{"do", "save"}, {"name", name}}, time_out));
+  return saved_world_of(impl_->ask_run({{"kind", "save"}, {"name", name}}, time_out).head);
 }
 Acknowledgement World::load(const std::string& name, Seconds time_out) {
   return impl_->act_one({{"kind", "load"}, {"name", name}}, 0, time_out);
 }
-Acknowledgement World::back(Seconds time_out) { return impl_->act_one({{"kind", "back"}}, 0, time_out); }
+Acknowledgement World::back(Seconds time_out) { return impl_->act_one(ask_json("back"), 0, time_out); }
 
 Acknowledgement World::spawn(const NewBody& body, std::int64_t at_step, Seconds time_out) {
-  return impl_->act_one({{"kind", "spawn"},
-                         {"prototype", body.prototype},
-                         {"shape", shape_json(body.shape)},
-                         {"mass", body.mass_kg},
-                         {"p", body.position},
-                         {"q", body.rotation},
-                         {"v", body.linear_velocity},
-                         {"w", body.angular_velocity}},
-                        at_step, time_out);
+  return impl_->act_one(spawn_json(body), at_step, time_out);
 }
 Acknowledgement World::add_static(const NewStatic& fixed, std::int64_t at_step, Seconds time_out) {
-  return impl_->act_one(
-      {{"kind", "static"}, {"shape", shape_json(fixed.shape)}, {"p", fixed.position}, {"q", fixed.rotation}}, at_step,
-      time_out);
+  return impl_->act_one(static_json(fixed), at_step, time_out);
 }
 Acknowledgement World::remove_body(std::uint64_t body, std::int64_t at_step, Seconds time_out) {
   return impl_->act_one({{"kind", "remove"}, {"body", body}}, at_step, time_out);
@@ -227,9 +195,7 @@ Acknowledgement World::remove_static(std::uint32_t fixed, std::int64_t at_step, 
 Acknowledgement World::move_static(const std::variant<std::uint32_t, std::string>& fixed, const Vec3& position,
                                    const Quaternion& rotation, double duration, std::int64_t at_step,
                                    Seconds time_out) {
-  json ask = {{"kind", "move"}, {"p", position}, {"q", rotation}, {"duration", duration}};
-  std::visit([&ask](const auto& named) { ask["static"] = named; }, fixed);
-  return impl_->act_one(std::move(ask), at_step, time_out);
+  return impl_->act_one(move_json(fixed, position, rotation, duration), at_step, time_out);
 }
 Acknowledgement World::impulse(std::uint64_t body, const Vec3& impulse, const std::optional<Vec3>& point,
                                std::int64_t at_step, Seconds time_out) {

@@ -51,6 +51,16 @@ struct Ray {
 using Ask = std::variant<NewBody, NewStatic, RemoveBody, RemoveStatic, Impulse, SetVelocity, SetRate, Repartition,
                          ChangeScene, Ray, Save, Load, SendStatic>;
 
+/// The mesh that a new body or static has for its shape; null: it has none.
+template <class AnyAsk>
+auto mesh_in(AnyAsk& ask) -> decltype(std::get_if<MeshRef>(&std::get_if<NewStatic>(&ask)->shape)) {
+  if (auto* const body = std::get_if<NewBody>(&ask)) {
+    return body->shape ? std::get_if<MeshRef>(&*body->shape) : nullptr;
+  }
+  auto* const fixed = std::get_if<NewStatic>(&ask);
+  return fixed != nullptr ? std::get_if<MeshRef>(&fixed->shape) : nullptr;
+}
+
 struct Command {
   std::uint64_t request = 0;  ///< random number of the request; copies of the command carry the same
   Step at_step = 0;           ///< the earliest state of its effect; 0: as soon as possible

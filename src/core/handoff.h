@@ -1,4 +1,5 @@
-// Ledgers that make each hand-off take effect exactly once. (source, destination, sequence) identifies a hand-off; the epochs in it say which copy of a body is the valid one.
+// Ledgers that make each hand-off take effect exactly once. (source, destination, sequence) identifies a hand-off; the
+// epochs in it say which copy of a body is the valid one.
 #pragma once
 
 #include <cstdint>

@@ -55,24 +55,6 @@ std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments,
   }
 }
 
-const char* problem_with_save_name(const std::string& name) {
-  const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
-           c == '-';
-  };
-  if (name.empty() || name.size() > 100) return "a saved world's name has 1 to 100 letters";
-  if (!std::ranges::all_of(name, fits) || name.front() == '.' || name.front() == '-') {
-    return "a saved world's name has letters, digits, '.', '_' and '-', and does not begin with '.' or '-'";
-  }
-  return nullptr;
-}
-
-std::string refused_save_name(const std::string& name) {
-  const char* const problem = problem_with_save_name(name);
-  if (problem == nullptr) return {};
-  return fmt::format("{}: found '{}'. It is a file in the nodes' folder of saved worlds (--saves)", problem, name);
-}
-
 std::optional<cut::StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders,
                                                    const SavedBy& by) {
   std::vector<cut::StoredWorld> worlds;
@@ -102,11 +84,20 @@ SavedState newest_saved_until(const std::filesystem::path& folder, const SavedBy
                            [](const cut::StoredWorld& world) { return world.header.cut.step; });
   for (const cut::StoredWorld& world : worlds) {
     std::string name = world.file.filename().string();
-    if (problem_with_save_name(name) == nullptr && can_be_read(world)) {
+    if (is_save_name(name) && can_be_read(world)) {
       return {world.header.cut.step, std::move(name)};
     }
   }
   return {};
+}
+
+bool is_save_name(std::string_view name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= 100 && std::ranges::all_of(name, fits) && name.front() != '.' &&
+         name.front() != '-';
 }
 
 }  // namespace aurasim::cut

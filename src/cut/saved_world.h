@@ -6,16 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/launch.h"
 #include "core/world_cut.h"
 #include "cut/part_store.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace aurasim::cut {
 
@@ -38,11 +34,6 @@ struct SaveArguments {
 /// The world that --load names. Null if the option is not given. Throws config::BadConfig, with the reason, if the file
 /// cannot be used.
 std::shared_ptr<const core::WorldCut> load_world(const LoadArguments& arguments, const config::Launch& launch);
-
-/// Why a saved world may not have this name, which becomes a file's name on every node's host. Null if it may.
-const char* problem_with_save_name(const std::string& name);
-/// As problem_with_save_name(), as a full message for the user. Empty if the name is allowed.
-std::string refused_save_name(const std::string& name);
 
 /// Identifies the run that saved worlds have to belong to.
 struct SavedBy {
@@ -70,5 +61,8 @@ struct SavedState {
 
 /// The newest saved world of this run in `folder` that is not later than state `latest`.
 SavedState newest_saved_until(const std::filesystem::path& folder, const SavedBy& by, core::Step latest);
+
+/// True for a name that a saved world may have. It becomes a file's name on every node's host.
+bool is_save_name(std::string_view name);
 
 }  // namespace aurasim::cut

@@ -30,11 +30,11 @@ MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
   if (!std::isfinite(in.top_speed_m_s()) || !std::isfinite(in.top_radius_m())) {
     return WireError::kNotFinite;
   }
-  const bool in_range =
-      in.stamp() >= 0 && in.rank_held_stamp() >= 0 && in.rank_next_stamp() >= in.rank_held_stamp() &&
-      in.rank_next_stamp() <= in.stamp() && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
-      in.top_speed_m_s() <= bearable::kFastestReach_m_s && in.top_radius_m() <= bearable::kFarthestReach_m &&
-      all_body_ids(in.deleted()) && all_below(in.hand_off_destination(), expected.region_count);
+  const bool in_range = in.stamp() >= 0 && in.rank_held_stamp() >= 0 && in.rank_next_stamp() >= in.rank_held_stamp() &&
+                        in.rank_next_stamp() <= in.stamp() && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
+                        in.top_speed_m_s() <= bearable::kFastestReach_m_s &&
+                        in.top_radius_m() <= bearable::kFarthestReach_m && all_body_ids(in.deleted()) &&
+                        all_below(in.hand_off_destination(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 

@@ -12,9 +12,9 @@ namespace aurasim::launch {
 
 std::string closing_line(const node::Accounts& accounts) {
   if (accounts.incomplete.empty()) {
-    return fmt::format(
-        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}\n", accounts.bodies,
-        accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed, accounts.real_time_factor);
+    return fmt::format("{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}\n",
+                       accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed,
+                       accounts.real_time_factor);
   }
   std::vector<std::uint32_t> regions;
   for (const node::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));

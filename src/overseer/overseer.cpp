@@ -205,9 +205,11 @@ void Overseer::serve_commands() {
   for (PageRequest& page_request : web_.take_requests()) {
     auto* const request = std::get_if<Request>(&page_request);
     if (request == nullptr) continue;
-    if (auto* ray = std::get_if<CastRay>(&request->command)) {
+    auto* const command = std::get_if<core::Ask>(&request->ask.what);
+    if (auto* ray = command != nullptr ? std::get_if<core::Ray>(command) : nullptr) {
       const double margin_m = watch_.launch().tolerances.speed_m_s * kOldestView_s;
-      ray->regions = regions_for_ray({ray->from, ray->to}, watch_.launch().regions, watch_.view(), scene_, margin_m);
+      ray->regions =
+          regions_for_ray({ray->from_W, ray->to_W}, watch_.launch().regions, watch_.view(), scene_, margin_m);
     }
     sink_.submit(std::move(*request));
   }

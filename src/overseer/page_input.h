@@ -30,7 +30,7 @@ struct Watch {
 };
 struct CommandMessage {
   std::string request;
-  Command command;
+  steering::Ask ask;
 };
 struct ReplayControl {
   enum class Action : std::uint8_t { kPlay, kPause, kSeek, kSpeed };

@@ -13,15 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using Kind = dds::RunCommandKind;
+using steering::BadAsk;
 
 constexpr auto kPatienceForEffect = 10s;
+constexpr auto kPatienceForSuccessor = 60s;
 constexpr auto kPatienceForListeners = 3s;
-
-class BadAsk : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -48,18 +44,10 @@ nlohmann::json result_of(const steering::Delivery& delivery) {
 }  // namespace
 
 void RunCommandSink::submit(overseer::Request request) {
-  if (std::holds_alternative<overseer::Pause>(request.command)) {
-    steer(request, Kind::kPause, 1);
-  } else if (std::holds_alternative<overseer::Resume>(request.command)) {
-    steer(request, Kind::kResume, 1);
-  } else if (std::holds_alternative<overseer::Reset>(request.command)) {
-    steer(request, Kind::kReset, 1);
-  } else if (const auto* step = std::get_if<overseer::StepOn>(&request.command)) {
-    steer(request, Kind::kStep, step->count);
-  } else {
-    held_.push_back({std::move(request), Clock::now() + kPatienceForListeners});
-    carry_held();
-  }
+  if (const auto* steered = std::get_if<steering::Steer>(&request.ask.what)) return steer(request, *steered);
+  if (const auto* drained = std::get_if<steering::Drain>(&request.ask.what)) return drain(request, drained->region);
+  held_.push_back({std::move(request), Clock::now() + kPatienceForListeners});
+  carry_held();
 }
 
 void RunCommandSink::carry_held() {
@@ -74,12 +62,10 @@ void RunCommandSink::carry_held() {
 }
 
 bool RunCommandSink::waits_for_parts(const overseer::Request& request) {
-  const auto* const spawn = std::get_if<overseer::Spawn>(&request.command);
-  const auto* const kind = spawn == nullptr ? nullptr : std::get_if<overseer::NewKind>(&spawn->kind);
-  const auto* const stored = kind == nullptr ? nullptr : std::get_if<overseer::StoredShape>(&kind->shape);
-  if (stored == nullptr || stored->as != overseer::StoredShape::As::kDecomposition) return false;
-  const auto mesh = shapes_.find(stored->hash);
-  return mesh != nullptr && part_finder_.parts_of(stored->hash, mesh) == nullptr;
+  const core::MeshRef* const ref = core::mesh_in(std::get<core::Ask>(request.ask.what));
+  if (ref == nullptr || ref->use != core::MeshUse::kDecomposition) return false;
+  const auto mesh = shapes_.find(ref->hash);
+  return mesh != nullptr && part_finder_.parts_of(ref->hash, mesh) == nullptr;
 }
 
 /// Once they have been found. Throws BadAsk.
@@ -93,88 +79,76 @@ core::MeshRef RunCommandSink::parts_of(std::uint64_t hash, const std::shared_ptr
   return {hash_of_parts, core::MeshUse::kDecomposition};
 }
 
-void RunCommandSink::steer(const overseer::Request& request, Kind kind, std::int64_t count) {
-  const auto refuse = [&](std::string why) {
-    replies_.push_back({request.client, request.id, false, std::move(why), nullptr});
-  };
-  if (!steering_.is_there()) return refuse("no node of this run is there");
-  if (kind == Kind::kStep && !steering_.is_paused()) return refuse("steps are for a run that is paused");
+void RunCommandSink::refuse(const overseer::Request& request, std::string why) {
+  replies_.push_back({request.client, request.id, false, std::move(why), nullptr});
+}
+
+void RunCommandSink::steer(const overseer::Request& request, const steering::Steer& steer) {
+  if (!steering_.is_there()) return refuse(request, "no node of this run is there");
+  if (steer.kind == dds::RunCommandKind::kStep && !steering_.is_paused()) {
+    return refuse(request, "steps are for a run that is paused");
+  }
   try {
-    under_way_.push_back({request.client, request.id, steering_.send(kind, count), Clock::now() + kPatienceForEffect});
+    under_way_.push_back(
+        {request.client, request.id, steering_.send(steer.kind, steer.count), Clock::now() + kPatienceForEffect});
   } catch (const std::runtime_error& error) {
-    refuse(error.what());
+    refuse(request, error.what());
   }
 }
 
-/// Throws BadAsk.
-core::ClientShape RunCommandSink::client_shape(const overseer::ShapeChoice& choice) {
-  if (const auto* stored = std::get_if<overseer::StoredShape>(&choice)) {
-    const auto mesh = shapes_.find(stored->hash);
-    using As = overseer::StoredShape::As;
-    if (stored->as == As::kDecomposition) return parts_of(stored->hash, mesh);
-    if (mesh) client_.bring(stored->hash, *mesh);  // or some other overseer has brought it
-    return core::MeshRef{stored->hash, stored->as == As::kMesh ? core::MeshUse::kTriangles : core::MeshUse::kHull};
+void RunCommandSink::drain(const overseer::Request& request, core::RegionId region) {
+  try {
+    leaving_.push_back(
+        {request.client, request.id, steering::Draining(control_, region), region, Clock::now() + kPatienceForSuccessor});
+  } catch (const std::runtime_error& error) {
+    refuse(request, error.what());
   }
-  return std::visit(
-      [](const auto& shape) -> core::ClientShape {
-        if constexpr (std::is_constructible_v<core::ClientShape, decltype(shape)>) {
-          return shape;
-        } else {
-          throw BadAsk("a shape of this kind has to be sent to /api/shapes as a mesh");
-        }
-      },
-      std::get<core::Shape>(choice));
 }
 
-core::Ask RunCommandSink::ask_for(const overseer::Command& command) {
-  if (const auto* c = std::get_if<overseer::Spawn>(&command)) {
-    core::NewBody body;
-    body.pose = c->pose;
-    body.v_WB = c->v_WB;
-    body.w_WB = c->w_WB;
-    if (const auto* name = std::get_if<std::string>(&c->kind)) {
-      body.prototype = *name;
-    } else {
-      const auto& kind = std::get<overseer::NewKind>(c->kind);
-      body.shape = client_shape(kind.shape);
-      body.mass_kg = kind.mass_kg;
-    }
-    return body;
+/// Sends the mesh that the ask names to the nodes, if this process has it; otherwise some other overseer has brought
+/// it. Parts are brought under a hash of their own, once they have been found. Throws BadAsk.
+void RunCommandSink::bring_mesh_of(core::Ask& ask) {
+  core::MeshRef* const ref = core::mesh_in(ask);
+  if (ref == nullptr) return;
+  const auto mesh = shapes_.find(ref->hash);
+  if (ref->use == core::MeshUse::kDecomposition) {
+    *ref = parts_of(ref->hash, mesh);
+  } else if (mesh) {
+    client_.bring(ref->hash, *mesh);
   }
-  if (const auto* c = std::get_if<overseer::PlaceStatic>(&command)) {
-    return core::NewStatic{client_shape(c->shape), c->pose};
-  }
-  if (const auto* c = std::get_if<overseer::Remove>(&command)) {
-    if (const auto* body = std::get_if<core::BodyId>(&c->what)) return core::RemoveBody{*body};
-    return core::RemoveStatic{std::get<core::StaticId>(c->what)};
-  }
-  if (const auto* c = std::get_if<overseer::Impulse>(&command)) return core::Impulse{c->body, c->J_W, c->p_W};
-  if (const auto* c = std::get_if<overseer::SetVelocity>(&command)) {
-    return core::SetVelocity{c->body, c->v_WB, c->w_WB};
-  }
-  if (const auto* c = std::get_if<overseer::SetRate>(&command)) return core::SetRate{c->value};
-  if (const auto* c = std::get_if<overseer::SetRegions>(&command)) return core::Repartition{c->boxes};
-  if (const auto* c = std::get_if<overseer::LoadScene>(&command)) return core::ChangeScene{c->name};
-  if (const auto* c = std::get_if<overseer::SaveWorld>(&command)) return core::Save{c->name};
-  if (const auto* c = std::get_if<overseer::LoadWorld>(&command)) return core::Load{c->name};
-  if (std::holds_alternative<overseer::StepBack>(command)) return core::Load{};
-  if (const auto* c = std::get_if<overseer::CastRay>(&command)) return core::Ray{c->from, c->to, c->regions};
-  throw BadAsk("not supported by this run");
 }
 
 void RunCommandSink::carry(const overseer::Request& request) {
   try {
     if (!steering_.is_there()) throw BadAsk("no node of this run is there");
+    steering::Ask ask = request.ask;
+    steering::look_up_static(ask, launch_.scene);
     core::Command command;
-    command.ask = ask_for(request.command);
+    command.at_step = ask.at_step;
+    command.ask = std::get<core::Ask>(std::move(ask.what));
+    bring_mesh_of(command.ask);
     sent_[client_.send(std::move(command))] = {request.client, request.id};
   } catch (const std::runtime_error& error) {
-    replies_.push_back({request.client, request.id, false, error.what(), nullptr});
+    refuse(request, error.what());
   }
+}
+
+void RunCommandSink::reply_to_drains() {
+  std::erase_if(leaving_, [this](Leaving& waiting) {
+    const dds::Status* const successor = waiting.drain.successor();
+    if (successor == nullptr && Clock::now() < waiting.deadline) return false;
+    std::string text = successor != nullptr
+                           ? fmt::format("process {} has taken region {} over by step {}", successor->pid,
+                                         core::value_of(waiting.region), successor->step)
+                           : steering::kNobodyTakesOver;
+    replies_.push_back({waiting.client, waiting.request, successor != nullptr, std::move(text), nullptr});
+    return true;
+  });
 }
 
 std::vector<overseer::Reply> RunCommandSink::take_replies() {
   carry_held();
+  reply_to_drains();
   for (const steering::Delivery& delivery : client_.take()) {
     const auto found = sent_.find(delivery.request);
     if (found == sent_.end()) continue;

@@ -1,8 +1,9 @@
-// Sends the requests of web pages to the run: pause, resume, step and reset as run commands, all others as commands of
+// Sends the requests of web pages to the run: those that steer the whole run as run commands, all others as commands of
 // clients (steering/command_client.h). Never blocks. A request is answered when its effect has been seen.
 #pragma once
 
 #include <chrono>
+#include <list>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "overseer/part_finder.h"
 #include "overseer/shape_store.h"
 #include "steering/command_client.h"
+#include "steering/drain.h"
 #include "steering/run_steering.h"
 
 namespace aurasim::overseer {
@@ -21,7 +23,11 @@ class RunCommandSink final : public overseer::CommandSink {
   /// All arguments must outlive this object.
   RunCommandSink(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
                  const overseer::ShapeStore& shapes)
-      : steering_(launch, control), client_(participant, control, launch.agreement()), shapes_(shapes) {}
+      : launch_(launch),
+        control_(control),
+        steering_(launch, control),
+        client_(participant, control, launch.agreement()),
+        shapes_(shapes) {}
 
   void submit(overseer::Request request) override;
   std::vector<overseer::Reply> take_replies() override;
@@ -33,7 +39,17 @@ class RunCommandSink final : public overseer::CommandSink {
     dds::RunCommand command;
     std::chrono::steady_clock::time_point deadline;
   };
-  void steer(const overseer::Request& request, dds::RunCommandKind kind, std::int64_t count);
+  struct Leaving {
+    overseer::ClientId client{};
+    std::string request;
+    steering::Draining drain;
+    core::RegionId region{};
+    std::chrono::steady_clock::time_point deadline;
+  };
+  void steer(const overseer::Request& request, const steering::Steer& steer);
+  void drain(const overseer::Request& request, core::RegionId region);
+  void refuse(const overseer::Request& request, std::string why);
+  void reply_to_drains();
 
   struct Sent {
     overseer::ClientId client{};
@@ -47,9 +63,10 @@ class RunCommandSink final : public overseer::CommandSink {
   bool waits_for_parts(const overseer::Request& request);
   core::MeshRef parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh);
   void carry(const overseer::Request& request);
-  core::ClientShape client_shape(const overseer::ShapeChoice& choice);
-  core::Ask ask_for(const overseer::Command& command);
+  void bring_mesh_of(core::Ask& ask);
 
+  const config::Launch& launch_;
+  dds::ControlBus& control_;
   steering::RunSteering steering_;
   steering::CommandClient client_;
   const overseer::ShapeStore& shapes_;
@@ -59,6 +76,7 @@ class RunCommandSink final : public overseer::CommandSink {
   std::vector<Held> held_;
   std::map<std::uint64_t, Sent> sent_;
   std::vector<UnderWay> under_way_;
+  std::list<Leaving> leaving_;
   std::vector<overseer::Reply> replies_;
 };
 

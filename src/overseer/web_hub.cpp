@@ -93,11 +93,12 @@ void WebHub::take_command(PageConnection& page, CommandMessage& message) {
     ++refused_;
     reply(page, {page.id, message.request, false, why, nullptr});
   };
-  if (changes_the_world(message.command) && page.standing < Standing::kOperator) {
+  const bool is_ray = !steering::changes_the_world(message.ask);
+  if (!is_ray && page.standing < Standing::kOperator) {
     refuse(kTokenIsNeeded);
-  } else if (std::holds_alternative<CastRay>(message.command) && !may_cast_a_ray(page)) {
+  } else if (is_ray && !may_cast_a_ray(page)) {
     refuse("too many rays: try again in a moment");
-  } else if (!enqueue(Request{page.id, message.request, std::move(message.command)})) {
+  } else if (!enqueue(Request{page.id, message.request, std::move(message.ask)})) {
     refuse("too many commands at once");
   }
 }

@@ -12,6 +12,7 @@
 #include "core/static_moves.h"
 #include "cut/saved_world.h"
 #include "node/scene_additions.h"
+#include "steering/ask.h"
 #include "steering/command_limits.h"
 
 namespace aurasim::process {
@@ -83,7 +84,7 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
   std::vector<Asked> asked = std::exchange(waiting_for_mesh_, {});
   for (core::Command& command : endpoint_.take()) asked.push_back({std::move(command), Clock::now()});
   for (Asked& one : asked) {
-    const core::MeshRef* const mesh = mesh_in(one.command.ask);
+    const core::MeshRef* const mesh = core::mesh_in(one.command.ask);
     if (mesh != nullptr) meshes.retain(mesh->hash);
     if (const auto* ray = std::get_if<core::Ray>(&one.command.ask)) {
       answer(one.command, *ray, node);
@@ -104,7 +105,8 @@ void CommandServer::serve(node::Node& node, const RunView& run) {
 void CommandServer::answer(const core::Command& command, const core::Ray& ray, const node::Node& node) {
   const bool asked = ray.regions.empty() || std::ranges::find(ray.regions, region_) != ray.regions.end();
   if (!asked) return;
-  if (std::string why = steering::problem_with(ray); !why.empty()) return refuse(command.request, std::move(why));
+  if (std::string why = steering::problem_with(core::Ask(ray)); !why.empty())
+    return refuse(command.request, std::move(why));
   const physics::RayHit hit = node.world().cast(ray.from_W, ray.to_W);
   core::CommandReply seen;
   seen.request = command.request;
@@ -175,7 +177,9 @@ void CommandServer::save_as_it_stands(const core::Command& command, const core::
                                       const RunView& run) {
   const core::Step now = node.current_step();
   if (now < *run.holds_at || (!run.leads && command.at_step != now)) return endpoint_.forget(command.request);
-  if (const char* const problem = cut::problem_with_save_name(ask.file)) return refuse(command.request, problem);
+  if (std::string why = steering::problem_with(core::Ask(ask)); !why.empty()) {
+    return refuse(command.request, std::move(why));
+  }
   standing_saves_.push_back({command.request, now, ask.file});
   if (!run.leads) return;
   core::CommandReply reply;
@@ -203,7 +207,7 @@ void CommandServer::load_instead(core::Command back, std::string file, node::Nod
 /// Why a saved world cannot be loaded; empty if it can. Checked before all nodes stop for it.
 std::string CommandServer::problem_with_world(const core::Ask& ask) const {
   const auto* const load = std::get_if<core::Load>(&ask);
-  if (load == nullptr || cut::problem_with_save_name(load->file) != nullptr) return {};
+  if (load == nullptr || !cut::is_save_name(load->file)) return {};
   try {
     cut::load_world({(saves_ / load->file).string(), false}, launch_);
     return {};

@@ -38,11 +38,6 @@ Issued refusal(std::string why) { return {std::move(why), {}, {}}; }
 
 }  // namespace
 
-const core::MeshRef* mesh_in(const core::Ask& ask) {
-  const core::ClientShape* const shape = shape_in(ask);
-  return shape != nullptr ? std::get_if<core::MeshRef>(shape) : nullptr;
-}
-
 void OrderIssuer::begin_generation() {
   closed_ = false;
   own_shapes_.clear();

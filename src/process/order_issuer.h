@@ -70,7 +70,4 @@ class OrderIssuer {
   std::size_t noted_shapes_ = 0, noted_kinds_ = 0;
 };
 
-/// The mesh by which a command defines a shape. Null if it names none.
-const core::MeshRef* mesh_in(const core::Ask& ask);
-
 }  // namespace aurasim::process

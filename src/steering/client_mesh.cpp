@@ -13,18 +13,26 @@ namespace {
 using MeshOrWhy = std::variant<core::TriangleMesh, std::string>;
 
 core::TriangleMesh sound(MeshOrWhy mesh, const std::string& file) {
-  if (const auto* why = std::get_if<std::string>(&mesh)) throw BadMesh(file + ": " + *why);
+  if (const auto* why = std::get_if<std::string>(&mesh)) throw steering::BadAsk(file + ": " + *why);
   return std::get<core::TriangleMesh>(std::move(mesh));
+}
+
+void bring_mesh(const std::string& file, core::MeshRef& ref, CommandClient& client) {
+  core::TriangleMesh mesh = sound(config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)}), file);
+  if (ref.use == core::MeshUse::kDecomposition) mesh = sound(config::decompose(mesh), file);
+  ref.hash = core::content_hash(mesh);
+  client.bring(ref.hash, mesh);
 }
 
 }  // namespace
 
-core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClient& client) {
-  core::TriangleMesh mesh = sound(config::load_mesh({file, core::Vec3::Ones(), config::usual_up_axis(file)}), file);
-  if (use == core::MeshUse::kDecomposition) mesh = sound(config::decompose(mesh), file);
-  const std::uint64_t hash = core::content_hash(mesh);
-  client.bring(hash, mesh);
-  return {hash, use};
+core::Command command_of(steering::Ask ask, const core::Scene& scene, CommandClient& client) {
+  steering::look_up_static(ask, scene);
+  core::Command command;
+  command.at_step = ask.at_step;
+  command.ask = std::get<core::Ask>(std::move(ask.what));
+  if (!ask.mesh_file.empty()) bring_mesh(ask.mesh_file, *core::mesh_in(command.ask), client);
+  return command;
 }
 
 }  // namespace aurasim::steering

@@ -1,20 +1,13 @@
-// Meshes that a client sends from files of its own host.
+// Makes the command of an ask, for clients that read meshes from files of their own host.
 #pragma once
 
-#include <stdexcept>
-#include <string>
-
+#include "steering/ask.h"
 #include "steering/command_client.h"
 
 namespace aurasim::steering {
 
-/// Thrown for a mesh file that cannot be used. The message begins with the file's name.
-class BadMesh : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Sends the mesh in `file` (OBJ, STL or glTF), or its convex parts, to the nodes, depending on `use`. Throws BadMesh.
-core::MeshRef bring_mesh(const std::string& file, core::MeshUse use, CommandClient& client);
+/// The command that `ask` is. Looks the static up in `scene`, and sends the mesh of `ask.mesh_file` (OBJ, STL or glTF),
+/// or its convex parts, to the nodes. Throws steering::BadAsk. Precondition: the ask is a core::Ask.
+core::Command command_of(steering::Ask ask, const core::Scene& scene, CommandClient& client);
 
 }  // namespace aurasim::steering

@@ -20,13 +20,6 @@ constexpr auto kAgain = 500ms;
 constexpr std::uint64_t kAnyMap = 0;   ///< accept any map: a domain has one run, whose map may be changing just now
 constexpr auto kPatienceForRays = 2s;  ///< patience with a region that is busy
 
-bool needs_a_mesh(const core::Ask& ask) {
-  const auto is_mesh = [](const core::ClientShape& shape) { return std::holds_alternative<core::MeshRef>(shape); };
-  if (const auto* body = std::get_if<core::NewBody>(&ask)) return body->shape && is_mesh(*body->shape);
-  const auto* const fixed = std::get_if<core::NewStatic>(&ask);
-  return fixed != nullptr && is_mesh(fixed->shape);
-}
-
 }  // namespace
 
 CommandClient::CommandClient(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
@@ -62,9 +55,9 @@ std::uint64_t CommandClient::send(core::Command command) {
   under_way.delivery.is_save = std::holds_alternative<core::Save>(command.ask);
   if (ray != nullptr) under_way.asked = ray->regions;
   under_way.delivery.distance_m = std::numeric_limits<double>::infinity();
-  const Clock::duration patience = under_way.delivery.is_ray   ? Clock::duration(kPatienceForRays)
-                                   : needs_a_mesh(command.ask) ? Clock::duration(kPatienceForMeshes)
-                                                               : Clock::duration(kPatienceForAnswers);
+  const Clock::duration patience = under_way.delivery.is_ray               ? Clock::duration(kPatienceForRays)
+                                   : core::mesh_in(command.ask) != nullptr ? Clock::duration(kPatienceForMeshes)
+                                                                           : Clock::duration(kPatienceForAnswers);
   under_way.deadline = Clock::now() + patience;
   const std::uint64_t request = endpoint_.send(command, kAnyMap);
   under_way.command = std::move(command);

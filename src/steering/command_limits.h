@@ -1,4 +1,5 @@
-// Why a command cannot be executed, as a message for the user. The numbers are those of core/limits.h and of the run.
+// Why a run cannot execute a command, as a message for the user: the command itself is not sound (steering/ask.h), or
+// this run, in its present state, does not allow it.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,5 @@ struct CommandContext {
 
 /// Why the command cannot be executed. Empty if it can.
 std::string problem_with(const core::Command& command, const CommandContext& context);
-/// As above, for rays. They need no context, because all regions answer them.
-std::string problem_with(const core::Ray& ray);
 
 }  // namespace aurasim::steering

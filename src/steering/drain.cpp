@@ -8,7 +8,7 @@
 
 namespace aurasim::steering {
 
-Drain::Drain(dds::ControlBus& control, core::RegionId region) : control_(control), region_(region) {
+Draining::Draining(dds::ControlBus& control, core::RegionId region) : control_(control), region_(region) {
   const auto node = control.statuses().find(region);
   if (node == control.statuses().end() || !node->second.is_live()) {
     throw SteeringRefused(fmt::format("there is no region {}", core::value_of(region)));
@@ -17,7 +17,7 @@ Drain::Drain(dds::ControlBus& control, core::RegionId region) : control_(control
   control.send(about_process(dds::RunCommandKind::kDrain, node->second.status.run, region, leaving_));
 }
 
-const dds::Status* Drain::successor() {
+const dds::Status* Draining::successor() {
   const auto computes = [](const auto& entry) {
     const dds::NodeState state = entry.second.status.state;
     return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;

@@ -5,11 +5,14 @@
 
 namespace aurasim::steering {
 
-class Drain {
+/// For users, when the region has been waited for in vain.
+inline constexpr const char* kNobodyTakesOver = "nobody has taken the region over: is there a spare, or a launcher?";
+
+class Draining {
  public:
   /// Sends the drain command. Throws SteeringRefused if the region has no live node. `control` must outlive this
   /// object.
-  Drain(dds::ControlBus& control, core::RegionId region);
+  Draining(dds::ControlBus& control, core::RegionId region);
 
   /// Status of the process that has taken the region over, once the run goes on. Null before.
   const dds::Status* successor();

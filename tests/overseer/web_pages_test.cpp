@@ -33,7 +33,7 @@ TEST_F(Web, CommandsReachTheOwnerAndRepliesThePageThatAsked) {
     return !requests.empty();
   }));
   const auto& asked = std::get<Request>(requests[0]);
-  EXPECT_EQ(std::get<StepOn>(asked.command).count, 7);
+  EXPECT_EQ(std::get<steering::Steer>(asked.ask.what).count, 7);
   server_->answer({asked.client, asked.id, true, "done", {{"hit", false}}});
   ASSERT_TRUE(page.wait_until([&] { return page.has("reply"); }));
   EXPECT_EQ(page.latest["reply"],

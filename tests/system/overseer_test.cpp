@@ -105,6 +105,11 @@ TEST_F(Overseers, APageSeesTheWholeWorldAndSteersIt) {
   EXPECT_TRUE(page.wait_until([&] { return page.world.stamp == paused_at + 5; })) << page.world.stamp;
   EXPECT_THAT(page.ask({{"kind", "spawn"}, {"prototype", "no such thing"}, {"p", {0, 0, 5}}}).at("text"),
               ::testing::HasSubstr("no prototype"));
+  EXPECT_THAT(page.ask({{"kind", "move"}, {"static", "ground"}, {"p", {0, 0, 1}}}).at("text"),
+              ::testing::HasSubstr("a plane cannot move"));
+  EXPECT_THAT(page.ask({{"kind", "move"}, {"static", "no such gate"}}).at("text"),
+              ::testing::HasSubstr("the name or number of a static"));
+  EXPECT_THAT(page.ask({{"kind", "drain"}, {"region", 9}}).at("text"), ::testing::HasSubstr("there is no region 9"));
   EXPECT_EQ(page.ask({{"kind", "resume"}}).at("ok"), true);
   EXPECT_TRUE(page.wait_until([&] { return page.world.stamp > paused_at + 20; }));
   EXPECT_EQ(page.ask({{"kind", "step"}}).at("ok"), false) << "not while it runs";

@@ -272,12 +272,12 @@ TEST_F(SavedWorlds, AreCalledByNothingThatLeadsElsewhere) {
   Process& run = launch("run", launch_file("demo"), Words{"--saves", saves()} + overrides_of(""));
   expect_reaches(report_of("run"), 4, 1);
   Process& hidden = start(Words{"send", "save", launch_file("demo"), ".hidden"} + overrides_of("") + in_own_domain());
-  expect_exit(hidden, 1);
+  expect_exit(hidden, 2);
   EXPECT_THAT(hidden.err(), ::testing::HasSubstr("does not begin with"));
   for (const char* what : {"save", "load"}) {
     const std::string elsewhere = (folder() / "world.cut").string();
     Process& sent = start(Words{"send", what, launch_file("demo"), elsewhere} + overrides_of("") + in_own_domain());
-    expect_exit(sent, 1);
+    expect_exit(sent, 2);
     EXPECT_THAT(sent.err(), ::testing::HasSubstr("a saved world's name has letters"));
     EXPECT_THAT(sent.err(), ::testing::HasSubstr(elsewhere));
   }

@@ -228,13 +228,14 @@ export class MockOverseer {
   }
 
   #shapeIndex(shape) {
-    const known = shape.hash ? { name: "upload", kind: "box", half_extents: [0.5, 0.5, 0.5] } : { name: "made", ...shape };
+    const half = (shape.size ?? [1, 1, 1]).map((side) => side / 2);
+    const known = { name: shape.hash ? "upload" : "made", ...(shape.kind === "sphere" ? shape : { kind: "box", half_extents: half }) };
     return this.world.shapes.push(known) - 1;
   }
 
-  #prototypeOf({ prototype, shape, mass_kg }) {
+  #prototypeOf({ prototype, shape, mass }) {
     if (prototype !== undefined) return this.world.prototypes.findIndex((p) => p.name === prototype);
-    const index = this.world.prototypes.push({ name: `made_${this.world.prototypes.length}`, shape: this.#shapeIndex(shape), mass_kg }) - 1;
+    const index = this.world.prototypes.push({ name: `made_${this.world.prototypes.length}`, shape: this.#shapeIndex(shape), mass_kg: mass }) - 1;
     this.#sayAll(this.#sceneMessage());
     return index;
   }

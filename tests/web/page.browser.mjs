@@ -154,7 +154,7 @@ test("AThrownBodyLeavesTheCamera", mockOnly, async () => {
   await page.click("#throw");
   const spawn = await commanded("spawn");
   assert.deepEqual(spawn.shape, { kind: "sphere", radius: 0.3 });
-  assert.equal(spawn.mass_kg, 4);
+  assert.equal(spawn.mass, 4);
   assert.ok(Math.hypot(...spawn.v) > 15 && spawn.p[2] > 1);
   await haveBodies(BODIES + 1);
   await said;
@@ -167,7 +167,7 @@ test("ABoxIsPlacedWhereTheGroundIsClicked", mockOnly, async () => {
   await page.keyboard.press("4");
   await page.mouse.click(600, 640);
   const { shape, p } = await commanded("static");
-  assert.deepEqual(shape, { kind: "box", half_extents: [1, 1, 0.5] });
+  assert.deepEqual(shape, { kind: "box", size: [2, 2, 1] });
   assert.ok(p[2] > 0.4);
   noErrors();
 });
@@ -181,7 +181,7 @@ test("AMeshFileIsSentAndDropped", mockOnly, async () => {
   assert.equal((await commanded("upload")).name, "cube.obj");
   await page.click("text=Hull");
   await page.mouse.click(600, 640);
-  assert.deepEqual((await commanded("spawn")).shape, { hash: "0123456789abcdef", as: "hull" });
+  assert.deepEqual((await commanded("spawn")).shape, { kind: "mesh", hash: "0123456789abcdef", as: "hull" });
   noErrors();
 });
 

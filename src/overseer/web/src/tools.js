@@ -117,10 +117,10 @@ export class Tools {
     const eye = rig.perspective.position.clone().addScaledVector(forward, size + 0.5);
     // Aimed a little up, so that it comes down near what is looked at.
     const v = forward.clone().multiplyScalar(speed).add(new THREE.Vector3(0, 0, speed * 0.08));
-    const solid = shape === "sphere" ? { kind: "sphere", radius: size / 2 } : { kind: "box", half_extents: [size / 2, size / 2, size / 2] };
+    const solid = shape === "sphere" ? { kind: "sphere", radius: size / 2 } : { kind: "box", size: [size, size, size] };
     const p = view.toWorld(eye);
     p[2] = Math.max(p[2], size / 2);
-    commands.send({ kind: "spawn", shape: solid, mass_kg: mass, p, q: [1, 0, 0, 0], v: v.toArray(), w: [0, 0, 0] }, { what: "throw" });
+    commands.send({ kind: "spawn", shape: solid, mass, p, q: [1, 0, 0, 0], v: v.toArray(), w: [0, 0, 0] }, { what: "throw" });
   }
 
   #whereToPlace(at) {
@@ -151,16 +151,15 @@ export class Tools {
     const q = [Math.cos(half), 0, 0, Math.sin(half)];
     const [x, y, z] = where.p;
     if (place.what === "box") {
-      const half_extents = place.size.map((s) => s / 2);
-      commands.send({ kind: "static", shape: { kind: "box", half_extents }, p: [x, y, z + half_extents[2]], q }, { what: "place" });
+      commands.send({ kind: "static", shape: { kind: "box", size: place.size }, p: [x, y, z + place.size[2] / 2], q }, { what: "place" });
     } else if (!place.mesh) {
       commands.toast("Choose a mesh file first", "info");
     } else if (place.as === "static") {
-      commands.send({ kind: "static", shape: { hash: place.mesh.hash }, p: where.p, q }, { what: "place" });
+      commands.send({ kind: "static", shape: { kind: "mesh", hash: place.mesh.hash }, p: where.p, q }, { what: "place" });
     } else {
-      const shape = { hash: place.mesh.hash, as: place.as };
+      const shape = { kind: "mesh", hash: place.mesh.hash, as: place.as };
       const p = where.p.map((c, i) => c + where.normal[i] * 0.1 + (i === 2 ? 3 : 0)); // dropped, so that it never starts inside
-      commands.send({ kind: "spawn", shape, mass_kg: place.mass, p, q, v: [0, 0, 0], w: [0, 0, 0] }, { what: "drop" });
+      commands.send({ kind: "spawn", shape, mass: place.mass, p, q, v: [0, 0, 0], w: [0, 0, 0] }, { what: "drop" });
     }
   }
 }
