@@ -97,6 +97,9 @@ std::string partition_to(core::RegionId destination) {
 Domain::Domain(const Settings& settings)
     : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()), speakers_(guard_) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
+  datagram_B_ = largest_datagram_B(qos);
+  has_keys_ = settings.keys.has_value();
+  if (has_keys_) make_room_for_handshakes(qos);
   loopback_only_ = on_loopback_only(qos);
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);
