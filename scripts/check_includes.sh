@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Includes go one way:
-#   core, security <- physics, transport, config <- dds, node <- cut, overseer <- cli <- lab
+#   core, security <- physics, transport, config, rtps <- dds, node <- cut, overseer <- cli <- lab
 #   core, physics, config <- import <- cli
 #   client (what programs of others are linked with: knows none of the others) <- python, cli
 # and each library stays behind the folder that wraps it; core knows Eigen and the standard library only.
@@ -20,10 +20,11 @@ awk '
     allow("physics", "core physics")
     allow("transport", "core transport")
     allow("config", "core config")
-    allow("dds", "core security transport config dds")
+    allow("rtps", "core rtps")
+    allow("dds", "core security transport config rtps dds")
     allow("node", "core physics transport node")
     allow("cut", "core security dds cut")
-    below = "core security physics transport config dds node cut"
+    below = "core security physics transport config rtps dds node cut"
     allow("overseer", below " overseer")
     allow("import", "core physics config import")
     allow("client", "client")

@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "aurasimPubSubTypes.h"
-#include "dds/datagram_guard.h"
 #include "dds/guarded_type.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
 #include "dds/type_tables.h"
 #include "dds/wire_transport.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dds/datagram_guard.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 
@@ -119,6 +119,9 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
 Writer::~Writer() {
   if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
+  // With samples in its history a writer can lock up as it is deleted: a heartbeat that is being sent just then looks
+  // for holes in the history for ever (Fast DDS 2.9.1, StatefulWriter::add_gaps_for_holes_in_history_).
+  forget_all();
   const auto stopped = domain_.guard().delivery().stop();
   writer_->set_listener(nullptr);
   publisher_->delete_datawriter(writer_);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "datagram_recorder.h"
-#include "dds/datagram_check.h"
 #include "dds/guarding.h"
+#include "rtps/datagram_check.h"
 #include "run_endpoints.h"
 #include "security/scratch_store.h"
 
