@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Includes go one way. A folder knows those of the lines above its own, and within a line nobody but itself:
 #   core, security
-#   physics, transport, config (core only)
+#   physics, transport, config, rtps (core only)
 #   dds, node, host, command_line
 #   cut
 #   setup, steering, process, launch (each knows those before it)
@@ -27,12 +27,13 @@ awk '
     allow("physics", "core physics")
     allow("transport", "core transport")
     allow("config", "core config")
-    allow("dds", "core security transport config dds")
+    allow("rtps", "core rtps")
+    allow("dds", "core security transport config rtps dds")
     allow("node", "core physics transport node")
     allow("host", "core host")
     allow("command_line", "config host command_line")
     allow("cut", "core security physics config dds host cut")
-    below = "core security physics transport config dds node host command_line cut setup"
+    below = "core security physics transport config rtps dds node host command_line cut setup"
     allow("setup", below)
     allow("steering", below " steering")
     allow("process", below " steering process")

@@ -45,6 +45,7 @@ struct CheckpointBus::Impl {
   Wakeup& wakeup;
   TypedWriter<wire::Checkpoint> to_all;
   core::Generation life = 0;
+  core::Generation generation_to_all = 0;  ///< of the last part sent to all
   std::vector<core::RegionId> keepers;
   /// One writer per keeper, so that a slow keeper delays only its own parts.
   std::list<TypedWriter<wire::Checkpoint>> to_keepers;
@@ -74,13 +75,17 @@ std::size_t CheckpointBus::send_to_keepers(const Checkpoint& checkpoint) {
   std::size_t sent = 0;
   for (TypedWriter<wire::Checkpoint>& keeper : impl_->to_keepers) {
     const bool is_free = keeper.reader_count() > 0 && keeper.all_acknowledged();
-    if (is_free && keeper.send(checkpoint) != WriteResult::kFailed) ++sent;
+    if (is_free && keeper.send_newest(checkpoint) != WriteResult::kFailed) ++sent;
   }
   return sent;
 }
 
 bool CheckpointBus::send_to_all(const Checkpoint& checkpoint) {
   impl_->participant.progress();
+  // Parts for an earlier generation are of no use any more.
+  if (std::exchange(impl_->generation_to_all, checkpoint.generation) != checkpoint.generation) {
+    impl_->to_all.forget_all();
+  }
   return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
 }
 

@@ -87,6 +87,7 @@ struct ControlBus::Impl {
   wire::RegionMap map;
   wire::RunControl command;
 
+  std::optional<std::uint64_t> published_map;                    ///< version of the last one
   std::map<std::pair<std::uint64_t, Guid>, WorldMap> announced;  ///< by version and writer
   std::map<std::uint64_t, WorldMap> maps;
   std::map<std::uint64_t, Guid> requests;  ///< requests seen or sent, and their writers
@@ -202,6 +203,7 @@ bool ControlBus::publish_status(const Status& status) {
   }
   impl_->participant.progress();
   encode(status, impl_->status);
+  impl_->status_writer->forget_all();
   return impl_->status_writer->write(&impl_->status) != WriteResult::kFailed;
 }
 
@@ -227,6 +229,7 @@ bool ControlBus::publish_map(const WorldMap& map) {
   }
   impl_->participant.progress();
   encode(map, impl_->map);
+  if (std::exchange(impl_->published_map, map.map_version) == map.map_version) impl_->map_writer->forget_all();
   return impl_->map_writer->write(&impl_->map) != WriteResult::kFailed;
 }
 

@@ -118,6 +118,9 @@ void drain(Reader& reader, WireMessage& sample, const Expected& expected, const 
       inbox.push_back(std::move(std::get<Message>(decoded)));
     }
   }
+  const std::uint64_t lost = reader.take_lost();
+  counters.refused.add(WireError::kParts, lost);
+  refused += lost;
 }
 
 Expected expected_of(const TransportSettings& settings) {

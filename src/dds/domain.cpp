@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "aurasimPubSubTypes.h"
-#include "dds/datagram_guard.h"
 #include "dds/guarded_type.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
 #include "dds/type_tables.h"
 #include "dds/wire_transport.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 
@@ -97,6 +97,9 @@ std::string partition_to(core::RegionId destination) {
 Domain::Domain(const Settings& settings)
     : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()), speakers_(guard_) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
+  datagram_B_ = largest_datagram_B(qos);
+  has_keys_ = settings.keys.has_value();
+  if (has_keys_) make_room_for_handshakes(qos);
   loopback_only_ = on_loopback_only(qos);
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);

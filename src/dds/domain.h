@@ -15,6 +15,7 @@
 
 #include "dds/delay_line.h"
 #include "dds/liveliness_asserter.h"
+#include "dds/parts.h"
 #include "dds/peer_keys.h"
 #include "dds/profiles.h"
 #include "dds/security_log.h"
@@ -94,6 +95,12 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Wakeup& wakeup() { return wakeup_; }
   /// The delay line of this participant; null when the network is not impaired.
   DelayLine* delay_line() const { return delay_line_.get(); }
+  /// Largest datagram that goes out, bytes, without the headers of IP and UDP.
+  std::uint32_t datagram_B() const { return datagram_B_; }
+  /// True when what is sent is encrypted by keys.
+  bool has_keys() const { return has_keys_; }
+  /// Puts together the messages that all readers of this process receive in parts.
+  PartAssembly& parts() { return parts_; }
   /// The guard that keeps malformed datagrams from Fast DDS.
   DatagramGuard& guard() const { return *guard_; }
 
@@ -114,6 +121,9 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::shared_ptr<DatagramGuard> guard_;
   Speakers speakers_;
   PeerKeys peer_keys_;
+  PartAssembly parts_;
+  std::uint32_t datagram_B_ = 0;
+  bool has_keys_ = false;
   bool loopback_only_ = false;
   bool believes_silence_ = true;
   std::optional<SecurityLog::Hearing> refusals_;  ///< receives refusals by keys; only in a run with keys

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dds/datagram_guard.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 
@@ -19,6 +20,7 @@ using eprosima::fastdds::dds::PublisherQos;
 using eprosima::fastdds::dds::SampleInfo;
 using eprosima::fastdds::dds::StatusMask;
 using eprosima::fastdds::dds::SubscriberQos;
+using eprosima::fastrtps::rtps::SerializedPayload_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
@@ -38,6 +40,36 @@ bool is_of_nodes(TopicId topic) {
   return topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
 }
 
+/// Bytes that a datagram has beside the payload of a sample: RTPS header, destination, time, heartbeat, statistics, and
+/// the head of the sample.
+constexpr std::uint32_t kHeaders_B = 200;
+/// What keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
+constexpr std::uint32_t kCryptoHeaders_B = 128, kCryptoOfAReader_B = 20;
+
+const PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSupport& type) {
+  const auto* const has_fields = dynamic_cast<const HasPartFields*>(type.get());
+  return has_fields == nullptr ? nullptr : has_fields->part_fields();
+}
+
+/// Depth of a history that keeps the last samples: as in the profile, but enough for the parts of the largest message.
+std::int32_t depth_of(const eprosima::fastdds::dds::HistoryQosPolicy& history, const Domain& domain) {
+  const std::uint32_t parts = parts_of(kLargestMessage_B, domain.datagram_B() / 2);
+  return std::max(history.depth, static_cast<std::int32_t>(parts));
+}
+
+bool keeps_last(const eprosima::fastdds::dds::HistoryQosPolicy& history) {
+  return history.kind == eprosima::fastdds::dds::KEEP_LAST_HISTORY_QOS;
+}
+
+void make_room_for_parts(DataWriterQos& qos, const Domain& domain) {
+  if (!keeps_last(qos.history())) return;
+  auto& limits = qos.resource_limits();
+  qos.history().depth = limits.max_samples_per_instance = depth_of(qos.history(), domain);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  limits.max_samples =
+      static_cast<std::int32_t>(std::min(kMost, std::int64_t{limits.max_instances} * limits.max_samples_per_instance));
+}
+
 /// Entity id as one number, in the form in which the guard reads it from the wire.
 std::uint32_t entity_of(const Guid& endpoint) {
   std::uint32_t entity = 0;
@@ -53,7 +85,11 @@ std::uint32_t entity_of(const Guid& endpoint) {
 }  // namespace
 
 Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
-    : domain_(domain), watch_(wakeup), is_of_nodes_(is_of_nodes(spec.topic)) {
+    : domain_(domain),
+      type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
+      part_fields_(part_fields_of(type_)),
+      watch_(wakeup),
+      is_of_nodes_(is_of_nodes(spec.topic)) {
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   PublisherQos publisher_qos;
@@ -66,6 +102,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
+  if (part_fields_ != nullptr) make_room_for_parts(qos, domain);
   writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);
@@ -82,6 +119,9 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
 Writer::~Writer() {
   if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
+  // With samples in its history a writer can lock up as it is deleted: a heartbeat that is being sent just then looks
+  // for holes in the history for ever (Fast DDS 2.9.1, StatefulWriter::add_gaps_for_holes_in_history_).
+  forget_all();
   const auto stopped = domain_.guard().delivery().stop();
   writer_->set_listener(nullptr);
   publisher_->delete_datawriter(writer_);
@@ -89,11 +129,49 @@ Writer::~Writer() {
 }
 
 WriteResult Writer::write(void* sample) {
+  if (part_fields_ == nullptr) return write_sample(sample);
+  const std::uint32_t message_B = type_->getSerializedSizeProvider(sample)();
+  return message_B <= largest_sample_B() ? write_sample(sample) : write_parts(sample, message_B);
+}
+
+/// Largest serialized sample that Fast DDS sends in one datagram.
+std::uint32_t Writer::largest_sample_B() const {
+  std::size_t headers_B = kHeaders_B;
+  if (domain_.has_keys()) headers_B += kCryptoHeaders_B + kCryptoOfAReader_B * watch_.readers().size();
+  // Codes for many readers leave no room in a small datagram: at least half of it is for the sample.
+  return domain_.datagram_B() - std::min(static_cast<std::uint32_t>(headers_B), domain_.datagram_B() / 2);
+}
+
+/// Writes the parts of a message. After a failure the readers drop those before it.
+WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
+  if (message_B > kLargestMessage_B) return WriteResult::kFailed;
+  SerializedPayload_t whole(message_B);
+  if (!type_->serialize(message, &whole)) return WriteResult::kFailed;
+  if (part_ == nullptr) part_ = part_fields_->make_sample();
+  const std::span<const std::uint8_t> octets(whole.data, whole.length);
+  const std::uint32_t part_B = largest_sample_B() - part_fields_->empty_B();
+  ++messages_in_parts_;
+  WriteResult result = WriteResult::kSent;
+  for (std::uint32_t i = 0; i < parts_of(octets.size(), part_B); ++i) {
+    part_fields_->put(message, part_of(octets, messages_in_parts_, i, part_B), part_.get());
+    const WriteResult written = write_sample(part_.get());
+    if (written == WriteResult::kFailed) return written;
+    if (written != WriteResult::kSent) result = written;
+  }
+  return result;
+}
+
+WriteResult Writer::write_sample(void* sample) {
   if (writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK) {
     return WriteResult::kSent;
   }
   const bool sent = writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK;
   return sent ? WriteResult::kSentAtSecondTry : WriteResult::kFailed;
+}
+
+void Writer::forget_all() {
+  std::size_t forgotten = 0;
+  writer_->clear_history(&forgotten);
 }
 
 bool Writer::all_acknowledged() { return writer_->wait_for_acknowledgments({0, 0}) == ReturnCode_t::RETCODE_OK; }
@@ -135,7 +213,11 @@ std::size_t Writer::foreign_reader_count() const {
       readers, [&](const Guid& reader) { return reader.guidPrefix != writer_->guid().guidPrefix; }));
 }
 
-Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domain_(domain), watch_(wakeup) {
+Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
+    : domain_(domain),
+      type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
+      part_fields_(part_fields_of(type_)),
+      watch_(wakeup) {
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   SubscriberQos subscriber_qos;
@@ -147,6 +229,9 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup) : domai
   DataReaderQos qos = domain.profiles().reader(*subscriber_, profile_of(spec, "_reader"));
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
+  }
+  if (part_fields_ != nullptr && keeps_last(qos.history())) {
+    qos.history().depth = qos.resource_limits().max_samples_per_instance = depth_of(qos.history(), domain);
   }
   // No limits, whatever a profile says (guarded_type.h). If one of the two is unlimited, the other must be, too.
   qos.resource_limits().max_instances = qos.resource_limits().max_samples = 0;
@@ -185,9 +270,26 @@ bool Reader::take(void* sample, Origin* origin) {
       origin->writer = writer;
       origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - info.reception_timestamp.to_ns());
     }
-    return true;
+    const auto part = part_fields_ == nullptr ? std::nullopt : part_fields_->get(sample);
+    if (!part || put_together(sample, *part, writer)) return true;
   }
   return false;
+}
+
+/// Adds a part. True when its message is whole: then `sample` is the message.
+bool Reader::put_together(void* sample, const Part& part, const Guid& writer) {
+  PartAssembly::Stream stream;
+  std::ranges::copy(prefix_of(writer.guidPrefix), stream.process.begin());
+  stream.endpoints = std::uint64_t{entity_of(reader_->guid())} << 32 | entity_of(writer);
+  auto added = domain_.parts().add(stream, part, std::chrono::steady_clock::now().time_since_epoch());
+  lost_ += added.lost;
+  if (!added.whole) return false;
+  SerializedPayload_t payload;
+  payload.data = added.whole->data();
+  payload.length = payload.max_size = static_cast<std::uint32_t>(added.whole->size());
+  type_->deserialize(&payload, sample);
+  payload.data = nullptr;  // or its destructor would free it
+  return true;
 }
 
 void Reader::refuse_from(const Origin& origin, WireError error) {

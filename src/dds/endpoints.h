@@ -5,14 +5,17 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "core/ids.h"
 #include "dds/domain.h"
+#include "dds/part_fields.h"
 #include "dds/watch.h"
 #include "dds/wire_error.h"
 
@@ -41,8 +44,12 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Writes one sample. `sample` points to the generated type of the topic.
+  /// Writes one message. `sample` points to the generated type of the topic. A message that does not fit into a
+  /// datagram is written in parts (parts.h).
   WriteResult write(void* sample);
+  /// Drops all samples from the history, whoever has not acknowledged them. Call it before write() where the newest
+  /// message of a writer replaces all earlier ones.
+  void forget_all();
   /// Drops all samples from the history if every reader has acknowledged all of them. Returns how many samples there
   /// were. Names a reader in the log that has acknowledged nothing for as many calls as the history is deep. Only for
   /// volatile writers used by the caller's thread alone. Needed because Fast DDS 2.9 never drops samples that a reader
@@ -61,8 +68,15 @@ class Writer {
 
  private:
   void say_who_does_not_read();
+  WriteResult write_sample(void* sample);
+  WriteResult write_parts(void* message, std::uint32_t message_B);
+  std::uint32_t largest_sample_B() const;
 
   Domain& domain_;
+  eprosima::fastdds::dds::TypeSupport type_;
+  const PartFields* part_fields_ = nullptr;  ///< null: the topic's messages always fit into a datagram
+  std::shared_ptr<void> part_;               ///< sample, reused
+  std::uint64_t messages_in_parts_ = 0;
   WriterWatch watch_;
   bool is_of_nodes_ = false;  ///< its samples are messages between nodes
   std::int32_t unread_ = 0;   ///< calls of forget_acknowledged() since every reader had acknowledged everything
@@ -86,8 +100,11 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// Takes the next sample that carries data into `sample` (the generated type). False when there is none.
+  /// Takes the next message into `sample` (the generated type). False when there is none. Of a message in parts the
+  /// origin is that of the last part.
   bool take(void* sample, Origin* origin = nullptr);
+  /// Messages lost since the last call, because parts of them are missing or do not fit together.
+  std::uint64_t take_lost() { return std::exchange(lost_, 0); }
 
   /// Refuses a taken sample. Counted against its sender only if it is no message of ours at all. Other versions, runs
   /// and maps, and what a person has typed, are not counted as the sender's fault.
@@ -103,7 +120,12 @@ class Reader {
   std::vector<std::string> partitions() const;
 
  private:
+  bool put_together(void* sample, const Part& part, const Guid& writer);
+
   Domain& domain_;
+  eprosima::fastdds::dds::TypeSupport type_;
+  const PartFields* part_fields_ = nullptr;  ///< null: the topic's messages never come in parts
+  std::uint64_t lost_ = 0;
   ReaderWatch watch_;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;

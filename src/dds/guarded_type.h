@@ -12,11 +12,9 @@
 #include <fastdds/rtps/common/InstanceHandle.h>
 #include <fastdds/rtps/common/SerializedPayload.h>
 
-namespace aurasim::dds {
+#include "dds/part_fields.h"
 
-/// Largest sample; larger ones are refused. Far above the hand-off of a whole scene (10,000 bodies with contacts: some
-/// 20 MB).
-inline constexpr std::uint32_t kMaxPayloadBytes = 256U << 20;
+namespace aurasim::dds {
 
 /// Largest number of keys per topic; further keys all share one. Readers keep state for every key and cannot forget one
 /// whose samples are still to come, and a limit in the reader would end the process (DataReaderHistory.cpp, find_key).
@@ -25,13 +23,22 @@ inline constexpr std::size_t kMostKeys = 4096;
 /// Deserializes a sample whose bytes do not fit the type as version 0, which the codec calls malformed. Refusing it
 /// here is no option: the reader would ask its writer for it for ever.
 template <class Generated>
-class GuardedType final : public Generated {
+class GuardedType final : public Generated, public HasPartFields {
  public:
   using Message = typename Generated::type;
 
   GuardedType() {
     this->auto_fill_type_information(false);  // CycloneDDS 0.10.2 rejects endpoints that announce it
     this->auto_fill_type_object(true);        // generic tools print samples with it
+  }
+
+  const PartFields* part_fields() const override {
+    if constexpr (InParts<Message>) {
+      static const PartFieldsOf<Message> kFields{};
+      return &kFields;
+    } else {
+      return nullptr;
+    }
   }
 
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
@@ -51,7 +58,7 @@ class GuardedType final : public Generated {
 
  private:
   bool deserialize_safely(eprosima::fastrtps::rtps::SerializedPayload_t& payload, void* data) {
-    if (payload.data == nullptr || payload.length < 4 || payload.length > kMaxPayloadBytes) {
+    if (payload.data == nullptr || payload.length < 4 || payload.length > kLargestMessage_B) {
       return false;
     }
     try {

@@ -1,7 +1,7 @@
 #include "dds/guarding.h"
 
-#include "dds/datagram_guard.h"
 #include "dds/domain.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 

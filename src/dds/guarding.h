@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "dds/guard_report.h"
 #include "dds/participant.h"
+#include "rtps/guard_report.h"
 
 namespace aurasim::dds {
 

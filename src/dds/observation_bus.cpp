@@ -159,7 +159,7 @@ struct ObserverEndpoint::Impl {
         interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
 
   void say_what_is_wanted() {
-    if (interests.send(*wanted, std::uint64_t{0}) == WriteResult::kFailed) {
+    if (interests.send_newest(*wanted, std::uint64_t{0}) == WriteResult::kFailed) {
       throw DdsError("cannot say what is wanted: topic interest does not take it");
     }
   }
@@ -182,7 +182,7 @@ ObserverEndpoint::~ObserverEndpoint() {
   none.ended = true;
   none.client = impl_->client;
   none.sequence = impl_->sequence + 1;
-  impl_->interests.send(none, std::uint64_t{0});
+  impl_->interests.send_newest(none, std::uint64_t{0});
 }
 
 std::uint64_t ObserverEndpoint::client() const { return impl_->client; }

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "dds/datagram_guard.h"
 #include "dds/domain.h"
 #include "dds/security_log.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 

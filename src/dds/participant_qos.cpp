@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fastdds/rtps/transport/TransportInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
@@ -19,6 +20,8 @@ using eprosima::fastrtps::rtps::Locator_t;
 namespace {
 
 constexpr std::uint16_t kDiscoveryServerPort = 11811;
+/// A part of a message has to fit into a datagram with all headers. On a link with smaller packets IP fragments.
+constexpr std::uint32_t kSmallestDatagram_B = 1200;
 
 /// Puts `interfaces` in place of every transport's white list. Copies the descriptors: the profile's are shared.
 void set_interfaces(DomainParticipantQos& qos, const std::vector<std::string>& interfaces) {
@@ -109,15 +112,15 @@ void set_servers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
-/// Makes RTPS, not IP, fragment messages that are larger than a packet of the links. Then a lost fragment is
-/// retransmitted alone, and the lease of a dead reader does not wait behind fragments. Copies the descriptors, because
-/// the profile's are shared.
+/// Keeps datagrams within a packet of the links, so that IP does not fragment them. Larger messages are sent in parts
+/// (parts.h): a lost one is retransmitted alone. Copies the descriptors, because the profile's are shared.
 void fit_to_links(DomainParticipantQos& qos) {
   const std::vector<Interface> interfaces = interfaces_of_this_host();
   for (auto& transport : qos.transport().user_transports) {
     const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport);
     if (udp == nullptr) continue;
-    const std::uint32_t largest_B = largest_payload_B(interfaces, udp->interfaceWhiteList);
+    const std::uint32_t payload_B = largest_payload_B(interfaces, udp->interfaceWhiteList);
+    const std::uint32_t largest_B = payload_B == 0 ? 0 : std::max(payload_B, kSmallestDatagram_B);
     if (largest_B == 0 || udp->maxMessageSize <= largest_B) continue;
     auto copy = std::make_shared<UDPv4TransportDescriptor>(*udp);
     copy->maxMessageSize = largest_B;
@@ -169,6 +172,25 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   listen_where_peers_look(qos, settings.domain);
   if (settings.keys) set_keys(qos, *settings.keys);
   return qos;
+}
+
+void make_room_for_handshakes(DomainParticipantQos& qos) {
+  constexpr std::uint32_t kHandshake_B = 16U << 10;
+  for (auto& transport : qos.transport().user_transports) {
+    const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport);
+    if (udp == nullptr || udp->maxMessageSize >= kHandshake_B) continue;
+    auto copy = std::make_shared<UDPv4TransportDescriptor>(*udp);
+    copy->maxMessageSize = kHandshake_B;
+    transport = copy;
+  }
+}
+
+std::uint32_t largest_datagram_B(const DomainParticipantQos& qos) {
+  std::uint32_t smallest = eprosima::fastdds::rtps::s_maximumMessageSize;
+  for (const auto& transport : qos.transport().user_transports) {
+    smallest = std::min(smallest, transport->max_message_size());
+  }
+  return smallest;
 }
 
 bool on_loopback_only(const DomainParticipantQos& qos) {

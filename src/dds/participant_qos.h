@@ -12,6 +12,13 @@ namespace aurasim::dds {
 /// message is what fits into a packet of the links that carry it (link_mtu.h). Throws DdsError for an invalid value.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
 
+/// Largest datagram that all transports send, bytes, without the headers of IP and UDP.
+std::uint32_t largest_datagram_B(const eprosima::fastdds::dds::DomainParticipantQos& qos);
+
+/// Lets transports send the handshakes of keys, which Fast DDS 2.9.1 can send in one datagram only: certificate and
+/// permissions have some kB. On a link with smaller packets IP fragments them.
+void make_room_for_handshakes(eprosima::fastdds::dds::DomainParticipantQos& qos);
+
 /// True when every transport may use loopback addresses only.
 bool on_loopback_only(const eprosima::fastdds::dds::DomainParticipantQos& qos);
 

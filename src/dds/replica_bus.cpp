@@ -27,8 +27,8 @@ ReplicaWriter::ReplicaWriter(Participant& participant, core::RegionId region)
 ReplicaWriter::~ReplicaWriter() = default;
 
 bool ReplicaWriter::send(const core::Replica& replica) {
-  auto& writer = replica.key_frame ? impl_->keys : impl_->deltas;
-  return writer.send(replica) != WriteResult::kFailed;
+  const WriteResult sent = replica.key_frame ? impl_->keys.send_newest(replica) : impl_->deltas.send(replica);
+  return sent != WriteResult::kFailed;
 }
 
 bool ReplicaWriter::anybody_listens() const {

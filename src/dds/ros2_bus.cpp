@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 
 #include "core/fnv1a.h"
-#include "dds/datagram_guard.h"
 #include "dds/participant_qos.h"
 #include "dds/rations.h"
 #include "dds/ros2_topics.h"
@@ -25,6 +24,7 @@
 #include "dds/watch.h"
 #include "dds/wire_transport.h"
 #include "ros2PubSubTypes.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 

@@ -28,7 +28,7 @@ void SceneAdditionsWriter::send(const SceneAdditions& additions) {
   batch.generation = additions.generation;
   batch.orders = additions.orders;
   batch.stamp = static_cast<core::Step>(additions.orders.size());
-  impl_->writer.send(batch);
+  impl_->writer.send_newest(batch);
 }
 
 struct SceneAdditionsReader::Impl {

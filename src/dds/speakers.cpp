@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dds/datagram_guard.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 namespace {

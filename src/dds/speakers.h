@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "dds/datagram_findings.h"
 #include "dds/watch.h"
+#include "rtps/datagram_findings.h"
 
 namespace aurasim::dds {
 

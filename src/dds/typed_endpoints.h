@@ -31,6 +31,13 @@ class TypedWriter : public Writer {
     encode(message..., sample_);
     return write(&sample_);
   }
+  /// Sends a message that replaces all earlier ones of this writer. Readers that join later receive it alone.
+  template <class... Message>
+  WriteResult send_newest(const Message&... message) {
+    encode(message..., sample_);
+    forget_all();
+    return write(&sample_);
+  }
 
  private:
   Wire sample_;  // reused
@@ -61,6 +68,7 @@ class TypedReader : public Reader {
         visit(std::move(std::get<Message>(decoded)));
       }
     }
+    refused_.add(WireError::kParts, take_lost());
   }
   template <class Visit>
   void take_each(const Expected& expected, Visit&& visit) {

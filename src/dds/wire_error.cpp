@@ -7,7 +7,7 @@ namespace aurasim::dds {
 std::string_view name_of(WireError error) {
   static constexpr std::array<std::string_view, kWireErrorKinds> kNames = {
       "malformed", "version",    "generation", "map_version", "source", "length",
-      "too_large", "not_finite", "enum",       "rotation",    "range"};
+      "too_large", "not_finite", "enum",       "rotation",    "range",  "parts"};
   return kNames.at(static_cast<std::size_t>(error));
 }
 

@@ -30,8 +30,9 @@ enum class WireError : std::uint8_t {
   kEnum,        ///< unknown enumerator or flag bit
   kRotation,    ///< not a unit quaternion or not a rotation matrix, by more than kRotationTolerance
   kRange,       ///< an index, id, count or quantity out of its range, or out of order
+  kParts,       ///< a message in parts of which some are missing, or do not fit together
 };
-inline constexpr std::size_t kWireErrorKinds = 11;
+inline constexpr std::size_t kWireErrorKinds = 12;
 inline constexpr double kRotationTolerance = 1e-3;
 
 std::string_view name_of(WireError error);
@@ -39,7 +40,7 @@ std::string_view name_of(WireError error);
 /// Samples refused, by kind.
 class WireErrors {
  public:
-  void add(WireError error) { ++counts_[static_cast<std::size_t>(error)]; }
+  void add(WireError error, std::uint64_t count = 1) { counts_[static_cast<std::size_t>(error)] += count; }
   std::uint64_t count(WireError error) const { return counts_[static_cast<std::size_t>(error)]; }
   std::uint64_t total() const;
 

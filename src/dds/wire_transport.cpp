@@ -63,11 +63,7 @@ WireTransport::~WireTransport() = default;
 
 bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
                          LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
-  const auto changed = descriptor_.guard->note_sent({bytes, size});
-  if (changed) {
-    bytes = changed->data();
-    size = static_cast<std::uint32_t>(changed->size());
-  }
+  descriptor_.guard->note_sent({bytes, size});
   if (descriptor_.line == nullptr) return socket->send(bytes, size, begin, end, time_out);
   SenderResource* none = nullptr;
   const bool first = first_socket_.compare_exchange_strong(none, socket) || none == socket;

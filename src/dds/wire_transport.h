@@ -9,8 +9,8 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
-#include "dds/datagram_guard.h"
 #include "dds/delay_line.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 
@@ -37,8 +37,8 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& time_out) override;
-  /// Passes a received datagram through the guard. Sent datagrams are not filtered; the guard only takes note of them
-  /// and puts requests for fragments into them.
+  /// Passes a received datagram through the guard. Sent datagrams are not filtered; the guard only takes note of
+  /// them.
   void receive(eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,

@@ -1,5 +1,5 @@
 // What Fast DDS never sees. Each refusal is of a datagram that is fine but for what the test is named after.
-#include "dds/datagram_check.h"
+#include "rtps/datagram_check.h"
 
 #include <random>
 

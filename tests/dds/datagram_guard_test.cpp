@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "dds/datagram_check.h"
 #include "guard_fixture.h"
+#include "rtps/datagram_check.h"
 
 namespace aurasim::dds {
 namespace {
@@ -89,40 +89,31 @@ TEST_F(Guard, TakesFragmentsOnlyLikeTheFirst) {
   EXPECT_TRUE(passes(fragment({.first = 2})));
 }
 
-/// Fast DDS's reader knows nothing of a heartbeat for another one.
-TEST_F(Guard, IsNotMadeToForgetByWhatIsForAnotherReader) {
+TEST_F(Guard, TakesNoMessageOfARunInFragments) {
   meet();
-  EXPECT_TRUE(passes(fragment({.sequence = 5})));
-  EXPECT_TRUE(passes(heartbeat(1'000'000, 1'000'000)));  // for kReader; the fragment is for all
-  EXPECT_FALSE(passes(fragment({.sequence = 5, .first = 2, .sample_B = 100'000})));
-  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(6).sequence(6).u32(1);
-  EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));
-  EXPECT_TRUE(passes(fragment({.sequence = 5, .first = 2, .sample_B = 100'000})));
+  EXPECT_FALSE(passes(fragment({.writer = kWriter})));
+  EXPECT_FALSE(passes(nack_fragments(1, kWriter)));
+  const Octets more = Octets().entity(kReader).entity(kWriter).sequence(1).u32(3).u32(1);
+  EXPECT_FALSE(passes(submessage(0x13, 0, more)));
+  EXPECT_EQ(refused(Refusal::kFragment), 3U);
+  EXPECT_TRUE(passes(nack_fragments(1)));
 }
 
+/// Many announce descriptions of endpoints, and end none.
 TEST_F(Guard, BoundsWhatIsUnfinished) {
-  meet();
-  const auto begin_of = [](std::uint64_t sequence) { return fragment({.sequence = sequence, .sample_B = 60U << 20}); };
-  int passed = 0;
-  for (std::uint64_t i = 1; i <= 100; ++i) passed += passes(begin_of(i)) ? 1 : 0;
-  EXPECT_EQ(passed, 1);  // 96 MB of one participant
-  now_ += 3s;            // what is not sent again is lost
-  EXPECT_TRUE(passes(begin_of(101)));
-  EXPECT_FALSE(passes(begin_of(102)));
-  const Octets for_all = Octets().entity(0).entity(kWriter).sequence(150).sequence(200).u32(1);
-  EXPECT_TRUE(passes(submessage(0x07, 0, for_all)));  // that they have been given up makes room
-  EXPECT_TRUE(passes(begin_of(201)));
-}
-
-TEST_F(Guard, LetsAnyNumberOfSamplesThroughThatBecomeWhole) {
-  meet();
-  for (std::uint64_t sequence = 1; sequence <= 5'000; ++sequence) {
-    for (std::uint32_t i = 1; i <= 3; ++i) {
-      ASSERT_TRUE(passes(fragment({.sequence = sequence, .first = i, .payload_B = i < 3 ? 1024U : 952U})));
-    }
-    ASSERT_TRUE(passes(fragment({.sequence = sequence})));  // once more, as on a bad network
-    now_ += 1ms;
+  const auto begin_of = [](std::uint32_t participant, std::uint64_t sequence) {
+    return header(prefix_of(participant)).raw(fragment({.sequence = sequence, .sample_B = 64U << 10}).bytes()).bytes();
+  };
+  for (std::uint32_t number = 1; number <= 3; ++number) {
+    ASSERT_TRUE(passes(header(prefix_of(number))
+                           .raw(data(kParticipantWriter, 1, participant(prefix_of(number)).bytes()).bytes())
+                           .bytes()));
   }
+  for (std::uint64_t i = 1; i <= 2000; ++i) ASSERT_TRUE(passes(begin_of(1, i))) << "the first give way";
+  EXPECT_FALSE(passes(begin_of(2, 1))) << "64 MiB in all";
+  EXPECT_EQ(refused(Refusal::kUnfinished), 1U);
+  now_ += 3s;  // what is not sent again is lost
+  EXPECT_TRUE(passes(begin_of(2, 1)));
 }
 
 TEST_F(Guard, BoundsParticipants) {
@@ -163,13 +154,11 @@ TEST_F(Guard, HoldsUpNoHealthyNode) {
   std::uint64_t sequence = 0;
   for (int step = 0; step < 3'600; ++step, now_ += 16'666us) {
     const std::uint32_t size = step == 1'800 ? 20U << 20 : 80'000;
-    const std::uint32_t fragments = (size + 1403) / 1404;
-    ++sequence;
-    for (std::uint32_t i = 1; i <= fragments; ++i) {
-      const std::size_t payload = i < fragments ? 1404 : size - (fragments - 1) * 1404;
-      ASSERT_TRUE(passes(fragment({kWriter, sequence, i, 1, 1404, size, payload}))) << step;
+    const std::uint32_t parts = (size + 1199) / 1200;
+    for (std::uint32_t i = 0; i < parts; ++i) {
+      ASSERT_TRUE(passes(data(kWriter, ++sequence, Bytes(1200, 1)))) << step;
     }
-    ASSERT_TRUE(passes(heartbeat(std::max<std::uint64_t>(1, sequence - 1), sequence)));
+    ASSERT_TRUE(passes(heartbeat(sequence - parts + 1, sequence)));
   }
 }
 
@@ -275,7 +264,6 @@ TEST_F(RepeatsForStrangers, AreNoneOfWhatNodesSayToEachOther) {
   EXPECT_EQ(shown->base, kLast + 1);
   EXPECT_EQ(shown->wanted, 0U);
   EXPECT_EQ(refused(Refusal::kRepeat), 1U);
-  EXPECT_FALSE(admit(kViewer, nack_fragments(5)));
   const auto greeting = admit(kViewer, ack_nack(0, 0));
   ASSERT_TRUE(greeting);
   EXPECT_EQ(greeting->base, 0U) << "it wants to hear where the writer is";
@@ -294,19 +282,15 @@ TEST_F(RepeatsForStrangers, AreEnoughForAViewerOnABadNetwork) {
   }
 }
 
-/// A picture of 20 MB in fragments of 1400 bytes, 10% of them lost, and asked for five times.
+/// A picture of 20 MB in parts of 1200 bytes, 10% of them lost, and asked for five times.
 TEST_F(RepeatsForStrangers, AreEnoughForASpareThatComesLate) {
-  guard_.note_sent(datagram({fragment({.fragment_B = 1400, .sample_B = 20U << 20, .payload_B = 1400})}));
-  for (std::uint32_t i = 0; i < 5 * (20U << 20) / 1400 / 10 / 8; ++i) {
-    ASSERT_TRUE(admit(kViewer, nack_fragments(1))) << i;
+  constexpr std::uint32_t kOfParts = kWriter + 0x100, kParts = (20U << 20) / 1200;
+  guard_.note_sent(datagram({data(kOfParts, kParts, Bytes(1200))}));
+  for (std::uint32_t i = 0; i < 5 * kParts / 10 / 8; ++i) {
+    const auto shown = admit(kViewer, ack_nack(1, 8, kOfParts));
+    ASSERT_TRUE(shown) << i;
+    EXPECT_EQ(shown->wanted, 8U);
   }
-}
-
-TEST_F(RepeatsForStrangers, AreBoundedInFragments) {
-  guard_.note_sent(datagram({fragment({.fragment_B = 60'000, .sample_B = 20U << 20, .payload_B = 60'000})}));
-  int count = 0;
-  for (int i = 0; i < 1000; ++i) count += admit(kViewer, nack_fragments(1)) ? 1 : 0;
-  EXPECT_EQ(count, 66) << "32 MB";
 }
 
 TEST_F(Guard, PassesNothingOfWhomNobodyListensTo) {

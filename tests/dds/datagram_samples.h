@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dds/datagram_findings.h"
+#include "rtps/datagram_findings.h"
 
 namespace aurasim::dds::testing {
 
@@ -100,9 +100,9 @@ inline Octets ack_nack(std::uint64_t base, std::uint32_t wanted, std::uint32_t w
 }
 
 /// Of fragments 1 to 8.
-inline Octets nack_fragments(std::uint64_t sequence) {
+inline Octets nack_fragments(std::uint64_t sequence, std::uint32_t writer = kEndpointWriter) {
   return submessage(0x12, 0,
-                    Octets().entity(kReader).entity(kWriter).sequence(sequence).u32(1).u32(8).u32(0xff00'0000).u32(1));
+                    Octets().entity(kReader).entity(writer).sequence(sequence).u32(1).u32(8).u32(0xff00'0000).u32(1));
 }
 
 inline Octets data(std::uint32_t writer, std::uint64_t sequence, const Bytes& payload, const Bytes& inline_qos = {}) {
@@ -112,7 +112,7 @@ inline Octets data(std::uint32_t writer, std::uint64_t sequence, const Bytes& pa
 }
 
 struct Fragment {
-  std::uint32_t writer = kWriter;
+  std::uint32_t writer = kEndpointWriter;
   std::uint64_t sequence = 1;
   std::uint32_t first = 1;
   std::uint16_t count = 1;

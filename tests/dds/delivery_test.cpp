@@ -1,4 +1,4 @@
-#include "dds/delivery.h"
+#include "rtps/delivery.h"
 
 #include <atomic>
 #include <chrono>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "datagram_samples.h"
-#include "dds/datagram_guard.h"
+#include "rtps/datagram_guard.h"
 
 namespace aurasim::dds::testing {
 

@@ -9,9 +9,9 @@
 
 #include "datagram_recorder.h"
 #include "datagram_samples.h"
-#include "dds/datagram_check.h"
 #include "dds/domain.h"
 #include "dds/guarding.h"
+#include "rtps/datagram_check.h"
 #include "run_endpoints.h"
 
 namespace aurasim::dds {

@@ -79,7 +79,7 @@ TEST(ImpairedRegions, MissNothingAndKeepTheOrderThoughDatagramsAreLost) {
   EXPECT_GT(counters.passed, 0U) << "discovery is spared";
 }
 
-/// More than a thousand fragments, of which a tenth is lost each time: sent again as a whole it does not arrive in a
+/// More than a thousand parts, of which a tenth is lost each time: sent again as a whole it does not arrive in a
 /// minute.
 TEST(ImpairedRegions, SendAgainOfALargeSampleWhatIsLostOfIt) {
   Settings settings = impaired_settings({.loss = 0.1, .seed = 5}, 1);

@@ -1,9 +1,9 @@
-// Samples that come in fragments: Fast DDS sees them whole, and what is missing is asked for.
+// Discovery that comes in fragments: Fast DDS sees it whole.
 #include <algorithm>
 #include <string>
 
-#include "dds/datagram_check.h"
 #include "guard_fixture.h"
+#include "rtps/datagram_check.h"
 
 namespace aurasim::dds {
 namespace {
@@ -119,86 +119,29 @@ TEST_F(DiscoveryInPieces, HasSomeKilobytes) {
   EXPECT_EQ(refused(Refusal::kFragment), 1U);
 }
 
-class SampleInPieces : public InPieces {
- protected:
-  SampleInPieces() { passes(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())); }
-
-  static Bytes payload() {
-    Bytes payload(20'000);
-    for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::uint8_t>(i * 7);
-    return payload;
-  }
-  static std::vector<Bytes> pieces(std::uint64_t number) { return in_pieces(kWriter, payload(), number); }
-  static Bytes from(const Octets& submessage, const GuidPrefix& to = kPrefix) {
-    Octets destination;
-    for (const std::uint8_t octet : to) destination.raw({octet});
-    return header(prefix_of(7)).raw(testing::submessage(0x0e, 0, destination).bytes()).raw(submessage.bytes()).bytes();
-  }
-};
-
-TEST_F(SampleInPieces, IsSeenWholeInWhateverOrderItComes) {
-  auto shuffled = pieces(5);
-  std::ranges::reverse(shuffled);
-  std::swap(shuffled[2], shuffled[9]);
-  const auto seen = seen_of(shuffled);
-  ASSERT_EQ(seen.size(), 1U);
-  EXPECT_EQ(seen[0], whole(kWriter, payload(), 5));
+TEST_F(DiscoveryInPieces, MayComeAnyNumberOfTimes) {
+  for (std::uint64_t number = 1; number <= 5'000; ++number) ASSERT_EQ(seen_of(sound(number)).size(), 1U) << number;
 }
 
-TEST_F(SampleInPieces, IsForWhomAllItsPiecesAreFor) {
-  const auto seen_by = [&](std::uint32_t first, std::uint32_t second) {
-    Bytes one = datagram({fragment({.count = 1, .sample_B = 2000})});
-    Bytes other = datagram({fragment({.first = 2, .sample_B = 2000, .payload_B = 976})});
-    constexpr std::size_t kReaderAt = kHeaderBytes + 4 + 4;
-    for (int i = 0; i < 4; ++i) {
-      one[kReaderAt + i] = static_cast<std::uint8_t>(first >> 8 * (3 - i));
-      other[kReaderAt + i] = static_cast<std::uint8_t>(second >> 8 * (3 - i));
+TEST_F(DiscoveryInPieces, IsForWhomAllItsPiecesAreFor) {
+  std::uint64_t number = 0;
+  const auto seen_by = [&](std::uint32_t first, std::uint32_t others) {
+    auto pieces = sound(++number);
+    constexpr std::size_t kReaderAt = kHeaderBytes + 12 + 4 + 4;
+    for (Bytes& piece : pieces) {
+      const std::uint32_t reader = &piece == &pieces.front() ? first : others;
+      for (int i = 0; i < 4; ++i) piece[kReaderAt + i] = static_cast<std::uint8_t>(reader >> 8 * (3 - i));
     }
-    Findings findings;
-    const auto seen = seen_of({one, other});
-    return seen.size() == 1 && !check_datagram(seen[0], findings) ? findings.claims.at(0).reader : ~0U;
+    const auto seen = seen_of(pieces);
+    if (seen.size() != 1) return ~0U;
+    std::uint32_t reader = 0;
+    for (int i = 0; i < 4; ++i) reader = reader << 8 | seen[0][kReaderAt + i];
+    return reader;
   };
   EXPECT_EQ(seen_by(kReader, kReader), kReader);
   EXPECT_EQ(seen_by(kReader, kReader + 0x100), 0U);
   EXPECT_EQ(seen_by(0, 0), 0U);
   EXPECT_EQ(seen_by(0, kReader), 0U);
-}
-
-TEST_F(SampleInPieces, IsAskedForByThePiecesThatAreMissing) {
-  auto some = pieces(5);
-  some.erase(some.begin() + 11, some.begin() + 13);  // of 20
-  some.erase(some.begin() + 3);
-  EXPECT_TRUE(seen_of(some).empty());
-  const auto sent = guard_.note_sent(from(ack_nack(5, 3)));  // 5 to 7
-  ASSERT_TRUE(sent);
-  Octets request;
-  request.entity(kReader).entity(kWriter).sequence(5).u32(4).u32(10).u32(0x80c0'0000).u32(1);
-  Octets rest;
-  rest.entity(kReader).entity(kWriter).sequence(5).u32(3).u32(0x6000'0000).u32(1);
-  EXPECT_EQ(*sent, from(Octets().raw(submessage(0x06, 0, rest).bytes()).raw(submessage(0x12, 0, request).bytes())));
-  EXPECT_EQ(seen_of({pieces(5)[3], pieces(5)[11], pieces(5)[12]}).size(), 1U);
-  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 3)))) << "nothing of them is here";
-}
-
-TEST_F(SampleInPieces, IsAskedForOfItsOwnWriterAlone) {
-  EXPECT_TRUE(seen_of({pieces(5)[0]}).empty());
-  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 1), prefix_of(8))));
-  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 1, kWriter + 0x100))));
-  EXPECT_FALSE(guard_.note_sent(from(ack_nack(6, 40))));
-  EXPECT_FALSE(guard_.note_sent(from(ack_nack(5, 0))));
-  const auto sent = guard_.note_sent(from(ack_nack(5, 1)));
-  ASSERT_TRUE(sent);
-  EXPECT_EQ((*sent)[kHeaderBytes + 16 + 1], 3) << "it wants an answer though it asks for nothing";
-}
-
-/// Whatever a datagram looks like, this process goes on.
-TEST_F(SampleInPieces, IsAskedForInSoundDatagramsOnly) {
-  EXPECT_TRUE(seen_of({pieces(5)[0]}).empty());
-  const Bytes sound = from(ack_nack(1, 200));
-  for (std::size_t size = 0; size < sound.size(); ++size) guard_.note_sent(std::span(sound).first(size));
-  Bytes more_bits_than_there_are = from(ack_nack(5, 1));
-  more_bits_than_there_are[kHeaderBytes + 16 + 4 + 16] = 255;
-  EXPECT_FALSE(guard_.note_sent(more_bits_than_there_are));
 }
 
 }  // namespace

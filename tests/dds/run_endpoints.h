@@ -14,7 +14,9 @@ namespace aurasim::dds::testing {
 
 struct RunEndpoints {
   RunEndpoints(std::uint32_t domain, std::uint32_t region, std::initializer_list<std::uint32_t> neighbours)
-      : peer(domain, region, neighbours),
+      : RunEndpoints(settings_for(domain), region, neighbours) {}
+  RunEndpoints(const Settings& settings, std::uint32_t region, std::initializer_list<std::uint32_t> neighbours)
+      : peer(settings, region, neighbours),
         control(peer.participant, {.region = peer.region()}),
         replicas(peer.participant, peer.region()),
         replica_reader(peer.participant, observed()),
@@ -29,7 +31,7 @@ struct RunEndpoints {
 
   static ObserverSettings observed() { return {kMapVersion, 16, 100}; }
 
-  /// A bit of everything. Now and then something that comes in fragments.
+  /// A bit of everything. Now and then something that comes in parts.
   void say(core::Step step) {
     peer.send_batch(step, step % 20 == 0 ? 3000 : 5);
     Status status = status_of(static_cast<std::uint32_t>(core::value_of(peer.region())));

@@ -338,7 +338,7 @@ TEST_F(AStranger, WhoDoesNotReadIsNotWaitedFor) {
   EXPECT_THAT(said, Contains(HasSubstr("reads what nodes say to each other, and is none")));
 }
 
-/// The profiles, with a history of 64 instead of 4096.
+/// The profiles, with a history of 64 instead of 4096: then it has the room that the parts of one message need.
 Settings with_short_histories() {
   std::ifstream in(std::filesystem::path(AURASIM_SOURCE_DIR) / "qos" / "aurasim.xml");
   std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -364,7 +364,7 @@ TEST(ADeafReader, HoldsNobodyUp) {
   listen_and_never_read(stranger, "region/1");
   ASSERT_TRUE(holds_in_time([&] { return zero.transport.all_matched() && one.transport.all_matched(); }));
   std::this_thread::sleep_for(500ms);  // the deaf one, too
-  constexpr core::Step kSteps = 200;
+  constexpr core::Step kSteps = 2500;  // more than that room
   for (core::Step step = 0; step < kSteps; ++step) {
     one.send_batch(step, 1);
     ASSERT_TRUE(take_until(zero, [&] { return std::ssize(zero.inbox.auras) == step + 1; })) << step;

@@ -1,7 +1,7 @@
 // Filters datagrams between the sockets and Fast DDS: passes what datagram_check.h and peer_book.h allow, and counts
 // the rest. Knows nothing of Fast DDS; wire_transport.h applies it. Two things are never passed to Fast DDS, because it
-// forgets them too late or too early and then ends the process (DataReaderHistory.cpp:822): parts of a sample, and the
-// end of an instance.
+// forgets them too late or too early and then ends the process (DataReaderHistory.cpp:822): fragments of a sample, and
+// the end of an instance.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 #include <utility>
 #include <vector>
 
-#include "dds/datagram_findings.h"
-#include "dds/delivery.h"
-#include "dds/fragment_requests.h"
-#include "dds/guard_report.h"
-#include "dds/made_datagrams.h"
-#include "dds/peer_book.h"
-#include "dds/repeats.h"
-#include "dds/source_limits.h"
+#include "rtps/datagram_findings.h"
+#include "rtps/delivery.h"
+#include "rtps/discovery_fragments.h"
+#include "rtps/guard_report.h"
+#include "rtps/made_datagrams.h"
+#include "rtps/peer_book.h"
+#include "rtps/repeats.h"
+#include "rtps/source_limits.h"
 
 namespace aurasim::dds {
 
@@ -64,9 +64,8 @@ class DatagramGuard {
   /// padding.
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
   Delivery& delivery() { return delivery_; }
-  /// Takes note of a datagram that this process is about to send. Returns the datagram to send instead; nothing: send
-  /// it as it is.
-  std::optional<std::vector<std::uint8_t>> note_sent(std::span<const std::uint8_t> bytes);
+  /// Takes note of a datagram that this process is about to send.
+  void note_sent(std::span<const std::uint8_t> bytes);
 
   GuardReport report() const;
   /// Returns the addresses from which something was refused for the first time since the last call.
@@ -76,8 +75,8 @@ class DatagramGuard {
  private:
   std::optional<Refusal> judge(const Findings& findings, std::span<const std::uint8_t> bytes, Source source, Time now,
                                Admitted& admitted);
-  std::optional<Refusal> judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes, Source source, Time now,
-                                     Admitted& admitted);
+  std::optional<Refusal> judge_fragments(const Claim& claim, std::span<const std::uint8_t> bytes, Source source,
+                                         Time now, Admitted& admitted);
   bool is_of_shunned(const Findings& findings, const GuidPrefix& sender) const;
   void answer_requests(Findings& findings, Source source, Time now);
   void refuse(Refusal why, Source source);
@@ -87,7 +86,7 @@ class DatagramGuard {
   std::optional<GuidPrefix> own_;
   SourceLimits rates_;
   PeerBook peers_;
-  FragmentRequests fragment_requests_;
+  DiscoveryFragments fragments_;
   Repeats repeats_;
   Repeats::Prefixes shunned_;
   GuardReport::Counts refused_{};

@@ -1,4 +1,4 @@
-#include "dds/parameter_check.h"
+#include "rtps/parameter_check.h"
 
 #include <algorithm>
 

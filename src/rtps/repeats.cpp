@@ -1,44 +1,34 @@
-#include "dds/repeats.h"
+#include "rtps/repeats.h"
 
 #include <algorithm>
 
-#include "dds/wire_cursor.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::dds {
 
 void Repeats::note_sent(std::span<const std::uint8_t> datagram) {
-  constexpr std::uint8_t kData = 0x15, kDataFrag = 0x16;
+  constexpr std::uint8_t kData = 0x15;
   std::size_t at = kHeaderBytes;
   while (datagram.size() >= at + 4) {
     const std::uint8_t id = datagram[at];
     const bool little = (datagram[at + 1] & 1) != 0;
     std::size_t length = WireCursor(datagram, at + 2, at + 4, little).u16();
     at += 4;
-    if ((length == 0 && (id == kData || id == kDataFrag)) || length > datagram.size() - at) {
-      length = datagram.size() - at;
-    }
+    if ((length == 0 && id == kData) || length > datagram.size() - at) length = datagram.size() - at;
     WireCursor body(datagram, at, at + length, little);
     at += length;
-    if (id != kData && id != kDataFrag) continue;
+    if (id != kData) continue;
     body.skip(8);
     const std::uint32_t writer = body.entity();
-    const std::uint64_t number = body.sequence_number();
-    if (id == kData) {
-      note_sent(writer, number, static_cast<std::uint32_t>(length), 0);
-    } else {
-      body.skip(6);
-      const std::uint32_t fragment_B = body.u16();
-      note_sent(writer, number, body.u32(), fragment_B);
-    }
+    note_sent(writer, body.sequence_number(), static_cast<std::uint32_t>(length));
   }
 }
 
-void Repeats::note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B, std::uint32_t fragment_B) {
+void Repeats::note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B) {
   if (sent_.size() >= kMostWriters) sent_.clear();
   Sent& sent = sent_[writer];
   sent.last = std::max(sent.last, number);
   sent.sample_B = std::max(sent.sample_B - sent.sample_B / 16, sample_B);
-  sent.fragment_B = std::max(sent.fragment_B, fragment_B);
 }
 
 std::uint64_t Repeats::last_of(std::uint32_t writer) const {
@@ -48,9 +38,8 @@ std::uint64_t Repeats::last_of(std::uint32_t writer) const {
 
 double Repeats::price_of(const Request& request) const {
   const auto sent = sent_.find(request.writer);
-  const std::uint32_t known_B =
-      sent == sent_.end() ? 0 : (request.of_fragments ? sent->second.fragment_B : sent->second.sample_B);
-  const double each_B = request.of_fragments ? known_B : std::max<double>(known_B, limits_.smallest_sample_B);
+  const double known_B = sent == sent_.end() ? 0 : sent->second.sample_B;
+  const double each_B = std::max(known_B, limits_.smallest_sample_B);
   return std::min(request.wanted * each_B, limits_.bytes_burst);
 }
 
@@ -63,7 +52,7 @@ Repeats::Answer Repeats::judge(const Request& request, Time now) {
   });
   if (is_of_nodes && is_too_late(asker, request, now)) {
     if (request.wanted > 0) tell(asker.is_said_of_nodes, request, Answer::kHasAll);
-    return request.of_fragments ? Answer::kDrop : Answer::kHasAll;
+    return Answer::kHasAll;
   }
   const double price = price_of(request);
   if (asker.bytes.take(price, now) && (is_built_in(request.writer) || all_.take(price, now))) return Answer::kPass;
@@ -76,7 +65,7 @@ Repeats::Answer Repeats::judge(const Request& request, Time now) {
 bool Repeats::is_too_late(Asker& asker, const Request& request, Time now) const {
   if (asker.since == Time(0)) asker.since = now;
   if (now - asker.since < limits_.until_known) return false;
-  return request.of_fragments || (request.base > 0 && request.base <= last_of(request.writer));
+  return request.base > 0 && request.base <= last_of(request.writer);
 }
 
 void Repeats::tell(bool& is_said, const Request& request, Answer answer) {

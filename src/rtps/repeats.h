@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/token_bucket.h"
-#include "dds/datagram_findings.h"
-#include "dds/recent.h"
+#include "rtps/datagram_findings.h"
+#include "rtps/recent.h"
 
 namespace aurasim::dds {
 
@@ -23,7 +23,7 @@ namespace aurasim::dds {
 struct RepeatLimits {
   double bytes_per_s = 8e6, bytes_burst = 32e6;            ///< limits of one process
   double all_bytes_per_s = 32e6, all_bytes_burst = 128e6;  ///< limits of all together; discovery is not counted
-  double smallest_sample_B = 8192;                         ///< lowest cost of a retransmission
+  double smallest_sample_B = 2048;                         ///< lowest cost of a retransmission
   /// Time in which a reader of messages between nodes has to become known as a node.
   core::TokenBucket::Time until_known = std::chrono::seconds(10);
 };
@@ -67,10 +67,10 @@ class Repeats {
   };
   struct Sent {
     std::uint64_t last = 0;
-    std::uint32_t sample_B = 0, fragment_B = 0;  ///< recent maxima: the weight of a sample 100 samples ago is small
+    std::uint32_t sample_B = 0;  ///< recent maximum: the weight of a sample 100 samples ago is small
   };
 
-  void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B, std::uint32_t fragment_B);
+  void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B);
   double price_of(const Request& request) const;
   bool is_too_late(Asker& asker, const Request& request, Time now) const;
   void tell(bool& is_said, const Request& request, Answer answer);

@@ -1,9 +1,9 @@
-#include "dds/made_datagrams.h"
+#include "rtps/made_datagrams.h"
 
 #include <array>
 #include <vector>
 
-#include "dds/wire_octets.h"
+#include "rtps/wire_octets.h"
 
 namespace aurasim::dds {
 namespace {

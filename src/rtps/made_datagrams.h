@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "dds/datagram_findings.h"
+#include "rtps/datagram_findings.h"
 
 namespace aurasim::dds {
 

@@ -1,4 +1,4 @@
-#include "dds/datagram_findings.h"
+#include "rtps/datagram_findings.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "dds/source_limits.h"
+#include "rtps/source_limits.h"
 
 namespace aurasim::dds {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "dds/datagram_findings.h"
-#include "dds/wire_cursor.h"
+#include "rtps/datagram_findings.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::dds {
 

@@ -1,8 +1,8 @@
-#include "dds/datagram_guard.h"
+#include "rtps/datagram_guard.h"
 
 #include <algorithm>
 
-#include "dds/datagram_check.h"
+#include "rtps/datagram_check.h"
 
 namespace aurasim::dds {
 
@@ -45,20 +45,23 @@ std::optional<Refusal> DatagramGuard::judge(const Findings& findings, std::span<
   peers_.hear(sender, now);
   for (const Claim& claim : findings.claims) {
     if (own_ && claim.destination != GuidPrefix{} && claim.destination != *own_) continue;
-    if (const auto refused = peers_.judge(claim, bytes, source, rates_, now)) return refused;
+    if (const auto refused = peers_.judge(claim, source, rates_, now)) return refused;
     if (claim.kind == Claim::Kind::kFragments) {
-      if (const auto refused = judge_whole(claim, bytes, source, now, admitted)) return refused;
+      if (const auto refused = judge_fragments(claim, bytes, source, now, admitted)) return refused;
     }
     if (!claim.has_payload) admitted.before.push_back(datagram_of_gap(claim, bytes));
   }
   return std::nullopt;
 }
 
-/// Checks a sample that was put together from fragments, and passes it on whole. So discovery data in fragments is
-/// checked like any other, and its hidden parameters are hidden.
-std::optional<Refusal> DatagramGuard::judge_whole(const Claim& claim, std::span<const std::uint8_t> bytes,
-                                                  Source source, Time now, Admitted& admitted) {
-  auto whole = peers_.take_whole(claim, bytes);
+/// Takes in fragments of discovery or of a handshake. Once the sample is whole it is checked like any other, its hidden
+/// parameters are hidden, and it is passed on in one piece. From unknown participants only announcements are taken.
+std::optional<Refusal> DatagramGuard::judge_fragments(const Claim& claim, std::span<const std::uint8_t> bytes,
+                                                      Source source, Time now, Admitted& admitted) {
+  const bool is_known = peers_.knows(claim.guid.prefix);
+  if (!is_known && claim.guid.entity != kParticipantWriter) return std::nullopt;
+  if (const auto refused = fragments_.add(claim, is_known, bytes, now)) return refused;
+  auto whole = fragments_.take_whole(claim, is_known, bytes);
   if (!whole) return std::nullopt;
   Findings findings;
   if (const auto malformed = check_datagram(whole->bytes(), findings)) return malformed;
@@ -112,10 +115,9 @@ void DatagramGuard::remove_writer_of_nodes(std::uint32_t writer) {
   repeats_.remove_writer_of_nodes(writer);
 }
 
-std::optional<std::vector<std::uint8_t>> DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
+void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
   const std::lock_guard lock(mutex_);
   repeats_.note_sent(bytes);
-  return fragment_requests_.put_into(bytes, peers_);
 }
 
 std::vector<std::pair<GuidPrefix, Repeats::Answer>> DatagramGuard::take_new_askers() {

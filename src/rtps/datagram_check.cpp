@@ -1,11 +1,11 @@
-#include "dds/datagram_check.h"
+#include "rtps/datagram_check.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "dds/parameter_check.h"
-#include "dds/payload_check.h"
-#include "dds/wire_cursor.h"
+#include "rtps/parameter_check.h"
+#include "rtps/payload_check.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::dds {
 namespace {
@@ -203,25 +203,27 @@ class Checker {
     return add_request(request, body, body);
   }
 
-  Result check_nack_frag(WireCursor& body) {
-    Request request = request_of(body);
-    request.of_fragments = true;
+  static Result check_nack_frag(WireCursor& body) {
+    body.skip(4);
+    const std::uint32_t writer = body.entity();
     const std::uint64_t sequence = body.sequence_number();
     const std::uint32_t base = body.u32();
     if (body.failed()) return Refusal::kLength;
     if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
-    if (base < 1 || base > kLargestFragmentNumber) return Refusal::kFragment;
-    return add_request(request, body, body);
+    if (!is_built_in(writer) || base < 1 || base > kLargestFragmentNumber) return Refusal::kFragment;
+    if (Result refused = check_bits(body)) return refused;
+    return body.left() >= 4 ? kFine : Refusal::kLength;
   }
 
-  Result check_heartbeat_frag(WireCursor& body) {
-    body.skip(8);
+  static Result check_heartbeat_frag(WireCursor& body) {
+    body.skip(4);
+    const std::uint32_t writer = body.entity();
     const std::uint64_t sequence = body.sequence_number();
     const std::uint32_t last_fragment = body.u32();
     body.skip(4);
     if (body.failed()) return Refusal::kLength;
     if (!is_sequence_number(sequence)) return Refusal::kSequenceNumber;
-    return last_fragment <= kLargestFragmentNumber ? kFine : Refusal::kFragment;
+    return is_built_in(writer) && last_fragment <= kLargestFragmentNumber ? kFine : Refusal::kFragment;
   }
 
   Claim claim_of(Claim::Kind kind, std::uint32_t writer) const {
@@ -309,6 +311,7 @@ class Checker {
     claim.fragment_B = body.u16();
     claim.sample_B = body.u32();
     if (body.failed() || to_inline_qos != 28) return Refusal::kLength;
+    if (!is_built_in(claim.guid.entity)) return Refusal::kFragment;  // messages of a run go in parts (dds/parts.h)
     if (!is_sequence_number(claim.first)) return Refusal::kSequenceNumber;
     if ((flags_ & kKeyFlag) != 0) return Refusal::kPayload;
     if ((flags_ & kInlineQosFlag) != 0) {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "dds/datagram_findings.h"
+#include "rtps/datagram_findings.h"
 
 namespace aurasim::dds {
 

@@ -20,13 +20,13 @@ enum class Refusal : std::uint8_t {
   /// A sequence number below 1 or beyond kLargestSequenceNumber, or a range whose last is before its first.
   kSequenceNumber,
   kNumberSet,      ///< a number set with more than 256 bits, or shorter than it says
-  kFragment,       ///< fragments that do not fit their sample or contradict earlier ones
+  kFragment,       ///< fragments of a run's messages, or such as do not fit their sample or contradict earlier ones
   kParameterList,  ///< a parameter that does not fit, or no end
   kParameter,      ///< a malformed string, locator, partition, duration, ...
   kPayload,        ///< a malformed discovery, liveliness or handshake payload
   kRate,           ///< more datagrams or bytes from one source than any peer sends
   kJump,           ///< sequence numbers that leave out too many
-  kUnfinished,     ///< too many bytes of samples of which parts are missing
+  kUnfinished,     ///< too many bytes of samples of which fragments are missing
   kTooMany,        ///< too many participants or endpoints
   kRepeat,   ///< a retransmission that a process outside the run asked for is withheld; the rest of the datagram passes
   kShunned,  ///< from a process that is shut out
@@ -68,10 +68,9 @@ struct Request {
   GuidPrefix destination{};  ///< zeros: everybody
   WireGuid reader;
   std::uint32_t writer = 0;
-  bool of_fragments = false;  ///< fragments of one sample are wanted, not whole samples
-  /// All samples before this number are acknowledged; 0: the reader has just joined. Unused for fragments.
+  /// All samples before this number are acknowledged; 0: the reader has just joined.
   std::uint64_t base = 0;
-  std::uint32_t wanted = 0;  ///< number of samples or fragments wanted
+  std::uint32_t wanted = 0;  ///< number of samples wanted
   std::size_t at = 0;        ///< offset of its submessage in the datagram
   bool goes_to_end = false;  ///< its submessage has length 0: it extends to the end of the datagram
 };
@@ -101,8 +100,8 @@ struct Findings {
 
 inline constexpr std::size_t kHeaderBytes = 20;
 inline constexpr std::uint64_t kLargestSequenceNumber = std::uint64_t{1} << 40;
-/// Largest sample that is accepted. The hand-off of a whole scene (10,000 bodies with contacts) has some 20 MB.
-inline constexpr std::uint32_t kLargestSample_B = 64U << 20;
+/// Largest sample of discovery and handshakes that is accepted in fragments: a description of an endpoint has some kB.
+inline constexpr std::uint32_t kLargestSample_B = 64U << 10;
 /// Smallest fragment size that is accepted. Fast DDS and CycloneDDS make fragments larger than 1 kB on any link.
 inline constexpr std::uint32_t kSmallestFragment_B = 256;
 /// Largest size of a set of sequence or fragment numbers, bits.

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "dds/datagram_findings.h"
-#include "dds/parameter_check.h"
-#include "dds/wire_cursor.h"
+#include "rtps/datagram_findings.h"
+#include "rtps/parameter_check.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::dds {
 

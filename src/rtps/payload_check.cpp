@@ -1,4 +1,4 @@
-#include "dds/payload_check.h"
+#include "rtps/payload_check.h"
 
 namespace aurasim::dds {
 namespace {

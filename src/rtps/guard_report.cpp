@@ -1,11 +1,11 @@
-#include "dds/guard_report.h"
+#include "rtps/guard_report.h"
 
 #include <numeric>
 #include <tuple>
 
 #include <fmt/format.h>
 
-#include "dds/datagram_findings.h"
+#include "rtps/datagram_findings.h"
 
 namespace aurasim::dds {
 

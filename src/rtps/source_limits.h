@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/token_bucket.h"
-#include "dds/recent.h"
+#include "rtps/recent.h"
 
 namespace aurasim::dds {
 
