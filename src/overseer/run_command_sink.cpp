@@ -98,8 +98,8 @@ void RunCommandSink::steer(const overseer::Request& request, const steering::Ste
 
 void RunCommandSink::drain(const overseer::Request& request, core::RegionId region) {
   try {
-    leaving_.push_back(
-        {request.client, request.id, steering::Draining(control_, region), region, Clock::now() + kPatienceForSuccessor});
+    leaving_.push_back({request.client, request.id, steering::Draining(control_, region), region,
+                        Clock::now() + kPatienceForSuccessor});
   } catch (const std::runtime_error& error) {
     refuse(request, error.what());
   }

@@ -77,7 +77,8 @@ struct ProblemOfRun {
 
   std::string operator()(const core::NewBody& ask) const {
     if (c.bodies >= kMostBodies) return fmt::format("there are {} bodies, allowed: {}", c.bodies, kMostBodies);
-    const std::string where = first_problem_of({problem_with_speed(ask.v_WB, c.launch), problem_with_spin(ask.w_WB, c.launch)});
+    const std::string where =
+        first_problem_of({problem_with_speed(ask.v_WB, c.launch), problem_with_spin(ask.w_WB, c.launch)});
     if (!where.empty()) return where;
     if (!ask.shape) {
       const bool known =
