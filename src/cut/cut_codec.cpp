@@ -180,7 +180,7 @@ core::HandOff letter(core::Step stamp, const core::ClusterState& cluster) {
 template <class Message>
 Message sound(dds::Decoded<Message> decoded, const char* what) {
   if (auto* message = std::get_if<Message>(&decoded)) return std::move(*message);
-  throw BadCut(fmt::format("damaged: {}: {}", what, dds::name_of(std::get<dds::WireError>(decoded))));
+  throw BadCut(fmt::format("damaged: {}: {}", what, name_of(std::get<dds::WireError>(decoded))));
 }
 
 void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::WorldCut& cut) {

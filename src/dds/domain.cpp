@@ -95,7 +95,7 @@ std::string partition_to(core::RegionId destination) {
 }
 
 Domain::Domain(const Settings& settings)
-    : profiles_(settings.profiles), guard_(std::make_shared<DatagramGuard>()), speakers_(guard_) {
+    : profiles_(settings.profiles), guard_(std::make_shared<rtps::DatagramGuard>()), speakers_(guard_) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   datagram_B_ = largest_datagram_B(qos);
   has_keys_ = settings.keys.has_value();

@@ -23,9 +23,11 @@
 #include "dds/speakers.h"
 #include "dds/watch.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
+class DatagramGuard;
+}
 
-class DatagramGuard;  // datagram_guard.h
+namespace aurasim::dds {
 
 /// The topics of docs/protocol.md.
 enum class TopicId : std::uint8_t {
@@ -102,7 +104,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   /// Puts together the messages that all readers of this process receive in parts.
   PartAssembly& parts() { return parts_; }
   /// The guard that keeps malformed datagrams from Fast DDS.
-  DatagramGuard& guard() const { return *guard_; }
+  rtps::DatagramGuard& guard() const { return *guard_; }
 
  private:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -118,7 +120,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Wakeup wakeup_;
   Profiles profiles_;
   Directory directory_;
-  std::shared_ptr<DatagramGuard> guard_;
+  std::shared_ptr<rtps::DatagramGuard> guard_;
   Speakers speakers_;
   PeerKeys peer_keys_;
   PartAssembly parts_;

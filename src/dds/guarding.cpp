@@ -5,9 +5,9 @@
 
 namespace aurasim::dds {
 
-GuardReport guarded(Participant& participant) { return participant.domain().guard().report(); }
+rtps::GuardReport guarded(Participant& participant) { return participant.domain().guard().report(); }
 
-std::vector<GuardReport::Address> take_new_refusals(Participant& participant) {
+std::vector<rtps::GuardReport::Address> take_new_refusals(Participant& participant) {
   return participant.domain().guard().take_new_sources();
 }
 

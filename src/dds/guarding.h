@@ -8,8 +8,8 @@
 
 namespace aurasim::dds {
 
-GuardReport guarded(Participant& participant);
+rtps::GuardReport guarded(Participant& participant);
 /// Addresses from which something was refused for the first time since the last call.
-std::vector<GuardReport::Address> take_new_refusals(Participant& participant);
+std::vector<rtps::GuardReport::Address> take_new_refusals(Participant& participant);
 
 }  // namespace aurasim::dds

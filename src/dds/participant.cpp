@@ -26,8 +26,8 @@ std::optional<Participant::ImpairmentReport> Participant::impairment() const {
 }
 
 std::uint64_t Participant::refused_of_strangers() const {
-  const GuardReport guarded = domain_->guard().report();
-  return domain_->speakers().refused() + guarded.refused[static_cast<std::size_t>(Refusal::kRepeat)];
+  const rtps::GuardReport guarded = domain_->guard().report();
+  return domain_->speakers().refused() + guarded.refused[static_cast<std::size_t>(rtps::Refusal::kRepeat)];
 }
 
 PeersByKeys Participant::peers_by_keys() const { return domain_->peer_keys().count(); }
@@ -35,7 +35,7 @@ PeersByKeys Participant::peers_by_keys() const { return domain_->peer_keys().cou
 std::vector<std::string> Participant::take_said() {
   std::vector<std::string> said = domain_->speakers().take_said();
   for (const auto& [process, answer] : domain_->guard().take_new_askers()) {
-    const char* const what = answer == Repeats::Answer::kHasAll
+    const char* const what = answer == rtps::Repeats::Answer::kHasAll
                                  ? "reads what nodes say to each other, and is none: nothing is sent again to it, or "
                                    "kept for it"
                                  : "asks for more to be sent again than it is given";

@@ -107,7 +107,7 @@ struct Leave {
 };
 using OwnParticipant = std::unique_ptr<DomainParticipant, Leave>;
 
-OwnParticipant join(const Settings& settings, Profiles& profiles, const std::shared_ptr<DatagramGuard>& guard) {
+OwnParticipant join(const Settings& settings, Profiles& profiles, const std::shared_ptr<rtps::DatagramGuard>& guard) {
   DomainParticipantQos qos = participant_qos(profiles, settings);
   const std::string_view enclave = "enclave=/;";  // ROS takes a participant with this user data for one of its own
   qos.user_data().setValue({enclave.begin(), enclave.end()});
@@ -216,7 +216,7 @@ struct Ros2Bus::Impl {
   }
 
   Wakeup wakeup;  // no thread waits on it: a node polls before each state
-  std::shared_ptr<DatagramGuard> guard = std::make_shared<DatagramGuard>();
+  std::shared_ptr<rtps::DatagramGuard> guard = std::make_shared<rtps::DatagramGuard>();
   Profiles profiles;
   Telling clock{wakeup}, tf{wakeup}, joints{wakeup};
   std::vector<std::unique_ptr<Hearing>> drivers;  ///< as Ros2Settings::cmd_vel

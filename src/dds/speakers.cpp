@@ -36,13 +36,13 @@ std::int64_t region_of_partition(std::string_view partition) {
 
 }  // namespace
 
-GuidPrefix prefix_of(const ProcessPrefix& process) {
-  GuidPrefix prefix{};
+rtps::GuidPrefix prefix_of(const ProcessPrefix& process) {
+  rtps::GuidPrefix prefix{};
   std::ranges::copy(process.value, prefix.begin());
   return prefix;
 }
 
-ProcessPrefix process_of(const GuidPrefix& prefix) {
+ProcessPrefix process_of(const rtps::GuidPrefix& prefix) {
   ProcessPrefix process;
   std::ranges::copy(prefix, std::begin(process.value));
   return process;
@@ -87,7 +87,7 @@ void Speakers::set(core::RegionId region, const ProcessPrefix& process) {
 }
 
 void Speakers::tell_guard_of_nodes() const {
-  Repeats::Prefixes nodes;
+  rtps::Repeats::Prefixes nodes;
   for (const auto& [region, process] : nodes_) {
     if (process != self_) nodes.insert(prefix_of(process));
   }

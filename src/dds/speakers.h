@@ -18,15 +18,17 @@
 #include "dds/watch.h"
 #include "rtps/datagram_findings.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
+class DatagramGuard;
+}
 
-class DatagramGuard;  // datagram_guard.h
+namespace aurasim::dds {
 
 /// Thread-safe.
 class Speakers {
  public:
   /// `guard`, if there is one, learns which processes are nodes and which are shut out.
-  explicit Speakers(std::shared_ptr<DatagramGuard> guard = nullptr) : guard_(std::move(guard)) {}
+  explicit Speakers(std::shared_ptr<rtps::DatagramGuard> guard = nullptr) : guard_(std::move(guard)) {}
 
   /// Sets the own process, which may publish as any region.
   void set_self(const ProcessPrefix& self);
@@ -70,7 +72,7 @@ class Speakers {
 
   void tell_guard_of_nodes() const;
 
-  std::shared_ptr<DatagramGuard> guard_;
+  std::shared_ptr<rtps::DatagramGuard> guard_;
   mutable std::mutex mutex_;
   std::optional<ProcessPrefix> self_;
   std::map<Guid, std::int64_t> homes_;  ///< region of each writer; -1: no region, or several
@@ -84,8 +86,8 @@ class Speakers {
   std::vector<std::string> said_;
 };
 
-GuidPrefix prefix_of(const ProcessPrefix& process);
-ProcessPrefix process_of(const GuidPrefix& prefix);
+rtps::GuidPrefix prefix_of(const ProcessPrefix& process);
+ProcessPrefix process_of(const rtps::GuidPrefix& prefix);
 /// Text of a process id, "01.0f.6a...", as Fast DDS and other tools print it.
 std::string text_of(const ProcessPrefix& process);
 

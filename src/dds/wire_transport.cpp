@@ -21,9 +21,9 @@ using eprosima::fastrtps::rtps::SenderResource;
 
 namespace {
 
-Source source_of(const Locator_t& remote) {
+rtps::Source source_of(const Locator_t& remote) {
   const octet* address = IPLocator::getIPv4(remote);
-  Source source;
+  rtps::Source source;
   for (int i = 0; i < 4; ++i) source.address = source.address << 8 | address[i];
   source.port = static_cast<std::uint16_t>(remote.port);
   return source;
@@ -45,7 +45,7 @@ MetatrafficPorts metatraffic_ports(const DomainParticipantQos& qos, std::uint32_
 }
 
 WireTransportDescriptor::WireTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below,
-                                                 std::shared_ptr<DatagramGuard> the_guard,
+                                                 std::shared_ptr<rtps::DatagramGuard> the_guard,
                                                  std::shared_ptr<DelayLine> the_line)
     : ChainingTransportDescriptor(below), guard(std::move(the_guard)), line(std::move(the_line)) {
   const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(below);
@@ -100,7 +100,7 @@ void WireTransport::shutdown() {
   low_level_transport_->shutdown();
 }
 
-void install(DomainParticipantQos& qos, const std::shared_ptr<DatagramGuard>& guard,
+void install(DomainParticipantQos& qos, const std::shared_ptr<rtps::DatagramGuard>& guard,
              const std::shared_ptr<DelayLine>& line) {
   auto& transports = qos.transport().user_transports;
   if (transports.empty()) transports.push_back(std::make_shared<UDPv4TransportDescriptor>());

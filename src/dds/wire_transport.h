@@ -17,12 +17,12 @@ namespace aurasim::dds {
 struct WireTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   /// `below` is the transport that sends and receives. `line` may be null; if it is not, `below` must be UDPv4.
   WireTransportDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below,
-                          std::shared_ptr<DatagramGuard> guard, std::shared_ptr<DelayLine> line);
+                          std::shared_ptr<rtps::DatagramGuard> guard, std::shared_ptr<DelayLine> line);
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   /// True: every interface's socket sends; false: one socket sends unicast, and all send multicast.
   bool white_listed = false;
-  std::shared_ptr<DatagramGuard> guard;
+  std::shared_ptr<rtps::DatagramGuard> guard;
   std::shared_ptr<DelayLine> line;
 };
 
@@ -56,7 +56,7 @@ MetatrafficPorts metatraffic_ports(const eprosima::fastdds::dds::DomainParticipa
 
 /// Puts the guard, and the delay line if there is one, over every transport of `qos`. Fast DDS's built-in transports,
 /// shared memory among them, are not used. Throws DdsError when there is a line and a transport that is not UDPv4.
-void install(eprosima::fastdds::dds::DomainParticipantQos& qos, const std::shared_ptr<DatagramGuard>& guard,
+void install(eprosima::fastdds::dds::DomainParticipantQos& qos, const std::shared_ptr<rtps::DatagramGuard>& guard,
              const std::shared_ptr<DelayLine>& line);
 
 }  // namespace aurasim::dds

@@ -7,7 +7,7 @@
 #include "rtps/payload_check.h"
 #include "rtps/wire_cursor.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 namespace {
 
 using Result = std::optional<Refusal>;
@@ -369,4 +369,4 @@ std::optional<Refusal> check_datagram(std::span<const std::uint8_t> bytes, Findi
   return Checker(bytes, findings).check();
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

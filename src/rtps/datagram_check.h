@@ -11,10 +11,10 @@
 
 #include "rtps/datagram_findings.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Returns why the datagram is refused. Nothing: Fast DDS may see its first `findings.size` bytes, after
 /// `findings.hide` has been called on them.
 std::optional<Refusal> check_datagram(std::span<const std::uint8_t> bytes, Findings& findings);
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 const char* name_of(Refusal refusal) {
   static constexpr std::array<const char*, kRefusalCount> kNames = {
@@ -66,4 +66,4 @@ void Findings::hide(std::span<std::uint8_t> bytes) const {
   for (const Acknowledgement& one : acknowledgements) one.write_over(bytes.subspan(one.at));
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Reasons to drop a datagram. Those before kRate follow from its bytes; those from kRate on depend on earlier
 /// datagrams.
@@ -116,4 +116,4 @@ inline bool is_built_in(std::uint32_t entity) { return (entity & 0xc0U) == 0xc0U
 /// The writer by which a participant announces itself.
 inline constexpr std::uint32_t kParticipantWriter = 0x000100c2;
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

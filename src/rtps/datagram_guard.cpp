@@ -4,7 +4,7 @@
 
 #include "rtps/datagram_check.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::vector<GuardReport::Address> DatagramGuard::take_new_sources() {
   return sources;
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -23,7 +23,7 @@
 #include "rtps/repeats.h"
 #include "rtps/source_limits.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 struct GuardLimits {
   RateLimits rates;
@@ -96,4 +96,4 @@ class DatagramGuard {
   std::vector<std::uint32_t> new_addresses_;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <shared_mutex>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Thread-safe. A thread that waits in stop() gets its turn, however many datagrams come.
 class Delivery {
@@ -72,4 +72,4 @@ class Delivery {
   bool is_open_ = true;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

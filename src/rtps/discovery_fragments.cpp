@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 DiscoveryFragments::Sample::Sample(const Claim& claim)
     : first(claim),
@@ -77,4 +77,4 @@ DiscoveryFragments::Samples::iterator DiscoveryFragments::erase(Samples::iterato
   return samples_.erase(sample);
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

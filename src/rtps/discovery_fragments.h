@@ -14,7 +14,7 @@
 #include "rtps/datagram_findings.h"
 #include "rtps/made_datagrams.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 struct FragmentLimits {
   std::size_t all_B = std::size_t{64} << 20;
@@ -67,4 +67,4 @@ class DiscoveryFragments {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

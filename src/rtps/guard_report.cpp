@@ -7,7 +7,7 @@
 
 #include "rtps/datagram_findings.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 static_assert(std::tuple_size_v<GuardReport::Counts> == kRefusalCount);
 
@@ -30,4 +30,4 @@ std::string text_of_address(std::uint32_t address) {
   return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 255, address >> 8 & 255, address & 255);
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 struct GuardReport {
   using Counts = std::array<std::uint64_t, 16>;  ///< by Refusal of datagram_check.h
@@ -30,4 +30,4 @@ std::string text_of(const GuardReport::Counts& counts);
 /// Text of an IPv4 address, e.g. "10.0.0.7".
 std::string text_of_address(std::uint32_t address);
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

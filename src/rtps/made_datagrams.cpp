@@ -5,7 +5,7 @@
 
 #include "rtps/wire_octets.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -56,4 +56,4 @@ MadeDatagram datagram_of_gap(const Claim& claim, std::span<const std::uint8_t> h
   return gap;
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -9,7 +9,7 @@
 
 #include "rtps/datagram_findings.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// A datagram whose payload is filled in first; the headers are put in front of it afterwards.
 class MadeDatagram {
@@ -39,4 +39,4 @@ void make_data(MadeDatagram& sample, const Claim& claim, std::span<const std::ui
 /// Returns a GAP datagram over the claim's sequence numbers, first to last.
 MadeDatagram datagram_of_gap(const Claim& claim, std::span<const std::uint8_t> header);
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 namespace {
 
 // Parameter ids: RTPS 2.2, table 9.13; DDS-XTYPES 1.3; DDS Security 1.1, section 7.4; from 0x8000 on eProsima's.
@@ -302,4 +302,4 @@ std::optional<Refusal> check_parameters(WireCursor& cursor, ListKind kind, ListF
   }
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

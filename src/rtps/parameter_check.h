@@ -8,7 +8,7 @@
 #include "rtps/datagram_findings.h"
 #include "rtps/wire_cursor.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 enum class ListKind : std::uint8_t { kInlineQos, kInlineQosOfSamples, kParticipant, kEndpoint };
 
@@ -28,4 +28,4 @@ bool is_data_holder(WireCursor& cursor);
 /// Reads a string: length, text without zeros, a final zero. `most`: largest length. Returns whether it is well-formed.
 bool is_string(WireCursor& cursor, std::size_t most);
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

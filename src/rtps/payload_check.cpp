@@ -1,6 +1,6 @@
 #include "rtps/payload_check.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 namespace {
 
 using Result = std::optional<Refusal>;
@@ -100,4 +100,4 @@ void add_gone(std::uint32_t writer, const ListFindings& inline_qos, const GuidPr
   }
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -9,7 +9,7 @@
 #include "rtps/parameter_check.h"
 #include "rtps/wire_cursor.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// True for the writers of participant discovery and of handshakes.
 bool introduces(std::uint32_t writer);
@@ -22,4 +22,4 @@ std::optional<Refusal> check_payload(std::uint32_t writer, WireCursor& body, con
 /// Adds the claim that a participant or endpoint is gone. For a sample without payload, whose inline QoS names it.
 void add_gone(std::uint32_t writer, const ListFindings& inline_qos, const GuidPrefix& destination, Findings& findings);
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -132,4 +132,4 @@ void PeerBook::erase(Peers::iterator peer) {
   peers_.erase(peer);
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

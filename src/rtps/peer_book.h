@@ -11,7 +11,7 @@
 #include "rtps/datagram_findings.h"
 #include "rtps/source_limits.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 struct PeerLimits {
   std::size_t participants = 1024, participants_of_an_address = 256;  ///< RTPS's ports allow 120 on one host
@@ -68,4 +68,4 @@ class PeerBook {
   std::unordered_map<std::uint32_t, std::size_t> peers_of_address_;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Two generations: entries used since the last rotation stay, the older half is dropped at the next one.
 template <class Key, class Value, class Hash = std::hash<Key>>
@@ -33,4 +33,4 @@ class Recent {
   std::unordered_map<Key, Value, Hash> young_, old_;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

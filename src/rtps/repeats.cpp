@@ -4,7 +4,7 @@
 
 #include "rtps/wire_cursor.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 void Repeats::note_sent(std::span<const std::uint8_t> datagram) {
   constexpr std::uint8_t kData = 0x15;
@@ -74,4 +74,4 @@ void Repeats::tell(bool& is_said, const Request& request, Answer answer) {
   news_.emplace_back(request.reader.prefix, answer);
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -16,7 +16,7 @@
 #include "rtps/datagram_findings.h"
 #include "rtps/recent.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Limits for processes that are no nodes. A viewer with 10% loss asks each node for some kB a second, a spare that
 /// joins late for some 20 MB at once.
@@ -84,4 +84,4 @@ class Repeats {
   std::vector<std::pair<GuidPrefix, Answer>> news_;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -1,6 +1,6 @@
 #include "rtps/source_limits.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 SourceLimits::Address& SourceLimits::address_of(std::uint32_t address, Time now) {
   return addresses_.find(address, kMostAddresses, [&] {
@@ -20,4 +20,4 @@ bool SourceLimits::take_datagram(Source source, std::size_t bytes, Time now) {
          address_of(source.address, now).datagrams.take(1, now);
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

@@ -7,7 +7,7 @@
 #include "core/token_bucket.h"
 #include "rtps/recent.h"
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Source of a datagram: an IPv4 address, and the port of one participant's socket.
 struct Source {
@@ -61,4 +61,4 @@ class SourceLimits {
   Recent<std::uint32_t, Address> addresses_;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

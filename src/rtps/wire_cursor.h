@@ -8,7 +8,7 @@
 #include <cstring>
 #include <span>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Reading more than left() bytes yields zeros and sets failed().
 class WireCursor {
@@ -82,4 +82,4 @@ class WireCursor {
   bool little_, failed_ = false;
 };
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

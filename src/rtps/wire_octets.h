@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace aurasim::dds {
+namespace aurasim::rtps {
 
 /// Appends one octet at a time, because GCC 12 warns about insert().
 inline void append(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> octets) {
@@ -22,4 +22,4 @@ inline void append_number_pair(std::vector<std::uint8_t>& to, std::uint64_t numb
   append_number(to, static_cast<std::uint32_t>(number));
 }
 
-}  // namespace aurasim::dds
+}  // namespace aurasim::rtps

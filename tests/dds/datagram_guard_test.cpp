@@ -17,13 +17,13 @@ TEST_F(Guard, CountsByReasonAndAddress) {
   EXPECT_FALSE(passes(Bytes{1, 2, 3}));
   EXPECT_FALSE(passes(Bytes{1, 2, 3}, {0x0a000007, 1}));
   EXPECT_FALSE(passes(heartbeat(0, 1)));
-  const GuardReport report = guard_.report();
+  const rtps::GuardReport report = guard_.report();
   EXPECT_EQ(report.passed, 1U);
   EXPECT_EQ(report.total(), 3U);
-  EXPECT_EQ(text_of(report.refused), "2 header, 1 sequence number");
+  EXPECT_EQ(rtps::text_of(report.refused), "2 header, 1 sequence number");
   ASSERT_EQ(report.addresses.size(), 2U);
-  EXPECT_EQ(text_of_address(report.addresses[0].address), "10.0.0.7");
-  EXPECT_EQ(text_of(report.addresses[1].refused), "1 header, 1 sequence number");
+  EXPECT_EQ(rtps::text_of_address(report.addresses[0].address), "10.0.0.7");
+  EXPECT_EQ(rtps::text_of(report.addresses[1].refused), "1 header, 1 sequence number");
   EXPECT_EQ(guard_.take_new_sources().size(), 2U);
   EXPECT_FALSE(passes(Bytes{}));
   EXPECT_TRUE(guard_.take_new_sources().empty());
@@ -35,7 +35,7 @@ TEST_F(Guard, LetsFastDdsMeetOneParticipantAtATime) {
     Bytes bytes = datagram({submessage});
     return guard_.admit(bytes, kSource, now_).is_alone;
   };
-  EXPECT_TRUE(is_alone(data(kParticipantWriter, 1, participant(kPrefix).bytes())));
+  EXPECT_TRUE(is_alone(data(rtps::kParticipantWriter, 1, participant(kPrefix).bytes())));
   EXPECT_TRUE(
       is_alone(data(kHandshakeWriter, 1, Octets().raw({0, 1, 0, 0}).zeros(96).text("dds.sec.auth").u32(0).bytes())));
   EXPECT_FALSE(is_alone(data(kEndpointWriter, 1, endpoint(kPrefix, kWriter).bytes())));
@@ -49,10 +49,10 @@ TEST_F(Guard, RefusesHeartbeatsThatLeaveOutBillions) {
   EXPECT_TRUE(passes(heartbeat(1'000'000, 1'000'100)));  // who comes late
   EXPECT_TRUE(passes(heartbeat(1'000'050, 1'000'200)));
   EXPECT_FALSE(passes(heartbeat(1'000'000'000, 1'000'000'001)));
-  EXPECT_FALSE(passes(heartbeat(kLargestSequenceNumber, kLargestSequenceNumber)));
-  EXPECT_EQ(refused(Refusal::kJump), 2U);
+  EXPECT_FALSE(passes(heartbeat(rtps::kLargestSequenceNumber, rtps::kLargestSequenceNumber)));
+  EXPECT_EQ(refused(rtps::Refusal::kJump), 2U);
   for (int i = 2; i < 20; ++i) passes(heartbeat(std::uint64_t{60'000'000} * i, std::uint64_t{60'000'000} * i));
-  EXPECT_GT(refused(Refusal::kJump), 12U);               // nor in many steps
+  EXPECT_GT(refused(rtps::Refusal::kJump), 12U);         // nor in many steps
   EXPECT_TRUE(passes(heartbeat(1'000'100, 1'000'300)));  // the true one goes on
 }
 
@@ -85,7 +85,7 @@ TEST_F(Guard, TakesFragmentsOnlyLikeTheFirst) {
   EXPECT_TRUE(passes(fragment({})));
   EXPECT_FALSE(passes(fragment({.first = 2, .sample_B = 100'000})));
   EXPECT_FALSE(passes(fragment({.first = 2, .fragment_B = 512, .payload_B = 512})));
-  EXPECT_EQ(refused(Refusal::kFragment), 2U);
+  EXPECT_EQ(refused(rtps::Refusal::kFragment), 2U);
   EXPECT_TRUE(passes(fragment({.first = 2})));
 }
 
@@ -95,7 +95,7 @@ TEST_F(Guard, TakesNoMessageOfARunInFragments) {
   EXPECT_FALSE(passes(nack_fragments(1, kWriter)));
   const Octets more = Octets().entity(kReader).entity(kWriter).sequence(1).u32(3).u32(1);
   EXPECT_FALSE(passes(submessage(0x13, 0, more)));
-  EXPECT_EQ(refused(Refusal::kFragment), 3U);
+  EXPECT_EQ(refused(rtps::Refusal::kFragment), 3U);
   EXPECT_TRUE(passes(nack_fragments(1)));
 }
 
@@ -106,19 +106,19 @@ TEST_F(Guard, BoundsWhatIsUnfinished) {
   };
   for (std::uint32_t number = 1; number <= 3; ++number) {
     ASSERT_TRUE(passes(header(prefix_of(number))
-                           .raw(data(kParticipantWriter, 1, participant(prefix_of(number)).bytes()).bytes())
+                           .raw(data(rtps::kParticipantWriter, 1, participant(prefix_of(number)).bytes()).bytes())
                            .bytes()));
   }
   for (std::uint64_t i = 1; i <= 2000; ++i) ASSERT_TRUE(passes(begin_of(1, i))) << "the first give way";
   EXPECT_FALSE(passes(begin_of(2, 1))) << "64 MiB in all";
-  EXPECT_EQ(refused(Refusal::kUnfinished), 1U);
+  EXPECT_EQ(refused(rtps::Refusal::kUnfinished), 1U);
   now_ += 3s;  // what is not sent again is lost
   EXPECT_TRUE(passes(begin_of(2, 1)));
 }
 
 TEST_F(Guard, BoundsParticipants) {
-  const auto announce = [&](std::uint32_t number, Source source) {
-    return passes(datagram({data(kParticipantWriter, 1, participant(prefix_of(number)).bytes())}), source);
+  const auto announce = [&](std::uint32_t number, rtps::Source source) {
+    return passes(datagram({data(rtps::kParticipantWriter, 1, participant(prefix_of(number)).bytes())}), source);
   };
   int passed = 0;
   for (std::uint32_t i = 0; i < 5'000; ++i) passed += announce(i, kSource) ? 1 : 0;
@@ -189,7 +189,7 @@ TEST_F(Guard, SaysAsAGapWhatHasNoPayload) {
   const auto admitted = guard_.admit(bytes, kSource, now_);
   ASSERT_EQ(admitted.before.size(), 1U);
   EXPECT_EQ(octets_of(admitted.before[0]), datagram({gap(7, 8)}));
-  EXPECT_EQ(bytes[kHeaderBytes], 0x01) << "it is seen";
+  EXPECT_EQ(bytes[rtps::kHeaderBytes], 0x01) << "it is seen";
 }
 
 /// A guard of a node that has sent samples 1 to kLast by kWriter, of kSample_B each.
@@ -202,11 +202,11 @@ class RepeatsForStrangers : public Guard {
     }
   }
   /// What Fast DDS is shown of it; nothing: padding.
-  std::optional<Request> admit(std::uint32_t process, const Octets& submessage) {
+  std::optional<rtps::Request> admit(std::uint32_t process, const Octets& submessage) {
     Bytes bytes = header(prefix_of(process)).raw(submessage.bytes()).bytes();
     EXPECT_EQ(guard_.admit(bytes, kSource, now_).size, bytes.size()) << "what else is in the datagram passes";
-    Findings findings;
-    EXPECT_EQ(check_datagram(bytes, findings), std::nullopt);
+    rtps::Findings findings;
+    EXPECT_EQ(rtps::check_datagram(bytes, findings), std::nullopt);
     return findings.requests.empty() ? std::nullopt : std::optional(findings.requests.front());
   }
   /// How many of so many requests.
@@ -229,7 +229,7 @@ TEST_F(RepeatsForStrangers, AreNoMatterForNodes) {
   EXPECT_EQ(answered(kNode, 10'000), 10'000);
   now_ += 1h;
   EXPECT_EQ(answered(kNode, 10'000), 10'000);
-  EXPECT_EQ(refused(Refusal::kRepeat), 0U);
+  EXPECT_EQ(refused(rtps::Refusal::kRepeat), 0U);
 }
 
 TEST_F(RepeatsForStrangers, AreNoneBeforeAnyNodeIsKnown) {
@@ -239,7 +239,7 @@ TEST_F(RepeatsForStrangers, AreNoneBeforeAnyNodeIsKnown) {
 
 TEST_F(RepeatsForStrangers, AreSoManyBytesASecond) {
   EXPECT_EQ(answered(kViewer, 1000), 12) << "32 MB at once";
-  EXPECT_EQ(refused(Refusal::kRepeat), 988U);
+  EXPECT_EQ(refused(rtps::Refusal::kRepeat), 988U);
   const auto askers = guard_.take_new_askers();
   ASSERT_EQ(askers.size(), 1U) << "said once";
   EXPECT_EQ(askers[0].first, prefix_of(kViewer));
@@ -263,7 +263,7 @@ TEST_F(RepeatsForStrangers, AreNoneOfWhatNodesSayToEachOther) {
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->base, kLast + 1);
   EXPECT_EQ(shown->wanted, 0U);
-  EXPECT_EQ(refused(Refusal::kRepeat), 1U);
+  EXPECT_EQ(refused(rtps::Refusal::kRepeat), 1U);
   const auto greeting = admit(kViewer, ack_nack(0, 0));
   ASSERT_TRUE(greeting);
   EXPECT_EQ(greeting->base, 0U) << "it wants to hear where the writer is";
@@ -305,7 +305,7 @@ TEST_F(Guard, PassesNothingOfWhomNobodyListensTo) {
   guard_.shun(kPrefix);
   EXPECT_FALSE(passes(from_it));
   EXPECT_FALSE(passes(in_its_name));
-  EXPECT_EQ(refused(Refusal::kShunned), 2U);
+  EXPECT_EQ(refused(rtps::Refusal::kShunned), 2U);
   guard_.forgive(kPrefix);
   EXPECT_TRUE(passes(from_it));
 }

@@ -12,7 +12,7 @@ namespace aurasim::dds::testing {
 
 using Bytes = std::vector<std::uint8_t>;
 
-inline constexpr GuidPrefix kPrefix = {1, 15, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+inline constexpr rtps::GuidPrefix kPrefix = {1, 15, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 inline constexpr std::uint32_t kWriter = 0x00000203, kReader = 0x00000204;
 inline constexpr std::uint32_t kEndpointWriter = 0x000003c2;
 inline constexpr std::uint32_t kHandshakeWriter = 0x000201c3;
@@ -39,7 +39,7 @@ class Octets {
     for (int i = 3; i >= 0; --i) bytes_.push_back(static_cast<std::uint8_t>(id >> 8 * i));
     return *this;
   }
-  Octets& guid(const GuidPrefix& prefix, std::uint32_t id) {
+  Octets& guid(const rtps::GuidPrefix& prefix, std::uint32_t id) {
     bytes_.insert(bytes_.end(), prefix.begin(), prefix.end());
     return entity(id);
   }
@@ -64,7 +64,7 @@ class Octets {
   Bytes bytes_;
 };
 
-inline Octets header(const GuidPrefix& prefix = kPrefix) {
+inline Octets header(const rtps::GuidPrefix& prefix = kPrefix) {
   Octets octets;
   octets.raw({'R', 'T', 'P', 'S', 2, 3, 1, 15});
   for (const std::uint8_t octet : prefix) octets.raw({octet});
@@ -144,7 +144,7 @@ inline Octets to_all(const Octets& parameters) { return Octets().raw({0, 3, 0, 0
 inline Octets lease(std::uint32_t seconds) { return Octets().u32(seconds).u32(0); }
 
 /// What a participant announces: its id, its lease and what else is said.
-inline Octets participant(const GuidPrefix& prefix, const Octets& more = {}, std::uint32_t lease_s = 5) {
+inline Octets participant(const rtps::GuidPrefix& prefix, const Octets& more = {}, std::uint32_t lease_s = 5) {
   return to_all(Octets()
                     .parameter(0x50, Octets().guid(prefix, 0x1c1))
                     .parameter(0x02, lease(lease_s))
@@ -152,7 +152,7 @@ inline Octets participant(const GuidPrefix& prefix, const Octets& more = {}, std
                     .sentinel());
 }
 
-inline Octets endpoint(const GuidPrefix& prefix, std::uint32_t entity, const Octets& more = {}) {
+inline Octets endpoint(const rtps::GuidPrefix& prefix, std::uint32_t entity, const Octets& more = {}) {
   return to_all(Octets()
                     .parameter(0x5a, Octets().guid(prefix, entity))
                     .parameter(0x05, Octets().text("aura"))
@@ -162,7 +162,7 @@ inline Octets endpoint(const GuidPrefix& prefix, std::uint32_t entity, const Oct
 }
 
 /// `writer` takes back what it has announced of `entity`: it is gone, and nothing of it is kept.
-inline Octets farewell(std::uint32_t writer, const GuidPrefix& prefix, std::uint32_t entity) {
+inline Octets farewell(std::uint32_t writer, const rtps::GuidPrefix& prefix, std::uint32_t entity) {
   return submessage(0x15, 2,
                     Octets()
                         .u16(0)

@@ -33,7 +33,7 @@ class Flood : public ::testing::Test {
     for (std::thread& thread : threads_) thread.join();
   }
 
-  Delivery delivery_;
+  rtps::Delivery delivery_;
   std::atomic<bool> over_ = false;
   std::atomic<int> inside_ = 0;
   std::atomic<int> seen_ = 0;
@@ -54,7 +54,7 @@ TEST_F(Flood, IsStoppedAndGoesOn) {
 }
 
 TEST(Delivery, OfWhatIsAloneIsOneAtATime) {
-  Delivery delivery;
+  rtps::Delivery delivery;
   std::atomic<int> inside = 0;
   std::vector<std::thread> threads;
   for (int i = 0; i < 4; ++i) {
@@ -71,7 +71,7 @@ TEST(Delivery, OfWhatIsAloneIsOneAtATime) {
 }
 
 TEST(Delivery, WhatComesWhileItIsClosedWaits) {
-  Delivery delivery;
+  rtps::Delivery delivery;
   std::atomic<int> seen = 0;
   auto closed = delivery.close();
   std::vector<std::thread> sockets;

@@ -27,7 +27,7 @@ void run(std::uint32_t domain) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(17));
   }
-  std::cout << "refused " << aurasim::dds::text_of(aurasim::dds::guarded(endpoints.peer.participant).refused)
+  std::cout << "refused " << aurasim::rtps::text_of(aurasim::dds::guarded(endpoints.peer.participant).refused)
             << std::endl;
   std::_Exit(0);
 }

@@ -39,18 +39,18 @@ class GuardedRegions : public ::testing::Test {
   }
   /// What b's writers, but for the built-in ones, have sent heartbeats with.
   const std::set<std::uint32_t>& writers_of_b() {
-    Findings findings;
+    rtps::Findings findings;
     for (const Bytes& bytes : recorded_datagrams()) {
-      if (check_datagram(bytes, findings)) continue;
-      for (const Claim& claim : findings.claims) {
-        if (claim.kind != Claim::Kind::kHeartbeat || is_built_in(claim.guid.entity)) continue;
+      if (rtps::check_datagram(bytes, findings)) continue;
+      for (const rtps::Claim& claim : findings.claims) {
+        if (claim.kind != rtps::Claim::Kind::kHeartbeat || rtps::is_built_in(claim.guid.entity)) continue;
         if (claim.guid.prefix == prefix_of(b_)) writers_.insert(claim.guid.entity);
       }
     }
     return writers_;
   }
-  static GuidPrefix prefix_of(RunEndpoints& endpoints) {
-    GuidPrefix prefix;
+  static rtps::GuidPrefix prefix_of(RunEndpoints& endpoints) {
+    rtps::GuidPrefix prefix;
     std::ranges::copy(endpoints.peer.participant.domain().participant().guid().guidPrefix.value, prefix.begin());
     return prefix;
   }
@@ -91,7 +91,7 @@ TEST_F(GuardedRegions, OutliveTheDatagramOf92Bytes) {
   octets.raw({0x80, 1}).u16(56).zeros(56).zeros(12);
   for (int i = 0; i < 100; ++i) send(octets.bytes());
   EXPECT_TRUE(a_hears_b());
-  EXPECT_GT(guarded(a_.peer.participant).refused[static_cast<std::size_t>(Refusal::kStatistics)], 0U);
+  EXPECT_GT(guarded(a_.peer.participant).refused[static_cast<std::size_t>(rtps::Refusal::kStatistics)], 0U);
 }
 
 /// Its key is all that can be read of it.

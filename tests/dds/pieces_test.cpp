@@ -13,7 +13,7 @@ using testing::datagram;
 
 class InPieces : public Guard {
  protected:
-  InPieces() { passes(data(kParticipantWriter, 1, participant(kPrefix).bytes())); }
+  InPieces() { passes(data(rtps::kParticipantWriter, 1, participant(kPrefix).bytes())); }
 
   static Octets timestamp() { return submessage(0x09, 0, Octets().u32(1'700'000'000).u32(0x8000'0000)); }
   static std::vector<Bytes> in_pieces(std::uint32_t writer, const Bytes& payload, std::uint64_t number) {
@@ -35,10 +35,10 @@ class InPieces : public Guard {
     std::vector<Bytes> seen;
     for (Bytes& piece : pieces) {
       const auto admitted = guard_.admit(piece, kSource, now_);
-      for (const MadeDatagram& made : admitted.before) seen.push_back(octets_of(made));
-      Findings findings;
-      EXPECT_FALSE(admitted.size > 0 && check_datagram(std::span(piece).first(admitted.size), findings));
-      for (const Claim& claim : findings.claims) EXPECT_NE(claim.kind, Claim::Kind::kFragments);
+      for (const rtps::MadeDatagram& made : admitted.before) seen.push_back(octets_of(made));
+      rtps::Findings findings;
+      EXPECT_FALSE(admitted.size > 0 && rtps::check_datagram(std::span(piece).first(admitted.size), findings));
+      for (const rtps::Claim& claim : findings.claims) EXPECT_NE(claim.kind, rtps::Claim::Kind::kFragments);
     }
     return seen;
   }
@@ -82,7 +82,7 @@ TEST_F(DiscoveryInPieces, MayComeInAnyOrderAndTwice) {
 
 TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNeverSeen) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(seen_of(unsound(2)).empty());
-  EXPECT_EQ(refused(Refusal::kParameter), 3U);
+  EXPECT_EQ(refused(rtps::Refusal::kParameter), 3U);
   EXPECT_EQ(seen_of(sound(3)).size(), 1U);
 }
 
@@ -90,18 +90,18 @@ TEST_F(DiscoveryInPieces, ThatIsUnsoundIsNeverSeen) {
 TEST_F(DiscoveryInPieces, IsSeenWithoutTypeObjects) {
   const auto seen = seen_of(in_pieces(kEndpointWriter, description(0x72, 0xee), 1));
   ASSERT_EQ(seen.size(), 1U);
-  Findings findings;
-  EXPECT_FALSE(check_datagram(seen[0], findings));
+  rtps::Findings findings;
+  EXPECT_FALSE(rtps::check_datagram(seen[0], findings));
   EXPECT_TRUE(findings.hidden_parameters.empty()) << "it is hidden";
 }
 
 TEST_F(DiscoveryInPieces, OfSomebodyWhoIsNotKnownYetIsSeen) {
-  DatagramGuard guard;
+  rtps::DatagramGuard guard;
   std::size_t seen = 0;
   Octets name;
   name.text(std::string(2000, 'a'));
   const Bytes announcement = participant(kPrefix, Octets().parameter(0x8001, name)).bytes();
-  for (Bytes& piece : in_pieces(kParticipantWriter, announcement, 1))
+  for (Bytes& piece : in_pieces(rtps::kParticipantWriter, announcement, 1))
     seen += guard.admit(piece, kSource, now_).before.size();
   EXPECT_EQ(seen, 1U);
   for (Bytes& piece : sound(1)) seen += guard.admit(piece, kSource, now_).before.size();
@@ -116,7 +116,7 @@ TEST_F(DiscoveryInPieces, IsNotKeptOutByMore) {
 
 TEST_F(DiscoveryInPieces, HasSomeKilobytes) {
   EXPECT_FALSE(passes(fragment({.writer = kEndpointWriter, .sample_B = 100'000})));
-  EXPECT_EQ(refused(Refusal::kFragment), 1U);
+  EXPECT_EQ(refused(rtps::Refusal::kFragment), 1U);
 }
 
 TEST_F(DiscoveryInPieces, MayComeAnyNumberOfTimes) {
@@ -127,7 +127,7 @@ TEST_F(DiscoveryInPieces, IsForWhomAllItsPiecesAreFor) {
   std::uint64_t number = 0;
   const auto seen_by = [&](std::uint32_t first, std::uint32_t others) {
     auto pieces = sound(++number);
-    constexpr std::size_t kReaderAt = kHeaderBytes + 12 + 4 + 4;
+    constexpr std::size_t kReaderAt = rtps::kHeaderBytes + 12 + 4 + 4;
     for (Bytes& piece : pieces) {
       const std::uint32_t reader = &piece == &pieces.front() ? first : others;
       for (int i = 0; i < 4; ++i) piece[kReaderAt + i] = static_cast<std::uint8_t>(reader >> 8 * (3 - i));
