@@ -130,6 +130,7 @@ Writer::~Writer() {
 
 WriteResult Writer::write(void* sample) {
   if (part_fields_ == nullptr) return write_sample(sample);
+  part_fields_->clear(sample);
   const std::uint32_t message_B = type_->getSerializedSizeProvider(sample)();
   return message_B <= largest_sample_B() ? write_sample(sample) : write_parts(sample, message_B);
 }

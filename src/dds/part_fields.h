@@ -17,6 +17,8 @@ class PartFields {
   virtual std::shared_ptr<void> make_sample() const = 0;
   /// Serialized size of a part without octets, with the encapsulation.
   virtual std::uint32_t empty_B() const = 0;
+  /// Makes `sample` a whole message. A sample that has been received into may still have the fields of a part.
+  virtual void clear(void* sample) const = 0;
   /// Makes `sample` a part of the message `whole`.
   virtual void put(const void* whole, const Part& part, void* sample) const = 0;
   /// Returns the part that `sample` is; nothing when it is a whole message, or none at all.
@@ -36,6 +38,14 @@ class PartFieldsOf final : public PartFields {
 
   std::uint32_t empty_B() const override {
     return kEncapsulation_B + static_cast<std::uint32_t>(Message::getCdrSerializedSize(Message{}));
+  }
+
+  void clear(void* sample) const override {
+    auto& message = *static_cast<Message*>(sample);
+    message.part_message(0);
+    message.part_number(0);
+    message.part_count(0);
+    message.part_octets().clear();
   }
 
   void put(const void* whole, const Part& part, void* sample) const override {

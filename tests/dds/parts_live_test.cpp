@@ -103,17 +103,19 @@ class PartsLive : public ::testing::Test {
   std::unique_ptr<RunEndpoints> a_, b_;
 };
 
-GuidPrefix prefix_of(Peer& peer) { return dds::prefix_of(peer.participant.domain().participant().guid().guidPrefix); }
+rtps::GuidPrefix prefix_of(Peer& peer) {
+  return dds::prefix_of(peer.participant.domain().participant().guid().guidPrefix);
+}
 
 /// Judges what the writers of `from` have sent.
 void expect_no_fragments(Peer& from) {
   std::size_t largest_B = 0, of_writers = 0;
-  Findings findings;
+  rtps::Findings findings;
   for (const Bytes& bytes : recorded_datagrams()) {
-    if (check_datagram(bytes, findings)) continue;
-    for (const Claim& claim : findings.claims) {
-      if (is_built_in(claim.guid.entity) || claim.guid.prefix != prefix_of(from)) continue;
-      EXPECT_NE(claim.kind, Claim::Kind::kFragments);
+    if (rtps::check_datagram(bytes, findings)) continue;
+    for (const rtps::Claim& claim : findings.claims) {
+      if (rtps::is_built_in(claim.guid.entity) || claim.guid.prefix != prefix_of(from)) continue;
+      EXPECT_NE(claim.kind, rtps::Claim::Kind::kFragments);
       largest_B = std::max(largest_B, bytes.size());
       ++of_writers;
     }
@@ -145,6 +147,29 @@ TEST_F(PartsLive, ArriveThoughAQuarterOfTheDatagramsIsLost) {
   EXPECT_GT(lost_of(a_->peer), 400U) << "or this test shows nothing";
 }
 
+/// A node sends while it has only some parts of what another one sends.
+TEST_F(PartsLive, LeaveNothingInWhatIsSentMeanwhile) {
+  meet(0.25);
+  constexpr std::size_t kBatches = 10;
+  const core::AuraBatch header = batch_of(0, core::RegionId{1});
+  core::Outbox small;  // with the octets of a part in it it would still fit into a datagram
+  small.aura.source = header.source;
+  small.aura.generation = header.generation;
+  small.aura.map_version = header.map_version;
+  for (std::size_t i = 0; i < kBatches; ++i) a_->peer.send_batch(static_cast<core::Step>(i), 3000);
+  Peer &a = a_->peer, &b = b_->peer;
+  std::size_t answers = 0;
+  ASSERT_TRUE(take_until(b, [&] {
+    small.aura.stamp = static_cast<core::Step>(answers++);
+    b.transport.send(small);
+    return b.inbox.auras.size() == kBatches;
+  }));
+  ASSERT_GT(answers, 5U) << "or this test shows nothing";
+  ASSERT_TRUE(take_until(a, [&] { return a.inbox.auras.size() == answers; })) << a.inbox.auras.size();
+  for (const core::AuraBatch& batch : a.inbox.auras) EXPECT_TRUE(batch.updates.empty());
+  EXPECT_EQ(a.transport.counters().aura.refused.total(), 0U);
+}
+
 /// Retransmissions are packed into fewer and larger datagrams there: a handshake has to fit into one.
 TEST_F(PartsLive, ArriveWithKeysThoughAQuarterOfTheDatagramsIsLost) {
   security::ScratchStore scratch;
@@ -161,7 +186,7 @@ TEST_F(PartsLive, ArriveWithKeysThoughAQuarterOfTheDatagramsIsLost) {
   CheckpointBus from(a.participant, core::RegionId{0}), to(b.participant, core::RegionId{1});
   from.use_keepers({core::RegionId{1}}, 0);
   ASSERT_TRUE(holds_in_time([&] { return a.transport.all_matched() && b.transport.all_matched(); }))
-      << text_of(guarded(a.participant).refused) << "; " << guarded(a.participant).passed << " passed";
+      << rtps::text_of(guarded(a.participant).refused) << "; " << guarded(a.participant).passed << " passed";
   const auto begin = Clock::now();
   a.transport.send(large_messages());
   expect_large_messages(b);
