@@ -1,0 +1,136 @@
+// Which clusters leave this region after a state, and to which one.
+#include <algorithm>
+#include <utility>
+
+#include "core/horizon.h"
+#include "core/progress.h"
+#include "core/protocol.h"
+
+namespace aurasim::core {
+
+void Protocol::decide(const Snapshot& snapshot) {
+  decided_.assign(snapshot.bodies.size(), 0);
+  goes_home_.assign(snapshot.bodies.size(), 0);
+  homing_.clear();
+  largest_cluster_ = largest_guest_ = 0;
+  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
+    if (!aura_->warns()) {
+      decide_naively(i, snapshot);
+      continue;
+    }
+    const std::uint32_t cluster = matching_.clusters().of(i);
+    if (!matching_.clusters().is_complete(i) || decided_[cluster]) continue;
+    decided_[cluster] = 1;
+    Progress::mark();
+    const std::size_t size = matching_.clusters().size(i);
+    largest_cluster_ = std::max(largest_cluster_, size);
+    if (size >= RankClaimer::kLeastBodies && size > largest_guest_ && is_abroad(i)) largest_guest_ = size;
+    decide_for_cluster(i, snapshot);
+  }
+  send_home(snapshot);
+}
+
+/// Are two thirds or more of body i's cluster outside our region?
+bool Protocol::is_abroad(std::uint32_t i) const {
+  std::size_t outside = 0;
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += matching_.outside(j) ? 1 : 0; });
+  return 3 * outside >= 2 * matching_.clusters().size(i);
+}
+
+/// Decides AC before BT, because a cluster that an aura has met is never an island.
+void Protocol::decide_for_cluster(std::uint32_t i, const Snapshot& snapshot) {
+  const RegionId pulled_to = matching_.pulled_to(i);
+  if (pulled_to != vicinity_.self) {
+    depart(i, pulled_to, HandOffReason::kAuraCollision, snapshot);
+  } else if (settles_elsewhere(i, snapshot.step)) {
+    homing_.push_back(i);
+    goes_home_[matching_.clusters().of(i)] = 1;
+  }
+}
+
+/// Sends home the clusters that no body that stays here may meet. Others would be pulled back at once.
+void Protocol::send_home(const Snapshot& snapshot) {
+  if (homing_.empty()) return;
+  const Clusters& clusters = matching_.clusters();
+  const auto stays = [&](std::uint32_t other) { return !goes_home_[clusters.of(other)]; };
+  const auto leaves_somebody = [&](std::uint32_t i) {
+    if (!clusters.any_near(i, horizon::kHomewardHops, stays)) return false;
+    goes_home_[clusters.of(i)] = 0;
+    return true;
+  };
+  while (std::erase_if(homing_, leaves_somebody) > 0) Progress::mark();
+  const std::vector<RegionId> dead = intake_.dead_regions();
+  for (const std::uint32_t i : homing_) {
+    const RegionId home = lowest_owner(i);
+    if (vicinity_.is_neighbour(home) && std::ranges::find(dead, home) == dead.end()) {
+      depart(i, home, HandOffReason::kBoundaryTraversal, snapshot);
+    }
+  }
+}
+
+void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
+  const RegionId owner = vicinity_.map.owner(snapshot.bodies[i].pose.p_WB);
+  if (owner != vicinity_.self && vicinity_.is_neighbour(owner)) {
+    depart(i, owner, HandOffReason::kBoundaryTraversal, snapshot);
+  }
+}
+
+/// Has the cluster of body i been an island, without a body that waits for a touch, for 2K+1 states in a row?
+bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
+  bool island = !matching_.touched(i) && !matching_.expected(i);
+  if (island) {
+    matching_.clusters().for_each_member(
+        i, [&](std::uint32_t j) { island = island && matching_.outside(j) && !waits_[j]; });
+  }
+  Step since = 0;
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
+    Track& track = projection_.track(j);
+    if (!island) {
+      track.island_since = -1;
+    } else if (track.island_since < 0) {
+      track.island_since = now;
+    }
+    since = std::max(since, track.island_since);
+  });
+  return island && now - since >= horizon::homecoming(aura_->rules().lookahead);
+}
+
+RegionId Protocol::lowest_owner(std::uint32_t i) const {
+  RegionId lowest{~0u};
+  matching_.clusters().for_each_member(
+      i, [&](std::uint32_t j) { lowest = std::min(lowest, vicinity_.map.owner(matching_.path(j).pose.p_WB)); });
+  return lowest;
+}
+
+void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot) {
+  Departure& departure = departing_.emplace_back();
+  departure.destination = destination;
+  departure.reason = reason;
+  const bool collision = reason == HandOffReason::kAuraCollision;
+  matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
+    departure.bodies.push_back(snapshot.bodies[j].id);
+    projection_.depart(snapshot.bodies[j], j, matching_.clusters(), destination,
+                       collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
+  });
+  std::sort(departure.bodies.begin(), departure.bodies.end());
+}
+
+void Protocol::hand_over(const Departure& departure, ClusterState cluster) {
+  for (BodyRecord& body : cluster.bodies) ++body.epoch;
+  counters_.handed_over += cluster.bodies.size();
+  HandOff hand_off;
+  hand_off.source = vicinity_.self;
+  hand_off.destination = departure.destination;
+  hand_off.generation = settings_.generation;
+  hand_off.redo = settings_.redo;
+  hand_off.stamp = outbox_.aura.stamp;
+  hand_off.map_version = map_version_;
+  hand_off.reason = departure.reason;
+  hand_off.cluster = std::move(cluster);
+  const HandOff& kept = departures_.record(std::move(hand_off));
+  outbox_.hand_offs.push_back(kept);
+  std::erase_if(outbox_.aura.hand_offs, [&](const HandOffMark& m) { return m.destination == kept.destination; });
+  outbox_.aura.hand_offs.push_back({kept.destination, kept.sequence});
+}
+
+}  // namespace aurasim::core

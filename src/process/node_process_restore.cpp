@@ -1,0 +1,154 @@
+// How the nodes go back to a state that is kept, after a death or because a client asks for it: each gets the parts of
+// all regions, puts the world together, and computes on from there.
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "config/launch_variants.h"
+#include "cut/saved_world.h"
+#include "host/stop_signal.h"
+#include "process/node_process.h"
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Kind = dds::Checkpoint::Kind;
+
+constexpr auto kRestoreRound = 5ms;
+constexpr auto kPatienceWithParts = 10s;
+
+}  // namespace
+
+/// Goes back to the state that the restore names. Throws SomebodyDied when a node dies meanwhile.
+void NodeProcess::go_back(const dds::RunCommand& restore) {
+  restoring_ = restore.generation;
+  is_going_back_ = true;
+  take_map_of(restore);
+  std::map<core::RegionId, std::string> parts;
+  const core::WorldCut world = gather(restore, parts);
+  waits_to_start_ = restore.generation;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  connect_anew(transport_settings(), [&](const char* for_what) { wait_in_recovery(deadline, for_what); });
+  begin_restored(restore, world, parts);
+  is_going_back_ = false;
+}
+
+/// Takes the scene and the regions that the run goes on with from the published map.
+void NodeProcess::take_map_of(const dds::RunCommand& restore) {
+  const dds::WorldMap* map = nullptr;
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  while (map == nullptr) {
+    for (const auto& [version, known] : control_.maps()) {
+      if (known.generation == restore.generation && known.agreement == status_.agreement) map = &known;
+    }
+    if (map == nullptr) wait_in_recovery(deadline, "the map");
+  }
+  if (map->scene != launch_.scene.name) launch_ = config::with_scene(launch_, map->scene);
+  if (map->map_version != launch_.regions.version()) launch_ = config::with_regions(launch_, map->regions);
+  status_.map_version = launch_.regions.version();
+  status_.footprint = launch_.regions.region(options_.region);
+  control_.use_map(launch_.regions.version());
+  open_ros2();
+  if (observers_ && command_server_ && programs_ && served_map_ == launch_.regions.version()) return;
+  observers_.emplace(launch_, *participant_, options_.region);
+  command_server_.emplace(launch_, *participant_, options_.region, options_.saves);
+  programs_.emplace(*participant_);
+  served_map_ = launch_.regions.version();
+}
+
+void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
+  if (host::stop_requested()) throw SomebodyDied("told to stop");
+  if (fence_.closed()) throw SomebodyDied(fence_.reason());
+  if (!broken_off_.empty()) throw SomebodyDied(broken_off_);
+  if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));
+  execute_commands();
+  look_for_deaths();
+  publish();
+  control_.wait(kRestoreRound);
+}
+
+/// Puts the world together from all parts, with all orders that any node knows by now.
+core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  const std::size_t regions = launch_.regions.size();
+  const auto deadline = Clock::now() + kPatienceWithParts;
+  const auto give = [&](core::RegionId region, Kind kind, const std::string& octets) {
+    checkpoints_->give({region, kind, restore.generation, restore.at_step, octets});
+  };
+  core::WorldCut whole;
+  if (from_first) {
+    whole = options_.world ? *options_.world : node::first_world(launch_.scene, launch_.lookahead(), launch_.step_s());
+  } else {
+    for (std::uint32_t r = 0; r < regions; ++r) {
+      const core::RegionId region{r};
+      if (restore.members[r].holder != options_.region) continue;
+      if (const std::string* octets = checkpoints_->find(region, restore.at_step)) give(region, Kind::kGoBack, *octets);
+    }
+    while (checkpoints_->given(restore.generation, Kind::kGoBack).size() < regions) {
+      wait_in_recovery(deadline, "the parts of the world");
+    }
+    parts = checkpoints_->given(restore.generation, Kind::kGoBack);
+    std::vector<core::WorldCut> cuts;
+    for (const auto& [region, octets] : parts) cuts.push_back(decode_part(octets));
+    whole = core::merge(std::move(cuts));
+  }
+  std::size_t survivors = 0;
+  for (const dds::RunCommand::Member& member : restore.members) survivors += member.survives;
+  if (restore.members.at(core::value_of(options_.region)).survives && node_) {
+    give(options_.region, Kind::kOrders, cut::encode(saving_.as_saved(node_->orders_now(whole))));
+  }
+  while (checkpoints_->given(restore.generation, Kind::kOrders).size() < survivors) {
+    wait_in_recovery(deadline, "the orders that others know");
+  }
+  std::vector<core::WorldCut> all = {std::move(whole)};
+  for (const auto& [region, octets] : checkpoints_->given(restore.generation, Kind::kOrders)) {
+    all.push_back(decode_part(octets));
+  }
+  return core::merge(std::move(all));
+}
+
+core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
+  cut::SavedWorld part = cut::decode(octets);
+  const std::string differs = cut::check_identity("checkpoint", part.identity, cut::identity_of(launch_), true);
+  if (!differs.empty()) spdlog::warn("region {}: {}: bits may differ", core::value_of(options_.region), differs);
+  return std::move(part.cut);
+}
+
+/// Opens the records to go on after state `step`. The run goes on even if that fails.
+void NodeProcess::record_after(std::optional<core::Step> step) {
+  recorder_.reset();  // or it would write the rest of its rows into the files of the next
+  if (!options_.report) return;
+  try {
+    recorder_.emplace(*options_.report, options_.region, step);
+  } catch (const std::runtime_error& error) {
+    fault_ = fmt::format("nothing is recorded from here on: {}", error.what());
+    spdlog::error("region {}: {}", core::value_of(options_.region), fault_);
+  }
+}
+
+void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+                                 const std::map<core::RegionId, std::string>& parts) {
+  const bool from_first = restore.count == 1;
+  node_ = make_node();
+  life_of_node_ = life_;
+  command_server_->go_back(*node_, generation_);
+  record_after(from_first ? std::nullopt : std::optional(restore.at_step));
+  pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
+  status_.rate = restore.rate;
+  fence_.begin_anew();
+  checkpoints_->go_back(restore.era, restore.at_step, parts);
+  status_.era = restore.era;
+  reset_.reset();
+  if (restore.region != options_.region) hold_at_.reset();  // the node that sent the restore repeats the pause
+  if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
+  begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
+  const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();
+  notice_ = fmt::format("went back to state {} after {:.2f} s", node_->current_step(), stood_s);
+  spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+}
+
+}  // namespace aurasim::process
