@@ -14,9 +14,6 @@
 namespace aurasim::dds {
 namespace {
 
-/// Most rows in one message: both fit into a datagram of 64 kB.
-constexpr std::size_t kBodiesAtOnce = 800, kJointsAtOnce = 500;
-
 /// Most programs whose last message number a node remembers: more than steer one run.
 constexpr std::size_t kMostPrograms = 1024;
 
@@ -104,21 +101,9 @@ SetpointWriter::~SetpointWriter() = default;
 
 void SetpointWriter::send(core::Setpoints setpoints) {
   impl_->participant.progress();
-  const std::vector<core::BodySetpoint> bodies = std::move(setpoints.bodies);
-  const std::vector<core::JointSetpoint> joints = std::move(setpoints.joints);
-  std::size_t body = 0, joint = 0;
-  do {
-    const std::size_t next_body = std::min(bodies.size(), body + kBodiesAtOnce);
-    const std::size_t next_joint = std::min(joints.size(), joint + (body == next_body ? kJointsAtOnce : 0));
-    setpoints.client = impl_->client;
-    setpoints.sequence = ++impl_->sequence;
-    setpoints.bodies.assign(bodies.begin() + static_cast<std::ptrdiff_t>(body),
-                            bodies.begin() + static_cast<std::ptrdiff_t>(next_body));
-    setpoints.joints.assign(joints.begin() + static_cast<std::ptrdiff_t>(joint),
-                            joints.begin() + static_cast<std::ptrdiff_t>(next_joint));
-    body = next_body, joint = next_joint;
-    impl_->write(setpoints);
-  } while (body < bodies.size() || joint < joints.size());
+  setpoints.client = impl_->client;
+  setpoints.sequence = ++impl_->sequence;
+  impl_->write(setpoints);
 }
 
 core::ProgramWord SetpointWriter::last_word() const { return {impl_->client, impl_->sequence}; }

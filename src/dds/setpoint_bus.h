@@ -39,7 +39,7 @@ class SetpointWriter {
   explicit SetpointWriter(Participant& participant);
   ~SetpointWriter();
 
-  /// Publishes setpoints; fills in their number and sender. Large ones go in several messages. Throws DdsError when the
+  /// Publishes setpoints; fills in their number and sender. Throws DdsError when the
   /// write failed.
   void send(core::Setpoints setpoints);
   /// The last message that was sent; number 0: none was.

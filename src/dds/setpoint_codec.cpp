@@ -49,7 +49,7 @@ std::optional<WireError> check_statics(const wire::Setpoints& in) {
 
 std::optional<WireError> check_rows(const wire::Setpoints& in, const Expected& expected) {
   const std::size_t bodies = in.body().size(), joints = in.joint().size();
-  if (bodies + joints > core::limits::kMostSetpoints) return WireError::kTooLarge;
+  if (std::max(bodies, joints) > core::limits::kMostSetpoints) return WireError::kTooLarge;
   if (!same_rows(bodies, {{in.quantity().size()}, {in.value().size(), 3}}) ||
       !same_rows(joints, {{in.let_go().size()}, {in.drive().size(), kDriveNumbers}})) {
     return WireError::kLength;
