@@ -186,8 +186,10 @@ bool Launch::redoes() const {
   return on && regions.size() > 1;
 }
 
+bool Launch::recovers() const { return survival.on_death == OnDeath::kRecover && regions.size() > 1; }
+
 core::Step Launch::checkpoint_steps() const {
-  if (survival.on_death != OnDeath::kRecover || regions.size() == 1) return 0;
+  if (!recovers()) return 0;
   return std::max<core::Step>(1, std::llround(survival.checkpoint_s * time.step_hz));
 }
 

@@ -153,6 +153,8 @@ struct Launch {
   int lookahead() const;
   /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;
+  /// True when the run goes on after a death: it takes another node to keep the dead one's parts.
+  bool recovers() const;
   /// Number of states from one cut to the next; 0: no cuts.
   core::Step checkpoint_steps() const;
   core::ControlRules control_rules() const;

@@ -49,10 +49,10 @@ const char* problem_with_folder(const fs::path& folder) {
 }
 
 /// Whole worlds of a run in its own folder. Worlds of other runs found there are named in `ignored`.
-std::vector<cut::StoredWorld> kept_by(const fs::path& folder, std::uint64_t run, std::vector<std::string>& ignored) {
-  cut::PartStore::Listing listing = cut::PartStore(folder).list();
+std::vector<StoredWorld> kept_by(const fs::path& folder, std::uint64_t run, std::vector<std::string>& ignored) {
+  PartStore::Listing listing = PartStore(folder).list();
   ignored.insert(ignored.end(), listing.ignored.begin(), listing.ignored.end());
-  std::erase_if(listing.whole, [&](const cut::StoredWorld& world) {
+  std::erase_if(listing.whole, [&](const StoredWorld& world) {
     if (world.header.run == run) return false;
     ignored.push_back(fmt::format("{}: of another run, {:016x}", world.file.string(), world.header.run));
     return true;
@@ -95,26 +95,26 @@ std::string world_to_resume(const config::Launch& launch, const SaveArguments& s
   SaveArguments there = save;
   there.folder_is_given = true;
   const std::optional<fs::path> kept = kept_folder(launch, there);
-  std::vector<cut::StoredWorld> worlds = cut::PartStore(save.folder).list().whole;
+  std::vector<StoredWorld> worlds = PartStore(save.folder).list().whole;
   std::vector<std::string> ignored;
   std::error_code no_folder;
   for (const auto& entry : fs::directory_iterator(kept.value_or(save.folder), no_folder)) {
     const std::optional<std::uint64_t> run = run_of(entry.path());
     if (!run) continue;
-    for (cut::StoredWorld& world : kept_by(entry.path(), *run, ignored)) worlds.push_back(std::move(world));
+    for (StoredWorld& world : kept_by(entry.path(), *run, ignored)) worlds.push_back(std::move(world));
   }
-  std::erase_if(worlds, [wanted = launch.world_identity()](const cut::StoredWorld& world) {
+  std::erase_if(worlds, [wanted = launch.world_identity()](const StoredWorld& world) {
     return world.header.identity.world != wanted;
   });
-  std::ranges::stable_sort(worlds, cut::is_newer);
+  std::ranges::stable_sort(worlds, is_newer);
   std::optional<std::string> found;
-  for (const cut::StoredWorld& world : worlds) {
+  for (const StoredWorld& world : worlds) {
     try {
-      cut::PartStore::read(world);
+      PartStore::read(world);
       found = world.file.string();
       spdlog::info("goes on from state {}: {}", world.header.cut.step, *found);
       break;
-    } catch (const cut::BadCut& bad) {
+    } catch (const BadCut& bad) {
       ignored.emplace_back(bad.what());
     }
   }
@@ -148,7 +148,7 @@ void conclude_kept(const config::Launch& launch, const SaveArguments& save, std:
   const std::optional<fs::path> kept = kept_folder(launch, save);
   if (!kept) return;
   const fs::path folder = kept_folder_of(*kept, run);
-  std::optional<cut::StoredWorld> newest;
+  std::optional<StoredWorld> newest;
   if (may_go_on) newest = newest_saved_world({folder}, {launch.world_identity(), {run}, launch_command(launch)});
   std::error_code ignored;
   if (!newest) {

@@ -50,13 +50,13 @@ void PartWriter::write(core::WorldCut part, const config::Launch& launch, const 
 
 void PartWriter::write(core::WorldCut part, const config::Launch& launch, const SaveOf& of, SaveKind kind,
                        std::uint64_t request, const std::string& world) {
-  cut::SavedWorld saved{.identity = identity_of(launch),
-                        .part = core::value_of(region_),
-                        .parts = static_cast<std::uint32_t>(launch.regions.size()),
-                        .save = save_number(of.life, request, kind, part.step),
-                        .cut = std::move(part),
-                        .run = of.run,
-                        .saved_ms = wall_clock_ms()};
+  SavedWorld saved{.identity = identity_of(launch),
+                   .part = core::value_of(region_),
+                   .parts = static_cast<std::uint32_t>(launch.regions.size()),
+                   .save = save_number(of.life, request, kind, part.step),
+                   .cut = std::move(part),
+                   .run = of.run,
+                   .saved_ms = wall_clock_ms()};
   Save save{.number = saved.save,
             .kind = kind,
             .request = request,
@@ -68,7 +68,7 @@ void PartWriter::write(core::WorldCut part, const config::Launch& launch, const 
   limit_open(kind);
   writing_.push_back({save.number, std::async(std::launch::async, [save, saved = std::move(saved)]() mutable {
                         try {
-                          const cut::PartStore store(std::filesystem::absolute(save.folder));
+                          const PartStore store(std::filesystem::absolute(save.folder));
                           save.file = store.write(save.world, saved);
                         } catch (const std::exception& error) {
                           save.error = error.what();
@@ -139,7 +139,7 @@ void PartWriter::note_whole(const Save& whole) {
   std::vector<std::uint64_t> stay = {whole.number};
   for (const Save& later : open_) stay.push_back(later.number);
   if (is_kept) std::ranges::transform(whole_[SaveKind::kKept], std::back_inserter(stay), &Save::number);
-  cut::PartStore(whole.folder).remove_others(is_kept ? "" : whole.world, core::value_of(region_), stay);
+  PartStore(whole.folder).remove_others(is_kept ? "" : whole.world, core::value_of(region_), stay);
   if (whole.kind == SaveKind::kAsked) return;
   const Failing before = std::exchange(failing_[whole.kind], Failing::kNo);
   if (before == Failing::kSaid) words_.push_back(fmt::format("state {} is saved again", whole.step));

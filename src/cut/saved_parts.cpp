@@ -16,7 +16,7 @@ PutTogether put_together(const std::vector<std::string>& parts, const std::strin
   };
   if (!std::ranges::all_of(files, is_beside)) return {};
   const std::filesystem::path file = folder / name;
-  cut::write_cut(file, cut::merge_cuts(files));
+  write_cut(file, merge_cuts(files));
   for (const std::filesystem::path& part : files) {
     if (!std::filesystem::equivalent(part, file)) std::filesystem::remove(part);
   }

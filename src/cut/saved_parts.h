@@ -13,7 +13,7 @@ struct PutTogether {
 };
 
 /// If all parts are in one folder of this host, writes them there into one file called `name` and removes the parts.
-/// Throws cut::BadCut or std::runtime_error.
+/// Throws BadCut or std::runtime_error.
 PutTogether put_together(const std::vector<std::string>& parts, const std::string& name);
 
 }  // namespace aurasim::cut

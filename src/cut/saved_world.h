@@ -15,7 +15,7 @@
 
 namespace aurasim::cut {
 
-cut::Identity identity_of(const config::Launch& launch);
+Identity identity_of(const config::Launch& launch);
 
 /// Command-line options for the saved world that a run begins with.
 struct LoadArguments {
@@ -44,8 +44,7 @@ struct SavedBy {
 
 /// The newest whole and readable world of the run on this host, in `folders`: saved worlds, and states kept on disk.
 /// Nothing if there is none.
-std::optional<cut::StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders,
-                                                   const SavedBy& by);
+std::optional<StoredWorld> newest_saved_world(const std::vector<std::filesystem::path>& folders, const SavedBy& by);
 
 /// Message for users: how the run goes on from the newest of its worlds on this host.
 std::string say_newest_saved(const std::vector<std::filesystem::path>& folders, const SavedBy& by);

@@ -43,7 +43,7 @@ bool is_of_nodes(TopicId topic) {
 /// Bytes that a datagram has beside the payload of a sample: RTPS header, destination, time, heartbeat, statistics, and
 /// the head of the sample.
 constexpr std::uint32_t kHeaders_B = 200;
-/// What keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
+/// Bytes that keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
 constexpr std::uint32_t kCryptoHeaders_B = 128, kCryptoOfAReader_B = 20;
 
 const PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSupport& type) {

@@ -49,7 +49,7 @@ class PartAssembly {
  public:
   using Time = PartLimits::Time;  ///< time of any monotonic clock
 
-  /// What comes from one writer to one reader.
+  /// The messages from one writer to one reader.
   struct Stream {
     std::array<std::uint8_t, 12> process{};  ///< of the writer
     std::uint64_t endpoints = 0;             ///< writer and reader

@@ -43,7 +43,7 @@ nlohmann::json result_of(const steering::Delivery& delivery) {
 
 }  // namespace
 
-void RunCommandSink::submit(overseer::Request request) {
+void RunCommandSink::submit(Request request) {
   if (const auto* steered = std::get_if<steering::Steer>(&request.ask.what)) return steer(request, *steered);
   if (const auto* drained = std::get_if<steering::Drain>(&request.ask.what)) return drain(request, drained->region);
   held_.push_back({std::move(request), Clock::now() + kPatienceForListeners});
@@ -61,7 +61,7 @@ void RunCommandSink::carry_held() {
   }
 }
 
-bool RunCommandSink::waits_for_parts(const overseer::Request& request) {
+bool RunCommandSink::waits_for_parts(const Request& request) {
   const core::MeshRef* const ref = core::mesh_in(std::get<core::Ask>(request.ask.what));
   if (ref == nullptr || ref->use != core::MeshUse::kDecomposition) return false;
   const auto mesh = shapes_.find(ref->hash);
@@ -79,11 +79,11 @@ core::MeshRef RunCommandSink::parts_of(std::uint64_t hash, const std::shared_ptr
   return {hash_of_parts, core::MeshUse::kDecomposition};
 }
 
-void RunCommandSink::refuse(const overseer::Request& request, std::string why) {
+void RunCommandSink::refuse(const Request& request, std::string why) {
   replies_.push_back({request.client, request.id, false, std::move(why), nullptr});
 }
 
-void RunCommandSink::steer(const overseer::Request& request, const steering::Steer& steer) {
+void RunCommandSink::steer(const Request& request, const steering::Steer& steer) {
   if (!steering_.is_there()) return refuse(request, "no node of this run is there");
   if (steer.kind == dds::RunCommandKind::kStep && !steering_.is_paused()) {
     return refuse(request, "steps are for a run that is paused");
@@ -96,7 +96,7 @@ void RunCommandSink::steer(const overseer::Request& request, const steering::Ste
   }
 }
 
-void RunCommandSink::drain(const overseer::Request& request, core::RegionId region) {
+void RunCommandSink::drain(const Request& request, core::RegionId region) {
   try {
     leaving_.push_back({request.client, request.id, steering::Draining(control_, region), region,
                         Clock::now() + kPatienceForSuccessor});
@@ -118,7 +118,7 @@ void RunCommandSink::bring_mesh_of(core::Ask& ask) {
   }
 }
 
-void RunCommandSink::carry(const overseer::Request& request) {
+void RunCommandSink::carry(const Request& request) {
   try {
     if (!steering_.is_there()) throw BadAsk("no node of this run is there");
     steering::Ask ask = request.ask;
@@ -146,7 +146,7 @@ void RunCommandSink::reply_to_drains() {
   });
 }
 
-std::vector<overseer::Reply> RunCommandSink::take_replies() {
+std::vector<Reply> RunCommandSink::take_replies() {
   carry_held();
   reply_to_drains();
   for (const steering::Delivery& delivery : client_.take()) {

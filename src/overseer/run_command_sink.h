@@ -18,58 +18,58 @@
 
 namespace aurasim::overseer {
 
-class RunCommandSink final : public overseer::CommandSink {
+class RunCommandSink final : public CommandSink {
  public:
   /// All arguments must outlive this object.
   RunCommandSink(const config::Launch& launch, dds::Participant& participant, dds::ControlBus& control,
-                 const overseer::ShapeStore& shapes)
+                 const ShapeStore& shapes)
       : launch_(launch),
         control_(control),
         steering_(launch, control),
         client_(participant, control, launch.agreement()),
         shapes_(shapes) {}
 
-  void submit(overseer::Request request) override;
-  std::vector<overseer::Reply> take_replies() override;
+  void submit(Request request) override;
+  std::vector<Reply> take_replies() override;
 
  private:
   struct UnderWay {
-    overseer::ClientId client{};
+    ClientId client{};
     std::string request;
     dds::RunCommand command;
     std::chrono::steady_clock::time_point deadline;
   };
   struct Leaving {
-    overseer::ClientId client{};
+    ClientId client{};
     std::string request;
     steering::Draining drain;
     core::RegionId region{};
     std::chrono::steady_clock::time_point deadline;
   };
-  void steer(const overseer::Request& request, const steering::Steer& steer);
-  void drain(const overseer::Request& request, core::RegionId region);
-  void refuse(const overseer::Request& request, std::string why);
+  void steer(const Request& request, const steering::Steer& steer);
+  void drain(const Request& request, core::RegionId region);
+  void refuse(const Request& request, std::string why);
   void reply_to_drains();
 
   struct Sent {
-    overseer::ClientId client{};
+    ClientId client{};
     std::string request;
   };
   struct Held {
-    overseer::Request request;
+    Request request;
     std::chrono::steady_clock::time_point deadline;
   };
   void carry_held();
-  bool waits_for_parts(const overseer::Request& request);
+  bool waits_for_parts(const Request& request);
   core::MeshRef parts_of(std::uint64_t hash, const std::shared_ptr<const core::TriangleMesh>& mesh);
-  void carry(const overseer::Request& request);
+  void carry(const Request& request);
   void bring_mesh_of(core::Ask& ask);
 
   const config::Launch& launch_;
   dds::ControlBus& control_;
   steering::RunSteering steering_;
   steering::CommandClient client_;
-  const overseer::ShapeStore& shapes_;
+  const ShapeStore& shapes_;
   PartFinder part_finder_;
   /// Requests held until all nodes have discovered this process, which takes a moment at its start, or until a mesh has
   /// been taken apart.
@@ -77,7 +77,7 @@ class RunCommandSink final : public overseer::CommandSink {
   std::map<std::uint64_t, Sent> sent_;
   std::vector<UnderWay> under_way_;
   std::list<Leaving> leaving_;
-  std::vector<overseer::Reply> replies_;
+  std::vector<Reply> replies_;
 };
 
 }  // namespace aurasim::overseer

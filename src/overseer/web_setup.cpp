@@ -31,7 +31,7 @@ std::vector<std::string> scenes_beside(const std::filesystem::path& scene_file) 
   return names;
 }
 
-std::string address_of(const overseer::WebSettings& settings, std::uint16_t port) {
+std::string address_of(const WebSettings& settings, std::uint16_t port) {
   const bool everywhere = settings.bind == "0.0.0.0" || settings.bind == "::";
   const bool v6 = settings.bind.find(':') != std::string::npos;
   const std::string host = everywhere ? "127.0.0.1" : v6 ? "[" + settings.bind + "]" : settings.bind;
@@ -88,8 +88,8 @@ void WebArguments::add_to(CLI::App& command) {
 void check_tls_of(const config::Launch& launch) {
   if (!launch.overseer.tls) return;
   try {
-    overseer::check_tls(*launch.overseer.tls);
-  } catch (const overseer::BadTls& error) {
+    check_tls(*launch.overseer.tls);
+  } catch (const BadTls& error) {
     throw config::BadConfig(
         {fmt::format("{}: overseer.tls.{}: {}", place_in(launch.file, error.key()), error.key(), error.what())});
   }
@@ -104,8 +104,8 @@ std::optional<config::Tls> tls_of(const config::Launch& launch, const WebArgumen
   }
   const config::Tls tls{arguments.tls_certificate, arguments.tls_key};
   try {
-    overseer::check_tls(tls);
-  } catch (const overseer::BadTls& error) {
+    check_tls(tls);
+  } catch (const BadTls& error) {
     throw config::BadConfig({fmt::format("--tls-{}: {}", error.key(), error.what())});
   }
   return tls;
@@ -113,36 +113,34 @@ std::optional<config::Tls> tls_of(const config::Launch& launch, const WebArgumen
 
 }  // namespace
 
-overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments) {
-  overseer::WebSettings settings;
+WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments) {
+  WebSettings settings;
   settings.bind = arguments.bind.empty() ? launch.overseer.bind : arguments.bind;
   settings.port = static_cast<std::uint16_t>(arguments.port < 0 ? launch.overseer.port : arguments.port);
   settings.tls = tls_of(launch, arguments);
-  const bool is_reached_by_others = !overseer::is_loopback_address(settings.bind);
+  const bool is_reached_by_others = !is_loopback_address(settings.bind);
   if (is_reached_by_others) settings.names = own_names();
   settings.names.insert(settings.names.end(), arguments.names.begin(), arguments.names.end());
   settings.view_token = arguments.anyone_may_look ? "" : arguments.view_token;
   if (settings.view_token.empty() && is_reached_by_others && !arguments.anyone_may_look)
-    settings.view_token = overseer::make_token();
+    settings.view_token = make_token();
   settings.token = arguments.token;
-  if (settings.token.empty() && (is_reached_by_others || !settings.view_token.empty()))
-    settings.token = overseer::make_token();
+  if (settings.token.empty() && (is_reached_by_others || !settings.view_token.empty())) settings.token = make_token();
   settings.pages = arguments.pages.empty() ? config::shipped_page() : std::filesystem::path(arguments.pages);
   settings.scenes = scenes_beside(launch.scene_file);
   return settings;
 }
 
-std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, const WebArguments& given,
-                                                     overseer::ShapeStore& shapes) {
-  std::unique_ptr<overseer::WebServer> server;
+std::unique_ptr<WebServer> open_web_server(WebSettings settings, const WebArguments& given, ShapeStore& shapes) {
+  std::unique_ptr<WebServer> server;
   std::string remark;  // printed with the address, because launch shows that line below its table all the time
   try {
-    server = std::make_unique<overseer::WebServer>(settings, shapes);
-  } catch (const overseer::CannotListen& error) {
+    server = std::make_unique<WebServer>(settings, shapes);
+  } catch (const CannotListen& error) {
     if (!error.port_is_taken()) throw;
     remark = fmt::format(" (port {} is taken)", settings.port);
     settings.port = 0;
-    server = std::make_unique<overseer::WebServer>(settings, shapes);
+    server = std::make_unique<WebServer>(settings, shapes);
   }
   std::error_code missing;
   if (!std::filesystem::is_regular_file(settings.pages / "index.html", missing)) {

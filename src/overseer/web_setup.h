@@ -32,12 +32,11 @@ void check_tls_of(const config::Launch& launch);
 
 /// Settings of the web server. Draws the needed tokens that were not given. Throws as check_tls_of() does, also for
 /// files that the command line names.
-overseer::WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments);
+WebSettings web_settings(const config::Launch& launch, const WebArguments& arguments);
 
 /// Opens the server. Prints the address, and the tokens that were drawn; given tokens are not printed, because the
 /// output may be stored. If the wanted port is taken, it uses another one and says so.
-std::unique_ptr<overseer::WebServer> open_web_server(overseer::WebSettings settings, const WebArguments& given,
-                                                     overseer::ShapeStore& shapes);
+std::unique_ptr<WebServer> open_web_server(WebSettings settings, const WebArguments& given, ShapeStore& shapes);
 
 /// Checks the recording's file. Throws std::runtime_error when it cannot be written.
 void check_recording(const std::filesystem::path& file);

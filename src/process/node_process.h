@@ -107,7 +107,7 @@ class NodeProcess {
   void keep_parts();
   void note_words_of_saves();
   void conclude_saves();
-  bool recovers() const { return process::recovers(launch_); }
+  bool recovers() const { return launch_.recovers(); }
   std::optional<std::string> death();
   void look_for_deaths();
   bool has_successor();

@@ -11,10 +11,6 @@
 
 namespace aurasim::process {
 
-bool recovers(const config::Launch& launch) {
-  return launch.survival.on_death == config::OnDeath::kRecover && launch.regions.size() > 1;
-}
-
 cut::SaveOf Saving::save_of() const { return {options_.run != 0 ? options_.run : start_, start_ + generation_}; }
 
 cut::SavedBy Saving::saved_by() const { return {launch_.world_identity(), runs_, cut::launch_command(launch_)}; }
@@ -43,7 +39,7 @@ void Saving::change_map(std::uint64_t start, core::Generation generation) {
 /// Number of states between two kept states; 0 if none is kept. A run of one node has no keeper, so its states are kept
 /// on disk only.
 core::Step Saving::kept_every() const {
-  if (recovers(launch_)) return launch_.checkpoint_steps();
+  if (launch_.recovers()) return launch_.checkpoint_steps();
   return options_.kept && launch_.regions.size() == 1 ? cut::kept_steps(launch_) : 0;
 }
 
@@ -60,7 +56,7 @@ void Saving::keep_parts(node::Node& node, CommandServer& server, Checkpoints& ch
   for (core::WorldCut& part : node.take_saved()) {
     const core::Step step = part.step;
     if (const core::Step every = kept_every(); every > 0 && step % every == 0) {
-      if (recovers(launch_)) checkpoints.add(as_saved(part), step + launch_.lookahead());
+      if (launch_.recovers()) checkpoints.add(as_saved(part), step + launch_.lookahead());
       keep_on_disk(part, server);
     }
     if (!writer_.expects(step)) continue;

@@ -99,8 +99,4 @@ class Saving {
   std::vector<std::string> words_;
 };
 
-/// True if a run with this launch goes on after a death (survival.on_death: recover): it takes another node to keep a
-/// dead one's parts.
-bool recovers(const config::Launch& launch);
-
 }  // namespace aurasim::process

@@ -13,7 +13,7 @@ namespace {
 using MeshOrWhy = std::variant<core::TriangleMesh, std::string>;
 
 core::TriangleMesh sound(MeshOrWhy mesh, const std::string& file) {
-  if (const auto* why = std::get_if<std::string>(&mesh)) throw steering::BadAsk(file + ": " + *why);
+  if (const auto* why = std::get_if<std::string>(&mesh)) throw BadAsk(file + ": " + *why);
   return std::get<core::TriangleMesh>(std::move(mesh));
 }
 
@@ -26,8 +26,8 @@ void bring_mesh(const std::string& file, core::MeshRef& ref, CommandClient& clie
 
 }  // namespace
 
-core::Command command_of(steering::Ask ask, const core::Scene& scene, CommandClient& client) {
-  steering::look_up_static(ask, scene);
+core::Command command_of(Ask ask, const core::Scene& scene, CommandClient& client) {
+  look_up_static(ask, scene);
   core::Command command;
   command.at_step = ask.at_step;
   command.ask = std::get<core::Ask>(std::move(ask.what));

@@ -7,7 +7,7 @@
 namespace aurasim::steering {
 
 /// The command that `ask` is. Looks the static up in `scene`, and sends the mesh of `ask.mesh_file` (OBJ, STL or glTF),
-/// or its convex parts, to the nodes. Throws steering::BadAsk. Precondition: the ask is a core::Ask.
-core::Command command_of(steering::Ask ask, const core::Scene& scene, CommandClient& client);
+/// or its convex parts, to the nodes. Throws BadAsk. Precondition: the ask is a core::Ask.
+core::Command command_of(Ask ask, const core::Scene& scene, CommandClient& client);
 
 }  // namespace aurasim::steering

@@ -49,7 +49,7 @@ std::string problem_with_radius(double radius_m, const config::Launch& launch) {
 std::string problem_with_known_shape(const std::optional<core::Shape>& shape, bool is_body,
                                      const config::Launch& launch) {
   if (!shape) return "nobody knows its shape";
-  std::string why = steering::problem_with_shape(*shape, is_body);
+  std::string why = problem_with_shape(*shape, is_body);
   if (!why.empty() || !is_body) return why;
   return problem_with_radius(core::bounding_radius(*shape), launch);
 }
@@ -137,7 +137,7 @@ std::string problem_with(const core::Command& command, const CommandContext& con
   if (command.at_step > context.now + kMostStepsAhead) {
     return fmt::format("state {} is more than {} ahead", command.at_step, kMostStepsAhead);
   }
-  if (std::string why = steering::problem_with(command.ask); !why.empty()) return why;
+  if (std::string why = problem_with(command.ask); !why.empty()) return why;
   return std::visit(ProblemOfRun{context}, command.ask);
 }
 
