@@ -33,15 +33,13 @@ before(async () => {
   page = await open();
 });
 beforeEach(async () => {
-  // A step that ends just now makes a run that stands look as if it went on: looked at until it does.
-  await until(async () => {
-    if (witness.status.state === "paused") {
-      await run.send("resume");
-      await until(() => witness.status.state !== "paused", "a run that has heard it");
-    }
-    return page.isClosed() || page.evaluate(() =>
-      window.aurasim.status?.state === "running" && document.querySelector('button[aria-label="Pause (space)"]') !== null);
-  }, "a run that goes on");
+  // A single step that ends just now makes a run that stands look as if it went on. So it is always told to go on, and
+  // what the page says of it has to be from later steps than a test before has asked for.
+  await run.send("resume");
+  const later = witness.world.stamp + 20;
+  await until(async () => witness.status.state === "running" && witness.status.step > later && (page.isClosed() ||
+    page.evaluate((step) => window.aurasim.status?.state === "running" && window.aurasim.status.step > step &&
+      document.querySelector('button[aria-label="Pause (space)"]') !== null, later)), "a run that goes on");
   if (page.isClosed()) return;
   await page.evaluate(() => document.querySelectorAll(".toast").forEach((toast) => toast.remove()));
   page.errors.length = 0;
