@@ -26,7 +26,7 @@ namespace {
 using namespace std::chrono_literals;
 using client::Message;
 using nlohmann::json;
-using Steer = dds::RunCommandKind;
+using Steer = messages::RunCommandKind;
 
 constexpr auto kLookEvery = 20ms;
 

@@ -80,15 +80,15 @@ client::Message state_message(const WorldState& state, double step_s) {
   return message;
 }
 
-json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes) {
+json nodes_json(const std::map<core::RegionId, messages::SeenStatus>& nodes) {
   json all = json::array();
   for (const auto& [region, seen] : nodes) {
-    const dds::Status& status = seen.status;
-    const dds::Violations& v = status.violations;
+    const messages::Status& status = seen.status;
+    const messages::Violations& v = status.violations;
     json dead = json::array();
     for (const core::RegionId other : status.dead) dead.push_back(core::value_of(other));
     all.push_back({{"region", core::value_of(region)},
-                   {"state", seen.lost && !seen.has_ended() ? "lost" : dds::name_of(status.state)},
+                   {"state", seen.lost && !seen.has_ended() ? "lost" : messages::name_of(status.state)},
                    {"pid", status.pid},
                    {"step", status.step},
                    {"generation", status.generation},

@@ -7,7 +7,7 @@
 namespace aurasim::agent {
 
 client::Message state_message(const WorldState& state, double step_s);
-nlohmann::json nodes_json(const std::map<core::RegionId, dds::SeenStatus>& nodes);
+nlohmann::json nodes_json(const std::map<core::RegionId, messages::SeenStatus>& nodes);
 nlohmann::json info_json(const RunLink& run);
 /// Answer for any command but a ray or a save. It has a key `refused` if the command was not executed. Throws Problem
 /// if no reply says why.

@@ -15,7 +15,7 @@ namespace aurasim::agent {
 namespace {
 
 using namespace std::chrono_literals;
-using Steer = dds::RunCommandKind;
+using Steer = messages::RunCommandKind;
 
 constexpr auto kPatienceWithObservation = 5s;  ///< for observations that a node does not send
 constexpr std::size_t kMostObservers = 16;     ///< of one client
@@ -144,8 +144,8 @@ void RunLink::meet(const Patience& patience) {
     return steering_.is_complete() && watch_.nodes().size() >= launch_.regions.size() &&
            std::ranges::all_of(live,
                                [this](core::RegionId region) {
-                                 const dds::NodeState state = watch_.nodes().at(region).status.state;
-                                 return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
+                                 const messages::NodeState state = watch_.nodes().at(region).status.state;
+                                 return state == messages::NodeState::kRunning || state == messages::NodeState::kPaused;
                                }) &&
            !live.empty();
   };
@@ -180,7 +180,7 @@ std::set<core::RegionId> RunLink::live_regions() {
   return live;
 }
 
-const std::map<core::RegionId, dds::SeenStatus>& RunLink::nodes(const Patience& patience) {
+const std::map<core::RegionId, messages::SeenStatus>& RunLink::nodes(const Patience& patience) {
   turn(0ms);
   const auto end = Clock::now() + kPatienceWithAReader;
   while (stands_in_ && !all_say_that_they_stand() && Clock::now() < end) {
@@ -219,9 +219,9 @@ WorldState RunLink::step(std::int64_t count, const Patience& patience) {
 /// computes up to the paused state again. A run that is not paused is refused.
 void RunLink::wait_until_it_stands(const Patience& patience) {
   const auto begin = Clock::now();
-  const auto goes_on = [begin](const dds::SeenStatus& seen) {
+  const auto goes_on = [begin](const messages::SeenStatus& seen) {
     const bool is_news = seen.seen > begin + kLongestWayOfStatus;
-    return is_news && seen.is_live() && seen.status.state == dds::NodeState::kRunning && !seen.status.holds_at;
+    return is_news && seen.is_live() && seen.status.state == messages::NodeState::kRunning && !seen.status.holds_at;
   };
   while (!is_known_to_stand()) {
     patience.check("the run is paused, and has not come to the state in which it is to stand");
@@ -236,12 +236,12 @@ void RunLink::steer(Steer kind, const Patience& patience) {
   const bool stood = kind == Steer::kReset && is_known_to_stand();
   stands_in_.reset();
   if (kind == Steer::kStop) has_met_ = false;  // the end of the run is no error now
-  const dds::RunCommand command = steering_.send(kind);
+  const messages::RunCommand command = steering_.send(kind);
   const auto has_ended = [&] { return launched_ && !launched_->is_running(); };
   // After a reset, wait until the watch has seen the new world, too: it may be behind the statuses.
   const auto is_seen = [&] { return kind != Steer::kReset || farthest().generation > command.generation; };
   wait_until([&] { return (steering_.has_taken_effect(command) && is_seen()) || has_ended(); }, patience,
-             fmt::format("{} was sent, but not every node shows its effect", dds::name_of(kind)));
+             fmt::format("{} was sent, but not every node shows its effect", messages::name_of(kind)));
   if (stood) wait_until([this] { return stands(); }, patience, "the run has begun anew, and does not stand yet");
   has_met_ = true;
 }
@@ -288,7 +288,7 @@ std::vector<steering::Delivery> RunLink::act(std::vector<core::Command> commands
 
 std::uint32_t RunLink::drain(core::RegionId region, const Patience& patience) {
   steering::Draining leaving(control_, region);
-  const dds::Status* successor = nullptr;
+  const messages::Status* successor = nullptr;
   wait_until([&] { return (successor = leaving.successor()) != nullptr; }, patience, steering::kNobodyTakesOver);
   return successor->pid;
 }

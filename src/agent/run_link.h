@@ -52,13 +52,13 @@ class RunLink {
   const config::Launch& launch() const { return watch_.launch(); }
   const std::optional<security::Member>& member() const { return member_; }
   /// The nodes' statuses. If this client has paused the run, they show the paused state.
-  const std::map<core::RegionId, dds::SeenStatus>& nodes(const Patience& patience);
+  const std::map<core::RegionId, messages::SeenStatus>& nodes(const Patience& patience);
 
   WorldState state(const Patience& patience);
   WorldState pause(const Patience& patience);
   WorldState step(std::int64_t count, const Patience& patience);
   /// Sends resume, reset or stop, and waits for the effect.
-  void steer(dds::RunCommandKind kind, const Patience& patience);
+  void steer(messages::RunCommandKind kind, const Patience& patience);
   /// Sends setpoints to all nodes. Returns the state in which they take effect; 0: as soon as all nodes can have them.
   /// In a paused run that is the next state if none is named.
   core::Step control(core::Setpoints setpoints, const Patience& patience);

@@ -28,7 +28,7 @@ RunLink::Standing RunLink::farthest() {
     farthest.generation = std::max(farthest.generation, watch_.nodes().at(region).status.generation);
   }
   for (const core::RegionId region : live) {
-    const dds::Status& status = watch_.nodes().at(region).status;
+    const messages::Status& status = watch_.nodes().at(region).status;
     if (status.generation == farthest.generation) farthest.step = std::max(farthest.step, status.step);
     farthest.step = std::max(farthest.step, watch_.published(region, farthest.generation));
     const auto told = told_.find(region);
@@ -40,8 +40,8 @@ RunLink::Standing RunLink::farthest() {
 /// True if the statuses of all live nodes say that they are paused. Statuses come after the states that nodes publish.
 bool RunLink::all_say_that_they_stand() {
   return std::ranges::all_of(live_regions(), [&](core::RegionId region) {
-    const dds::Status& status = watch_.nodes().at(region).status;
-    return status.state == dds::NodeState::kPaused && Standing{status.generation, status.step} >= *stands_in_;
+    const messages::Status& status = watch_.nodes().at(region).status;
+    return status.state == messages::NodeState::kPaused && Standing{status.generation, status.step} >= *stands_in_;
   });
 }
 
@@ -181,7 +181,7 @@ WorldState RunLink::state(const Patience& patience) {
 
 WorldState RunLink::pause(const Patience& patience) {
   if (!stands()) {
-    const dds::RunCommand command = steering_.send(dds::RunCommandKind::kPause);
+    const messages::RunCommand command = steering_.send(messages::RunCommandKind::kPause);
     wait_until([&] { return steering_.has_taken_effect(command); }, patience, "not every node shows the pause");
   }
   return standing_state(patience);

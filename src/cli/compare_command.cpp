@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "node/compare.h"
+#include "records/compare.h"
 
 namespace aurasim::cli {
 namespace {
@@ -15,7 +15,7 @@ struct CompareArguments {
 };
 
 int compare(const CompareArguments& arguments) {
-  const node::Comparison c = node::compare_reports(arguments.a, arguments.b);
+  const records::Comparison c = records::compare_reports(arguments.a, arguments.b);
   if (arguments.json) {
     nlohmann::json out = {{"hashes_equal", c.hashes_equal},
                           {"first_step", c.first_step},

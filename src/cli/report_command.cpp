@@ -28,10 +28,10 @@ void check_folder(const ReportArguments& arguments, const config::Launch& launch
 int merge(const ReportArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   check_folder(arguments, launch);
-  node::RunFacts facts;
+  records::RunFacts facts;
   facts.regions = launch.regions.size();
   facts.step_s = launch.step_s();
-  facts.died = node::regions_without_end(arguments.folder, facts.regions);
+  facts.died = records::regions_without_end(arguments.folder, facts.regions);
   return static_cast<int>(launch::merge_and_print(
       arguments.folder, facts, facts.died.empty() ? command_line::ExitCode::kOk : command_line::ExitCode::kFailed));
 }

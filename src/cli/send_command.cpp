@@ -24,7 +24,7 @@ namespace aurasim::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using Kind = dds::RunCommandKind;
+using Kind = messages::RunCommandKind;
 
 constexpr auto kPatienceWithAPause = 10s;
 constexpr auto kPatienceWithTheRun = 60s;  ///< in slow motion an order's state may take that long
@@ -96,11 +96,11 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
   // A world that has gone back in a pause first computes up to the paused state again.
   if (asked.kind == Kind::kStep && !steering.wait_until_paused(kPatienceWithAPause))
     fail("steps are for a run that is paused");
-  const dds::RunCommand command = steering.send(asked.kind, asked.count);
+  const messages::RunCommand command = steering.send(asked.kind, asked.count);
   if (!steering.wait_for_effect(command, kPatienceWithTheRun)) {
-    fail(fmt::format("{} was sent, but not every node shows its effect", dds::name_of(asked.kind)));
+    fail(fmt::format("{} was sent, but not every node shows its effect", messages::name_of(asked.kind)));
   }
-  fmt::print("{}: done at step {}\n", dds::name_of(asked.kind), command.at_step);
+  fmt::print("{}: done at step {}\n", messages::name_of(asked.kind), command.at_step);
   command_line::leave(0);
 }
 
@@ -110,7 +110,7 @@ nlohmann::json whole_or_parts(const std::vector<std::string>& parts, const std::
   const auto deadline = std::chrono::steady_clock::now() + kPatienceWithTheRun;
   while (std::chrono::steady_clock::now() < deadline) {
     control.wait(20ms);
-    const dds::Status* const successor = leaving.successor();
+    const messages::Status* const successor = leaving.successor();
     if (successor == nullptr) continue;
     fmt::print("drain: process {} has taken region {} over by step {}\n", successor->pid, core::value_of(region),
                successor->step);

@@ -49,12 +49,12 @@ class Spare {
       : launch_(launch),
         participant_(setup::with_keys(setup::dds_settings(launch), launch,
                                       setup::member_for(launch, as, {security::Role::kSpare}))),
-        control_(participant_, {.region = dds::kNoRegion,
+        control_(participant_, {.region = messages::kNoRegion,
                                 .agreement = launch.agreement(),
                                 .run = run_if_known(run),
                                 .region_count = static_cast<std::uint32_t>(launch.regions.size())}) {
-    status_.region = dds::kNoRegion;
-    status_.state = dds::NodeState::kSpare;
+    status_.region = messages::kNoRegion;
+    status_.state = messages::NodeState::kSpare;
     status_.agreement = launch.agreement();
     status_.map_version = launch.regions.version();
     status_.footprint = launch.regions.region(core::RegionId{0});
@@ -65,7 +65,7 @@ class Spare {
   }
 
   /// Waits for the command to take a region over. Nothing if the run has ended, or this process was asked to stop.
-  std::optional<dds::RunCommand> wait() {
+  std::optional<messages::RunCommand> wait() {
     bool has_seen_it = false;
     setup::SilenceWord silence(launch_, participant_);
     while (!host::stop_requested()) {
@@ -74,14 +74,14 @@ class Spare {
       const auto live = std::ranges::find_if(statuses, lives);
       if (live != statuses.end()) status_.run = live->second.status.run;
       if (has_seen_it && std::ranges::all_of(statuses, [&](const auto& entry) {
-            return entry.second.status.state == dds::NodeState::kFinished;
+            return entry.second.status.state == messages::NodeState::kFinished;
           })) {
         return std::nullopt;
       }
       has_seen_it = has_seen_it || live != statuses.end();
       silence.look(has_seen_it);
-      for (const dds::RunCommand& command : control_.take_commands()) {
-        if (command.kind == dds::RunCommandKind::kTake && command.process == status_.process) return command;
+      for (const messages::RunCommand& command : control_.take_commands()) {
+        if (command.kind == messages::RunCommandKind::kTake && command.process == status_.process) return command;
       }
       publish();
       control_.wait(kRound);
@@ -106,7 +106,7 @@ class Spare {
   const config::Launch& launch_;
   dds::Participant participant_;
   dds::ControlBus control_;
-  dds::Status status_;
+  messages::Status status_;
   std::chrono::steady_clock::time_point published_;
 };
 
@@ -116,7 +116,7 @@ int run_spare(const SpareArguments& arguments) {
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ spare: %v");
   host::catch_stop_signals();
   Spare spare(launch, arguments.keys.as, arguments.run);
-  const std::optional<dds::RunCommand> take = spare.wait();
+  const std::optional<messages::RunCommand> take = spare.wait();
   if (!take) command_line::leave(0);  // without deleting the participant, as nodes do
   spdlog::info("takes over region {}", core::value_of(take->region));
   host::become(host::words_of_successor(host::own_words(), take->region, take->run));

@@ -1,4 +1,5 @@
-// Auras travel rounded (dds/aura_codec.cpp), so a receiver allows for a body that is not exactly at its published pose.
+// Auras travel rounded (messages/aura_codec.cpp), so a receiver allows for a body that is not exactly at its published
+// pose.
 #pragma once
 
 namespace aurasim::core {

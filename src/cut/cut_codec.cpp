@@ -11,7 +11,7 @@
 
 #include "cut/cut_file.h"
 #include "cut/saved_shapes.h"
-#include "dds/wire_bytes.h"
+#include "messages/wire_bytes.h"
 
 namespace aurasim::cut {
 namespace {
@@ -178,12 +178,12 @@ core::HandOff letter(core::Step stamp, const core::ClusterState& cluster) {
 }
 
 template <class Message>
-Message sound(dds::Decoded<Message> decoded, const char* what) {
+Message sound(messages::Decoded<Message> decoded, const char* what) {
   if (auto* message = std::get_if<Message>(&decoded)) return std::move(*message);
-  throw BadCut(fmt::format("damaged: {}: {}", what, name_of(std::get<dds::WireError>(decoded))));
+  throw BadCut(fmt::format("damaged: {}: {}", what, name_of(std::get<messages::WireError>(decoded))));
 }
 
-void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::WorldCut& cut) {
+void take(Piece piece, std::string_view bytes, messages::WireBytes& wire, core::WorldCut& cut) {
   switch (piece) {
     case Piece::kBodies:
       cut.bodies = sound(wire.hand_off(octets(bytes), {}), "its bodies").cluster;
@@ -202,7 +202,7 @@ void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::World
       cut.shapes.push_back(decode_shape(bytes));
       return;
     case Piece::kMesh: {
-      dds::NamedMesh named = sound(wire.mesh(octets(bytes)), "a mesh");
+      messages::NamedMesh named = sound(wire.mesh(octets(bytes)), "a mesh");
       cut.meshes.push_back({named.hash, std::move(named.mesh)});
       return;
     }
@@ -219,7 +219,7 @@ void take(Piece piece, std::string_view bytes, dds::WireBytes& wire, core::World
 
 std::string encode(const SavedWorld& world) {
   const core::WorldCut& cut = world.cut;
-  dds::WireBytes wire;
+  messages::WireBytes wire;
   std::string bytes;
   put(bytes, header_of(world).dump());
   if (!cut.bodies.bodies.empty()) put(bytes, Piece::kBodies, wire.of(letter(cut.step, cut.bodies)));
@@ -235,7 +235,7 @@ std::string encode(const SavedWorld& world) {
   }
   for (const core::SavedShape& shape : cut.shapes) put(bytes, Piece::kShape, encode_shape(shape));
   for (const core::SavedMesh& mesh : cut.meshes)
-    put(bytes, Piece::kMesh, wire.of(dds::NamedMesh{mesh.hash, mesh.mesh}));
+    put(bytes, Piece::kMesh, wire.of(messages::NamedMesh{mesh.hash, mesh.mesh}));
   for (const core::Setpoints& setpoints : cut.setpoints) put(bytes, Piece::kSetpoints, wire.of(setpoints));
   bytes.push_back(static_cast<char>(Piece::kEnd));
   return std::string(kMagic, kMagicBytes) + compressed(bytes);
@@ -272,7 +272,7 @@ SavedWorld decode(const std::string& bytes) {
   const std::string inside = decompressed(after_magic(bytes));
   Reader reader(inside);
   SavedWorld world = from_header(reader.bytes());
-  dds::WireBytes wire;
+  messages::WireBytes wire;
   for (auto piece = static_cast<Piece>(reader.byte()); piece != Piece::kEnd;
        piece = static_cast<Piece>(reader.byte())) {
     take(piece, reader.bytes(), wire, world.cut);

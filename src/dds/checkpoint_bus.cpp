@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "dds/checkpoint_codec.h"
 #include "dds/typed_endpoints.h"
+#include "messages/checkpoint_codec.h"
 
 namespace aurasim::dds {
 
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 64;
 
 struct Given {
-  Checkpoint part;
+  messages::Checkpoint part;
   Origin by;
 };
 
@@ -70,7 +70,7 @@ void CheckpointBus::use_keepers(const std::vector<core::RegionId>& keepers, core
   }
 }
 
-std::size_t CheckpointBus::send_to_keepers(const Checkpoint& checkpoint) {
+std::size_t CheckpointBus::send_to_keepers(const messages::Checkpoint& checkpoint) {
   impl_->participant.progress();
   std::size_t sent = 0;
   for (TypedWriter<wire::Checkpoint>& keeper : impl_->to_keepers) {
@@ -80,7 +80,7 @@ std::size_t CheckpointBus::send_to_keepers(const Checkpoint& checkpoint) {
   return sent;
 }
 
-bool CheckpointBus::send_to_all(const Checkpoint& checkpoint) {
+bool CheckpointBus::send_to_all(const messages::Checkpoint& checkpoint) {
   impl_->participant.progress();
   // Parts for an earlier generation are of no use any more.
   if (std::exchange(impl_->generation_to_all, checkpoint.generation) != checkpoint.generation) {
@@ -89,16 +89,17 @@ bool CheckpointBus::send_to_all(const Checkpoint& checkpoint) {
   return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
 }
 
-std::vector<Checkpoint> CheckpointBus::take() {
+std::vector<messages::Checkpoint> CheckpointBus::take() {
   impl_->participant.progress();
-  std::vector<Checkpoint> taken;
+  std::vector<messages::Checkpoint> taken;
   const Speakers& speakers = impl_->participant.domain().speakers();
   // In a recovery any node may send another region's part, because it may be its keeper.
   const auto may_say = [&](const Given& given) {
-    return given.part.kind == Checkpoint::Kind::kGoBack ? speakers.is_node(given.by.writer)
-                                                        : speakers.may_speak(given.by.writer, given.part.source);
+    return given.part.kind == messages::Checkpoint::Kind::kGoBack
+               ? speakers.is_node(given.by.writer)
+               : speakers.may_speak(given.by.writer, given.part.source);
   };
-  impl_->reader->take_each({}, [&](Checkpoint&& part, const Origin& by) {
+  impl_->reader->take_each({}, [&](messages::Checkpoint&& part, const Origin& by) {
     impl_->given.push_back({std::move(part), by});
   });
   std::erase_if(impl_->given, [&](Given& given) {
@@ -113,6 +114,6 @@ std::vector<Checkpoint> CheckpointBus::take() {
   return taken;
 }
 
-const WireErrors& CheckpointBus::refused() const { return impl_->reader->refused(); }
+const messages::WireErrors& CheckpointBus::refused() const { return impl_->reader->refused(); }
 
 }  // namespace aurasim::dds

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "dds/checkpoint.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
+#include "messages/checkpoint.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -26,14 +26,14 @@ class CheckpointBus {
   void use_keepers(const std::vector<core::RegionId>& keepers, core::Generation life);
   /// Sends a part to keep (kToKeep) to each keeper that has acknowledged all parts before it. A keeper behind a slow
   /// link misses some parts and does not hold up the others. Returns the number of keepers that it was sent to.
-  std::size_t send_to_keepers(const Checkpoint& checkpoint);
+  std::size_t send_to_keepers(const messages::Checkpoint& checkpoint);
   /// Sends a part to all nodes, in a recovery. The last one of each source and kind is kept for nodes that join later.
   /// Returns false when the write failed twice.
-  bool send_to_all(const Checkpoint& checkpoint);
+  bool send_to_all(const messages::Checkpoint& checkpoint);
   /// Returns the parts that arrived since the last call, sent to this node or to all.
-  std::vector<Checkpoint> take();
+  std::vector<messages::Checkpoint> take();
 
-  const WireErrors& refused() const;
+  const messages::WireErrors& refused() const;
 
  private:
   struct Impl;

@@ -77,7 +77,7 @@ void CommandServerEndpoint::use_map(std::uint64_t map_version) { impl_->map_vers
 
 std::vector<core::Command> CommandServerEndpoint::take() {
   std::vector<core::Command> commands;
-  Expected expected;
+  messages::Expected expected;
   expected.map_version = impl_->map_version;
   const auto now = std::chrono::steady_clock::now();
   const auto take_new = [&](core::Command&& command, const Origin& origin) {
@@ -93,8 +93,8 @@ std::vector<core::Command> CommandServerEndpoint::take() {
       reply(*known);
     }
   };
-  const auto refuse = [&](const wire::Command& malformed, WireError error) {
-    if (error == WireError::kMapVersion || malformed.request() == 0) return;  // not for us
+  const auto refuse = [&](const wire::Command& malformed, messages::WireError error) {
+    if (error == messages::WireError::kMapVersion || malformed.request() == 0) return;  // not for us
     core::CommandReply refusal;
     refusal.request = malformed.request();
     refusal.outcome = core::Outcome::kRefused;
@@ -115,7 +115,7 @@ void CommandServerEndpoint::forget(std::uint64_t request) { impl_->requests.forg
 
 std::uint64_t CommandServerEndpoint::too_many() const { return impl_->too_many; }
 
-const WireErrors& CommandServerEndpoint::refused() const { return impl_->commands.refused(); }
+const messages::WireErrors& CommandServerEndpoint::refused() const { return impl_->commands.refused(); }
 
 struct CommandClientEndpoint::Impl {
   explicit Impl(Participant& participant_in)
@@ -156,7 +156,7 @@ std::vector<core::CommandReply> CommandClientEndpoint::take() {
 }
 
 void CommandClientEndpoint::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
-  if (impl_->shapes.send(NamedMesh{hash, mesh}) == WriteResult::kFailed) {
+  if (impl_->shapes.send(messages::NamedMesh{hash, mesh}) == WriteResult::kFailed) {
     throw DdsError("cannot send the mesh: topic shape takes no more from this process");
   }
 }

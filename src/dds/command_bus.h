@@ -10,7 +10,7 @@
 #include "core/command.h"
 #include "core/scene.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -29,7 +29,7 @@ class CommandServerEndpoint {
   /// Forgets a request that was not executed here: if a client repeats it, take() returns it again.
   void forget(std::uint64_t request);
 
-  const WireErrors& refused() const;
+  const messages::WireErrors& refused() const;
   /// Number of commands dropped because their client sent more than 500 a second for long.
   std::uint64_t too_many() const;
 

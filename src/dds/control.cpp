@@ -9,27 +9,15 @@
 #include <fmt/format.h>
 
 #include "aurasim.h"
-#include "dds/control_codec.h"
 #include "dds/endpoints.h"
 #include "dds/node_roster.h"
 #include "dds/random_id.h"
 #include "dds/rations.h"
+#include "messages/control_codec.h"
 
 namespace aurasim::dds {
 
 using core::RegionId;
-
-const char* name_of(NodeState state) {
-  static constexpr std::array kNames = {"starting", "waiting",    "running", "paused", "finished",
-                                        "failed",   "recovering", "spare",   "cut off"};
-  return kNames.at(static_cast<std::size_t>(state));
-}
-
-const char* name_of(RunCommandKind kind) {
-  static constexpr std::array kNames = {"start", "pause", "resume",  "step",  "reset", "stop",
-                                        "rate",  "lost",  "restore", "drain", "take",  "end"};
-  return kNames.at(static_cast<std::size_t>(kind));
-}
 
 namespace {
 
@@ -41,15 +29,16 @@ constexpr auto kUntilKnown = std::chrono::seconds(3);
 constexpr auto kLongAgo = std::chrono::seconds(1);
 
 struct HeardCommand {
-  RunCommand command;
+  messages::RunCommand command;
   Origin origin;
   std::chrono::steady_clock::time_point since;
 };
 
 /// True for commands that were sent long ago, by nodes that have been replaced since. Late joiners receive them, too.
-bool is_old_news(const RunCommand& command, const Origin& origin) {
-  const bool is_of_nodes = command.kind == RunCommandKind::kStart || command.kind == RunCommandKind::kRestore ||
-                           command.kind == RunCommandKind::kEnd;
+bool is_old_news(const messages::RunCommand& command, const Origin& origin) {
+  const bool is_of_nodes = command.kind == messages::RunCommandKind::kStart ||
+                           command.kind == messages::RunCommandKind::kRestore ||
+                           command.kind == messages::RunCommandKind::kEnd;
   return is_of_nodes && origin.clock_ahead < -kLongAgo;
 }
 
@@ -65,10 +54,10 @@ struct ControlBus::Impl {
   Impl(Participant& participant, const ControlSettings& settings);
 
   void take_statuses();
-  void note(Status status, const Origin& origin);
+  void note(messages::Status status, const Origin& origin);
   NodeRoster& look();
-  std::string problem_with(const RunCommand& command, const Origin& origin) const;
-  void judge(HeardCommand heard, std::vector<RunCommand>& commands);
+  std::string problem_with(const messages::RunCommand& command, const Origin& origin) const;
+  void judge(HeardCommand heard, std::vector<messages::RunCommand>& commands);
   bool remember(std::uint64_t request, const Guid& sender);
   bool is_too_much(const Origin& origin);
 
@@ -87,15 +76,15 @@ struct ControlBus::Impl {
   wire::RegionMap map;
   wire::RunControl command;
 
-  std::optional<std::uint64_t> published_map;                    ///< version of the last one
-  std::map<std::pair<std::uint64_t, Guid>, WorldMap> announced;  ///< by version and writer
-  std::map<std::uint64_t, WorldMap> maps;
+  std::optional<std::uint64_t> published_map;                              ///< version of the last one
+  std::map<std::pair<std::uint64_t, Guid>, messages::WorldMap> announced;  ///< by version and writer
+  std::map<std::uint64_t, messages::WorldMap> maps;
   std::map<std::uint64_t, Guid> requests;  ///< requests seen or sent, and their writers
   std::vector<HeardCommand> waiting;  ///< commands that only nodes may send, kept until their sender is known to be one
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
   RateLimit<Guid> against_statuses{1, 1};
   RateLimit<ProcessPrefix> asked{kWordsASecond, kWordsAtOnce};
-  WireErrors refused;
+  messages::WireErrors refused;
 };
 
 ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& settings_in)
@@ -121,20 +110,20 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
 void ControlBus::Impl::take_statuses() {
   Origin origin;
   while (status_reader.take(&status, &origin)) {
-    auto decoded = decode(status, {});
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
+    auto decoded = messages::decode(status, {});
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       refused.add(*error);
       status_reader.refuse_from(origin, *error);
     } else {
-      note(std::move(std::get<Status>(decoded)), origin);
+      note(std::move(std::get<messages::Status>(decoded)), origin);
     }
   }
 }
 
-void ControlBus::Impl::note(Status fresh, const Origin& origin) {
+void ControlBus::Impl::note(messages::Status fresh, const Origin& origin) {
   const std::string problem = roster.problem_with(fresh, origin);
   if (problem.empty()) return roster.note(std::move(fresh), origin);
-  refused.add(WireError::kSource);
+  refused.add(messages::WireError::kSource);
   // A restarted node publishes as the region for some seconds before the old one is known to be dead.
   if (against_statuses.allows(origin.writer, std::chrono::steady_clock::now())) {
     status_reader.refuse_from(origin, problem);
@@ -166,19 +155,19 @@ bool ControlBus::Impl::is_too_much(const Origin& origin) {
 
 /// Returns why `asked` is refused; empty: it is accepted. Commands of operators and launchers are accepted from any
 /// process.
-std::string ControlBus::Impl::problem_with(const RunCommand& asked, const Origin& origin) const {
+std::string ControlBus::Impl::problem_with(const messages::RunCommand& asked, const Origin& origin) const {
   const Speakers& speakers = participant.domain().speakers();
   const bool is_first_node = speakers.may_speak(origin.writer, RegionId{0}) || roster.is_of(RegionId{0}, origin);
   const bool is_node = speakers.is_node(origin.writer);
   const bool is_of_its_region = speakers.may_speak(origin.writer, asked.region);
   switch (asked.kind) {
-    case RunCommandKind::kStart:
+    case messages::RunCommandKind::kStart:
       return is_first_node ? "" : "only the node of region 0 starts a run";
-    case RunCommandKind::kRate:
+    case messages::RunCommandKind::kRate:
       return is_node ? "" : "only a node of the run sets its rate";
-    case RunCommandKind::kRestore:
+    case messages::RunCommandKind::kRestore:
       return is_node && is_of_its_region ? "" : "only the node of a region says where all go back to";
-    case RunCommandKind::kEnd:
+    case messages::RunCommandKind::kEnd:
       return is_node ? "" : "only a node of the run says that nobody takes a region over";
     default:
       return {};
@@ -197,55 +186,55 @@ void ControlBus::move_to(Participant& participant) {
   impl_ = std::move(anew);
 }
 
-bool ControlBus::publish_status(const Status& status) {
+bool ControlBus::publish_status(const messages::Status& status) {
   if (!impl_->status_writer || status.region != impl_->settings.region) {
     throw std::logic_error("publish_status: this process is not the node of that region");
   }
   impl_->participant.progress();
-  encode(status, impl_->status);
+  messages::encode(status, impl_->status);
   impl_->status_writer->forget_all();
   return impl_->status_writer->write(&impl_->status) != WriteResult::kFailed;
 }
 
 bool ControlBus::status_is_known() { return !impl_->status_writer || impl_->status_writer->all_acknowledged(); }
 
-const std::map<RegionId, SeenStatus>& ControlBus::statuses() { return impl_->look().statuses(); }
+const std::map<RegionId, messages::SeenStatus>& ControlBus::statuses() { return impl_->look().statuses(); }
 
-std::vector<SeenStatus> ControlBus::strangers() { return impl_->look().strangers(); }
+std::vector<messages::SeenStatus> ControlBus::strangers() { return impl_->look().strangers(); }
 
-std::vector<Status> ControlBus::spares() { return impl_->look().spares(); }
+std::vector<messages::Status> ControlBus::spares() { return impl_->look().spares(); }
 
 void ControlBus::hold_for_dead(std::uint64_t process) { impl_->roster.hold_for_dead(process); }
 
-void ControlBus::hear_of_death(const RunCommand& lost) {
+void ControlBus::hear_of_death(const messages::RunCommand& lost) {
   if (lost.is_of_itself) return hold_for_dead(lost.process);
   if (!impl_->roster.hear_of_death(lost.process)) refuse(lost, "its process lives");
 }
 
-bool ControlBus::publish_map(const WorldMap& map) {
+bool ControlBus::publish_map(const messages::WorldMap& map) {
   // In a run with keys only nodes may publish maps, so other processes create the writer only when needed.
   if (!impl_->map_writer) {
     impl_->map_writer.emplace(impl_->participant.domain(), in_world(TopicId::kRegionMap), impl_->wakeup);
   }
   impl_->participant.progress();
-  encode(map, impl_->map);
+  messages::encode(map, impl_->map);
   if (std::exchange(impl_->published_map, map.map_version) == map.map_version) impl_->map_writer->forget_all();
   return impl_->map_writer->write(&impl_->map) != WriteResult::kFailed;
 }
 
 void ControlBus::use_map(std::uint64_t map_version) { impl_->settings.map_version = map_version; }
 
-const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
+const std::map<std::uint64_t, messages::WorldMap>& ControlBus::maps() {
   impl_->participant.progress();
   Origin origin;
   while (impl_->map_reader.take(&impl_->map, &origin)) {
-    auto decoded = decode(impl_->map, {});
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
+    auto decoded = messages::decode(impl_->map, {});
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       impl_->refused.add(*error);
       impl_->map_reader.refuse_from(origin, *error);
       continue;
     }
-    auto& map = std::get<WorldMap>(decoded);
+    auto& map = std::get<messages::WorldMap>(decoded);
     const std::pair by{map.map_version, origin.writer};
     if (impl_->announced.size() < kMostMaps || impl_->announced.contains(by) ||
         impl_->participant.domain().speakers().is_node(origin.writer)) {
@@ -262,14 +251,14 @@ const std::map<std::uint64_t, WorldMap>& ControlBus::maps() {
   return impl_->maps;
 }
 
-std::uint64_t ControlBus::send(RunCommand command) {
+std::uint64_t ControlBus::send(messages::RunCommand command) {
   if (!impl_->command_writer) throw std::logic_error("send: this process only watches");
   impl_->participant.progress();
   if (command.request == 0) {
     command.request = draw_id();
   }
   impl_->remember(command.request, impl_->command_writer->guid());
-  encode(command, impl_->sender, impl_->command);
+  messages::encode(command, impl_->sender, impl_->command);
   if (impl_->command_writer->write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
   }
@@ -279,13 +268,13 @@ std::uint64_t ControlBus::send(RunCommand command) {
 /// A process that has just started receives commands before it knows which processes are nodes. Commands that only
 /// nodes may send wait until that is known. Later commands of the same sender wait with them, because a pause means
 /// nothing before the world that it applies to.
-void ControlBus::Impl::judge(HeardCommand heard, std::vector<RunCommand>& commands) {
+void ControlBus::Impl::judge(HeardCommand heard, std::vector<messages::RunCommand>& commands) {
   const bool is_behind = std::ranges::any_of(
       waiting, [&](const HeardCommand& other) { return other.origin.writer == heard.origin.writer; });
   if (is_behind && waiting.size() < kMostWaiting) return waiting.push_back(std::move(heard));
   const std::string problem = problem_with(heard.command, heard.origin);
   if (problem.empty()) {
-    RunCommand& command = heard.command;
+    messages::RunCommand& command = heard.command;
     command.clock_ahead = heard.origin.clock_ahead;
     command.is_of_itself = roster.is_of(command.process, heard.origin);
     command.is_of_a_node = participant.domain().speakers().is_node(heard.origin.writer);
@@ -296,28 +285,28 @@ void ControlBus::Impl::judge(HeardCommand heard, std::vector<RunCommand>& comman
     waiting.push_back(std::move(heard));
     return;
   }
-  refused.add(WireError::kSource);
+  refused.add(messages::WireError::kSource);
   if (is_old_news(heard.command, heard.origin)) return;
   command_reader->refuse_from(heard.origin, fmt::format("{}: {}", name_of(heard.command.kind), problem));
 }
 
-std::vector<RunCommand> ControlBus::take_commands() {
+std::vector<messages::RunCommand> ControlBus::take_commands() {
   impl_->participant.progress();
-  std::vector<RunCommand> commands;
+  std::vector<messages::RunCommand> commands;
   if (!impl_->command_reader) return commands;
   std::vector<HeardCommand> heard = std::exchange(impl_->waiting, {});
-  Expected expected;
+  messages::Expected expected;
   expected.map_version = impl_->settings.map_version;
   Origin origin;
   while (impl_->command_reader->take(&impl_->command, &origin)) {
     if (impl_->is_too_much(origin)) continue;
-    auto decoded = decode(impl_->command, expected);
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
+    auto decoded = messages::decode(impl_->command, expected);
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       impl_->refused.add(*error);
       impl_->command_reader->refuse_from(origin, *error);
       continue;
     }
-    auto& command = std::get<RunCommand>(decoded);
+    auto& command = std::get<messages::RunCommand>(decoded);
     if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
     heard.push_back({std::move(command), origin, std::chrono::steady_clock::now()});
   }
@@ -328,10 +317,10 @@ std::vector<RunCommand> ControlBus::take_commands() {
 
 void ControlBus::note_state() { impl_->asked.allow_more(kWordsAState); }
 
-void ControlBus::refuse(const RunCommand& command, const std::string& why) {
+void ControlBus::refuse(const messages::RunCommand& command, const std::string& why) {
   const auto sender = impl_->requests.find(command.request);
   if (sender == impl_->requests.end()) return;
-  impl_->refused.add(WireError::kRange);
+  impl_->refused.add(messages::WireError::kRange);
   impl_->command_reader->refuse_from({sender->second}, fmt::format("{}: {}", name_of(command.kind), why));
 }
 
@@ -345,6 +334,6 @@ std::size_t ControlBus::listeners() const {
   return impl_->command_writer ? impl_->command_writer->foreign_reader_count() : 0;
 }
 
-const WireErrors& ControlBus::refused() const { return impl_->refused; }
+const messages::WireErrors& ControlBus::refused() const { return impl_->refused; }
 
 }  // namespace aurasim::dds

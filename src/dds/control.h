@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "dds/control_messages.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
+#include "messages/control_messages.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -46,40 +46,40 @@ class ControlBus {
   void move_to(Participant& participant);
 
   /// Precondition: the settings name a region. Returns false when the write failed twice.
-  bool publish_status(const Status& status);
+  bool publish_status(const messages::Status& status);
   /// True when every matched reader has acknowledged the last status.
   bool status_is_known();
   /// Returns the latest status of every region of this run seen so far, the own one included. Where several processes
   /// claim to be the node of one region, the first one counts until it is lost or has ended.
-  const std::map<core::RegionId, SeenStatus>& statuses();
+  const std::map<core::RegionId, messages::SeenStatus>& statuses();
   /// Returns live nodes of other runs, and live nodes that claim to be this process's region.
-  std::vector<SeenStatus> strangers();
+  std::vector<messages::SeenStatus> strangers();
 
   /// Returns the spares of this run: processes that wait for a region (kNoRegion).
-  std::vector<Status> spares();
+  std::vector<messages::Status> spares();
   /// Marks `process` dead, whatever DDS still reports. For a caller that has seen the process end.
   void hold_for_dead(std::uint64_t process);
   /// Handles the report `lost` of a death. It is believed at once if the process itself has sent it, and otherwise once
   /// the process shows no life. A report about a process that lives is refused.
-  void hear_of_death(const RunCommand& lost);
+  void hear_of_death(const messages::RunCommand& lost);
 
-  bool publish_map(const WorldMap& map);
+  bool publish_map(const messages::WorldMap& map);
   /// Commands for another map than this one are refused from now on.
   void use_map(std::uint64_t map_version);
   /// Returns every map seen so far, by map_version. With an agreement only maps that nodes of this run have published,
   /// as soon as any node is known.
-  const std::map<std::uint64_t, WorldMap>& maps();
+  const std::map<std::uint64_t, messages::WorldMap>& maps();
 
   /// Sends a command. Late joiners receive it too, as long as the sender lives. Returns the request id. Throws DdsError
   /// when the write failed twice.
-  std::uint64_t send(RunCommand command);
+  std::uint64_t send(messages::RunCommand command);
   /// Returns commands of other processes that were not returned before, in order of arrival, each request id once. A
   /// command that only a node may send is refused from any other process.
-  std::vector<RunCommand> take_commands();
+  std::vector<messages::RunCommand> take_commands();
   /// To be called when this node has computed a state: it allows one more command to each process that steps the run.
   void note_state();
   /// Refuses a command that was taken but makes no sense, and counts it against its sender. `why` is for the log.
-  void refuse(const RunCommand& command, const std::string& why);
+  void refuse(const messages::RunCommand& command, const std::string& why);
 
   /// Returns when something arrived or a node's proof of life changed, or at the time-out.
   void wait(std::chrono::nanoseconds time_out);
@@ -87,7 +87,7 @@ class ControlBus {
   /// Number of other processes that receive run_control. A command sent to nobody still reaches late joiners.
   std::size_t listeners() const;
 
-  const WireErrors& refused() const;
+  const messages::WireErrors& refused() const;
 
  private:
   struct Impl;

@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "aurasim.h"
-#include "dds/codec.h"
 #include "dds/endpoints.h"
+#include "messages/codec.h"
 
 namespace aurasim::dds {
 
@@ -68,13 +68,13 @@ std::size_t bytes_of(const WireMessage& sample) {
 }
 
 /// True for errors of messages that name this run, map and source correctly but have unsound content.
-bool is_our_own(WireError error) {
+bool is_our_own(messages::WireError error) {
   switch (error) {
-    case WireError::kMalformed:
-    case WireError::kVersion:
-    case WireError::kGeneration:
-    case WireError::kMapVersion:
-    case WireError::kSource:
+    case messages::WireError::kMalformed:
+    case messages::WireError::kVersion:
+    case messages::WireError::kGeneration:
+    case messages::WireError::kMapVersion:
+    case messages::WireError::kSource:
       return false;
     default:
       return true;
@@ -93,21 +93,21 @@ constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
 /// is (`is_told`), such a sample is not counted against its sender either: of two processes the first may have died
 /// unnoticed.
 template <class WireMessage, class Message>
-void drain(Reader& reader, WireMessage& sample, const Expected& expected, const std::optional<ProcessPrefix>& node,
-           bool is_told, std::vector<Message>& inbox, TopicCounters& counters, std::uint64_t& refused,
-           std::vector<core::Refusal>& refusals) {
+void drain(Reader& reader, WireMessage& sample, const messages::Expected& expected,
+           const std::optional<ProcessPrefix>& node, bool is_told, std::vector<Message>& inbox, TopicCounters& counters,
+           std::uint64_t& refused, std::vector<core::Refusal>& refusals) {
   Origin origin;
   while (reader.take(&sample, &origin)) {
     ++counters.received;
     counters.received_bytes += bytes_of(sample);
     if (node && origin.writer.guidPrefix != *node) {
-      counters.refused.add(WireError::kSource);
+      counters.refused.add(messages::WireError::kSource);
       if (is_told)
         reader.refuse_from(origin, fmt::format("it is not the node of region {}", value_of(*expected.source)));
       continue;
     }
-    auto decoded = decode(sample, expected);
-    if (const auto* error = std::get_if<WireError>(&decoded)) {
+    auto decoded = messages::decode(sample, expected);
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       counters.refused.add(*error);
       ++refused;
       const auto kind = kind_of(sample);
@@ -119,11 +119,11 @@ void drain(Reader& reader, WireMessage& sample, const Expected& expected, const 
     }
   }
   const std::uint64_t lost = reader.take_lost();
-  counters.refused.add(WireError::kParts, lost);
+  counters.refused.add(messages::WireError::kParts, lost);
   refused += lost;
 }
 
-Expected expected_of(const TransportSettings& settings) {
+messages::Expected expected_of(const TransportSettings& settings) {
   return {.map_version = settings.map_version,
           .generation = std::nullopt,
           .source = std::nullopt,
@@ -168,7 +168,7 @@ struct DdsTransport::Impl {
   void send_ack(const core::HandOffAck& ack);
 
   TransportSettings settings;
-  Expected expected;
+  messages::Expected expected;
   Participant& participant;
   Wakeup& wakeup;
   Writer aura_writer;
@@ -281,7 +281,7 @@ void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) 
 }
 
 void DdsTransport::Impl::send_aura(const core::AuraBatch& batch) {
-  encode(batch, aura);
+  messages::encode(batch, aura);
   aura_writer.forget_acknowledged();
   count_sent(counters.aura, aura_writer.write(&aura), bytes_of(aura));
 }
@@ -292,7 +292,7 @@ void DdsTransport::Impl::send_hand_off(const core::HandOff& hand_off) {
     ++counters.migration.not_sent;
     return;
   }
-  encode(hand_off, migration);
+  messages::encode(hand_off, migration);
   link->migration_writer.forget_acknowledged();
   count_sent(counters.migration, link->migration_writer.write(&migration), bytes_of(migration));
 }
@@ -303,7 +303,7 @@ void DdsTransport::Impl::send_ack(const core::HandOffAck& message) {
     ++counters.migration_ack.not_sent;
     return;
   }
-  encode(message, settings.map_version, ack);
+  messages::encode(message, settings.map_version, ack);
   link->ack_writer.forget_acknowledged();
   count_sent(counters.migration_ack, link->ack_writer.write(&ack), bytes_of(ack));
 }
@@ -344,7 +344,7 @@ void DdsTransport::take(core::Inbox& inbox) {
   impl_->participant.progress();
   TransportCounters& counters = impl_->counters;
   for (const auto& link : impl_->links) {
-    Expected expected = impl_->expected;
+    messages::Expected expected = impl_->expected;
     expected.source = link->region;
     const std::optional<ProcessPrefix> node = impl_->node_of(*link);
     const bool is_told = impl_->participant.domain().speakers().of(link->region).has_value();

@@ -12,7 +12,7 @@
 
 #include "core/ids.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
+#include "messages/wire_error.h"
 #include "transport/transport.h"
 
 namespace aurasim::dds {
@@ -43,7 +43,7 @@ struct TopicCounters {
   std::uint64_t retried = 0;      ///< writes that needed a second try
   std::uint64_t send_failed = 0;  ///< writes that failed twice: the sample is lost
   std::uint64_t not_sent = 0;     ///< not written, because the destination is lost
-  WireErrors refused;
+  messages::WireErrors refused;
 };
 
 struct TransportCounters {

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "aurasimPubSubTypes.h"
-#include "dds/guarded_type.h"
 #include "dds/impairment_properties.h"
 #include "dds/participant_qos.h"
-#include "dds/type_tables.h"
 #include "dds/wire_transport.h"
+#include "messages/guarded_type.h"
+#include "messages/type_tables.h"
 #include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
@@ -110,7 +110,7 @@ Domain::Domain(const Settings& settings)
   }
   install(qos, guard_, delay_line_);
   switch_intraprocess_delivery_off();
-  set_type_tables_up();
+  messages::set_type_tables_up();
   if (settings.keys) refusals_.emplace(settings.tell_refusal);
   const auto closed = guard_->delivery().close();
   participant_.reset(
@@ -137,21 +137,21 @@ void Domain::Leave::operator()(eprosima::fastdds::dds::DomainParticipant* partic
 
 void Domain::register_types() {
   const std::array types = {
-      TypeSupport(new GuardedType<wire::AuraBatchPubSubType>()),
-      TypeSupport(new GuardedType<wire::MigrationPubSubType>()),
-      TypeSupport(new GuardedType<wire::MigrationAckPubSubType>()),
-      TypeSupport(new GuardedType<wire::NodeStatusPubSubType>()),
-      TypeSupport(new GuardedType<wire::RegionMapPubSubType>()),
-      TypeSupport(new GuardedType<wire::RunControlPubSubType>()),
-      TypeSupport(new GuardedType<wire::ReplicaPubSubType>()),
-      TypeSupport(new GuardedType<wire::CommandPubSubType>()),
-      TypeSupport(new GuardedType<wire::CommandReplyPubSubType>()),
-      TypeSupport(new GuardedType<wire::MeshShapePubSubType>()),
-      TypeSupport(new GuardedType<wire::ClusterGraphPubSubType>()),
-      TypeSupport(new GuardedType<wire::CheckpointPubSubType>()),
-      TypeSupport(new GuardedType<wire::SetpointsPubSubType>()),
-      TypeSupport(new GuardedType<wire::InterestPubSubType>()),
-      TypeSupport(new GuardedType<wire::ObservationPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::AuraBatchPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::MigrationPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::MigrationAckPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::NodeStatusPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::RegionMapPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::RunControlPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::ReplicaPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::CommandPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::CommandReplyPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::MeshShapePubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::ClusterGraphPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::CheckpointPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::SetpointsPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::InterestPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::ObservationPubSubType>()),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

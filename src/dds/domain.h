@@ -15,13 +15,13 @@
 
 #include "dds/delay_line.h"
 #include "dds/liveliness_asserter.h"
-#include "dds/parts.h"
 #include "dds/peer_keys.h"
 #include "dds/profiles.h"
 #include "dds/security_log.h"
 #include "dds/settings.h"
 #include "dds/speakers.h"
 #include "dds/watch.h"
+#include "messages/parts.h"
 
 namespace aurasim::rtps {
 class DatagramGuard;
@@ -102,7 +102,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   /// True when what is sent is encrypted by keys.
   bool has_keys() const { return has_keys_; }
   /// Puts together the messages that all readers of this process receive in parts.
-  PartAssembly& parts() { return parts_; }
+  messages::PartAssembly& parts() { return parts_; }
   /// The guard that keeps malformed datagrams from Fast DDS.
   rtps::DatagramGuard& guard() const { return *guard_; }
 
@@ -123,7 +123,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::shared_ptr<rtps::DatagramGuard> guard_;
   Speakers speakers_;
   PeerKeys peer_keys_;
-  PartAssembly parts_;
+  messages::PartAssembly parts_;
   std::uint32_t datagram_B_ = 0;
   bool has_keys_ = false;
   bool loopback_only_ = false;

@@ -46,14 +46,14 @@ constexpr std::uint32_t kHeaders_B = 200;
 /// Bytes that keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
 constexpr std::uint32_t kCryptoHeaders_B = 128, kCryptoOfAReader_B = 20;
 
-const PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSupport& type) {
-  const auto* const has_fields = dynamic_cast<const HasPartFields*>(type.get());
+const messages::PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSupport& type) {
+  const auto* const has_fields = dynamic_cast<const messages::HasPartFields*>(type.get());
   return has_fields == nullptr ? nullptr : has_fields->part_fields();
 }
 
 /// Depth of a history that keeps the last samples: as in the profile, but enough for the parts of the largest message.
 std::int32_t depth_of(const eprosima::fastdds::dds::HistoryQosPolicy& history, const Domain& domain) {
-  const std::uint32_t parts = parts_of(kLargestMessage_B, domain.datagram_B() / 2);
+  const std::uint32_t parts = messages::parts_of(messages::kLargestMessage_B, domain.datagram_B() / 2);
   return std::max(history.depth, static_cast<std::int32_t>(parts));
 }
 
@@ -145,7 +145,7 @@ std::uint32_t Writer::largest_sample_B() const {
 
 /// Writes the parts of a message. After a failure the readers drop those before it.
 WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
-  if (message_B > kLargestMessage_B) return WriteResult::kFailed;
+  if (message_B > messages::kLargestMessage_B) return WriteResult::kFailed;
   SerializedPayload_t whole(message_B);
   if (!type_->serialize(message, &whole)) return WriteResult::kFailed;
   if (part_ == nullptr) part_ = part_fields_->make_sample();
@@ -153,8 +153,8 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
   const std::uint32_t part_B = largest_sample_B() - part_fields_->empty_B();
   ++messages_in_parts_;
   WriteResult result = WriteResult::kSent;
-  for (std::uint32_t i = 0; i < parts_of(octets.size(), part_B); ++i) {
-    part_fields_->put(message, part_of(octets, messages_in_parts_, i, part_B), part_.get());
+  for (std::uint32_t i = 0; i < messages::parts_of(octets.size(), part_B); ++i) {
+    part_fields_->put(message, messages::part_of(octets, messages_in_parts_, i, part_B), part_.get());
     const WriteResult written = write_sample(part_.get());
     if (written == WriteResult::kFailed) return written;
     if (written != WriteResult::kSent) result = written;
@@ -278,8 +278,8 @@ bool Reader::take(void* sample, Origin* origin) {
 }
 
 /// Adds a part. True when its message is whole: then `sample` is the message.
-bool Reader::put_together(void* sample, const Part& part, const Guid& writer) {
-  PartAssembly::Stream stream;
+bool Reader::put_together(void* sample, const messages::Part& part, const Guid& writer) {
+  messages::PartAssembly::Stream stream;
   std::ranges::copy(prefix_of(writer.guidPrefix), stream.process.begin());
   stream.endpoints = std::uint64_t{entity_of(reader_->guid())} << 32 | entity_of(writer);
   auto added = domain_.parts().add(stream, part, std::chrono::steady_clock::now().time_since_epoch());
@@ -293,9 +293,9 @@ bool Reader::put_together(void* sample, const Part& part, const Guid& writer) {
   return true;
 }
 
-void Reader::refuse_from(const Origin& origin, WireError error) {
-  const bool is_no_message = error == WireError::kMalformed || error == WireError::kLength ||
-                             error == WireError::kTooLarge || error == WireError::kEnum;
+void Reader::refuse_from(const Origin& origin, messages::WireError error) {
+  const bool is_no_message = error == messages::WireError::kMalformed || error == messages::WireError::kLength ||
+                             error == messages::WireError::kTooLarge || error == messages::WireError::kEnum;
   if (!is_no_message) return;
   refuse_from(origin, fmt::format("it sends what cannot be ({})", name_of(error)));
 }

@@ -15,9 +15,9 @@
 
 #include "core/ids.h"
 #include "dds/domain.h"
-#include "dds/part_fields.h"
 #include "dds/watch.h"
-#include "dds/wire_error.h"
+#include "messages/part_fields.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 
@@ -74,8 +74,8 @@ class Writer {
 
   Domain& domain_;
   eprosima::fastdds::dds::TypeSupport type_;
-  const PartFields* part_fields_ = nullptr;  ///< null: the topic's messages always fit into a datagram
-  std::shared_ptr<void> part_;               ///< sample, reused
+  const messages::PartFields* part_fields_ = nullptr;  ///< null: the topic's messages always fit into a datagram
+  std::shared_ptr<void> part_;                         ///< sample, reused
   std::uint64_t messages_in_parts_ = 0;
   WriterWatch watch_;
   bool is_of_nodes_ = false;  ///< its samples are messages between nodes
@@ -108,7 +108,7 @@ class Reader {
 
   /// Refuses a taken sample. Counted against its sender only if it is no message of ours at all. Other versions, runs
   /// and maps, and what a person has typed, are not counted as the sender's fault.
-  void refuse_from(const Origin& origin, WireError error);
+  void refuse_from(const Origin& origin, messages::WireError error);
   /// Refuses a taken sample that its sender had no right to send, and counts it against the sender. `what` names the
   /// message.
   void refuse_from(const Origin& origin, const std::string& what);
@@ -120,11 +120,11 @@ class Reader {
   std::vector<std::string> partitions() const;
 
  private:
-  bool put_together(void* sample, const Part& part, const Guid& writer);
+  bool put_together(void* sample, const messages::Part& part, const Guid& writer);
 
   Domain& domain_;
   eprosima::fastdds::dds::TypeSupport type_;
-  const PartFields* part_fields_ = nullptr;  ///< null: the topic's messages never come in parts
+  const messages::PartFields* part_fields_ = nullptr;  ///< null: the topic's messages never come in parts
   std::uint64_t lost_ = 0;
   ReaderWatch watch_;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

@@ -32,9 +32,9 @@ constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
 
 /// True when a process acts as a node. A process that only waits does no harm; a successor, or a second launch of the
 /// same file by mistake, does.
-bool acts(const Status& status) {
-  return status.state == NodeState::kRunning || status.state == NodeState::kPaused ||
-         status.state == NodeState::kRecovering;
+bool acts(const messages::Status& status) {
+  return status.state == messages::NodeState::kRunning || status.state == messages::NodeState::kPaused ||
+         status.state == messages::NodeState::kRecovering;
 }
 
 constexpr int kIsNode = 2;
@@ -42,9 +42,9 @@ constexpr int kIsNode = 2;
 /// Rank of a process that claims a region; the highest one is its node. Live processes come first, and among them those
 /// that have not only come to take over from another. `stands`: it is the node so far. Then it remains so at its end,
 /// until it has left: it still answers messages that are under way to it, and no takeover is needed.
-int rank_of(const SeenStatus& seen, bool stands) {
-  if (stands && !seen.lost && seen.status.state == NodeState::kFinished) return kIsNode;
-  return !seen.is_live() ? 0 : seen.status.state == NodeState::kSpare ? 1 : kIsNode;
+int rank_of(const messages::SeenStatus& seen, bool stands) {
+  if (stands && !seen.lost && seen.status.state == messages::NodeState::kFinished) return kIsNode;
+  return !seen.is_live() ? 0 : seen.status.state == messages::NodeState::kSpare ? 1 : kIsNode;
 }
 
 /// Finds the latest match of a writer. Null: it was never matched.
@@ -56,10 +56,10 @@ const RemoteWriter* find(const std::vector<RemoteWriter>& writers, const Guid& g
 }  // namespace
 
 bool NodeRoster::is_region(RegionId region) const {
-  return region != kNoRegion && value_of(region) < settings_.region_count;
+  return region != messages::kNoRegion && value_of(region) < settings_.region_count;
 }
 
-std::string NodeRoster::problem_with(const Status& fresh, const Origin& origin) const {
+std::string NodeRoster::problem_with(const messages::Status& fresh, const Origin& origin) const {
   const std::uint32_t number = value_of(fresh.region);
   if (!speakers_.is_at_home(origin.writer, fresh.region)) {
     return fmt::format("it speaks of region {} where others do", number);
@@ -72,7 +72,7 @@ std::string NodeRoster::problem_with(const Status& fresh, const Origin& origin) 
 }
 
 bool NodeRoster::has_room_for(RegionId region) const {
-  if (is_region(region) || region == kNoRegion) {
+  if (is_region(region) || region == messages::kNoRegion) {
     const auto known = received_.find(region);
     return known == received_.end() || known->second.size() < kMostOfARegion;
   }
@@ -81,7 +81,7 @@ bool NodeRoster::has_room_for(RegionId region) const {
   return others < kMostOfNoRegion;
 }
 
-void NodeRoster::note(Status fresh, const Origin& origin) {
+void NodeRoster::note(messages::Status fresh, const Origin& origin) {
   if (!has_room_for(fresh.region)) return;
   std::vector<Received>& of_region = received_[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
@@ -153,27 +153,27 @@ bool NodeRoster::is_of(RegionId region, const Origin& origin) const {
          });
 }
 
-bool NodeRoster::is_of_the_run(const Status& s, const Guid& writer) const {
-  if (!is_region(s.region) && s.region != kNoRegion) return false;
+bool NodeRoster::is_of_the_run(const messages::Status& s, const Guid& writer) const {
+  if (!is_region(s.region) && s.region != messages::kNoRegion) return false;
   if (speakers_.shuns(writer.guidPrefix)) return false;
   if (settings_.agreement && s.agreement != *settings_.agreement) return false;
   if (settings_.run && s.run != *settings_.run) return false;
   return settings_.region != s.region || writer == settings_.writer;
 }
 
-std::vector<SeenStatus> NodeRoster::strangers() const {
-  std::vector<SeenStatus> strangers;
+std::vector<messages::SeenStatus> NodeRoster::strangers() const {
+  std::vector<messages::SeenStatus> strangers;
   for (const auto& [region, of_region] : received_) {
     for (const Received& one : of_region) {
-      if (region != kNoRegion && one.seen.is_live() && !is_of_the_run(one)) strangers.push_back(one.seen);
+      if (region != messages::kNoRegion && one.seen.is_live() && !is_of_the_run(one)) strangers.push_back(one.seen);
     }
   }
   return strangers;
 }
 
-std::vector<Status> NodeRoster::spares() const {
-  std::vector<Status> spares;
-  const auto of_no_region = received_.find(kNoRegion);
+std::vector<messages::Status> NodeRoster::spares() const {
+  std::vector<messages::Status> spares;
+  const auto of_no_region = received_.find(messages::kNoRegion);
   if (of_no_region == received_.end()) return spares;
   for (const Received& one : of_no_region->second) {
     if (one.seen.is_live() && is_of_the_run(one)) spares.push_back(one.seen.status);

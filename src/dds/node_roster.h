@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "dds/control_messages.h"
 #include "dds/endpoints.h"
 #include "dds/speakers.h"
 #include "dds/watch.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::dds {
 
@@ -33,17 +33,17 @@ class NodeRoster {
   NodeRoster(RosterSettings settings, Speakers& speakers) : settings_(settings), speakers_(speakers) {}
 
   /// Returns why `status` cannot be a node's status of itself. Empty: it can.
-  std::string problem_with(const Status& status, const Origin& origin) const;
-  void note(Status status, const Origin& origin);
+  std::string problem_with(const messages::Status& status, const Origin& origin) const;
+  void note(messages::Status status, const Origin& origin);
   /// Updates which proofs of life have ended, and which status counts for each region.
   void look(const std::vector<RemoteWriter>& writers);
 
   /// Statuses of this run's nodes, as of the last look().
-  const std::map<core::RegionId, SeenStatus>& statuses() const { return statuses_; }
+  const std::map<core::RegionId, messages::SeenStatus>& statuses() const { return statuses_; }
   /// Live nodes of other runs, and live nodes that claim to be this process's region, as of the last look().
-  std::vector<SeenStatus> strangers() const;
+  std::vector<messages::SeenStatus> strangers() const;
   /// Spares: processes that wait for a region of this run, as of the last look().
-  std::vector<Status> spares() const;
+  std::vector<messages::Status> spares() const;
 
   void hold_for_dead(std::uint64_t process) { dead_.insert(process); }
   /// Handles a report that `process` has died, which is believed once it shows no life. Returns false when it shows
@@ -59,7 +59,7 @@ class NodeRoster {
  private:
   struct Received {  ///< the last status of one process
     Guid writer;
-    SeenStatus seen;
+    messages::SeenStatus seen;
     std::deque<std::chrono::nanoseconds> clock_ahead;  ///< estimates from the last samples
   };
 
@@ -68,14 +68,14 @@ class NodeRoster {
   bool is_lost(const Received& one, const RemoteWriter* writer) const;
   bool shows_no_life(const Received& one) const;
   void choose_publisher(core::RegionId region, const std::vector<Received>& of_region);
-  bool is_of_the_run(const Status& status, const Guid& writer) const;
+  bool is_of_the_run(const messages::Status& status, const Guid& writer) const;
   bool is_of_the_run(const Received& one) const { return is_of_the_run(one.seen.status, one.writer); }
 
   RosterSettings settings_;
   Speakers& speakers_;
   std::map<core::RegionId, std::vector<Received>> received_;  ///< processes in the order of their first samples
   std::map<core::RegionId, Guid> publishers_;
-  std::map<core::RegionId, SeenStatus> statuses_;
+  std::map<core::RegionId, messages::SeenStatus> statuses_;
   std::set<std::uint64_t> dead_;     ///< processes that are known to have ended
   std::set<std::uint64_t> claimed_;  ///< processes that others report as dead
 };

@@ -120,7 +120,7 @@ void ObservationServer::Impl::list() {
 }
 
 void ObservationServer::look() {
-  const auto refuse = [this](const wire::Interest&, WireError) { ++impl_->refused; };
+  const auto refuse = [this](const wire::Interest&, messages::WireError) { ++impl_->refused; };
   impl_->interests.take_each(
       {}, [this](core::Interest&& interest, const Origin& origin) { impl_->hear(std::move(interest), origin); },
       refuse);
@@ -206,7 +206,7 @@ std::vector<core::Observation> ObserverEndpoint::take() {
     impl_->observations.refuse_from(origin,
                                     fmt::format("it is not the node of region {}", core::value_of(observation.source)));
   };
-  const auto ignore = [](const wire::Observation&, WireError) {};
+  const auto ignore = [](const wire::Observation&, messages::WireError) {};
   impl_->observations.take_each(expected_of(impl_->settings), take_one, ignore, kMostAtOnce);
   return observations;
 }

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "dds/observer_settings.h"
-#include "dds/wire_error.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 
-inline Expected expected_of(const ObserverSettings& settings) {
-  Expected expected;
+inline messages::Expected expected_of(const ObserverSettings& settings) {
+  messages::Expected expected;
   expected.map_version = settings.map_version;
   expected.region_count = settings.region_count;
   expected.prototype_count = settings.prototype_count;

@@ -21,7 +21,7 @@ class Glance {
   }
 
  private:
-  Expected expected_;
+  messages::Expected expected_;
   Wakeup wakeup_;
   TypedReader<Wire> reader_;
 };

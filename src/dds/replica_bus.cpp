@@ -51,7 +51,7 @@ struct ReplicaReader::Impl {
   void listen_anew_to_who_became_a_node();
 
   Participant& participant;
-  Expected expected;
+  messages::Expected expected;
   Wakeup& wakeup;
   std::optional<TypedReader<wire::Replica>> deltas;
   std::optional<TypedReader<wire::Replica>> keys;

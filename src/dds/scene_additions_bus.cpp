@@ -75,7 +75,7 @@ MeshWriter::MeshWriter(Participant& participant) : impl_(std::make_unique<Impl>(
 MeshWriter::~MeshWriter() = default;
 
 bool MeshWriter::tell_again(std::uint64_t hash, const core::TriangleMesh& mesh) {
-  return impl_->writer.send(NamedMesh{hash, mesh, true}) != WriteResult::kFailed;
+  return impl_->writer.send(messages::NamedMesh{hash, mesh, true}) != WriteResult::kFailed;
 }
 
 struct MeshReader::Impl {
@@ -84,7 +84,7 @@ struct MeshReader::Impl {
 
   /// True when the mesh has the hash that it is named by. Meshes that a node publishes again are not checked: it
   /// checked them on receipt, and worlds saved by others may use other names.
-  bool is_what_it_is_called(const NamedMesh& named, const Origin& origin) const {
+  bool is_what_it_is_called(const messages::NamedMesh& named, const Origin& origin) const {
     return core::content_hash(named.mesh) == named.hash ||
            (named.is_told_again && participant.domain().speakers().is_node(origin.writer));
   }
@@ -102,7 +102,7 @@ MeshReader::MeshReader(Participant& participant, const MeshCacheLimits& limits)
 MeshReader::~MeshReader() = default;
 
 MeshCache& MeshReader::meshes() {
-  impl_->reader.take_each({}, [&](NamedMesh&& named, const Origin& origin) {
+  impl_->reader.take_each({}, [&](messages::NamedMesh&& named, const Origin& origin) {
     if (!impl_->is_what_it_is_called(named, origin)) {
       ++impl_->misnamed;
       return impl_->reader.refuse_from(origin, "a mesh that is not the one that it is called");

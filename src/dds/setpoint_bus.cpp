@@ -8,8 +8,8 @@
 
 #include "dds/random_id.h"
 #include "dds/rations.h"
-#include "dds/setpoint_codec.h"
 #include "dds/typed_endpoints.h"
+#include "messages/setpoint_codec.h"
 
 namespace aurasim::dds {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/setpoint.h"
 #include "dds/participant.h"
-#include "dds/wire_error.h"
+#include "messages/wire_error.h"
 
 namespace aurasim::dds {
 

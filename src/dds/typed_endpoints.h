@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "aurasim.h"
-#include "dds/cluster_graph_codec.h"
-#include "dds/codec.h"
-#include "dds/command_codec.h"
 #include "dds/endpoints.h"
-#include "dds/interest_codec.h"
-#include "dds/observation_codec.h"
-#include "dds/replica_codec.h"
+#include "messages/cluster_graph_codec.h"
+#include "messages/codec.h"
+#include "messages/command_codec.h"
+#include "messages/interest_codec.h"
+#include "messages/observation_codec.h"
+#include "messages/replica_codec.h"
 
 namespace aurasim::dds {
 
@@ -28,13 +28,13 @@ class TypedWriter : public Writer {
   /// Encodes by encode(message..., Wire) and writes the result.
   template <class... Message>
   WriteResult send(const Message&... message) {
-    encode(message..., sample_);
+    messages::encode(message..., sample_);
     return write(&sample_);
   }
   /// Sends a message that replaces all earlier ones of this writer. Readers that join later receive it alone.
   template <class... Message>
   WriteResult send_newest(const Message&... message) {
-    encode(message..., sample_);
+    messages::encode(message..., sample_);
     forget_all();
     return write(&sample_);
   }
@@ -47,18 +47,19 @@ class TypedWriter : public Writer {
 template <class Wire>
 class TypedReader : public Reader {
  public:
-  using Message = std::variant_alternative_t<0, decltype(decode(std::declval<const Wire&>(), Expected{}))>;
+  using Message =
+      std::variant_alternative_t<0, decltype(messages::decode(std::declval<const Wire&>(), messages::Expected{}))>;
 
   using Reader::Reader;
 
   /// Calls `visit(message)` or `visit(message, origin)` for each message that has arrived, and `refuse(sample, error)`
   /// for each invalid sample. `at_most` limits the samples of one call, in case they arrive faster than they are taken.
   template <class Visit, class Refuse>
-  void take_each(const Expected& expected, Visit&& visit, Refuse&& refuse, std::size_t at_most = SIZE_MAX) {
+  void take_each(const messages::Expected& expected, Visit&& visit, Refuse&& refuse, std::size_t at_most = SIZE_MAX) {
     Origin origin;
     while (at_most-- > 0 && take(&sample_, &origin)) {
-      auto decoded = decode(sample_, expected);
-      if (const auto* error = std::get_if<WireError>(&decoded)) {
+      auto decoded = messages::decode(sample_, expected);
+      if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
         refused_.add(*error);
         refuse_from(origin, *error);
         refuse(std::as_const(sample_), *error);
@@ -68,22 +69,22 @@ class TypedReader : public Reader {
         visit(std::move(std::get<Message>(decoded)));
       }
     }
-    refused_.add(WireError::kParts, take_lost());
+    refused_.add(messages::WireError::kParts, take_lost());
   }
   template <class Visit>
-  void take_each(const Expected& expected, Visit&& visit) {
-    take_each(expected, std::forward<Visit>(visit), [](const Wire&, WireError) {});
+  void take_each(const messages::Expected& expected, Visit&& visit) {
+    take_each(expected, std::forward<Visit>(visit), [](const Wire&, messages::WireError) {});
   }
   /// Appends all messages that have arrived to `out`.
-  void take_all(const Expected& expected, std::vector<Message>& out) {
+  void take_all(const messages::Expected& expected, std::vector<Message>& out) {
     take_each(expected, [&out](Message&& message) { out.push_back(std::move(message)); });
   }
 
-  const WireErrors& refused() const { return refused_; }
+  const messages::WireErrors& refused() const { return refused_; }
 
  private:
   Wire sample_;  // reused
-  WireErrors refused_;
+  messages::WireErrors refused_;
 };
 
 }  // namespace aurasim::dds

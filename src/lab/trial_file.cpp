@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "node/csv.h"
+#include "records/csv.h"
 
 namespace aurasim::lab {
 namespace {
@@ -28,7 +28,7 @@ struct TrialRow {
   double slow_down = 1;
 
   static constexpr auto columns() {
-    using node::Column;
+    using records::Column;
     return std::tuple{Column{"pairs", &TrialRow::pairs},
                       Column{"series", &TrialRow::series},
                       Column{"tolerance", &TrialRow::tolerance},
@@ -120,12 +120,12 @@ TrialRow row_of(const Trial& t) {
 
 }  // namespace
 
-std::string trial_header() { return node::csv_header<TrialRow>(); }
+std::string trial_header() { return records::csv_header<TrialRow>(); }
 
-std::string trial_row(const Trial& trial) { return node::csv_line(row_of(trial)); }
+std::string trial_row(const Trial& trial) { return records::csv_line(row_of(trial)); }
 
 void read_trials(const std::filesystem::path& file, const std::function<void(const Trial&)>& row) {
-  const std::size_t broken = node::read_csv<TrialRow>(file, [&](const TrialRow& r) { row(trial_in(r)); });
+  const std::size_t broken = records::read_csv<TrialRow>(file, [&](const TrialRow& r) { row(trial_in(r)); });
   if (broken > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), broken));
 }
 

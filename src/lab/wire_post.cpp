@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "dds/wire_bytes.h"
+#include "messages/wire_bytes.h"
 
 namespace aurasim::lab {
 namespace {
@@ -20,9 +20,9 @@ void forget_before(Map& kept, std::uint32_t redo, core::Step step) {
 }
 
 template <class Message>
-Message required(dds::Decoded<Message> decoded) {
-  if (const auto* error = std::get_if<dds::WireError>(&decoded)) {
-    throw std::logic_error("a node refuses what another has sent: " + std::string(dds::name_of(*error)));
+Message required(messages::Decoded<Message> decoded) {
+  if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
+    throw std::logic_error("a node refuses what another has sent: " + std::string(messages::name_of(*error)));
   }
   return std::move(std::get<Message>(decoded));
 }
@@ -120,8 +120,8 @@ class WirePost::Endpoint : public transport::Transport {
   WirePost& post_;
   transport::Transport& network_;
   core::RegionId region_;
-  dds::WireBytes coder_;
-  dds::Expected expected_;
+  messages::WireBytes coder_;
+  messages::Expected expected_;
   Traffic traffic_;
   double free_s_ = 0;  ///< when the link has sent what it was given
 };

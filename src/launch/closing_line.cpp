@@ -8,19 +8,19 @@
 
 namespace aurasim::launch {
 
-std::string closing_line(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t regions, bool has_begun,
-                         double step_s) {
+std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t regions,
+                         bool has_begun, double step_s) {
   if (!has_begun) return "the run has not begun\n";
   std::uint64_t bodies = 0, hand_offs = 0, late = 0, missed = 0;
   core::Step step = 0;
   std::vector<std::uint32_t> unknown;
   for (std::uint32_t r = 0; r < regions; ++r) {
     const auto seen = statuses.find(core::RegionId{r});
-    if (seen == statuses.end() || seen->second.status.state != dds::NodeState::kFinished) {
+    if (seen == statuses.end() || seen->second.status.state != messages::NodeState::kFinished) {
       unknown.push_back(r);
       continue;
     }
-    const dds::Status& status = seen->second.status;
+    const messages::Status& status = seen->second.status;
     step = std::max(step, status.step);
     bodies += status.bodies;
     hand_offs += status.hand_offs_out;

@@ -11,7 +11,7 @@ namespace aurasim::launch {
 
 /// The line with its end. `statuses`: the last status of each region. Regions whose nodes have not come to the end of
 /// the run are named, because the fate of their bodies is unknown.
-std::string closing_line(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t regions, bool has_begun,
-                         double step_s);
+std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t regions,
+                         bool has_begun, double step_s);
 
 }  // namespace aurasim::launch

@@ -17,7 +17,7 @@
 #include "host/terminal.h"
 #include "launch/closing_line.h"
 #include "launch/merged_report.h"
-#include "node/report.h"
+#include "records/report.h"
 #include "setup/guard_log.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
@@ -89,8 +89,8 @@ command_line::ExitCode Launcher::run() {
 void Launcher::take_report_folder() {
   if (!options_.report) return;
   report_folder_.emplace(*options_.report);
-  node::clear_report(*options_.report);
-  node::reserve_summary(*options_.report);
+  records::clear_report(*options_.report);
+  records::reserve_summary(*options_.report);
 }
 
 void Launcher::start_nodes() {
@@ -110,10 +110,10 @@ void Launcher::start_nodes() {
 bool Launcher::all_go_on() {
   return std::ranges::all_of(children_, [this](const Child& child) {
     if (!child.running) return true;
-    const dds::SeenStatus* const seen = said_by(child);
+    const messages::SeenStatus* const seen = said_by(child);
     if (seen == nullptr || child.successor != 0) return !has_begun_;
-    const dds::NodeState state = seen->status.state;
-    return state != dds::NodeState::kRecovering && state != dds::NodeState::kSpare;
+    const messages::NodeState state = seen->status.state;
+    return state != messages::NodeState::kRecovering && state != messages::NodeState::kSpare;
   });
 }
 
@@ -126,10 +126,10 @@ void Launcher::keep_spares() {
 
 /// Process that takes the child's region over: a spare, or a new process.
 pid_t Launcher::successor_of(const Child& child) {
-  for (const dds::Status& spare : control_.spares()) {
+  for (const messages::Status& spare : control_.spares()) {
     const auto ours = std::ranges::find(spares_, static_cast<pid_t>(spare.pid));
     if (ours == spares_.end()) continue;
-    control_.send(steering::about_process(dds::RunCommandKind::kTake, run_, child.region, spare.process));
+    control_.send(steering::about_process(messages::RunCommandKind::kTake, run_, child.region, spare.process));
     const pid_t pid = *ours;
     spares_.erase(ours);
     return pid;
@@ -143,9 +143,9 @@ pid_t Launcher::start_node(core::RegionId region, setup::Start start) const {
 
 void Launcher::look_at_nodes() {
   for (const auto& [region, seen] : control_.statuses()) {
-    const dds::NodeState state = seen.status.state;
-    has_begun_ = has_begun_ || state == dds::NodeState::kRunning || state == dds::NodeState::kPaused ||
-                 state == dds::NodeState::kFinished;
+    const messages::NodeState state = seen.status.state;
+    has_begun_ = has_begun_ || state == messages::NodeState::kRunning || state == messages::NodeState::kPaused ||
+                 state == messages::NodeState::kFinished;
   }
   if (has_begun_ || cannot_begin_) return;
   const std::optional<std::string> problem = start_watch_->problem(control_.statuses(), Clock::now());
@@ -157,8 +157,8 @@ void Launcher::look_at_nodes() {
 /// while.
 void Launcher::hear_commands() {
   const auto now = Clock::now();
-  for (dds::RunCommand& command : control_.take_commands()) {
-    if (command.kind == dds::RunCommandKind::kDrain) drains_.push_back({std::move(command), now});
+  for (messages::RunCommand& command : control_.take_commands()) {
+    if (command.kind == messages::RunCommandKind::kDrain) drains_.push_back({std::move(command), now});
   }
   if (stopping_) drains_.clear();
   std::erase_if(drains_, [&](const Drain& drain) {
@@ -167,9 +167,9 @@ void Launcher::hear_commands() {
 }
 
 /// Gives a node that is to leave a successor first. False if no child is the named process.
-bool Launcher::begin_drain(const dds::RunCommand& drain) {
+bool Launcher::begin_drain(const messages::RunCommand& drain) {
   for (Child& child : children_) {
-    const dds::SeenStatus* const seen = said_by(child);
+    const messages::SeenStatus* const seen = said_by(child);
     if (seen == nullptr || seen->status.process != drain.process || !child.running) continue;
     if (child.successor == 0) child.successor = successor_of(child);
     return true;
@@ -203,8 +203,8 @@ void Launcher::collect_exits() {
 
 /// True if the child has ended because the run has, and has not left its region to another process.
 bool Launcher::has_finished(const Child& child) {
-  const dds::SeenStatus* const seen = said_by(child);
-  return child.exit_code == 0 && seen != nullptr && seen->status.state == dds::NodeState::kFinished;
+  const messages::SeenStatus* const seen = said_by(child);
+  return child.exit_code == 0 && seen != nullptr && seen->status.state == messages::NodeState::kFinished;
 }
 
 void Launcher::end_successor(Child& child) {
@@ -216,15 +216,15 @@ void Launcher::end_successor(Child& child) {
 
 /// Publishes that a child is lost, because DDS would need a second to notice.
 void Launcher::tell_lost(const Child& child) {
-  const dds::SeenStatus* const seen = said_by(child);
+  const messages::SeenStatus* const seen = said_by(child);
   if (seen == nullptr) return;
   const std::uint64_t process = seen->status.process;
   control_.hold_for_dead(process);
-  control_.send(steering::about_process(dds::RunCommandKind::kLost, run_, child.region, process));
+  control_.send(steering::about_process(messages::RunCommandKind::kLost, run_, child.region, process));
 }
 
 /// The child's status. Null if it has none yet; its region's status may still be of the process before.
-const dds::SeenStatus* Launcher::said_by(const Child& child) {
+const messages::SeenStatus* Launcher::said_by(const Child& child) {
   const auto& statuses = control_.statuses();
   const auto seen = statuses.find(child.region);
   const bool is_its_own = seen != statuses.end() && seen->second.status.pid == static_cast<std::uint32_t>(child.pid);
@@ -267,8 +267,8 @@ bool Launcher::can_be_replaced(const Child& child) const {
 /// True if any child knows the world. Otherwise all have only come to take regions over.
 bool Launcher::somebody_knows_the_world() {
   return std::ranges::any_of(children_, [this](const Child& child) {
-    const dds::SeenStatus* const seen = said_by(child);
-    return child.running && seen != nullptr && seen->status.state != dds::NodeState::kSpare;
+    const messages::SeenStatus* const seen = said_by(child);
+    return child.running && seen != nullptr && seen->status.state != messages::NodeState::kSpare;
   });
 }
 
@@ -316,7 +316,7 @@ void Launcher::signal_all(int signal) {
 void Launcher::stop_all() {
   steering::RunSteering steering(launch_, control_);
   if (has_begun_ && steering.find_run(0ms)) {
-    steering.send(dds::RunCommandKind::kStop);
+    steering.send(messages::RunCommandKind::kStop);
   } else {
     signal_all(SIGINT);
   }
@@ -376,16 +376,16 @@ command_line::ExitCode Launcher::conclude() {
     host::print(closing_line(control_.statuses(), children_.size(), has_begun_, launch_.step_s()));
     return code;
   }
-  if (code == command_line::ExitCode::kRefused || !node::has_records(*options_.report)) {
+  if (code == command_line::ExitCode::kRefused || !records::has_records(*options_.report)) {
     spdlog::warn("no report: the run has not begun");
-    node::clear_report(*options_.report);
+    records::clear_report(*options_.report);
     return code;
   }
   return report_and_count(code);
 }
 
 command_line::ExitCode Launcher::report_and_count(command_line::ExitCode so_far) {
-  node::RunFacts facts;
+  records::RunFacts facts;
   facts.regions = children_.size();
   facts.step_s = launch_.step_s();
   for (const Child& child : children_) {

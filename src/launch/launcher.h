@@ -51,14 +51,14 @@ class Launcher {
   void start_nodes();
   pid_t start_node(core::RegionId region, setup::Start start) const;
   void hear_commands();
-  bool begin_drain(const dds::RunCommand& drain);
+  bool begin_drain(const messages::RunCommand& drain);
   void end_hung_nodes();
   void tell_long_steps();
   void collect_exits();
   void tell_lost(const Child& child);
   bool has_finished(const Child& child);
   void end_successor(Child& child);
-  const dds::SeenStatus* said_by(const Child& child);
+  const messages::SeenStatus* said_by(const Child& child);
   void note_exit(Child& child, int status);
   bool can_be_replaced(const Child& child) const;
   bool somebody_knows_the_world();
@@ -92,7 +92,7 @@ class Launcher {
   std::vector<Child> children_;
   std::vector<pid_t> spares_;
   struct Drain {
-    dds::RunCommand command;
+    messages::RunCommand command;
     std::chrono::steady_clock::time_point heard;
   };
   std::vector<Drain> drains_;              ///< drain commands for processes that are not known here yet

@@ -21,7 +21,7 @@ void Launcher::end_hung_nodes() {
   if (!others_wait || !has_begun_) return;
   for (Child& child : children_) {
     if (!child.running || child.hung == child.pid) continue;
-    const dds::SeenStatus* const seen = said_by(child);  // null: it is about to become the node of its region
+    const messages::SeenStatus* const seen = said_by(child);  // null: it is about to become the node of its region
     if (seen == nullptr || seen->has_ended()) continue;
     const auto silence = life_.silence_of(child.pid, now);
     if (!silence) continue;

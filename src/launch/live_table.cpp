@@ -40,13 +40,15 @@ void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells
   }
 }
 
-std::uint64_t broken_promises(const dds::Violations& v) { return v.speed + v.latency + v.frame + v.promise + v.span; }
+std::uint64_t broken_promises(const messages::Violations& v) {
+  return v.speed + v.latency + v.frame + v.promise + v.span;
+}
 
-void add_region(std::vector<Column>& columns, const dds::SeenStatus& seen) {
-  const dds::Status& s = seen.status;
+void add_region(std::vector<Column>& columns, const messages::SeenStatus& seen) {
+  const messages::Status& s = seen.status;
   const auto text = [](const auto& value) { return fmt::to_string(value); };
   const auto decimals = [](double value) { return fmt::format("{:.2f}", value); };
-  add_row(columns, {text(core::value_of(s.region)), seen.lost ? "lost" : dds::name_of(s.state), text(s.step),
+  add_row(columns, {text(core::value_of(s.region)), seen.lost ? "lost" : messages::name_of(s.state), text(s.step),
                     text(s.bodies), text(s.awake), text(s.foreign_auras), text(s.hand_offs_out), text(s.hand_offs_in),
                     decimals(s.frame.p50_ms), decimals(s.frame.p99_ms), text(broken_promises(s.violations)),
                     decimals(s.real_time_factor), text(s.listens_to.size())});
@@ -81,14 +83,15 @@ std::string folded(const std::string& note, std::size_t terminal) {
 }
 
 /// Notices and faults from the nodes' statuses.
-std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std::size_t terminal,
+std::string notes(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t terminal,
                   std::chrono::steady_clock::time_point now) {
   std::string lines;
   for (const auto& [region, seen] : statuses) {
     std::string whose;
     for (const auto& [source, count] : seen.status.refused) {
-      whose += fmt::format("{} {} of {}", whose.empty() ? "" : ",", count,
-                           source == dds::kNoRegion ? "no node" : fmt::format("region {}", core::value_of(source)));
+      whose +=
+          fmt::format("{} {} of {}", whose.empty() ? "" : ",", count,
+                      source == messages::kNoRegion ? "no node" : fmt::format("region {}", core::value_of(source)));
     }
     if (!whose.empty()) {
       lines += folded(fmt::format("region {} has refused messages:{}", core::value_of(region), whose), terminal);
@@ -104,7 +107,7 @@ std::string notes(const std::map<core::RegionId, dds::SeenStatus>& statuses, std
 
 }  // namespace
 
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size,
+std::string live_table(const std::map<core::RegionId, messages::SeenStatus>& statuses, TerminalSize size,
                        std::chrono::steady_clock::time_point now) {
   std::vector<Column> columns = empty_columns();
   for (Column& column : columns) column.cells.push_back(column.head);
@@ -129,7 +132,7 @@ std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses
   return table + line(columns, shown + 1) + notes(statuses, size.columns, now);
 }
 
-std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size) {
+std::string listening_lines(const std::map<core::RegionId, messages::SeenStatus>& statuses, TerminalSize size) {
   std::string lines;
   for (const auto& [region, seen] : statuses) {
     std::string who;

@@ -19,12 +19,12 @@ struct TerminalSize {
 /// One line per region and a line of sums, each shorter than the terminal is wide. The least important columns are left
 /// out. When there are more regions than rows, the last line but one says how many are not shown. `now`: used to mark
 /// nodes that compute one step for long.
-std::string live_table(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {},
+std::string live_table(const std::map<core::RegionId, messages::SeenStatus>& statuses, TerminalSize size = {},
                        std::chrono::steady_clock::time_point now = {});
 
 /// One line per region with the regions that it receives from. For regions that are not near each other it also shows
 /// since when, and by whose introduction.
-std::string listening_lines(const std::map<core::RegionId, dds::SeenStatus>& statuses, TerminalSize size = {});
+std::string listening_lines(const std::map<core::RegionId, messages::SeenStatus>& statuses, TerminalSize size = {});
 
 /// Prints text over the text printed last, if standard output is a terminal; otherwise below it.
 class TerminalView {

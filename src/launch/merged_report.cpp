@@ -10,14 +10,14 @@
 
 namespace aurasim::launch {
 
-std::string closing_line(const node::Accounts& accounts) {
+std::string closing_line(const records::Accounts& accounts) {
   if (accounts.incomplete.empty()) {
     return fmt::format("{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}\n",
                        accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed,
                        accounts.real_time_factor);
   }
   std::vector<std::uint32_t> regions;
-  for (const node::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
+  for (const records::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
   return fmt::format(
       "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
       "[{}] "
@@ -26,15 +26,15 @@ std::string closing_line(const node::Accounts& accounts) {
       accounts.thrashed, accounts.real_time_factor);
 }
 
-command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts,
+command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const records::RunFacts& facts,
                                        command_line::ExitCode so_far) {
-  const node::Accounts accounts = node::merge_report(folder, facts);
+  const records::Accounts accounts = records::merge_report(folder, facts);
   host::print(fmt::format("report: {}\n", (folder / "summary.json").string()));
   host::print(closing_line(accounts));
-  for (const node::DeadRegion& dead : accounts.dead) {
+  for (const records::DeadRegion& dead : accounts.dead) {
     host::print(fmt::format("region {} died and took {} bodies with it\n", core::value_of(dead.region), dead.bodies));
   }
-  for (const node::IncompleteRegion& region : accounts.incomplete) {
+  for (const records::IncompleteRegion& region : accounts.incomplete) {
     spdlog::error("the records of region {} end after step {}: {}", core::value_of(region.region), region.after_step,
                   region.why);
   }

@@ -5,16 +5,16 @@
 #include <string>
 
 #include "command_line/exit_code.h"
-#include "node/report.h"
+#include "records/report.h"
 
 namespace aurasim::launch {
 
 /// The last line of a run's output. If records are missing, it says what is not known.
-std::string closing_line(const node::Accounts& accounts);
+std::string closing_line(const records::Accounts& accounts);
 
 /// Merges `folder` (see node::merge_report). Returns `so_far`, or kFailed when a body is lost or hosted twice, or when
 /// records are missing.
-command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const node::RunFacts& facts,
+command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const records::RunFacts& facts,
                                        command_line::ExitCode so_far);
 
 }  // namespace aurasim::launch

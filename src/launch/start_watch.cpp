@@ -8,7 +8,7 @@
 
 namespace aurasim::launch {
 
-std::optional<std::string> StartWatch::problem(const std::map<core::RegionId, dds::SeenStatus>& statuses,
+std::optional<std::string> StartWatch::problem(const std::map<core::RegionId, messages::SeenStatus>& statuses,
                                                Clock::time_point now) {
   Progress progress;
   for (const auto& [region, seen] : statuses) progress[region] = {seen.status.state, seen.status.step};

@@ -23,12 +23,13 @@ class StartWatch {
   /// Why the run cannot begin. Nothing while there is progress. The problem is a node that has published no status for
   /// --start-time-out seconds and some more, while no other node has made progress either. Each node's progress starts
   /// the time anew, because many nodes may share few processors.
-  std::optional<std::string> problem(const std::map<core::RegionId, dds::SeenStatus>& statuses, Clock::time_point now);
+  std::optional<std::string> problem(const std::map<core::RegionId, messages::SeenStatus>& statuses,
+                                     Clock::time_point now);
 
  private:
   /// Additional time. A node that waits in vain for another one ends the start itself, with a better message.
   static constexpr std::chrono::seconds kNodesSpeakFirst{10};
-  using Progress = std::map<core::RegionId, std::pair<dds::NodeState, core::Step>>;
+  using Progress = std::map<core::RegionId, std::pair<messages::NodeState, core::Step>>;
 
   std::size_t regions_;
   std::chrono::seconds time_out_;

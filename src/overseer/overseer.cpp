@@ -217,7 +217,7 @@ void Overseer::serve_commands() {
 }
 
 std::string Overseer::state_of_run() const {
-  using State = dds::NodeState;
+  using State = messages::NodeState;
   const auto any = [&](State state) {
     return std::any_of(watch_.nodes().begin(), watch_.nodes().end(), [&](const auto& entry) {
       return entry.second.status.state == state && (state == State::kFinished || !entry.second.lost);

@@ -38,9 +38,9 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 /// A side of a box; infinity becomes null, because JSON has no infinity.
 Json side(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
-Json durations_json(const dds::Durations& d) { return {{"p50", d.p50_ms}, {"p99", d.p99_ms}, {"max", d.max_ms}}; }
+Json durations_json(const messages::Durations& d) { return {{"p50", d.p50_ms}, {"p99", d.p99_ms}, {"max", d.max_ms}}; }
 
-Json listens_json(const dds::Status& status) {
+Json listens_json(const messages::Status& status) {
   Json listens = Json::array();
   for (const core::Listened& who : status.listens_to) {
     Json one = {{"region", value_of(who.region)}, {"since", who.since}};
@@ -50,11 +50,11 @@ Json listens_json(const dds::Status& status) {
   return listens;
 }
 
-Json node_json(const dds::SeenStatus& seen, double hand_offs_per_s) {
-  const dds::Status& s = seen.status;
+Json node_json(const messages::SeenStatus& seen, double hand_offs_per_s) {
+  const messages::Status& s = seen.status;
   return {{"region", value_of(s.region)},
           {"step", s.step},
-          {"state", dds::name_of(s.state)},
+          {"state", messages::name_of(s.state)},
           {"lost", seen.lost},
           {"bodies", s.bodies},
           {"awake", s.awake},
@@ -169,7 +169,7 @@ std::string node_metrics(const RunStatus& status) {
     for (const auto& [region, seen] : status.nodes)
       text += fmt::format("aurasim_{}{{region=\"{}\"}} {}\n", name, value_of(region), value(seen));
   };
-  using Seen = dds::SeenStatus;
+  using Seen = messages::SeenStatus;
   add("node_up", "gauge", "1 while its proof of life has not run out.", [](const Seen& s) { return s.lost ? 0 : 1; });
   add("step", "counter", "State computed last.", [](const Seen& s) { return s.status.step; });
   add("bodies", "gauge", "Bodies hosted.", [](const Seen& s) { return s.status.bodies; });
@@ -198,7 +198,7 @@ std::string node_metrics(const RunStatus& status) {
       "# HELP aurasim_violations_total Warnings: limits and predictions that did not hold.\n# TYPE "
       "aurasim_violations_total counter\n";
   for (const auto& [region, seen] : status.nodes) {
-    const dds::Violations& v = seen.status.violations;
+    const messages::Violations& v = seen.status.violations;
     for (const auto& [kind, count] :
          {std::pair{"speed", v.speed}, std::pair{"latency", v.latency}, std::pair{"frame", v.frame},
           std::pair{"promise", v.promise}, std::pair{"span", v.span}}) {

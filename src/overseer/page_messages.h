@@ -40,7 +40,7 @@ struct RunStatus {
   std::string state;
   double rate = 1;
   std::uint64_t clients = 0;
-  std::map<core::RegionId, dds::SeenStatus> nodes;
+  std::map<core::RegionId, messages::SeenStatus> nodes;
   std::map<core::RegionId, double> hand_offs_per_s;
 };
 std::string status_message(const RunStatus& status);

@@ -85,7 +85,7 @@ void RunCommandSink::refuse(const Request& request, std::string why) {
 
 void RunCommandSink::steer(const Request& request, const steering::Steer& steer) {
   if (!steering_.is_there()) return refuse(request, "no node of this run is there");
-  if (steer.kind == dds::RunCommandKind::kStep && !steering_.is_paused()) {
+  if (steer.kind == messages::RunCommandKind::kStep && !steering_.is_paused()) {
     return refuse(request, "steps are for a run that is paused");
   }
   try {
@@ -135,7 +135,7 @@ void RunCommandSink::carry(const Request& request) {
 
 void RunCommandSink::reply_to_drains() {
   std::erase_if(leaving_, [this](Leaving& waiting) {
-    const dds::Status* const successor = waiting.drain.successor();
+    const messages::Status* const successor = waiting.drain.successor();
     if (successor == nullptr && Clock::now() < waiting.deadline) return false;
     std::string text = successor != nullptr
                            ? fmt::format("process {} has taken region {} over by step {}", successor->pid,
@@ -159,7 +159,7 @@ std::vector<Reply> RunCommandSink::take_replies() {
   std::erase_if(under_way_, [this](const UnderWay& waiting) {
     const bool done = steering_.has_taken_effect(waiting.command);
     if (!done && Clock::now() < waiting.deadline) return false;
-    const char* kind = dds::name_of(waiting.command.kind);
+    const char* kind = messages::name_of(waiting.command.kind);
     std::string text = done ? fmt::format("{}: done at step {}", kind, waiting.command.at_step)
                             : fmt::format("{} was sent, but not every node shows its effect", kind);
     replies_.push_back({waiting.client, waiting.request, done, std::move(text), nullptr});

@@ -36,7 +36,7 @@ class RunCommandSink final : public CommandSink {
   struct UnderWay {
     ClientId client{};
     std::string request;
-    dds::RunCommand command;
+    messages::RunCommand command;
     std::chrono::steady_clock::time_point deadline;
   };
   struct Leaving {

@@ -16,20 +16,20 @@ constexpr auto kLookPeriod = 20ms;
 
 /// State of a region for the view. A finished node is not waited for, but its bodies stay where they are; those of a
 /// dead node are removed.
-WorldView::RegionState region_state(const dds::SeenStatus& seen) {
+WorldView::RegionState region_state(const messages::SeenStatus& seen) {
   using State = WorldView::RegionState;
   switch (seen.status.state) {
-    case dds::NodeState::kRunning:
-    case dds::NodeState::kPaused:
-    case dds::NodeState::kRecovering:
-    case dds::NodeState::kCutOff:
+    case messages::NodeState::kRunning:
+    case messages::NodeState::kPaused:
+    case messages::NodeState::kRecovering:
+    case messages::NodeState::kCutOff:
       return seen.lost ? State::kDead : State::kLive;
-    case dds::NodeState::kFailed:
+    case messages::NodeState::kFailed:
       return State::kDead;
-    case dds::NodeState::kStarting:
-    case dds::NodeState::kWaiting:
-    case dds::NodeState::kSpare:
-    case dds::NodeState::kFinished:
+    case messages::NodeState::kStarting:
+    case messages::NodeState::kWaiting:
+    case messages::NodeState::kSpare:
+    case messages::NodeState::kFinished:
       return State::kAbsent;
   }
   return State::kAbsent;
@@ -90,10 +90,10 @@ core::Step WorldWatch::published(core::RegionId region, core::Generation generat
 bool WorldWatch::run_was_restarted() {
   bool restarted = false;
   for (const auto& [region, seen] : nodes_) {
-    const dds::Status& status = seen.status;
+    const messages::Status& status = seen.status;
     const auto [known, is_first] = pids_.try_emplace(region, status.pid);
     const bool begins_anew = status.generation == 0 || status.generation < view_->generation();
-    if (known->second == status.pid || status.state == dds::NodeState::kSpare) continue;
+    if (known->second == status.pid || status.state == messages::NodeState::kSpare) continue;
     known->second = status.pid;
     restarted = restarted || begins_anew;
   }
@@ -113,7 +113,7 @@ void WorldWatch::look_at_nodes() {
 }
 
 void WorldWatch::look_at_map() {
-  const dds::WorldMap* newest = nullptr;
+  const messages::WorldMap* newest = nullptr;
   for (const auto& [version, map] : control_.maps()) {
     const bool ours = map.agreement == agreement_ && map.generation > map_generation_;
     if (ours && (newest == nullptr || map.generation > newest->generation)) newest = &map;

@@ -28,7 +28,7 @@ class WorldWatch {
   const config::Launch& launch() const { return launch_; }
   /// Hash of the launch that the run began with.
   std::uint64_t agreement() const { return agreement_; }
-  const std::map<core::RegionId, dds::SeenStatus>& nodes() const { return nodes_; }
+  const std::map<core::RegionId, messages::SeenStatus>& nodes() const { return nodes_; }
   const dds::ObserverSettings& observer_settings() const { return settings_; }
   const dds::ReplicaReader& replicas() const { return *replicas_; }
   WorldView& view() { return *view_; }
@@ -61,7 +61,7 @@ class WorldWatch {
   ViewSettings view_settings_;
   std::optional<dds::ReplicaReader> replicas_;
   std::optional<WorldView> view_;
-  std::map<core::RegionId, dds::SeenStatus> nodes_;
+  std::map<core::RegionId, messages::SeenStatus> nodes_;
   std::map<core::RegionId, std::uint32_t> pids_;
   std::map<core::RegionId, Published> published_;
   core::Generation map_generation_ = 0;

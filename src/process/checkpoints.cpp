@@ -8,7 +8,7 @@
 namespace aurasim::process {
 namespace {
 
-using Kind = dds::Checkpoint::Kind;
+using Kind = messages::Checkpoint::Kind;
 
 /// Number of states kept of each region. Nodes are a few states apart, and a keeper may have received only every other
 /// part.
@@ -59,7 +59,7 @@ void Checkpoints::progress(core::Step recorded) {
 }
 
 void Checkpoints::take() {
-  for (dds::Checkpoint& one : bus_->take()) {
+  for (messages::Checkpoint& one : bus_->take()) {
     if (one.kind == Kind::kToKeep) {
       if (one.generation != era_) continue;
       wards_.insert(one.source);
@@ -95,8 +95,8 @@ void Checkpoints::forget_what_all_had() {
   all_had_.reset();
 }
 
-std::vector<dds::KeptPart> Checkpoints::parts() const {
-  std::vector<dds::KeptPart> parts;
+std::vector<messages::KeptPart> Checkpoints::parts() const {
+  std::vector<messages::KeptPart> parts;
   for (const auto& [region, states] : kept_) {
     for (const auto& [step, octets] : states) parts.push_back({region, step});
   }

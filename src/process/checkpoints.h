@@ -14,7 +14,7 @@
 #include "core/ids.h"
 #include "cut/cut_file.h"
 #include "dds/checkpoint_bus.h"
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
@@ -41,7 +41,7 @@ class Checkpoints {
   /// this state are on disk.
   void progress(core::Step recorded);
   /// The parts that this node keeps, for its status.
-  std::vector<dds::KeptPart> parts() const;
+  std::vector<messages::KeptPart> parts() const;
 
   /// The octets of a part. Null if this node does not keep it.
   const std::string* find(core::RegionId region, core::Step step) const;
@@ -49,9 +49,9 @@ class Checkpoints {
   /// empty.
   void go_back(core::Generation era, core::Step step, const std::map<core::RegionId, std::string>& parts);
   /// Sends a part to all nodes, in a recovery.
-  bool give(const dds::Checkpoint& checkpoint) { return bus_->send_to_all(checkpoint); }
+  bool give(const messages::Checkpoint& checkpoint) { return bus_->send_to_all(checkpoint); }
   /// Parts sent to all nodes for this generation so far, by region.
-  const std::map<core::RegionId, std::string>& given(core::Generation generation, dds::Checkpoint::Kind kind);
+  const std::map<core::RegionId, std::string>& given(core::Generation generation, messages::Checkpoint::Kind kind);
   /// Octets sent to keepers; left_out() is the number of parts not sent to a keeper because it had not received the
   /// part before.
   std::uint64_t sent_bytes() const { return sent_bytes_; }

@@ -20,7 +20,7 @@ void AskedSteps::begin(core::Step state) {
   begin_ = state;
 }
 
-void AskedSteps::add(const dds::RunCommand& step) {
+void AskedSteps::add(const messages::RunCommand& step) {
   if (step.generation != generation_) begin(0);
   generation_ = step.generation;
   const Asked asked{step.at_step - step.count, step.request, step.count};
@@ -47,7 +47,7 @@ core::Step PauseFollower::holds_at(core::Step holds_at, core::Step farthest, Tim
   return now < *behind_since_ + kLongestUnderWay ? holds_at : farthest;
 }
 
-void AwaitedWords::add(const dds::RunCommand& step, Time now) {
+void AwaitedWords::add(const messages::RunCommand& step, Time now) {
   if (step.after.number > 0) words_.push_back({step.after, now});
 }
 

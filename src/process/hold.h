@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/setpoint.h"
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
@@ -21,7 +21,7 @@ class AskedSteps {
   /// The run is paused, or is to pause, in `state`. Steps asked for before are done or void.
   void begin(core::Step state);
   /// Adds a step command. A command of another generation drops those before it.
-  void add(const dds::RunCommand& step);
+  void add(const messages::RunCommand& step);
   /// The state that all steps added up lead to.
   core::Step end() const;
 
@@ -61,7 +61,7 @@ class AwaitedWords {
   using HasHeard = std::function<bool(const core::ProgramWord&)>;
 
   /// Adds the messages that a step command names.
-  void add(const dds::RunCommand& step, Time now);
+  void add(const messages::RunCommand& step, Time now);
   /// To be called when another world begins. Messages sent to the world before are not waited for.
   void clear() { words_.clear(); }
   /// True if all messages have been received. A message that has not come after a second never will: its program has

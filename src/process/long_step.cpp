@@ -13,22 +13,22 @@ constexpr auto kLongStep = 2s;  // statuses come ten times a second
 constexpr auto kTellAfter = 10s;
 
 /// How long the node has computed its step: the time since its last status, which it published before the step.
-std::optional<std::chrono::steady_clock::duration> computes_for(const dds::SeenStatus& seen,
+std::optional<std::chrono::steady_clock::duration> computes_for(const messages::SeenStatus& seen,
                                                                 std::chrono::steady_clock::time_point now) {
-  const bool computes = !seen.lost && seen.status.state == dds::NodeState::kRunning;
+  const bool computes = !seen.lost && seen.status.state == messages::NodeState::kRunning;
   if (!computes || now < seen.seen + kLongStep) return std::nullopt;
   return now - seen.seen;
 }
 
 }  // namespace
 
-std::optional<std::string> long_step(const dds::SeenStatus& seen, std::chrono::steady_clock::time_point now) {
+std::optional<std::string> long_step(const messages::SeenStatus& seen, std::chrono::steady_clock::time_point now) {
   const auto time = computes_for(seen, now);
   if (!time) return std::nullopt;
   return fmt::format("computes one step for {} s", whole_seconds(*time));
 }
 
-std::optional<std::string> LongSteps::news(const dds::SeenStatus& seen, Clock::time_point now) {
+std::optional<std::string> LongSteps::news(const messages::SeenStatus& seen, Clock::time_point now) {
   const auto time = computes_for(seen, now);
   const auto told = told_.find(seen.status.region);
   if (!time) {

@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
 /// A text such as "computes one step for 12 s". Nothing if the node's last status is recent, or if the node is not
 /// alive or does not compute.
-std::optional<std::string> long_step(const dds::SeenStatus& seen, std::chrono::steady_clock::time_point now);
+std::optional<std::string> long_step(const messages::SeenStatus& seen, std::chrono::steady_clock::time_point now);
 
 /// Chooses the long steps to log: each once after 10 s, and again each time that its duration has doubled.
 class LongSteps {
@@ -21,7 +21,7 @@ class LongSteps {
   using Clock = std::chrono::steady_clock;
 
   /// A line for the log, if there is news of this node.
-  std::optional<std::string> news(const dds::SeenStatus& seen, Clock::time_point now);
+  std::optional<std::string> news(const messages::SeenStatus& seen, Clock::time_point now);
 
  private:
   std::map<core::RegionId, Clock::duration> told_;  ///< duration last logged, of steps that are not over yet

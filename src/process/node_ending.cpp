@@ -13,21 +13,21 @@ constexpr auto kPatienceWithEnding = 30s;  // patience with a node that shows li
 
 }  // namespace
 
-Urge NodeEnding::urge(Clock::time_point now, const dds::SeenStatus* seen) {
+Urge NodeEnding::urge(Clock::time_point now, const messages::SeenStatus* seen) {
   if (is_given_up(now, seen)) return Urge::kKill;
   if (!is_stuck(now, seen) || terminated_) return Urge::kNone;
   terminated_ = true;
   return Urge::kTerminate;
 }
 
-bool NodeEnding::is_given_up(Clock::time_point now, const dds::SeenStatus* seen) const {
+bool NodeEnding::is_given_up(Clock::time_point now, const messages::SeenStatus* seen) const {
   const auto waited = now - begin_;
   if (waited > kPatienceWithEnding) return true;
   if (waited <= kStopSurely) return false;
   return seen == nullptr || (!seen->has_ended() && seen->lost && now - seen->seen > kSilence);
 }
 
-bool NodeEnding::is_stuck(Clock::time_point now, const dds::SeenStatus* seen) {
+bool NodeEnding::is_stuck(Clock::time_point now, const messages::SeenStatus* seen) {
   if (seen != nullptr && seen->has_ended()) return false;
   if (seen != nullptr && seen->status.step > step_) {
     step_ = seen->status.step;

@@ -18,11 +18,11 @@ class NodeEnding {
 
   /// The signal to send now to a process that still runs. `seen`: status of its node; null if there is none. kTerminate
   /// is returned once.
-  Urge urge(Clock::time_point now, const dds::SeenStatus* seen);
+  Urge urge(Clock::time_point now, const messages::SeenStatus* seen);
 
  private:
-  bool is_stuck(Clock::time_point now, const dds::SeenStatus* seen);
-  bool is_given_up(Clock::time_point now, const dds::SeenStatus* seen) const;
+  bool is_stuck(Clock::time_point now, const messages::SeenStatus* seen);
+  bool is_given_up(Clock::time_point now, const messages::SeenStatus* seen) const;
 
   Clock::time_point begin_;
   Clock::time_point moved_;  ///< when its step was seen to grow

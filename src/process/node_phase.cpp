@@ -36,29 +36,29 @@ std::optional<NodePhase> next_phase(NodePhase phase, NodeEvent event) {
   return kTable.at(static_cast<std::size_t>(phase)).at(static_cast<std::size_t>(event));
 }
 
-std::optional<dds::NodeState> state_of(NodePhase phase) {
+std::optional<messages::NodeState> state_of(NodePhase phase) {
   switch (phase) {
     case NodePhase::kListening:
       return {};
     case NodePhase::kMeeting:
-      return dds::NodeState::kStarting;
+      return messages::NodeState::kStarting;
     case NodePhase::kWaiting:
-      return dds::NodeState::kWaiting;
+      return messages::NodeState::kWaiting;
     case NodePhase::kRunning:
-      return dds::NodeState::kRunning;
+      return messages::NodeState::kRunning;
     case NodePhase::kPaused:
     case NodePhase::kChanging:
-      return dds::NodeState::kPaused;
+      return messages::NodeState::kPaused;
     case NodePhase::kLingering:
     case NodePhase::kDone:
-      return dds::NodeState::kFinished;
+      return messages::NodeState::kFinished;
     case NodePhase::kRefused:
     case NodePhase::kFenced:
-      return dds::NodeState::kFailed;
+      return messages::NodeState::kFailed;
     case NodePhase::kRecovering:
-      return dds::NodeState::kRecovering;
+      return messages::NodeState::kRecovering;
     case NodePhase::kSpare:
-      return dds::NodeState::kSpare;
+      return messages::NodeState::kSpare;
   }
   return {};
 }

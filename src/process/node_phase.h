@@ -47,7 +47,7 @@ inline constexpr std::size_t kNodeEvents = 14;
 std::optional<NodePhase> next_phase(NodePhase phase, NodeEvent event);
 
 /// The state in the node's status. Nothing in phase kListening.
-std::optional<dds::NodeState> state_of(NodePhase phase);
+std::optional<messages::NodeState> state_of(NodePhase phase);
 
 const char* name_of(NodePhase phase);
 const char* name_of(NodeEvent event);

@@ -209,7 +209,7 @@ std::unique_ptr<node::Node> NodeProcess::make_node() {
   return std::make_unique<node::Node>(setup, launch_.scene, launch_.regions, *transport_);
 }
 
-void NodeProcess::begin_generation(core::Generation generation, const dds::RunCommand& begin) {
+void NodeProcess::begin_generation(core::Generation generation, const messages::RunCommand& begin) {
   core::Inbox mail = node_ ? std::move(node_->mail()) : core::Inbox{};
   generation_ = status_.era = generation;
   checkpoints_->begin_era(generation);
@@ -250,7 +250,7 @@ void NodeProcess::record(std::span<const node::StepReport> reports) {
     unbearable_setpoints_ += report.unbearable;
     if (!report.put_back_from) saving_.note_recorded(report.step);
     const auto times = frame_times_.find(report.step);
-    if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : node::FrameTimes{});
+    if (recorder_) recorder_->write(report, times != frame_times_.end() ? times->second : records::FrameTimes{});
     if (times != frame_times_.end() && !report.put_back_from) frame_times_.erase(times);
   }
 }
@@ -337,8 +337,8 @@ bool NodeProcess::wait_until_due() {
 core::Step NodeProcess::farthest_paused_step() {
   core::Step farthest = 0;
   for (const auto& [region, seen] : control_.statuses()) {
-    const dds::Status& status = seen.status;
-    const bool is_paused = status.state == dds::NodeState::kPaused && status.generation == generation_;
+    const messages::Status& status = seen.status;
+    const bool is_paused = status.state == messages::NodeState::kPaused && status.generation == generation_;
     if (is_paused && seen.is_live()) farthest = std::max(farthest, status.step);
   }
   return farthest;
@@ -394,7 +394,7 @@ void NodeProcess::note_redo(const node::StepReport& report) {
 }
 
 void NodeProcess::execute_commands() {
-  for (const dds::RunCommand& command : control_.take_commands()) execute(command);
+  for (const messages::RunCommand& command : control_.take_commands()) execute(command);
 }
 
 }  // namespace aurasim::process

@@ -22,7 +22,6 @@
 #include "dds/setpoint_bus.h"
 #include "node/node.h"
 #include "node/pacer.h"
-#include "node/recorder.h"
 #include "process/checkpoints.h"
 #include "process/command_server.h"
 #include "process/fence.h"
@@ -36,6 +35,7 @@
 #include "process/run_control_limits.h"
 #include "process/saving.h"
 #include "process/world_meant.h"
+#include "records/recorder.h"
 
 namespace aurasim::process {
 
@@ -83,7 +83,7 @@ class NodeProcess {
   void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
   bool wait_for_start();
   /// `begin`: the command that names the start time.
-  void begin_generation(core::Generation generation, const dds::RunCommand& begin);
+  void begin_generation(core::Generation generation, const messages::RunCommand& begin);
   std::unique_ptr<node::Node> make_node();
   void begin_with(const node::StepReport& report);
   dds::TransportSettings transport_settings();
@@ -103,7 +103,7 @@ class NodeProcess {
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
   void compute_until_change();
   void step_back(const RunView& run);
-  void send_back(dds::RunCommand restore, const core::Command& back);
+  void send_back(messages::RunCommand restore, const core::Command& back);
   void keep_parts();
   void note_words_of_saves();
   void conclude_saves();
@@ -131,21 +131,21 @@ class NodeProcess {
   command_line::ExitCode end_without_world();
   bool call_spare(core::RegionId region);
   void stand_in(const std::vector<core::RegionId>& regions);
-  void hear_of_drain(const dds::RunCommand& drain);
+  void hear_of_drain(const messages::RunCommand& drain);
   void lead_recovery();
   bool may_begin_again(core::Generation era);
-  void hear_of_restore(const dds::RunCommand& restore);
-  void hear_of_end(const dds::RunCommand& end);
+  void hear_of_restore(const messages::RunCommand& restore);
+  void hear_of_end(const messages::RunCommand& end);
   void give_way(core::Step step);
   void throw_away_after(core::Step step);
-  void repeat_commands(const dds::RunCommand& restore);
-  void go_back(const dds::RunCommand& restore);
-  void take_map_of(const dds::RunCommand& restore);
+  void repeat_commands(const messages::RunCommand& restore);
+  void go_back(const messages::RunCommand& restore);
+  void take_map_of(const messages::RunCommand& restore);
   void wait_in_recovery(std::chrono::steady_clock::time_point deadline, const char* for_what);
-  core::WorldCut gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
+  core::WorldCut gather(const messages::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
   core::WorldCut decode_part(const std::string& octets) const;
   void record_after(std::optional<core::Step> step);
-  void begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+  void begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
   void hear_programs();
@@ -154,14 +154,14 @@ class NodeProcess {
   void tell_ros2();
   void change_rate(double rate);
   void hold_in(core::Step state);
-  void step_on(const dds::RunCommand& step);
+  void step_on(const messages::RunCommand& step);
   void apply_orders();
-  void execute(const dds::RunCommand& command);
+  void execute(const messages::RunCommand& command);
   Worlds known_worlds() const;
-  void obey(const dds::RunCommand& command);
+  void obey(const messages::RunCommand& command);
   void obey_early_commands();
   void obey_late_commands();
-  bool can_be_meant(const dds::RunCommand& command);
+  bool can_be_meant(const messages::RunCommand& command);
   /// True if another world has begun.
   bool reset_if_due();
   bool change_if_due();
@@ -182,7 +182,7 @@ class NodeProcess {
   void linger();
   bool all_have_left();
   bool has_all_of_the_last_states();
-  dds::RunCommand with_clock_of(core::RegionId region, dds::RunCommand command);
+  messages::RunCommand with_clock_of(core::RegionId region, messages::RunCommand command);
   void compare_clocks();
   void watch_the_clock();
   void watch_the_records();
@@ -209,7 +209,7 @@ class NodeProcess {
   Saving saving_;
   std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
   std::unique_ptr<node::Node> node_;
-  std::optional<node::Recorder> recorder_;
+  std::optional<records::Recorder> recorder_;
   node::Pacer pacer_;
   node::ClockWatch clock_watch_{node::read_clocks()};
   bool says_records_end_ = false;
@@ -221,25 +221,25 @@ class NodeProcess {
   PauseFollower pause_follower_;
   AwaitedWords awaited_words_;
   std::optional<core::Step> stop_at_;
-  std::optional<dds::RunCommand> reset_;
+  std::optional<messages::RunCommand> reset_;
   RunControlLimits run_control_limits_;
-  std::optional<dds::RunCommand> start_;
+  std::optional<messages::RunCommand> start_;
   core::Generation waits_to_start_ = 0;  ///< generation that a start command has to name
   std::optional<core::Order> change_;    ///< order that changes the run as a whole, due now
   struct BeforeChange {
     config::Launch launch;
     std::shared_ptr<const core::WorldCut> world;
   };
-  std::optional<BeforeChange> before_change_;  ///< set while a change is under way
-  std::vector<dds::RunCommand> early_;         ///< commands of a generation that has not begun here
-  std::vector<dds::RunCommand> late_;          ///< commands of generations before restore_'s, received since restore_
-  std::optional<dds::RunCommand> restore_;     ///< the newest restore command
-  core::Generation restoring_ = 0;             ///< generation that a recovery is about to begin, or has begun
-  int failed_changes_ = 0;                     ///< in a row
-  core::Generation life_ = 0;                  ///< generation with which the run went on after the last death or change
-  core::Generation life_of_node_ = 0;          ///< the life_ with which node_ has begun
-  std::uint64_t served_map_ = 0;               ///< map version that observers and clients are served for
-  bool drains_ = false;  ///< this node gives its region to another process as soon as there is one
+  std::optional<BeforeChange> before_change_;    ///< set while a change is under way
+  std::vector<messages::RunCommand> early_;      ///< commands of a generation that has not begun here
+  std::vector<messages::RunCommand> late_;       ///< commands of generations before restore_'s, received since restore_
+  std::optional<messages::RunCommand> restore_;  ///< the newest restore command
+  core::Generation restoring_ = 0;               ///< generation that a recovery is about to begin, or has begun
+  int failed_changes_ = 0;                       ///< in a row
+  core::Generation life_ = 0;          ///< generation with which the run went on after the last death or change
+  core::Generation life_of_node_ = 0;  ///< the life_ with which node_ has begun
+  std::uint64_t served_map_ = 0;       ///< map version that observers and clients are served for
+  bool drains_ = false;                ///< this node gives its region to another process as soon as there is one
   std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: the latest time to do so
   std::set<std::uint64_t> leaving_;                                 ///< processes that drain
   std::optional<core::Step> successor_since_;                       ///< state in which the successor was first seen
@@ -251,10 +251,10 @@ class NodeProcess {
   std::set<std::uint64_t> taken_;  ///< processes of spares that were called
   std::string asks_for_;           ///< decision that a user has to take before the run can go on; empty: none
   bool stops_standing_ = false;    ///< stopped in a recovery: does not wait for the others
-  dds::Status status_;
+  messages::Status status_;
   Window window_;
   double wait_ms_ = 0;
-  std::map<core::Step, node::FrameTimes> frame_times_;  ///< frame times of states that are not recorded yet
+  std::map<core::Step, records::FrameTimes> frame_times_;  ///< frame times of states that are not recorded yet
   core::Step hurry_until_ = 0;      ///< a client waits for this state: until then the pace is at least real time
   std::size_t refusals_noted_ = 0;  ///< number of the protocol's refusals that have been logged
   std::uint64_t unheard_setpoints_ = 0, unbearable_setpoints_ = 0;  ///< since the start

@@ -105,7 +105,7 @@ void NodeProcess::change_world(const std::string& file) {
 
 /// Publishes the map and scene of a generation. The agreement stays that of the run's beginning.
 void NodeProcess::publish_map(core::Generation generation, core::Step from_step) {
-  dds::WorldMap map = setup::world_map(launch_);
+  messages::WorldMap map = setup::world_map(launch_);
   map.agreement = status_.agreement;
   map.generation = generation;
   map.from_step = from_step;
@@ -128,8 +128,8 @@ void NodeProcess::wait_until_all_stand() {
   last_published_ = {};  // publish the status at once, because the others wait for it
   auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
-    const dds::Status& status = entry.second.status;
-    const bool is_here = status.state == dds::NodeState::kPaused && status.generation == generation_ &&
+    const messages::Status& status = entry.second.status;
+    const bool is_here = status.state == messages::NodeState::kPaused && status.generation == generation_ &&
                          status.step >= node_->current_step();
     return entry.first == options_.region || is_here || status.generation > generation_;
   };

@@ -15,8 +15,8 @@ constexpr double kRateNoticeS = 0.1;
 
 }  // namespace
 
-void NodeProcess::execute(const dds::RunCommand& command) {
-  using Kind = dds::RunCommandKind;
+void NodeProcess::execute(const messages::RunCommand& command) {
+  using Kind = messages::RunCommandKind;
   if (command.kind == Kind::kStart) {
     const bool is_awaited = !start_ && command.generation == waits_to_start_;
     if (is_awaited && can_be_meant(command)) start_ = with_clock_of(core::RegionId{0}, command);
@@ -47,7 +47,7 @@ void NodeProcess::execute(const dds::RunCommand& command) {
 
 /// Handles `end`: another node has given up waiting for a process that takes a region over. This node ends only if it
 /// waits, too.
-void NodeProcess::hear_of_end(const dds::RunCommand& end) {
+void NodeProcess::hear_of_end(const messages::RunCommand& end) {
   const bool waits = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
   if (!waits || !can_be_meant(end)) return;
   break_off(fmt::format("nobody takes over region {}, whose node has died", core::value_of(end.region)));
@@ -62,8 +62,8 @@ Worlds NodeProcess::known_worlds() const {
   return known;
 }
 
-void NodeProcess::obey(const dds::RunCommand& command) {
-  using Kind = dds::RunCommandKind;
+void NodeProcess::obey(const messages::RunCommand& command) {
+  using Kind = messages::RunCommandKind;
   switch (command.kind) {
     case Kind::kStart:
     case Kind::kLost:
@@ -107,7 +107,7 @@ void NodeProcess::hold_in(core::Step state) {
 }
 
 /// Executes a step command in a paused run. States of earlier step commands keep their pace.
-void NodeProcess::step_on(const dds::RunCommand& step) {
+void NodeProcess::step_on(const messages::RunCommand& step) {
   const core::Step next = *hold_at_ + 1;
   node::Pacer later = pacer_;
   later.set_epoch(next, step.epoch_ns, step.clock_ahead, node::read_clocks());
@@ -119,13 +119,13 @@ void NodeProcess::step_on(const dds::RunCommand& step) {
 /// Executes the commands for this world that came before it began here. The start of the world would have undone them.
 void NodeProcess::obey_early_commands() {
   begun_ = generation_;
-  for (const dds::RunCommand& command : std::exchange(early_, {})) execute(command);
+  for (const messages::RunCommand& command : std::exchange(early_, {})) execute(command);
 }
 
 /// Handles commands for the world that all have left. Some nodes may have executed them and some not, so the node that
 /// sent the restore sends them once more, and all execute those.
 void NodeProcess::obey_late_commands() {
-  for (dds::RunCommand command : std::exchange(late_, {})) {
+  for (messages::RunCommand command : std::exchange(late_, {})) {
     if (restore_->region != options_.region) continue;
     command.generation = generation_;
     command.request = 0;
@@ -134,7 +134,7 @@ void NodeProcess::obey_late_commands() {
   }
 }
 
-bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
+bool NodeProcess::can_be_meant(const messages::RunCommand& command) {
   const std::string why = run_control_limits_.problem_with(command, std::max({generation_, restoring_, status_.era}),
                                                            node::wall_clock_ns());
   if (!why.empty()) control_.refuse(command, why);
@@ -143,7 +143,7 @@ bool NodeProcess::can_be_meant(const dds::RunCommand& command) {
 
 bool NodeProcess::reset_if_due() {
   if (!reset_ || node_->current_step() < reset_->at_step) return false;
-  const dds::RunCommand reset = *reset_;
+  const messages::RunCommand reset = *reset_;
   const bool stands = hold_at_.has_value();
   reset_.reset();
   enter(NodeEvent::kReset);
@@ -165,7 +165,7 @@ bool NodeProcess::is_about_to_change() const {
 void NodeProcess::serve_clients() {
   if (is_about_to_change()) return;
   const auto& statuses = control_.statuses();
-  const auto is_ours = [this](const dds::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
+  const auto is_ours = [this](const messages::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
   RunView run;
   run.leads = true;
   for (const auto& [region, seen] : statuses) {
@@ -200,8 +200,8 @@ void NodeProcess::serve_clients() {
 /// was, and the new rate holds from it on.
 void NodeProcess::change_rate(double rate) {
   const double steps = std::min(pacer_.rate(), 1.0) * kRateNoticeS / launch_.step_s();
-  dds::RunCommand command;
-  command.kind = dds::RunCommandKind::kRate;
+  messages::RunCommand command;
+  command.kind = messages::RunCommandKind::kRate;
   command.generation = generation_;
   command.at_step = node_->current_step() + 1 + static_cast<core::Step>(steps);
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
@@ -216,8 +216,8 @@ void NodeProcess::compute_until_change() {
   const std::optional<core::Step> change = command_server_->change_at();
   if (!change || !hold_at_ || node_->current_step() < *hold_at_) return;
   const core::Step until_certain = node_->current_step() - node_->confirmed_step();
-  dds::RunCommand command;
-  command.kind = dds::RunCommandKind::kStep;
+  messages::RunCommand command;
+  command.kind = messages::RunCommandKind::kStep;
   command.generation = generation_;
   command.run = options_.run;
   command.count = std::max<core::Step>(1, *change + until_certain - *hold_at_);

@@ -37,9 +37,9 @@ void NodeProcess::note_strangers() {
   for (const std::string& text : participant_->take_said()) {
     spdlog::warn("region {}: {}", core::value_of(options_.region), text);
   }
-  std::erase_if(status_.refused, [](const auto& refused) { return refused.first == dds::kNoRegion; });
+  std::erase_if(status_.refused, [](const auto& refused) { return refused.first == messages::kNoRegion; });
   const std::uint64_t refused = participant_->refused_of_strangers();
-  if (refused > 0) status_.refused.emplace_back(dds::kNoRegion, refused);
+  if (refused > 0) status_.refused.emplace_back(messages::kNoRegion, refused);
 }
 
 void NodeProcess::note_waiting() {

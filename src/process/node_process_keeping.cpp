@@ -45,9 +45,9 @@ void NodeProcess::step_back(const RunView& run) {
   if (!back) return;
   const core::Step latest = node_->current_step() - (launch_.checkpoint_steps() + 1) / 2;
   status_.parts = checkpoints_->parts();
-  std::map<core::RegionId, dds::SeenStatus> nodes = control_.statuses();
+  std::map<core::RegionId, messages::SeenStatus> nodes = control_.statuses();
   nodes[options_.region].status = status_;
-  const std::optional<dds::RunCommand> restore =
+  const std::optional<messages::RunCommand> restore =
       recovers() ? plan_step_back(nodes, launch_.regions.size(), latest) : std::nullopt;
   const cut::SavedState saved = cut::newest_saved_until(options_.saves, saving_.saved_by(), latest);
   if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
@@ -57,7 +57,7 @@ void NodeProcess::step_back(const RunView& run) {
 
 /// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one
 /// was.
-void NodeProcess::send_back(dds::RunCommand restore, const core::Command& back) {
+void NodeProcess::send_back(messages::RunCommand restore, const core::Command& back) {
   restore.run = options_.run;
   restore.region = options_.region;
   restore.epoch_ns = node::wall_clock_ns() + kNoticeOfStepBack.count();

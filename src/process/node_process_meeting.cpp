@@ -59,9 +59,10 @@ bool NodeProcess::another_agreement_is_here() {
 /// True if the same launch runs twice by mistake; refuses to run then. Of two that begin together, the one with the
 /// lower number stays.
 bool NodeProcess::the_same_run_is_here() {
-  for (const dds::SeenStatus& stranger : control_.strangers()) {
-    const dds::Status& other = stranger.status;
-    const bool is_meeting = other.state == dds::NodeState::kStarting || other.state == dds::NodeState::kWaiting;
+  for (const messages::SeenStatus& stranger : control_.strangers()) {
+    const messages::Status& other = stranger.status;
+    const bool is_meeting =
+        other.state == messages::NodeState::kStarting || other.state == messages::NodeState::kWaiting;
     if (other.agreement != status_.agreement) continue;  // another_agreement_is_here() gives the better message
     if (transport_ && is_meeting && other.run > options_.run) continue;
     refuse(fmt::format("region {} already has a node in DDS domain {}: process {}, step {}. Use another dds.domain.",
@@ -126,7 +127,7 @@ bool NodeProcess::meet_neighbours() {
 std::uint64_t NodeProcess::met() {
   std::uint64_t met = transport_->found();
   for (const auto& [region, seen] : control_.statuses()) {
-    met += seen.is_live() && seen.status.state == dds::NodeState::kWaiting ? 2 : 1;
+    met += seen.is_live() && seen.status.state == messages::NodeState::kWaiting ? 2 : 1;
   }
   return met;
 }
@@ -136,12 +137,12 @@ void NodeProcess::start_when_all_wait() {
   if (options_.region != core::RegionId{0} || start_) return;
   std::size_t waiting = 0;
   for (const auto& [region, seen] : control_.statuses()) {
-    waiting += !seen.lost && seen.status.state == dds::NodeState::kWaiting &&
+    waiting += !seen.lost && seen.status.state == messages::NodeState::kWaiting &&
                seen.status.generation == waits_to_start_ && region != options_.region;
   }
   if (waiting + 1 < launch_.regions.size()) return;
-  dds::RunCommand start;
-  start.kind = dds::RunCommandKind::kStart;
+  messages::RunCommand start;
+  start.kind = messages::RunCommandKind::kStart;
   start.generation = waits_to_start_;
   start.run = options_.run;
   start.epoch_ns = node::wall_clock_ns() + 500'000'000;
@@ -156,7 +157,7 @@ std::string NodeProcess::who_does_not_wait() {
     const auto seen = control_.statuses().find(core::RegionId{r});
     if (seen == control_.statuses().end()) {
       absent.push_back(r);
-    } else if (seen->second.status.state != dds::NodeState::kWaiting) {
+    } else if (seen->second.status.state != messages::NodeState::kWaiting) {
       busy.push_back(r);
     }
   }
@@ -211,7 +212,7 @@ void NodeProcess::connect_anew(dds::TransportSettings settings, const std::funct
 /// node that has finished a short run does not count, even if its message that the run begins is still on its way.
 void NodeProcess::name_the_dead() {
   for (const auto& [region, seen] : control_.statuses()) {
-    if (seen.is_live() || seen.status.state == dds::NodeState::kFinished) {
+    if (seen.is_live() || seen.status.state == messages::NodeState::kFinished) {
       missed_.erase(region);
     } else if (missed_.insert(region).second) {
       spdlog::warn("the node of region {} (process {}) {} before the run has begun", core::value_of(region),
@@ -222,7 +223,7 @@ void NodeProcess::name_the_dead() {
 
 /// The command with the clock difference to its sender, from the fastest of the last statuses. A single message may
 /// have been long on its way, which looks like a clock that is behind.
-dds::RunCommand NodeProcess::with_clock_of(core::RegionId region, dds::RunCommand command) {
+messages::RunCommand NodeProcess::with_clock_of(core::RegionId region, messages::RunCommand command) {
   const auto sender = control_.statuses().find(region);
   if (sender == control_.statuses().end()) return command;
   command.clock_ahead = std::max(command.clock_ahead, sender->second.clock_ahead);

@@ -166,7 +166,7 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
 /// Ends the run because no process has come for these regions, after all attempts. All nodes end with the same reason.
 void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
   for (const core::RegionId region : vacant) {
-    control_.send(steering::about_process(dds::RunCommandKind::kEnd, options_.run, region, 0));
+    control_.send(steering::about_process(messages::RunCommandKind::kEnd, options_.run, region, 0));
   }
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
@@ -188,7 +188,7 @@ void NodeProcess::lead_recovery() {
   recovery_.note_kept(nodes, status_.era);
   std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
   if (!plan || plan->lead != options_.region) return;
-  dds::RunCommand restore = plan->command;
+  messages::RunCommand restore = plan->command;
   restore.generation = std::max(restore.generation, std::max(generation_, restoring_) + 1);
   if (restore.count == 1 && !may_begin_again(restore.era)) return;
   if (restore.count == 1) restore.at_step = first_step();
@@ -223,7 +223,7 @@ bool NodeProcess::may_begin_again(core::Generation era) {
 }
 
 /// Receives a restore command. It names the processes that go on, so this process may be left out of the run.
-void NodeProcess::hear_of_restore(const dds::RunCommand& restore) {
+void NodeProcess::hear_of_restore(const messages::RunCommand& restore) {
   if (restore.members.size() != launch_.regions.size()) return;
   const core::Generation begun = node_ ? generation_ : 0;
   const core::Generation known = std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
@@ -254,19 +254,19 @@ void NodeProcess::throw_away_after(core::Step step) {
 
 /// Sends pause and reset commands again. A process that takes a region over has not received the pause, and the other
 /// nodes would drop the reset.
-void NodeProcess::repeat_commands(const dds::RunCommand& restore) {
-  dds::RunCommand command;
+void NodeProcess::repeat_commands(const messages::RunCommand& restore) {
+  messages::RunCommand command;
   command.generation = restore.generation;
   command.run = options_.run;
-  const auto repeat = [&](dds::RunCommandKind kind, core::Step at_step) {
+  const auto repeat = [&](messages::RunCommandKind kind, core::Step at_step) {
     command.kind = kind;
     command.at_step = at_step;
     command.request = 0;
     control_.send(command);
   };
-  if (reset_) repeat(dds::RunCommandKind::kReset, std::max(reset_->at_step, restore.at_step));
-  if (hold_at_) repeat(dds::RunCommandKind::kPause, *hold_at_);
-  if (stop_at_) repeat(dds::RunCommandKind::kStop, *stop_at_);
+  if (reset_) repeat(messages::RunCommandKind::kReset, std::max(reset_->at_step, restore.at_step));
+  if (hold_at_) repeat(messages::RunCommandKind::kPause, *hold_at_);
+  if (stop_at_) repeat(messages::RunCommandKind::kStop, *stop_at_);
 }
 
 }  // namespace aurasim::process

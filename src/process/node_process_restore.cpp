@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using Kind = dds::Checkpoint::Kind;
+using Kind = messages::Checkpoint::Kind;
 
 constexpr auto kRestoreRound = 5ms;
 constexpr auto kPatienceWithParts = 10s;
@@ -24,7 +24,7 @@ constexpr auto kPatienceWithParts = 10s;
 }  // namespace
 
 /// Goes back to the state that the restore names. Throws SomebodyDied when a node dies meanwhile.
-void NodeProcess::go_back(const dds::RunCommand& restore) {
+void NodeProcess::go_back(const messages::RunCommand& restore) {
   restoring_ = restore.generation;
   is_going_back_ = true;
   take_map_of(restore);
@@ -38,8 +38,8 @@ void NodeProcess::go_back(const dds::RunCommand& restore) {
 }
 
 /// Takes the scene and the regions that the run goes on with from the published map.
-void NodeProcess::take_map_of(const dds::RunCommand& restore) {
-  const dds::WorldMap* map = nullptr;
+void NodeProcess::take_map_of(const messages::RunCommand& restore) {
+  const messages::WorldMap* map = nullptr;
   const auto deadline = Clock::now() + kPatienceWithParts;
   while (map == nullptr) {
     for (const auto& [version, known] : control_.maps()) {
@@ -72,7 +72,7 @@ void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_w
 }
 
 /// Puts the world together from all parts, with all orders that any node knows by now.
-core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
+core::WorldCut NodeProcess::gather(const messages::RunCommand& restore, std::map<core::RegionId, std::string>& parts) {
   const bool from_first = restore.count == 1;
   const std::size_t regions = launch_.regions.size();
   const auto deadline = Clock::now() + kPatienceWithParts;
@@ -97,7 +97,7 @@ core::WorldCut NodeProcess::gather(const dds::RunCommand& restore, std::map<core
     whole = core::merge(std::move(cuts));
   }
   std::size_t survivors = 0;
-  for (const dds::RunCommand::Member& member : restore.members) survivors += member.survives;
+  for (const messages::RunCommand::Member& member : restore.members) survivors += member.survives;
   if (restore.members.at(core::value_of(options_.region)).survives && node_) {
     give(options_.region, Kind::kOrders, cut::encode(saving_.as_saved(node_->orders_now(whole))));
   }
@@ -130,7 +130,7 @@ void NodeProcess::record_after(std::optional<core::Step> step) {
   }
 }
 
-void NodeProcess::begin_restored(const dds::RunCommand& restore, const core::WorldCut& world,
+void NodeProcess::begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
                                  const std::map<core::RegionId, std::string>& parts) {
   const bool from_first = restore.count == 1;
   node_ = make_node();

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "node/durations.h"
 #include "process/node_process.h"
+#include "records/durations.h"
 #include "setup/guard_log.h"
 
 namespace aurasim::process {
@@ -16,8 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kStatusPeriod = 100ms;
 
-dds::Durations summary_of(std::vector<double>& values) {
-  return {node::percentile(values, 0.5), node::percentile(values, 0.99), node::percentile(values, 1)};
+messages::Durations summary_of(std::vector<double>& values) {
+  return {records::percentile(values, 0.5), records::percentile(values, 0.99), records::percentile(values, 1)};
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void NodeProcess::publish_running() {
 void NodeProcess::publish(const std::string& text) {
   const auto now = Clock::now();
   const bool is_cut_off = phase_ == NodePhase::kRecovering && fence_.is_cut_off();
-  const dds::NodeState state = is_cut_off ? dds::NodeState::kCutOff : state_of(phase_).value();
+  const messages::NodeState state = is_cut_off ? messages::NodeState::kCutOff : state_of(phase_).value();
   if (state == status_.state && now - last_published_ < kStatusPeriod) return;
   last_published_ = now;
   note_strangers();
@@ -96,7 +96,7 @@ void NodeProcess::watch_the_clock() {
 void NodeProcess::watch_the_records() {
   if (!recorder_ || !recorder_->records_end() || says_records_end_) return;
   says_records_end_ = true;
-  const node::RecordsEnd& end = *recorder_->records_end();
+  const records::RecordsEnd& end = *recorder_->records_end();
   notice_ = fmt::format("nothing is recorded after step {}: {}", end.after, end.why);
   spdlog::error("{}", notice_);
 }

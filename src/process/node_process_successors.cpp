@@ -42,19 +42,19 @@ void NodeProcess::look_for_deaths() {
 }
 
 bool NodeProcess::has_successor() {
-  return std::ranges::any_of(control_.strangers(), [this](const dds::SeenStatus& stranger) {
-    const dds::Status& other = stranger.status;
-    return other.region == options_.region && other.state == dds::NodeState::kSpare &&
+  return std::ranges::any_of(control_.strangers(), [this](const messages::SeenStatus& stranger) {
+    const messages::Status& other = stranger.status;
+    return other.region == options_.region && other.state == messages::NodeState::kSpare &&
            other.agreement == status_.agreement && other.run == options_.run;
   });
 }
 
 bool NodeProcess::call_spare(core::RegionId region) {
-  const std::vector<dds::Status> spares = control_.spares();
+  const std::vector<messages::Status> spares = control_.spares();
   const auto free =
-      std::ranges::find_if(spares, [this](const dds::Status& spare) { return !taken_.contains(spare.process); });
+      std::ranges::find_if(spares, [this](const messages::Status& spare) { return !taken_.contains(spare.process); });
   if (free == spares.end()) return false;
-  control_.send(steering::about_process(dds::RunCommandKind::kTake, options_.run, region, free->process));
+  control_.send(steering::about_process(messages::RunCommandKind::kTake, options_.run, region, free->process));
   taken_.insert(free->process);
   recovery_.note_called(region, Clock::now());
   return true;
@@ -71,7 +71,7 @@ void NodeProcess::stand_in(const std::vector<core::RegionId>& regions) {
 
 /// Receives a drain command: a node is to leave. Its launcher starts a successor. If nodes were started by hand, the
 /// lowest region calls a spare; if there is none, the host of the next region starts a process.
-void NodeProcess::hear_of_drain(const dds::RunCommand& drain) {
+void NodeProcess::hear_of_drain(const messages::RunCommand& drain) {
   if (!recovers()) return;
   const auto& statuses = control_.statuses();
   const auto meant = statuses.find(drain.region);
@@ -103,8 +103,8 @@ bool NodeProcess::can_leave_to_others() {
 void NodeProcess::leave_if_asked() {
   if (!host::asked_to_leave() || leaves_by_) return;
   leaves_by_ = Clock::now() + kPatienceWithSuccessor;
-  dds::RunCommand drain =
-      steering::about_process(dds::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
+  messages::RunCommand drain =
+      steering::about_process(messages::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
   control_.send(drain);
   hear_of_drain(drain);
 }
@@ -114,14 +114,14 @@ void NodeProcess::leave_if_asked() {
 bool NodeProcess::may_leave() {
   if (!has_successor()) return false;
   if (!successor_since_) successor_since_ = node_->current_step();
-  const std::vector<dds::KeptPart> ours = checkpoints_->parts();
+  const std::vector<messages::KeptPart> ours = checkpoints_->parts();
   const std::vector<core::RegionId>& keepers = checkpoints_->keepers();
   const auto& statuses = control_.statuses();
   const bool stands = phase_ == NodePhase::kPaused;  // a paused run has no newer state
-  return std::ranges::any_of(ours, [&](const dds::KeptPart& part) {
+  return std::ranges::any_of(ours, [&](const messages::KeptPart& part) {
     if (part.region != options_.region || (part.step < *successor_since_ && !stands)) return false;
     return std::ranges::all_of(statuses, [&](const auto& entry) {
-      const dds::KeptPart theirs{entry.first, part.step};
+      const messages::KeptPart theirs{entry.first, part.step};
       const bool is_keeper = std::ranges::find(keepers, entry.first) != keepers.end();
       const auto& kept = entry.second.status.parts;
       return entry.first == options_.region || (std::ranges::find(kept, theirs) != kept.end() &&
@@ -134,7 +134,8 @@ bool NodeProcess::may_leave() {
 command_line::ExitCode NodeProcess::leave_to_successor() {
   spdlog::info("region {} leaves after state {}: {}", core::value_of(options_.region), node_->current_step(),
                has_successor() ? "another process takes over" : "nobody has come to take over yet");
-  control_.send(steering::about_process(dds::RunCommandKind::kLost, options_.run, options_.region, status_.process));
+  control_.send(
+      steering::about_process(messages::RunCommandKind::kLost, options_.run, options_.region, status_.process));
   return command_line::ExitCode::kOk;
 }
 

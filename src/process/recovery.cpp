@@ -9,7 +9,7 @@ namespace aurasim::process {
 namespace {
 
 using namespace std::chrono_literals;
-using dds::NodeState;
+using messages::NodeState;
 
 constexpr auto kPatienceWithSpare = 5s;
 constexpr auto kLaunchersFirst = 5s;
@@ -28,7 +28,7 @@ bool stands(NodeState state) {
 
 }  // namespace
 
-bool is_heard(const dds::SeenStatus& seen) { return !seen.lost && !seen.has_ended(); }
+bool is_heard(const messages::SeenStatus& seen) { return !seen.lost && !seen.has_ended(); }
 
 std::vector<core::RegionId> unheard_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions) {
   std::vector<core::RegionId> unheard;
@@ -44,7 +44,7 @@ std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generati
   std::map<core::Step, std::set<core::RegionId>> kept;
   for (const auto& [region, seen] : nodes) {
     if (!is_heard(seen) || seen.status.era != era) continue;
-    for (const dds::KeptPart& part : seen.status.parts) kept[part.step].insert(part.region);
+    for (const messages::KeptPart& part : seen.status.parts) kept[part.step].insert(part.region);
   }
   for (auto state = kept.rbegin(); state != kept.rend(); ++state) {
     if (state->second.size() == regions) return state->first;
@@ -87,7 +87,7 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
   return std::nullopt;
 }
 
-RestoreMeaning meaning_of(const dds::RunCommand& restore, core::RegionId region, std::uint64_t process,
+RestoreMeaning meaning_of(const messages::RunCommand& restore, core::RegionId region, std::uint64_t process,
                           core::Generation begun, core::Generation known) {
   if (restore.generation <= begun) return RestoreMeaning::kNothing;
   if (restore.members.at(core::value_of(region)).process != process) {

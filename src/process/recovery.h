@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
-using SeenNodes = std::map<core::RegionId, dds::SeenStatus>;
+using SeenNodes = std::map<core::RegionId, messages::SeenStatus>;
 
 /// True if the node's liveliness has not ended and it has not published that it ends. It may be cut off all the same.
-bool is_heard(const dds::SeenStatus& seen);
+bool is_heard(const messages::SeenStatus& seen);
 
 /// Regions 0 to `regions` - 1 whose nodes the node of region `self` does not receive from.
 std::vector<core::RegionId> unheard_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions);
@@ -30,10 +30,10 @@ std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generati
 /// What a node knows of its own world when it decides whether it has to wait.
 struct OwnWorld {
   core::RegionId region{};
-  core::Generation current = 0;              ///< generation that it computes, or is about to begin
-  std::vector<core::RegionId> silent;        ///< neighbours whose streams have ended, or have sent impossible messages
-  const dds::RunCommand* restore = nullptr;  ///< the newest restore command that it has received; null: none
-  bool is_going_back = false;                ///< all have agreed on `restore`, and not all have begun
+  core::Generation current = 0;        ///< generation that it computes, or is about to begin
+  std::vector<core::RegionId> silent;  ///< neighbours whose streams have ended, or have sent impossible messages
+  const messages::RunCommand* restore = nullptr;  ///< the newest restore command that it has received; null: none
+  bool is_going_back = false;                     ///< all have agreed on `restore`, and not all have begun
 };
 
 /// Why this node must not compute its next state: another node of its generation has died, has left, or waits itself.
@@ -52,7 +52,7 @@ enum class RestoreMeaning : std::uint8_t {
 /// `known`: the newest generation that it computes in, is about to begin, or has received a restore of. Two nodes that
 /// receive from different nodes may send restores of the same generation. The process that one of them leaves out then
 /// gives way, so that the other one does not wait for it in vain.
-RestoreMeaning meaning_of(const dds::RunCommand& restore, core::RegionId region, std::uint64_t process,
+RestoreMeaning meaning_of(const messages::RunCommand& restore, core::RegionId region, std::uint64_t process,
                           core::Generation begun, core::Generation known);
 
 struct RecoverySettings {
@@ -98,7 +98,7 @@ class Recovery {
   void note_called(core::RegionId region, Clock::time_point now) { called_[region] = now; }
 
   /// Notes a restore that names another process for this region. It counts once the others compute in its generation.
-  void note_left_out(const dds::RunCommand& restore) { left_out_[restore.generation] = restore.at_step; }
+  void note_left_out(const messages::RunCommand& restore) { left_out_[restore.generation] = restore.at_step; }
 
   /// Remembers the newest state that was kept whole. To be called while the world runs, and while the node waits.
   void note_kept(const SeenNodes& nodes, core::Generation era);

@@ -7,26 +7,26 @@
 namespace aurasim::process {
 namespace {
 
-using Nodes = std::map<core::RegionId, dds::SeenStatus>;
-using dds::NodeState;
+using Nodes = std::map<core::RegionId, messages::SeenStatus>;
+using messages::NodeState;
 
 /// Stands and hears all others. A node that does not could not take part: all would wait for it in vain.
-bool is_ready(const dds::SeenStatus& seen) {
+bool is_ready(const messages::SeenStatus& seen) {
   const bool stands = seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare;
   return !seen.lost && stands && seen.status.dead.empty();
 }
 
 /// Has a world of this era.
-bool survives(const dds::Status& status, core::Generation era) {
+bool survives(const messages::Status& status, core::Generation era) {
   return status.state == NodeState::kRecovering && status.era == era;
 }
 
-bool keeps(const dds::Status& status, const dds::KeptPart& part) {
+bool keeps(const messages::Status& status, const messages::KeptPart& part) {
   return std::ranges::find(status.parts, part) != status.parts.end();
 }
 
 /// Parts that a process which has come to take a region over has found on its disk count like others.
-bool gives(const dds::Status& status, core::Generation era, const dds::KeptPart& part) {
+bool gives(const messages::Status& status, core::Generation era, const messages::KeptPart& part) {
   return status.era == era && keeps(status, part);
 }
 
@@ -34,7 +34,7 @@ bool gives(const dds::Status& status, core::Generation era, const dds::KeptPart&
 std::optional<std::vector<core::RegionId>> holders(const Nodes& nodes, core::Generation era, core::Step step) {
   std::vector<core::RegionId> holders;
   for (const auto& [region, seen] : nodes) {
-    const dds::KeptPart part{region, step};
+    const messages::KeptPart part{region, step};
     const auto has_it = [&](const auto& entry) { return gives(entry.second.status, era, part); };
     const auto other = std::ranges::find_if(nodes, has_it);
     if (other == nodes.end()) return std::nullopt;
@@ -49,8 +49,8 @@ std::optional<RestorePlan> plan_restore(const Nodes& nodes, std::size_t regions)
   const bool all_are_ready = std::ranges::all_of(nodes, [](const auto& entry) { return is_ready(entry.second); });
   if (nodes.size() != regions || !all_are_ready) return std::nullopt;
   RestorePlan plan;
-  dds::RunCommand& command = plan.command;
-  command.kind = dds::RunCommandKind::kRestore;
+  messages::RunCommand& command = plan.command;
+  command.kind = messages::RunCommandKind::kRestore;
   bool anybody = false;
   for (const auto& [region, seen] : nodes) {
     command.generation = std::max(command.generation, seen.status.generation + 1);
@@ -61,10 +61,10 @@ std::optional<RestorePlan> plan_restore(const Nodes& nodes, std::size_t regions)
   if (!anybody) return std::nullopt;
   std::set<core::Step> states;
   for (const auto& [region, seen] : nodes) {
-    const dds::Status& status = seen.status;
+    const messages::Status& status = seen.status;
     command.members.push_back({status.process, region, survives(status, command.era)});
     if (status.era != command.era) continue;
-    for (const dds::KeptPart& part : status.parts) states.insert(part.step);
+    for (const messages::KeptPart& part : status.parts) states.insert(part.step);
   }
   const auto lead =
       std::ranges::find_if(nodes, [&](const auto& entry) { return survives(entry.second.status, command.era); });

@@ -11,7 +11,7 @@ namespace aurasim::process {
 namespace {
 
 using namespace std::chrono_literals;
-using Kind = dds::RunCommandKind;
+using Kind = messages::RunCommandKind;
 
 constexpr auto kLongestWay = 5s;  ///< of a command to a node
 constexpr auto kLookEvery = 500ms;
@@ -29,7 +29,7 @@ bool names_a_time(Kind kind) {
 }
 
 /// From now to the epoch, by the sender's clock where that is not ours.
-double ahead_s(const dds::RunCommand& command, std::int64_t now_ns) {
+double ahead_s(const messages::RunCommand& command, std::int64_t now_ns) {
   const bool differs = std::chrono::abs(command.clock_ahead) > node::kClockTolerance;
   const double clock_s = differs ? std::chrono::duration<double>(command.clock_ahead).count() : 0;
   return 1e-9 * (static_cast<double>(command.epoch_ns) - static_cast<double>(now_ns)) - clock_s;
@@ -44,7 +44,7 @@ void RunControlLimits::note(core::Step step, Time now) {
   while (past_.size() > 1 && past_[1].when + kLongestWay <= now) past_.pop_front();
 }
 
-std::string RunControlLimits::problem_with(const dds::RunCommand& command, core::Generation generation,
+std::string RunControlLimits::problem_with(const messages::RunCommand& command, core::Generation generation,
                                            std::int64_t now_ns) const {
   if (command.kind == Kind::kRestore && command.generation > generation + kMostGenerationsAhead) {
     return fmt::format("generation {} after {}", command.generation, generation);
@@ -61,7 +61,7 @@ std::string RunControlLimits::problem_with(const dds::RunCommand& command, core:
   return names_a_state(command.kind) ? problem_with_state(command) : std::string();
 }
 
-std::string RunControlLimits::problem_with_state(const dds::RunCommand& command) const {
+std::string RunControlLimits::problem_with_state(const messages::RunCommand& command) const {
   if (past_.empty()) return {};
   const bool is_long_ago = past_.front().when + kLongestWay <= past_.back().when;
   if (is_long_ago && command.at_step < past_.front().step) {

@@ -7,7 +7,7 @@
 #include <deque>
 #include <string>
 
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
@@ -22,10 +22,10 @@ class RunControlLimits {
 
   /// Why the command is not plausible; empty if it is. `now_ns`: time of our wall clock. `generation`: the newest known
   /// one.
-  std::string problem_with(const dds::RunCommand& command, core::Generation generation, std::int64_t now_ns) const;
+  std::string problem_with(const messages::RunCommand& command, core::Generation generation, std::int64_t now_ns) const;
 
  private:
-  std::string problem_with_state(const dds::RunCommand& command) const;
+  std::string problem_with_state(const messages::RunCommand& command) const;
 
   struct Past {
     Time when;

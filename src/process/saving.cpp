@@ -52,7 +52,8 @@ void Saving::plan_checkpoint(node::Node& node) {
   node.save(next);
 }
 
-void Saving::keep_parts(node::Node& node, CommandServer& server, Checkpoints& checkpoints, node::Recorder* recorder) {
+void Saving::keep_parts(node::Node& node, CommandServer& server, Checkpoints& checkpoints,
+                        records::Recorder* recorder) {
   for (core::WorldCut& part : node.take_saved()) {
     const core::Step step = part.step;
     if (const core::Step every = kept_every(); every > 0 && step % every == 0) {
@@ -75,7 +76,7 @@ void Saving::keep_on_disk(const core::WorldCut& part, CommandServer& server) {
 }
 
 /// A part counts as a checkpoint once the records up to its state are on disk, because other records die with the node.
-void Saving::keep_checkpoints(Checkpoints& checkpoints, node::Recorder* recorder) {
+void Saving::keep_checkpoints(Checkpoints& checkpoints, records::Recorder* recorder) {
   const std::optional<core::Step> wanted = checkpoints.waits_for();
   if (wanted && recorded_ >= *wanted && secured_ < *wanted) {
     if (recorder) recorder->secure();
@@ -127,7 +128,7 @@ void Saving::save_regularly(node::Node& node, core::Step first) {
   node.order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
-void Saving::hear(const std::map<core::RegionId, dds::SeenStatus>& statuses) {
+void Saving::hear(const std::map<core::RegionId, messages::SeenStatus>& statuses) {
   for (const auto& [region, seen] : statuses) writer_.hear(region, seen.status.saved, seen.status.not_saved);
 }
 
@@ -138,7 +139,8 @@ void Saving::reply(CommandServer& server) {
   for (std::string& words : writer_.take_words()) say(std::move(words));
 }
 
-void Saving::conclude(CommandServer& server, const std::map<core::RegionId, dds::SeenStatus>& statuses, bool is_over) {
+void Saving::conclude(CommandServer& server, const std::map<core::RegionId, messages::SeenStatus>& statuses,
+                      bool is_over) {
   writer_.finish();
   hear(statuses);
   reply(server);

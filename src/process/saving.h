@@ -18,10 +18,10 @@
 #include "cut/saved_world.h"
 #include "dds/control.h"
 #include "node/node.h"
-#include "node/recorder.h"
 #include "process/checkpoints.h"
 #include "process/command_server.h"
 #include "process/node_options.h"
+#include "records/recorder.h"
 
 namespace aurasim::process {
 
@@ -48,7 +48,7 @@ class Saving {
   void note_recorded(core::Step step) { recorded_ = std::max(recorded_, step); }
   /// Keeps the parts that `node` has completed: writes them on threads beside the run, and gives them to `checkpoints`.
   /// `recorder` may be null.
-  void keep_parts(node::Node& node, CommandServer& server, Checkpoints& checkpoints, node::Recorder* recorder);
+  void keep_parts(node::Node& node, CommandServer& server, Checkpoints& checkpoints, records::Recorder* recorder);
   /// Saves the state in which `node` is paused, where a client has asked for that, once everything that was under way
   /// has arrived.
   void save_as_it_stands(node::Node& node, CommandServer& server);
@@ -59,12 +59,12 @@ class Saving {
   void save_regularly(node::Node& node, core::Step first);
 
   /// Notes what the nodes' statuses say of their parts.
-  void hear(const std::map<core::RegionId, dds::SeenStatus>& statuses);
+  void hear(const std::map<core::RegionId, messages::SeenStatus>& statuses);
   /// Replies to the clients whose parts have been written. Every node replies for its own part.
   void reply(CommandServer& server);
   /// Returns when everything is written. `is_over`: the run has come to its end, so states kept on disk for it are of
   /// no use; if there is a launcher, it removes them.
-  void conclude(CommandServer& server, const std::map<core::RegionId, dds::SeenStatus>& statuses, bool is_over);
+  void conclude(CommandServer& server, const std::map<core::RegionId, messages::SeenStatus>& statuses, bool is_over);
 
   /// This node's part with what a reader has to know of it.
   cut::SavedWorld as_saved(core::WorldCut part) const;
@@ -80,7 +80,7 @@ class Saving {
   cut::SaveOf save_of() const;
   core::Step kept_every() const;
   void keep_on_disk(const core::WorldCut& part, CommandServer& server);
-  void keep_checkpoints(Checkpoints& checkpoints, node::Recorder* recorder);
+  void keep_checkpoints(Checkpoints& checkpoints, records::Recorder* recorder);
   void say(std::string words);
 
   const config::Launch& launch_;

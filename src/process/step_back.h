@@ -5,14 +5,14 @@
 #include <map>
 #include <optional>
 
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
 
 /// The command (kRestore), without the times, that takes all nodes back to the newest state not later than `latest` of
 /// which every region's node keeps its own part. Orders given since are dropped. Nothing if there is no such state, or
 /// if a node is missing or in another phase.
-std::optional<dds::RunCommand> plan_step_back(const std::map<core::RegionId, dds::SeenStatus>& nodes,
-                                              std::size_t regions, core::Step latest);
+std::optional<messages::RunCommand> plan_step_back(const std::map<core::RegionId, messages::SeenStatus>& nodes,
+                                                   std::size_t regions, core::Step latest);
 
 }  // namespace aurasim::process

@@ -311,7 +311,7 @@ class Checker {
     claim.fragment_B = body.u16();
     claim.sample_B = body.u32();
     if (body.failed() || to_inline_qos != 28) return Refusal::kLength;
-    if (!is_built_in(claim.guid.entity)) return Refusal::kFragment;  // messages of a run go in parts (dds/parts.h)
+    if (!is_built_in(claim.guid.entity)) return Refusal::kFragment;  // messages of a run go in parts (messages/parts.h)
     if (!is_sequence_number(claim.first)) return Refusal::kSequenceNumber;
     if ((flags_ & kKeyFlag) != 0) return Refusal::kPayload;
     if ((flags_ & kInlineQosFlag) != 0) {

@@ -7,8 +7,8 @@
 
 #include "core/horizon.h"
 #include "core/make_aura.h"
-#include "node/setpoint_record.h"
 #include "physics/solver_names.h"
+#include "records/setpoint_record.h"
 
 namespace aurasim::setup {
 
@@ -76,12 +76,12 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.threads = threads_of(launch, 1);
   setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
   setup.control = launch.control_rules();
-  if (!launch.control.replay.empty()) setup.recorded = node::read_setpoints(launch.control.replay);
+  if (!launch.control.replay.empty()) setup.recorded = records::read_setpoints(launch.control.replay);
   return setup;
 }
 
-dds::WorldMap world_map(const config::Launch& launch) {
-  dds::WorldMap map;
+messages::WorldMap world_map(const config::Launch& launch) {
+  messages::WorldMap map;
   map.map_version = launch.regions.version();
   map.agreement = launch.agreement();
   map.scene = launch.scene.name;

@@ -21,7 +21,7 @@ double listening_distance_m(const config::Launch& launch);
 /// Number of threads of each node when `nodes` run on this host: as in the file, or else its share of the cores.
 int threads_of(const config::Launch& launch, std::size_t nodes);
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
-dds::WorldMap world_map(const config::Launch& launch);
+messages::WorldMap world_map(const config::Launch& launch);
 
 /// Path of another program of aurasim, in the folder of the running one. Throws std::runtime_error with `remedy` if it
 /// is not there.

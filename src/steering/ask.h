@@ -15,13 +15,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/command.h"
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::steering {
 
 /// Steers the whole run: pause, resume, step, reset or stop.
 struct Steer {
-  dds::RunCommandKind kind = dds::RunCommandKind::kPause;
+  messages::RunCommandKind kind = messages::RunCommandKind::kPause;
   std::int64_t count = 1;  ///< states of a step
 };
 /// Makes the node of a region leave, so that another process takes the region over.

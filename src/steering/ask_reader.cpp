@@ -13,7 +13,7 @@ namespace aurasim::steering {
 namespace {
 
 using Json = nlohmann::json;
-using RunKind = dds::RunCommandKind;
+using RunKind = messages::RunCommandKind;
 
 template <class Kinds>
 std::string names_of(const Kinds& kinds) {

@@ -25,8 +25,8 @@ constexpr auto kPatienceForRays = 2s;  ///< patience with a region that is busy
 CommandClient::CommandClient(dds::Participant& participant, dds::ControlBus& control, std::uint64_t agreement)
     : control_(control), agreement_(agreement), endpoint_(participant) {}
 
-std::vector<const dds::Status*> CommandClient::live_nodes() {
-  std::vector<const dds::Status*> live;
+std::vector<const messages::Status*> CommandClient::live_nodes() {
+  std::vector<const messages::Status*> live;
   for (const auto& [region, seen] : control_.statuses()) {
     if (seen.is_live() && seen.status.agreement == agreement_) live.push_back(&seen.status);
   }
@@ -40,8 +40,9 @@ bool CommandClient::all_listen() {
 
 void CommandClient::bring(std::uint64_t hash, const core::TriangleMesh& mesh) {
   const auto live = live_nodes();
-  const bool all_have = std::ranges::all_of(
-      live, [hash](const dds::Status* node) { return std::ranges::find(node->meshes, hash) != node->meshes.end(); });
+  const bool all_have = std::ranges::all_of(live, [hash](const messages::Status* node) {
+    return std::ranges::find(node->meshes, hash) != node->meshes.end();
+  });
   if (!all_have || live.empty()) endpoint_.bring(hash, mesh);
 }
 
@@ -121,8 +122,8 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
 /// The state in which all live nodes are paused. Nothing if they are not.
 std::optional<core::Step> CommandClient::paused_in() {
   std::optional<core::Step> step;
-  for (const dds::Status* node : live_nodes()) {
-    if (node->state != dds::NodeState::kPaused) return std::nullopt;
+  for (const messages::Status* node : live_nodes()) {
+    if (node->state != messages::NodeState::kPaused) return std::nullopt;
     step = std::max(step.value_or(node->step), node->step);
   }
   return step;
@@ -134,7 +135,7 @@ bool CommandClient::all_have_answered(UnderWay& under_way) {
   const auto is_in = [](const auto& regions, core::RegionId region) {
     return std::ranges::find(regions, region) != regions.end();
   };
-  for (const dds::Status* node : live_nodes()) {
+  for (const messages::Status* node : live_nodes()) {
     const bool asked = under_way.asked.empty() || is_in(under_way.asked, node->region);
     if (asked && !is_in(under_way.answered, node->region)) delivery.silent.push_back(node->region);
   }
@@ -155,13 +156,13 @@ bool CommandClient::ray_has_ended(UnderWay& under_way) {
 /// True if the command is accepted and its state is still to come, which may take many seconds in slow motion.
 bool CommandClient::is_on_its_way(const UnderWay& under_way) {
   return under_way.accepted && !under_way.changes_the_run && under_way.delivery.text.empty() &&
-         std::ranges::any_of(live_nodes(), [&](const dds::Status* node) {
-           return node->state == dds::NodeState::kRunning && node->step < under_way.delivery.at_step;
+         std::ranges::any_of(live_nodes(), [&](const messages::Status* node) {
+           return node->state == messages::NodeState::kRunning && node->step < under_way.delivery.at_step;
          });
 }
 
 bool CommandClient::has_gone_on_from(core::Step step) {
-  return std::ranges::any_of(live_nodes(), [step](const dds::Status* node) { return node->step > step; });
+  return std::ranges::any_of(live_nodes(), [step](const messages::Status* node) { return node->step > step; });
 }
 
 bool CommandClient::has_ended(UnderWay& under_way) {

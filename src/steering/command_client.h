@@ -65,7 +65,7 @@ class CommandClient {
     Clock::time_point deadline;
   };
 
-  std::vector<const dds::Status*> live_nodes();
+  std::vector<const messages::Status*> live_nodes();
   std::optional<core::Step> paused_in();
   void accept(const core::CommandReply& reply, UnderWay& under_way);
   void note(const core::CommandReply& reply, UnderWay& under_way);

@@ -14,16 +14,16 @@ Draining::Draining(dds::ControlBus& control, core::RegionId region) : control_(c
     throw SteeringRefused(fmt::format("there is no region {}", core::value_of(region)));
   }
   leaving_ = node->second.status.process;
-  control.send(about_process(dds::RunCommandKind::kDrain, node->second.status.run, region, leaving_));
+  control.send(about_process(messages::RunCommandKind::kDrain, node->second.status.run, region, leaving_));
 }
 
-const dds::Status* Draining::successor() {
+const messages::Status* Draining::successor() {
   const auto computes = [](const auto& entry) {
-    const dds::NodeState state = entry.second.status.state;
-    return state == dds::NodeState::kRunning || state == dds::NodeState::kPaused;
+    const messages::NodeState state = entry.second.status.state;
+    return state == messages::NodeState::kRunning || state == messages::NodeState::kPaused;
   };
   const auto& statuses = control_.statuses();
-  const dds::Status& status = statuses.at(region_).status;
+  const messages::Status& status = statuses.at(region_).status;
   return status.process != leaving_ && std::ranges::all_of(statuses, computes) ? &status : nullptr;
 }
 

@@ -15,7 +15,7 @@ class Draining {
   Draining(dds::ControlBus& control, core::RegionId region);
 
   /// Status of the process that has taken the region over, once the run goes on. Null before.
-  const dds::Status* successor();
+  const messages::Status* successor();
 
  private:
   dds::ControlBus& control_;

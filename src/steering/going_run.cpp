@@ -29,11 +29,11 @@ struct Ear {
 
 }  // namespace
 
-bool goes_on(const std::map<core::RegionId, dds::SeenStatus>& statuses) {
+bool goes_on(const std::map<core::RegionId, messages::SeenStatus>& statuses) {
   return std::ranges::any_of(statuses, [](const auto& entry) {
-    const dds::SeenStatus& seen = entry.second;
-    const dds::NodeState state = seen.status.state;
-    return seen.is_live() && state != dds::NodeState::kStarting && state != dds::NodeState::kWaiting;
+    const messages::SeenStatus& seen = entry.second;
+    const messages::NodeState state = seen.status.state;
+    return seen.is_live() && state != messages::NodeState::kStarting && state != messages::NodeState::kWaiting;
   });
 }
 

@@ -6,13 +6,13 @@
 
 #include "config/launch.h"
 #include "core/ids.h"
-#include "dds/control_messages.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::steering {
 
 /// True if any region's node computes, or waits because another node has died. Nodes that wait for each other to begin,
 /// and nodes that have ended, do not count.
-bool goes_on(const std::map<core::RegionId, dds::SeenStatus>& statuses);
+bool goes_on(const std::map<core::RegionId, messages::SeenStatus>& statuses);
 
 /// Joins the domain as `top` does and looks for a run; waits some seconds if no status comes. The DDS participant is
 /// not deleted, because the caller becomes another program soon (the reason is in command_line/leave.h).

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using Kind = dds::RunCommandKind;
+using Kind = messages::RunCommandKind;
 
 /// Time in which a command reaches every node, seconds.
 constexpr double kNoticeS = 0.3;
@@ -24,8 +24,8 @@ constexpr auto kUntilShown = 1s;
 
 }  // namespace
 
-dds::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId region, std::uint64_t process) {
-  dds::RunCommand command;
+messages::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId region, std::uint64_t process) {
+  messages::RunCommand command;
   command.kind = kind;
   command.run = run;
   command.region = region;
@@ -33,7 +33,7 @@ dds::RunCommand about_process(Kind kind, std::uint64_t run, core::RegionId regio
   return command;
 }
 
-bool RunSteering::belongs(const dds::SeenStatus& seen) const {
+bool RunSteering::belongs(const messages::SeenStatus& seen) const {
   return !seen.lost && !seen.has_ended() && seen.status.agreement == agreement_;
 }
 
@@ -60,14 +60,14 @@ bool RunSteering::is_there() {
 bool RunSteering::is_paused() {
   const auto& statuses = control_.statuses();
   return std::all_of(statuses.begin(), statuses.end(), [this](const auto& s) {
-    return !belongs(s.second) || s.second.status.state == dds::NodeState::kPaused;
+    return !belongs(s.second) || s.second.status.state == messages::NodeState::kPaused;
   });
 }
 
 bool RunSteering::is_paused_within(core::Step states) {
   const auto& statuses = control_.statuses();
   return std::all_of(statuses.begin(), statuses.end(), [&](const auto& s) {
-    const dds::Status& status = s.second.status;
+    const messages::Status& status = s.second.status;
     return !belongs(s.second) || (status.holds_at && *status.holds_at <= status.step + states);
   });
 }
@@ -83,7 +83,7 @@ std::set<std::uint32_t> RunSteering::dead_regions() {
   std::set<std::uint32_t> dead;
   for (const auto& [region, seen] : control_.statuses()) {
     if (seen.status.agreement != agreement_) continue;
-    const bool ended = seen.status.state == dds::NodeState::kFinished;
+    const bool ended = seen.status.state == messages::NodeState::kFinished;
     if (!ended && !seen.is_live()) dead.insert(core::value_of(region));
     if (!seen.is_live()) continue;
     for (const core::RegionId other : seen.status.dead) dead.insert(core::value_of(other));
@@ -91,12 +91,12 @@ std::set<std::uint32_t> RunSteering::dead_regions() {
   return dead;
 }
 
-dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
+messages::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   if (const auto dead = dead_regions(); kind == Kind::kReset && !dead.empty()) {
     throw SteeringRefused(fmt::format(
         "reset: regions [{}] have no node now; ask again once somebody has taken them over", fmt::join(dead, ", ")));
   }
-  dds::RunCommand command;
+  messages::RunCommand command;
   command.kind = kind;
   command.count = count;
   bool running = false;
@@ -107,7 +107,7 @@ dds::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
     command.generation = std::max(command.generation, seen.status.generation);
     command.at_step = std::max(command.at_step, seen.status.step);
     rate = std::max(rate, seen.status.rate);
-    running = running || seen.status.state == dds::NodeState::kRunning;
+    running = running || seen.status.state == messages::NodeState::kRunning;
   }
   // Number of states computed in kNoticeS at this rate. The nodes hurry to the state if the rate is slow.
   const auto notice = static_cast<core::Step>(std::ceil(kNoticeS * launch_.time.step_hz * rate)) +
@@ -129,9 +129,9 @@ core::Step RunSteering::stepped_to(core::Generation generation) const {
   return is_news ? last_step_.until : 0;
 }
 
-dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count,
-                                       const core::ProgramWord& after) {
-  dds::RunCommand command;
+messages::RunCommand RunSteering::send_step(core::Generation generation, core::Step from, std::int64_t count,
+                                            const core::ProgramWord& after) {
+  messages::RunCommand command;
   command.kind = Kind::kStep;
   command.count = count;
   command.generation = generation;
@@ -145,19 +145,19 @@ dds::RunCommand RunSteering::send_step(core::Generation generation, core::Step f
   return command;
 }
 
-bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& command) const {
+bool RunSteering::shows(const messages::Status& status, const messages::RunCommand& command) const {
   switch (command.kind) {
     case Kind::kPause:
     case Kind::kStep:
-      return status.state == dds::NodeState::kPaused && status.step >= command.at_step;
+      return status.state == messages::NodeState::kPaused && status.step >= command.at_step;
     case Kind::kResume:
-      return status.state == dds::NodeState::kRunning && status.step > command.at_step;
+      return status.state == messages::NodeState::kRunning && status.step > command.at_step;
     case Kind::kReset:
       return status.generation > command.generation;
     case Kind::kStart:
-      return status.state == dds::NodeState::kRunning;
+      return status.state == messages::NodeState::kRunning;
     case Kind::kStop:
-      return status.state == dds::NodeState::kFinished;
+      return status.state == messages::NodeState::kFinished;
     case Kind::kRate:
       return status.rate == command.rate;
     case Kind::kLost:
@@ -170,15 +170,15 @@ bool RunSteering::shows(const dds::Status& status, const dds::RunCommand& comman
   return false;
 }
 
-bool RunSteering::has_taken_effect(const dds::RunCommand& command) {
+bool RunSteering::has_taken_effect(const messages::RunCommand& command) {
   const auto& statuses = control_.statuses();
   return std::all_of(statuses.begin(), statuses.end(), [&](const auto& entry) {
-    const dds::SeenStatus& seen = entry.second;
+    const messages::SeenStatus& seen = entry.second;
     return seen.lost || seen.status.agreement != agreement_ || shows(seen.status, command);
   });
 }
 
-bool RunSteering::wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out) {
+bool RunSteering::wait_for_effect(const messages::RunCommand& command, std::chrono::milliseconds time_out) {
   const auto deadline = Clock::now() + time_out;
   while (Clock::now() < deadline) {
     if (has_taken_effect(command)) return true;

@@ -18,8 +18,8 @@ class SteeringRefused : public std::runtime_error {
 };
 
 /// A command about one node, or to one spare: lost, drain, take.
-dds::RunCommand about_process(dds::RunCommandKind kind, std::uint64_t run, core::RegionId region,
-                              std::uint64_t process);
+messages::RunCommand about_process(messages::RunCommandKind kind, std::uint64_t run, core::RegionId region,
+                                   std::uint64_t process);
 
 class RunSteering {
  public:
@@ -42,18 +42,18 @@ class RunSteering {
 
   /// Sends a command that takes effect as soon as all nodes can have received it; returns what was sent. Throws
   /// SteeringRefused when the run cannot do that any more.
-  dds::RunCommand send(dds::RunCommandKind kind, std::int64_t count = 1);
+  messages::RunCommand send(messages::RunCommandKind kind, std::int64_t count = 1);
 
   /// Orders a run that is paused in state `from` of this generation to compute the next `count` states at once. For a
   /// client that waits for each step. No node computes them before it has received the setpoints that `after` names.
-  dds::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count,
-                            const core::ProgramWord& after);
+  messages::RunCommand send_step(core::Generation generation, core::Step from, std::int64_t count,
+                                 const core::ProgramWord& after);
 
   /// True if every live node's status shows the effect of `command`.
-  bool has_taken_effect(const dds::RunCommand& command);
+  bool has_taken_effect(const messages::RunCommand& command);
 
   /// Waits until every live node shows the effect of `command`; false at the time-out.
-  bool wait_for_effect(const dds::RunCommand& command, std::chrono::milliseconds time_out);
+  bool wait_for_effect(const messages::RunCommand& command, std::chrono::milliseconds time_out);
 
  private:
   struct Step {
@@ -64,8 +64,8 @@ class RunSteering {
 
   std::set<std::uint32_t> dead_regions();
   core::Step stepped_to(core::Generation generation) const;
-  bool belongs(const dds::SeenStatus& seen) const;
-  bool shows(const dds::Status& status, const dds::RunCommand& command) const;
+  bool belongs(const messages::SeenStatus& seen) const;
+  bool shows(const messages::Status& status, const messages::RunCommand& command) const;
 
   const config::Launch& launch_;
   std::uint64_t agreement_;

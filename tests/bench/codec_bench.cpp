@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <fastdds/rtps/common/SerializedPayload.h>
 
-#include "dds/codec.h"
+#include "messages/codec.h"
 
 namespace aurasim {
 namespace {
@@ -45,8 +45,8 @@ HandOff hand_off(std::size_t count) {
   return h;
 }
 
-dds::Expected expected() {
-  dds::Expected e;
+messages::Expected expected() {
+  messages::Expected e;
   e.region_count = 4;
   return e;
 }
@@ -55,10 +55,10 @@ template <class Wire, class Type, class Message>
 void there(benchmark::State& state, const Message& message) {
   Wire wire;
   Type type;
-  dds::encode(message, wire);
+  messages::encode(message, wire);
   SerializedPayload_t payload(static_cast<std::uint32_t>(type.getSerializedSizeProvider(&wire)()));
   for (auto _ : state) {
-    dds::encode(message, wire);
+    messages::encode(message, wire);
     benchmark::DoNotOptimize(type.serialize(&wire, &payload));
   }
   state.counters["bytes"] = payload.length;
@@ -68,14 +68,14 @@ template <class Wire, class Type, class Message>
 void back(benchmark::State& state, const Message& message) {
   Wire wire;
   Type type;
-  dds::encode(message, wire);
+  messages::encode(message, wire);
   SerializedPayload_t payload(static_cast<std::uint32_t>(type.getSerializedSizeProvider(&wire)()));
   type.serialize(&wire, &payload);
-  const dds::Expected e = expected();
-  if (std::holds_alternative<dds::WireError>(dds::decode(wire, e))) state.SkipWithError("refused");
+  const messages::Expected e = expected();
+  if (std::holds_alternative<messages::WireError>(messages::decode(wire, e))) state.SkipWithError("refused");
   for (auto _ : state) {
     type.deserialize(&payload, &wire);
-    benchmark::DoNotOptimize(dds::decode(wire, e));
+    benchmark::DoNotOptimize(messages::decode(wire, e));
   }
 }
 

@@ -67,7 +67,9 @@ struct Shown {
     return fmt::format("static {} to {} in {} s", core::value_of(a.id), shown(a.to), a.duration_s);
   }
   std::string operator()(const core::Ask& a) const { return std::visit(*this, a); }
-  std::string operator()(const steering::Steer& a) const { return fmt::format("{} {}", dds::name_of(a.kind), a.count); }
+  std::string operator()(const steering::Steer& a) const {
+    return fmt::format("{} {}", messages::name_of(a.kind), a.count);
+  }
   std::string operator()(const steering::Drain& a) const { return fmt::format("drain {}", core::value_of(a.region)); }
 };
 

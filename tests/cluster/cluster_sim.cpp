@@ -5,8 +5,8 @@
 
 #include "cluster/wire_check.h"
 #include "core/horizon.h"
-#include "node/setpoint_record.h"
-#include "node/thrashing.h"
+#include "records/setpoint_record.h"
+#include "records/thrashing.h"
 
 namespace aurasim::test {
 
@@ -138,13 +138,13 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
       outcome_.hash[static_cast<std::size_t>(part.step)] += part.sum;
   }
   for (const core::BodyEffect& effect : report.effects.bodies) {
-    outcome_.effects.push_back(node::as_heard_again(effect));
+    outcome_.effects.push_back(records::as_heard_again(effect));
   }
   for (const core::StaticEffect& effect : report.effects.statics) {
-    outcome_.effects.push_back(node::as_heard_again(effect));
+    outcome_.effects.push_back(records::as_heard_again(effect));
   }
   for (const core::JointEffect& effect : report.effects.joints) {
-    outcome_.effects.push_back(node::as_heard_again(effect));
+    outcome_.effects.push_back(records::as_heard_again(effect));
   }
   for (const physics::Removal& removal : report.removals) {
     removed_.insert(removal.body);
@@ -157,7 +157,7 @@ void ClusterSim::take_report(Member& member, const node::StepReport& report) {
   for (const node::HandOffRow& row : report.departures) {
     const auto [before, first] = last_departure_.try_emplace(row.body, row);
     if (first) continue;
-    outcome_.thrashed += node::is_thrashing(before->second, row);
+    outcome_.thrashed += records::is_thrashing(before->second, row);
     before->second = row;
   }
 }

@@ -1,7 +1,7 @@
 // Between a node and its network in memory: what the wire would refuse arrives as a refusal, as with DDS.
 #pragma once
 
-#include "dds/wire_bytes.h"
+#include "messages/wire_bytes.h"
 #include "transport/transport.h"
 
 namespace aurasim::test {
@@ -15,7 +15,7 @@ class WireCheck final : public transport::Transport {
     network_.take(arrived);
     for (core::AuraBatch& batch : arrived.auras) {
       auto decoded = coder_.aura(coder_.of(batch), {});
-      if (const auto* error = std::get_if<dds::WireError>(&decoded)) {
+      if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
         inbox.refusals.push_back(
             {batch.source, batch.generation, batch.stamp, core::MessageKind::kAura, name_of(*error)});
       } else {
@@ -24,7 +24,7 @@ class WireCheck final : public transport::Transport {
     }
     for (core::HandOff& hand_off : arrived.hand_offs) {
       auto decoded = coder_.hand_off(coder_.of(hand_off), {});
-      if (const auto* error = std::get_if<dds::WireError>(&decoded)) {
+      if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
         inbox.refusals.push_back(
             {hand_off.source, hand_off.generation, hand_off.stamp, core::MessageKind::kHandOff, name_of(*error)});
       } else {
@@ -39,7 +39,7 @@ class WireCheck final : public transport::Transport {
 
  private:
   transport::Transport& network_;
-  dds::WireBytes coder_;
+  messages::WireBytes coder_;
 };
 
 }  // namespace aurasim::test

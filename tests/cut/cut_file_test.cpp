@@ -12,14 +12,14 @@
 #include <unistd.h>
 #include <zstd.h>
 
-#include "dds/messages.h"
+#include "messages/samples.h"
 
 namespace aurasim::cut {
 namespace {
 
 namespace fs = std::filesystem;
-using dds::testing::hand_off_of;
-using dds::testing::same_bits;
+using messages::testing::hand_off_of;
+using messages::testing::same_bits;
 using testing::HasSubstr;
 
 /// One for each test, gone at its end.
@@ -44,7 +44,7 @@ SavedWorld world_of(std::size_t bodies) {
   for (std::size_t i = 0; i < 2; ++i) other.bodies[i].id = core::BodyId{1'000'000 + i};
   other.manifolds.clear(), other.points.clear();
   world.cut.under_way = {{118, other}};
-  world.cut.orders = dds::testing::one_order_of_each_kind();
+  world.cut.orders = messages::testing::one_order_of_each_kind();
   world.cut.last_order = 99;
   const core::ConvexHull hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0 / 3}}};
   const core::TriangleMesh mesh{hull.points, {{0, 1, 2}, {1, 2, 3}}};
@@ -62,7 +62,7 @@ SavedWorld world_of(std::size_t bodies) {
 bool same(const core::ClusterState& a, const core::ClusterState& b) {
   core::HandOff x, y;
   x.cluster = a, y.cluster = b;
-  return dds::testing::same(x, y);
+  return messages::testing::same(x, y);
 }
 
 void expect_same(const SavedWorld& a, const SavedWorld& b) {

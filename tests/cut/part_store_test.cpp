@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "dds/messages.h"
+#include "messages/samples.h"
 
 namespace aurasim::cut {
 namespace {
@@ -113,7 +113,7 @@ TEST_F(Store, ADamagedPartLeavesTheEarlierWorld) {
   write_both("w.cut", 120, 1);
   write("w.cut", 0, 180, 2);
   SavedWorld large = part(1, 180, 2);
-  large.cut.bodies = dds::testing::hand_off_of(2000).cluster;
+  large.cut.bodies = messages::testing::hand_off_of(2000).cluster;
   const fs::path damaged = store().write("w.cut", large);
   EXPECT_EQ(read_world(folder_ / "w.cut").cut.step, 180);
   fs::resize_file(damaged, fs::file_size(damaged) - 5);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dds/messages.h"
+#include "messages/samples.h"
 
 namespace aurasim::core {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 WorldCut part_of(std::uint64_t first_id) {
   WorldCut part;
   part.step = 10, part.births_known = 14;
-  part.bodies = dds::testing::hand_off_of(3).cluster;
+  part.bodies = messages::testing::hand_off_of(3).cluster;
   for (std::size_t i = 0; i < 3; ++i) part.bodies.bodies[i].id = BodyId{first_id + i};
   for (ManifoldRecord& manifold : part.bodies.manifolds) {
     for (ObjectRef* ref : {&manifold.object0, &manifold.object1}) {
@@ -50,7 +50,7 @@ TEST(WorldCut, PartsKeepTheirPointsAndJointValues) {
 
 TEST(WorldCut, OrdersAreThoseOfAllParts) {
   WorldCut one = part_of(0), two = part_of(10);
-  one.orders = dds::testing::one_order_of_each_kind();
+  one.orders = messages::testing::one_order_of_each_kind();
   two.orders = one.orders;
   one.orders.resize(5);
   one.last_order = 5, two.last_order = two.orders.back().sequence;

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "control_samples.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::cli {
@@ -22,8 +22,8 @@ struct PausedNode {
       : participant(settings_for(domain)),
         control(participant, {.region = RegionId{region}, .agreement = kAgreement}),
         server(participant, RegionId{region}, dds::testing::kMapVersion),
-        status(dds::testing::status_of(region)) {
-    status.state = dds::NodeState::kPaused;
+        status(messages::testing::status_of(region)) {
+    status.state = messages::NodeState::kPaused;
     status.dead.clear();
   }
 
@@ -48,7 +48,7 @@ struct PausedNode {
   dds::Participant participant;
   dds::ControlBus control;
   dds::CommandServerEndpoint server;
-  dds::Status status;
+  messages::Status status;
   bool has_saved = false;
 };
 

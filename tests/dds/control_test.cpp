@@ -5,19 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "child.h"
-#include "control_samples.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
+using messages::testing::command_of;
+using messages::testing::map_of;
+using messages::testing::status_of;
 using testing::Child;
-using testing::command_of;
 using ::testing::ElementsAre;
-using testing::map_of;
 using testing::settings_for;
-using testing::status_of;
 using namespace std::chrono_literals;
 
 /// A process with a bus.
@@ -44,11 +44,12 @@ struct Member {
   }
 
   /// Collects commands until there are `count`.
-  std::vector<RunCommandKind> take_commands(std::size_t count, std::chrono::nanoseconds time_out = testing::kDeadline) {
-    std::vector<RunCommandKind> kinds;
+  std::vector<messages::RunCommandKind> take_commands(std::size_t count,
+                                                      std::chrono::nanoseconds time_out = testing::kDeadline) {
+    std::vector<messages::RunCommandKind> kinds;
     wait_until(
         [&] {
-          for (const RunCommand& command : bus.take_commands()) {
+          for (const messages::RunCommand& command : bus.take_commands()) {
             kinds.push_back(command.kind);
           }
           return kinds.size() >= count;
@@ -65,7 +66,7 @@ TEST(Status, OfEveryNodeIsSeenAlsoByLateObservers) {
   Member zero(own_domain(), 0);
   Member one(own_domain(), 1);
   for (core::Step step = 0; step < 5; ++step) {
-    Status status = status_of(0);
+    messages::Status status = status_of(0);
     status.step = step;
     ASSERT_TRUE(zero.bus.publish_status(status));
     status.region = RegionId{1};
@@ -98,8 +99,8 @@ TEST(Status, SaysThatAKilledNodeIsLostAndThatItIsBack) {
   EXPECT_TRUE(observer.wait_until([&] { return lost() == 0; }));
 }
 
-Status status_of_run(std::uint64_t run, core::Step step) {
-  Status status = status_of(0);
+messages::Status status_of_run(std::uint64_t run, core::Step step) {
+  messages::Status status = status_of(0);
   status.run = run;
   status.step = step;
   return status;
@@ -148,23 +149,23 @@ TEST(Status, OfANodeThatDoesNotAgreeIsAStrangers) {
 TEST(Commands, ForAnotherRunAreNotTaken) {
   Member launcher(own_domain());
   Member node(own_domain(), {.region = RegionId{0}, .run = 5});
-  RunCommand command = command_of(RunCommandKind::kStop);
+  messages::RunCommand command = command_of(messages::RunCommandKind::kStop);
   command.run = 6;
   launcher.bus.send(command);
-  command.kind = RunCommandKind::kPause;
+  command.kind = messages::RunCommandKind::kPause;
   command.run = 5;
   launcher.bus.send(command);
-  command.kind = RunCommandKind::kResume;
+  command.kind = messages::RunCommandKind::kResume;
   command.run = 0;
   launcher.bus.send(command);
-  EXPECT_THAT(node.take_commands(2), ElementsAre(RunCommandKind::kPause, RunCommandKind::kResume));
+  EXPECT_THAT(node.take_commands(2), ElementsAre(messages::RunCommandKind::kPause, messages::RunCommandKind::kResume));
 }
 
 TEST(Commands, SayWhetherTheSendersClockIsOurs) {
   Member launcher(own_domain());
   Member node(own_domain(), 0);
-  launcher.bus.send(command_of(RunCommandKind::kPause));
-  std::vector<RunCommand> commands;
+  launcher.bus.send(command_of(messages::RunCommandKind::kPause));
+  std::vector<messages::RunCommand> commands;
   ASSERT_TRUE(node.wait_until([&] { return !(commands = node.bus.take_commands()).empty(); }));
   EXPECT_LE(commands[0].clock_ahead, 0ns) << "both are of this host, and the way takes its time";
   EXPECT_GT(commands[0].clock_ahead, -testing::kDeadline);
@@ -190,7 +191,7 @@ TEST(Maps, AreSeenByLateJoiners) {
 TEST(Maps, OfALaterGenerationCountWhoeverPublishesThem) {
   Member one(own_domain()), other(own_domain()), reader(own_domain());
   for (Member* const last : {&one, &other}) {
-    WorldMap map = map_of(77);
+    messages::WorldMap map = map_of(77);
     ASSERT_TRUE(one.bus.publish_map(map));
     ASSERT_TRUE(other.bus.publish_map(map));
     map.generation = last == &one ? 3 : 4;
@@ -206,11 +207,11 @@ TEST(Commands, ReachEveryoneInOrderOnceAndAlsoLateJoiners) {
   Member launcher(own_domain());
   Member node(own_domain(), 0, 77);
   ASSERT_TRUE(launcher.wait_until([&] { return launcher.bus.listeners() == 1; }));
-  launcher.bus.send(command_of(RunCommandKind::kStart));
-  launcher.bus.send(command_of(RunCommandKind::kPause));
-  EXPECT_THAT(node.take_commands(2), ElementsAre(RunCommandKind::kStart, RunCommandKind::kPause));
+  launcher.bus.send(command_of(messages::RunCommandKind::kStart));
+  launcher.bus.send(command_of(messages::RunCommandKind::kPause));
+  EXPECT_THAT(node.take_commands(2), ElementsAre(messages::RunCommandKind::kStart, messages::RunCommandKind::kPause));
   Member late(own_domain(), 1, 77);
-  EXPECT_THAT(late.take_commands(2), ElementsAre(RunCommandKind::kStart, RunCommandKind::kPause));
+  EXPECT_THAT(late.take_commands(2), ElementsAre(messages::RunCommandKind::kStart, messages::RunCommandKind::kPause));
   EXPECT_TRUE(launcher.bus.take_commands().empty()) << "nobody is told what it said itself";
 }
 
@@ -219,23 +220,23 @@ TEST(Commands, ThatAreSentTwiceCountOnce) {
   Member tool(own_domain());
   Member node(own_domain(), 0);
   ASSERT_TRUE(launcher.wait_until([&] { return launcher.bus.listeners() == 2 && tool.bus.listeners() == 2; }));
-  RunCommand command = command_of(RunCommandKind::kStep);
+  messages::RunCommand command = command_of(messages::RunCommandKind::kStep);
   command.request = launcher.bus.send(command);
   launcher.bus.send(command);
   tool.bus.send(command);
-  EXPECT_THAT(node.take_commands(2, 500ms), ElementsAre(RunCommandKind::kStep));
+  EXPECT_THAT(node.take_commands(2, 500ms), ElementsAre(messages::RunCommandKind::kStep));
 }
 
 TEST(Commands, ForAnotherMapAreRefused) {
   Member launcher(own_domain());
   Member node(own_domain(), 0, 99);
-  RunCommand command = command_of(RunCommandKind::kStop);
+  messages::RunCommand command = command_of(messages::RunCommandKind::kStop);
   launcher.bus.send(command);
   command.map_version = 0;
-  command.kind = RunCommandKind::kPause;
+  command.kind = messages::RunCommandKind::kPause;
   launcher.bus.send(command);
-  EXPECT_THAT(node.take_commands(1), ElementsAre(RunCommandKind::kPause));
-  EXPECT_EQ(node.bus.refused().count(WireError::kMapVersion), 1U);
+  EXPECT_THAT(node.take_commands(1), ElementsAre(messages::RunCommandKind::kPause));
+  EXPECT_EQ(node.bus.refused().count(messages::WireError::kMapVersion), 1U);
 }
 
 }  // namespace

@@ -163,8 +163,8 @@ TEST_F(Neighbour, ThatIsDeadNeverBlocksASend) {
   meet("run");
   there_->kill(SIGKILL);
   core::Outbox outbox;
-  outbox.aura = testing::batch_of(100, RegionId{0});
-  outbox.hand_offs = {testing::hand_off_of(10, RegionId{0}, RegionId{1})};
+  outbox.aura = messages::testing::batch_of(100, RegionId{0});
+  outbox.hand_offs = {messages::testing::hand_off_of(10, RegionId{0}, RegionId{1})};
   int slow = 0;
   const auto end = Clock::now() + 2s;
   while (Clock::now() < end) {

@@ -14,7 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "control_samples.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
@@ -99,14 +99,14 @@ void talk() {
     std::jthread other([&] { b.transport.wait_until_matched(testing::kDeadline); });
     a.transport.wait_until_matched(testing::kDeadline);
   }
-  bus.send(testing::command_of(RunCommandKind::kStart));
-  bus.publish_map(testing::map_of(77));
+  bus.send(messages::testing::command_of(messages::RunCommandKind::kStart));
+  bus.publish_map(messages::testing::map_of(77));
   for (core::Step step = 0; step < 20; ++step) {
     core::Outbox outbox;
-    outbox.aura = testing::batch_of(1000, core::RegionId{0});
-    outbox.hand_offs = {testing::hand_off_of(20, core::RegionId{0}, core::RegionId{1})};
+    outbox.aura = messages::testing::batch_of(1000, core::RegionId{0});
+    outbox.hand_offs = {messages::testing::hand_off_of(20, core::RegionId{0}, core::RegionId{1})};
     a.transport.send(outbox);
-    node_bus.publish_status(testing::status_of(0));
+    node_bus.publish_status(messages::testing::status_of(0));
   }
   ASSERT_TRUE(testing::take_until(b, [&] { return b.inbox.hand_offs.size() == 20; }));
 }

@@ -32,8 +32,8 @@ void wait_until_matched(One& one, Other& other) {
 
 core::Outbox large_messages() {
   core::Outbox outbox;
-  outbox.aura = batch_of(3000, core::RegionId{0});
-  outbox.hand_offs.push_back(hand_off_of(200, core::RegionId{0}, core::RegionId{1}));
+  outbox.aura = messages::testing::batch_of(3000, core::RegionId{0});
+  outbox.hand_offs.push_back(messages::testing::hand_off_of(200, core::RegionId{0}, core::RegionId{1}));
   return outbox;
 }
 
@@ -44,7 +44,7 @@ void expect_large_messages(Peer& at) {
   ASSERT_EQ(at.inbox.auras.size(), 1U);
   EXPECT_EQ(at.inbox.auras[0].updates.size(), 3000U);
   ASSERT_EQ(at.inbox.hand_offs.size(), 1U);
-  EXPECT_TRUE(same(at.inbox.hand_offs[0], large_messages().hand_offs[0]));
+  EXPECT_TRUE(messages::testing::same(at.inbox.hand_offs[0], large_messages().hand_offs[0]));
   EXPECT_EQ(at.transport.counters().aura.refused.total(), 0U);
   EXPECT_EQ(at.transport.counters().migration.refused.total(), 0U);
 }
@@ -52,16 +52,18 @@ void expect_large_messages(Peer& at) {
 const std::string kPart(1'000'000, 'x');
 
 void expect_checkpoint(CheckpointBus& at) {
-  std::vector<Checkpoint> taken;
+  std::vector<messages::Checkpoint> taken;
   ASSERT_TRUE(holds_in_time([&] {
-    for (Checkpoint& one : at.take()) taken.push_back(std::move(one));
+    for (messages::Checkpoint& one : at.take()) taken.push_back(std::move(one));
     return !taken.empty();
   }));
   ASSERT_EQ(taken.size(), 1U);
   EXPECT_TRUE(taken[0].octets == kPart);
 }
 
-Checkpoint large_checkpoint() { return {core::RegionId{0}, Checkpoint::Kind::kToKeep, 1, 5, kPart}; }
+messages::Checkpoint large_checkpoint() {
+  return {core::RegionId{0}, messages::Checkpoint::Kind::kToKeep, 1, 5, kPart};
+}
 
 class PartsLive : public ::testing::Test {
  protected:
@@ -70,8 +72,8 @@ class PartsLive : public ::testing::Test {
     b_ = std::make_unique<RunEndpoints>(narrow_settings(loss, 2), 1, std::initializer_list<std::uint32_t>{0});
     wait_until_matched(a_->peer.transport, b_->peer.transport);
     ASSERT_TRUE(holds_in_time([&] {
-      a_->control.publish_status(status_of(0));
-      b_->control.publish_status(status_of(1));
+      a_->control.publish_status(messages::testing::status_of(0));
+      b_->control.publish_status(messages::testing::status_of(1));
       return a_->control.statuses().size() == 2 && b_->control.statuses().size() == 2;
     }));
   }
@@ -80,7 +82,7 @@ class PartsLive : public ::testing::Test {
     const auto begin = Clock::now();
     a_->peer.transport.send(large_messages());
     ASSERT_EQ(a_->checkpoints.send_to_keepers(large_checkpoint()), 1U);
-    core::Replica key = replica_of(2000, core::RegionId{0});
+    core::Replica key = messages::testing::replica_of(2000, core::RegionId{0});
     key.key_frame = true;
     key.removed.clear();
     for (key.stamp = 1; key.stamp <= 3; ++key.stamp) ASSERT_TRUE(a_->replicas.send(key));
@@ -151,7 +153,7 @@ TEST_F(PartsLive, ArriveThoughAQuarterOfTheDatagramsIsLost) {
 TEST_F(PartsLive, LeaveNothingInWhatIsSentMeanwhile) {
   meet(0.25);
   constexpr std::size_t kBatches = 10;
-  const core::AuraBatch header = batch_of(0, core::RegionId{1});
+  const core::AuraBatch header = messages::testing::batch_of(0, core::RegionId{1});
   core::Outbox small;  // with the octets of a part in it it would still fit into a datagram
   small.aura.source = header.source;
   small.aura.generation = header.generation;

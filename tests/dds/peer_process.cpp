@@ -8,8 +8,8 @@
 
 #include <unistd.h>
 
-#include "control_samples.h"
 #include "core/progress.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds::testing {
@@ -42,7 +42,7 @@ void take_part(const Arguments& arguments) {
   for (core::Step step = 0;; ++step) {
     peer.send_batch(step);
     peer.transport.take(peer.inbox);
-    Status status = status_of(arguments.region);
+    messages::Status status = messages::testing::status_of(arguments.region);
     status.step = step;
     status.pid = static_cast<std::uint32_t>(::getpid());
     control.publish_status(status);

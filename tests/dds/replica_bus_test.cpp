@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "replica_messages.h"
+#include "messages/replica_messages.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
+using messages::testing::replica_of;
 using testing::holds_in_time;
-using testing::replica_of;
 using testing::settings_for;
 
 struct Observer {

@@ -1,13 +1,13 @@
 // All endpoints that a node of a run has, on one participant, and something to say on each.
 #pragma once
 
-#include "control_samples.h"
 #include "dds/checkpoint_bus.h"
 #include "dds/command_bus.h"
 #include "dds/overlay_bus.h"
 #include "dds/replica_bus.h"
 #include "dds/scene_additions_bus.h"
-#include "replica_messages.h"
+#include "messages/control_samples.h"
+#include "messages/replica_messages.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds::testing {
@@ -34,19 +34,20 @@ struct RunEndpoints {
   /// A bit of everything. Now and then something that comes in parts.
   void say(core::Step step) {
     peer.send_batch(step, step % 20 == 0 ? 3000 : 5);
-    Status status = status_of(static_cast<std::uint32_t>(core::value_of(peer.region())));
+    messages::Status status = messages::testing::status_of(static_cast<std::uint32_t>(core::value_of(peer.region())));
     status.step = step;
     control.publish_status(status);
-    replicas.send(replica_of(step % 30 == 0 ? 2000 : 8, peer.region()));
+    replicas.send(messages::testing::replica_of(step % 30 == 0 ? 2000 : 8, peer.region()));
     if (step % 50 == 0) {
-      control.publish_map(map_of(kMapVersion));
-      checkpoints.send_to_keepers({peer.region(), Checkpoint::Kind::kToKeep, 1, step, std::string(200'000, 'x')});
+      control.publish_map(messages::testing::map_of(kMapVersion));
+      checkpoints.send_to_keepers(
+          {peer.region(), messages::Checkpoint::Kind::kToKeep, 1, step, std::string(200'000, 'x')});
       core::CommandReply reply;
       reply.source = peer.region();
       reply.request = static_cast<std::uint64_t>(step) + 1;
       reply.text = "seen";
       server.reply(reply);
-      control.send(command_of(RunCommandKind::kRate));
+      control.send(messages::testing::command_of(messages::RunCommandKind::kRate));
     }
   }
 

@@ -14,15 +14,15 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
 #include "aurasim.h"
-#include "control_samples.h"
 #include "core/mesh_hash.h"
-#include "dds/checkpoint_codec.h"
-#include "dds/codec.h"
 #include "dds/command_bus.h"
-#include "dds/command_codec.h"
-#include "dds/control_codec.h"
 #include "dds/random_id.h"
 #include "dds/typed_endpoints.h"
+#include "messages/checkpoint_codec.h"
+#include "messages/codec.h"
+#include "messages/command_codec.h"
+#include "messages/control_codec.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds::testing {
@@ -58,7 +58,7 @@ class Stranger {
   }
 
   void listen_and_never_read() {
-    for (const Status& node : nodes_) {
+    for (const messages::Status& node : nodes_) {
       const RegionId r = node.region;
       deaf_.emplace_back(domain_, TopicId::kAura, partition_of(r), next(r));
       deaf_.emplace_back(domain_, TopicId::kMigration, partition_of(r, next(r)), next(r));
@@ -70,7 +70,7 @@ class Stranger {
 
   /// "I am the node of region R", on every topic that nodes have.
   void write_where_regions_do() {
-    for (const Status& node : nodes_) {
+    for (const messages::Status& node : nodes_) {
       const RegionId r = node.region;
       auras_.push_back(writer<wire::AuraBatch>(TopicId::kAura, partition_of(r), r));
       hand_offs_.push_back(writer<wire::Migration>(TopicId::kMigration, partition_of(r, next(r)), r));
@@ -87,7 +87,7 @@ class Stranger {
 
   void forge_batches() {
     for (std::size_t r = 0; r < kRegions; ++r) {
-      core::AuraBatch batch = batch_of(3, nodes_[r].region);
+      core::AuraBatch batch = messages::testing::batch_of(3, nodes_[r].region);
       batch.generation = nodes_[r].generation;
       batch.map_version = nodes_[r].map_version;
       batch.redo = 0;
@@ -105,7 +105,7 @@ class Stranger {
 
   void forge_hand_offs() {
     for (std::size_t r = 0; r < kRegions; ++r) {
-      core::HandOff hand_off = hand_off_of(2, nodes_[r].region, next(nodes_[r].region));
+      core::HandOff hand_off = messages::testing::hand_off_of(2, nodes_[r].region, next(nodes_[r].region));
       hand_off.generation = nodes_[r].generation;
       hand_off.map_version = nodes_[r].map_version;
       for (std::uint64_t number = 1; number <= 200; ++number) {
@@ -124,13 +124,14 @@ class Stranger {
   }
 
   void forge_statuses() {
-    Status ninth = nodes_[0];
+    messages::Status ninth = nodes_[0];
     ninth.region = RegionId{9};
     ninth.process = draw_id();
     nobody_->send(ninth);
-    for (const NodeState state : {NodeState::kRunning, NodeState::kRecovering, NodeState::kFailed, NodeState::kSpare}) {
+    for (const messages::NodeState state : {messages::NodeState::kRunning, messages::NodeState::kRecovering,
+                                            messages::NodeState::kFailed, messages::NodeState::kSpare}) {
       for (std::size_t r = 0; r < kRegions; ++r) {
-        Status status = nodes_[r];
+        messages::Status status = nodes_[r];
         status.process = draw_id();
         status.state = state;
         status.generation += 5;
@@ -142,10 +143,10 @@ class Stranger {
   }
 
   void forge_run_commands() {
-    RunCommand command;
+    messages::RunCommand command;
     command.generation = nodes_[0].generation;
     command.run = nodes_[0].run;
-    const auto say = [&](RunCommandKind kind, core::Step at_step, std::int64_t epoch_ns) {
+    const auto say = [&](messages::RunCommandKind kind, core::Step at_step, std::int64_t epoch_ns) {
       command.kind = kind;
       command.at_step = at_step;
       command.epoch_ns = epoch_ns;
@@ -154,39 +155,40 @@ class Stranger {
     };
     constexpr std::int64_t kDecadesAhead = 4'000'000'000'000'000'000;
     for (int i = 0; i < 5; ++i) {
-      say(RunCommandKind::kStop, 0, 0);
-      say(RunCommandKind::kPause, 1, 0);
-      say(RunCommandKind::kReset, 1, kDecadesAhead);
-      say(RunCommandKind::kReset, newest().step + 60, kDecadesAhead);
-      say(RunCommandKind::kStart, 0, kDecadesAhead);
+      say(messages::RunCommandKind::kStop, 0, 0);
+      say(messages::RunCommandKind::kPause, 1, 0);
+      say(messages::RunCommandKind::kReset, 1, kDecadesAhead);
+      say(messages::RunCommandKind::kReset, newest().step + 60, kDecadesAhead);
+      say(messages::RunCommandKind::kStart, 0, kDecadesAhead);
       command.rate = 0.01;
-      say(RunCommandKind::kRate, newest().step + 1, 0);
+      say(messages::RunCommandKind::kRate, newest().step + 1, 0);
     }
     command.count = 1;
-    for (const Status& node : nodes_) command.members.push_back({draw_id(), node.region, true});
+    for (const messages::Status& node : nodes_) command.members.push_back({draw_id(), node.region, true});
     command.generation += 1;
-    say(RunCommandKind::kRestore, 0, 0);
+    say(messages::RunCommandKind::kRestore, 0, 0);
     command.members.clear();
-    for (const Status& node : nodes_) {
+    for (const messages::Status& node : nodes_) {
       command.region = node.region;
       command.process = node.process;
-      say(RunCommandKind::kLost, 0, 0);
+      say(messages::RunCommandKind::kLost, 0, 0);
     }
   }
 
   void forge_the_rest() {
-    for (const Status& node : nodes_) {
-      WorldMap map = map_of(node.map_version ^ 1U);
+    for (const messages::Status& node : nodes_) {
+      messages::WorldMap map = messages::testing::map_of(node.map_version ^ 1U);
       map.agreement = node.agreement;
       map.generation = node.generation + 1;
       maps_->send(map);
-      for (const auto kind : {Checkpoint::Kind::kToKeep, Checkpoint::Kind::kGoBack, Checkpoint::Kind::kOrders}) {
-        parts_->send(Checkpoint{node.region, kind, 4'000'000'000U, 1, std::string(1 << 20, 'x')});
+      for (const auto kind : {messages::Checkpoint::Kind::kToKeep, messages::Checkpoint::Kind::kGoBack,
+                              messages::Checkpoint::Kind::kOrders}) {
+        parts_->send(messages::Checkpoint{node.region, kind, 4'000'000'000U, 1, std::string(1 << 20, 'x')});
       }
       core::AuraBatch orders;
       orders.source = node.region;
       orders.generation = node.generation;
-      orders.orders = one_order_of_each_kind();
+      orders.orders = messages::testing::one_order_of_each_kind();
       orders.stamp = 1 << 20;
       orders_->send(orders);
     }
@@ -213,7 +215,7 @@ class Stranger {
   static constexpr std::uint32_t kRegions = 4;
 
   static RegionId next(RegionId region) { return RegionId{(value_of(region) + 1) % kRegions}; }
-  const Status& newest() {
+  const messages::Status& newest() {
     const auto& statuses = control_.statuses();
     return std::ranges::max_element(statuses, {}, [](const auto& entry) { return entry.second.status.step; })
         ->second.status;
@@ -229,7 +231,7 @@ class Stranger {
   ControlBus control_;
   Wakeup wakeup_;
   std::uint64_t sender_ = draw_id();
-  std::vector<Status> nodes_;
+  std::vector<messages::Status> nodes_;
   std::vector<DeafReader> deaf_;
   std::vector<std::unique_ptr<TypedWriter<wire::AuraBatch>>> auras_;
   std::vector<std::unique_ptr<TypedWriter<wire::Migration>>> hand_offs_;

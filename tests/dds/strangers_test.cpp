@@ -14,38 +14,38 @@
 #include <unistd.h>
 
 #include "aurasim.h"
-#include "control_samples.h"
 #include "core/mesh_hash.h"
-#include "dds/codec.h"
 #include "dds/command_bus.h"
-#include "dds/control_codec.h"
 #include "dds/random_id.h"
 #include "dds/scene_additions_bus.h"
 #include "dds/typed_endpoints.h"
+#include "messages/codec.h"
+#include "messages/control_codec.h"
+#include "messages/control_samples.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
-using testing::batch_of;
-using testing::command_of;
+using messages::testing::batch_of;
+using messages::testing::command_of;
+using messages::testing::hand_off_of;
+using messages::testing::status_of;
 using ::testing::Contains;
 using ::testing::ElementsAre;
-using testing::hand_off_of;
 using ::testing::HasSubstr;
 using testing::holds_in_time;
 using ::testing::IsEmpty;
 using testing::Peer;
-using testing::status_of;
 using testing::take_until;
 using namespace std::chrono_literals;
 
 /// Has any command come by then?
-bool take_any(ControlBus& bus, std::vector<RunCommand>& taken, std::chrono::milliseconds time_out) {
+bool take_any(ControlBus& bus, std::vector<messages::RunCommand>& taken, std::chrono::milliseconds time_out) {
   const auto deadline = std::chrono::steady_clock::now() + time_out;
   while (taken.empty() && std::chrono::steady_clock::now() < deadline) {
-    for (RunCommand& command : bus.take_commands()) taken.push_back(std::move(command));
+    for (messages::RunCommand& command : bus.take_commands()) taken.push_back(std::move(command));
     bus.wait(10ms);
   }
   return !taken.empty();
@@ -76,8 +76,8 @@ class AStranger : public ::testing::Test {
     settings.agreement = 88;
     return settings;
   }
-  static Status of_this_host(std::uint32_t region) {
-    Status status = status_of(region);
+  static messages::Status of_this_host(std::uint32_t region) {
+    messages::Status status = status_of(region);
     status.pid = static_cast<std::uint32_t>(::getpid());
     status.process = 100 + region;
     return status;
@@ -155,7 +155,7 @@ TEST_F(AStranger, SpeaksOfNoRegionThatTheRunHasNot) {
 
 TEST_F(AStranger, IsNotTheNodeOfARegionThatHasOne) {
   const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{1}), RegionId{1});
-  Status forged = of_this_host(1);
+  messages::Status forged = of_this_host(1);
   forged.process = 666;
   statuses->send(forged);
   ASSERT_TRUE(holds_in_time([&] {
@@ -178,17 +178,17 @@ TEST_F(AStranger, SpeaksOfNoRegionBesideItsPartition) {
 
 TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
   const auto runs = writer<wire::RunControl>(TopicId::kRunControl, kWorldPartition);
-  RunCommand command;
+  messages::RunCommand command;
   command.run = 11;
-  using Kind = RunCommandKind;
+  using Kind = messages::RunCommandKind;
   for (const Kind kind : {Kind::kStart, Kind::kRate, Kind::kRestore, Kind::kEnd, Kind::kPause}) {
     command.kind = kind;
     command.request = draw_id();
     runs->send(command, std::uint64_t{7});
   }
-  std::vector<RunCommandKind> taken;
+  std::vector<messages::RunCommandKind> taken;
   ASSERT_TRUE(holds_in_time([&] {
-    for (const RunCommand& one : zero_bus_.take_commands()) taken.push_back(one.kind);
+    for (const messages::RunCommand& one : zero_bus_.take_commands()) taken.push_back(one.kind);
     return !taken.empty();
   }));
   EXPECT_THAT(taken, ElementsAre(Kind::kPause));
@@ -204,13 +204,13 @@ TEST(AProcessThatHasJustBegun, TakesWhoActsForARegionsNodeThoughItsSuccessorIsHe
   Participant first(testing::settings_for(own_domain())), second(testing::settings_for(own_domain()));
   Participant participant(testing::settings_for(own_domain()));
   ControlBus node(first, node_of(1, 2)), successor(second, node_of(1, 2)), newcomer(participant, node_of(0, 2));
-  Status waits = status_of(1);
-  waits.state = NodeState::kSpare;
+  messages::Status waits = status_of(1);
+  waits.state = messages::NodeState::kSpare;
   waits.process = 2;
   successor.publish_status(waits);
   ASSERT_TRUE(holds_in_time([&] { return newcomer.statuses().contains(RegionId{1}); }));
-  Status acts = status_of(1);
-  acts.state = NodeState::kRecovering;
+  messages::Status acts = status_of(1);
+  acts.state = messages::NodeState::kRecovering;
   acts.process = 1;
   node.publish_status(acts);
   EXPECT_TRUE(holds_in_time([&] { return newcomer.statuses().at(RegionId{1}).status.process == 1; }));
@@ -227,12 +227,12 @@ TEST(ANodeThatHasComeToTheEnd, IsItsRegionsNodeUntilItHasLeft) {
   Participant second(testing::settings_for(own_domain())), participant(testing::settings_for(own_domain()));
   auto node = std::make_unique<ControlBus>(*first, node_of(1, 2));
   ControlBus waiting(second, node_of(1, 2)), other(participant, node_of(0, 2));
-  Status acts = status_of(1);
+  messages::Status acts = status_of(1);
   acts.process = 1;
   node->publish_status(acts);
   ASSERT_TRUE(holds_in_time([&] { return other.statuses().contains(RegionId{1}); }));
-  Status waits = status_of(1);
-  waits.state = NodeState::kSpare;
+  messages::Status waits = status_of(1);
+  waits.state = messages::NodeState::kSpare;
   waits.process = 2;
   const auto seen = [&] { return other.statuses().at(RegionId{1}).status; };
   const auto publish_for = [&](std::chrono::milliseconds time) {
@@ -244,9 +244,9 @@ TEST(ANodeThatHasComeToTheEnd, IsItsRegionsNodeUntilItHasLeft) {
     }
   };
   publish_for(500ms);
-  acts.state = NodeState::kFinished;
+  acts.state = messages::NodeState::kFinished;
   publish_for(500ms);
-  EXPECT_EQ(seen().state, NodeState::kFinished);
+  EXPECT_EQ(seen().state, messages::NodeState::kFinished);
   node.reset();
   first.reset();
   EXPECT_TRUE(holds_in_time([&] { return seen().process == 2U; }));
@@ -263,19 +263,19 @@ TEST(AProcessThatHasJustBegun, TakesTheWordOfANodeThatItDoesNotYetKnow) {
   ControlBus& newcomer = *buses[2];
   buses[0]->publish_status(status_of(0));
   ASSERT_TRUE(holds_in_time([&] { return newcomer.statuses().contains(RegionId{0}); }));
-  RunCommand restore;
-  restore.kind = RunCommandKind::kRestore;
+  messages::RunCommand restore;
+  restore.kind = messages::RunCommandKind::kRestore;
   restore.run = 11;
   restore.region = RegionId{1};
   buses[1]->send(restore);
-  buses[1]->send(command_of(RunCommandKind::kPause));  // of the world that all go back to
-  std::vector<RunCommand> taken;
+  buses[1]->send(command_of(messages::RunCommandKind::kPause));  // of the world that all go back to
+  std::vector<messages::RunCommand> taken;
   EXPECT_FALSE(take_any(newcomer, taken, 500ms)) << "region 1 has not said that it is one";
   buses[1]->publish_status(status_of(1));
   ASSERT_TRUE(take_any(newcomer, taken, 2s));
   ASSERT_EQ(taken.size(), 2U);
-  EXPECT_EQ(taken[0].kind, RunCommandKind::kRestore);
-  EXPECT_EQ(taken[1].kind, RunCommandKind::kPause);
+  EXPECT_EQ(taken[0].kind, messages::RunCommandKind::kRestore);
+  EXPECT_EQ(taken[1].kind, messages::RunCommandKind::kPause);
   EXPECT_THAT(participants[2]->take_said(), IsEmpty());
 }
 
@@ -294,7 +294,7 @@ TEST_F(AStranger, BringsNoMeshUnderAnotherOnesName) {
 }
 
 TEST_F(AStranger, DoesNotKillByItsWord) {
-  RunCommand lost = command_of(RunCommandKind::kLost);
+  messages::RunCommand lost = command_of(messages::RunCommandKind::kLost);
   lost.process = 101;
   zero_bus_.hear_of_death(lost);
   EXPECT_FALSE(zero_bus_.statuses().at(RegionId{1}).lost) << "its process is there";
@@ -304,11 +304,11 @@ TEST_F(AStranger, DoesNotKillByItsWord) {
 }
 
 TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
-  Status gone = of_this_host(1);
+  messages::Status gone = of_this_host(1);
   gone.pid = 0x7fff'ffffU;  // above any that Linux gives
   ASSERT_TRUE(one_bus_.publish_status(gone));
   ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
-  RunCommand lost = command_of(RunCommandKind::kLost);
+  messages::RunCommand lost = command_of(messages::RunCommandKind::kLost);
   lost.process = 101;
   zero_bus_.hear_of_death(lost);
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);

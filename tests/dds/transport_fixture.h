@@ -13,7 +13,7 @@
 #include "dds/control.h"
 #include "dds/dds_transport.h"
 #include "dds/participant.h"
-#include "messages.h"
+#include "messages/samples.h"
 #include "own_domain.h"
 
 namespace aurasim::dds {
@@ -67,7 +67,7 @@ struct Peer {
 
   void send_batch(core::Step stamp, std::size_t auras = 3) {
     core::Outbox outbox;
-    outbox.aura = batch_of(auras, region());
+    outbox.aura = messages::testing::batch_of(auras, region());
     outbox.aura.stamp = stamp;
     for (core::AuraRecord& aura : outbox.aura.updates) aura.stamp = std::min(aura.stamp, stamp);
     transport.send(outbox);

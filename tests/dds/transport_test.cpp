@@ -11,25 +11,25 @@
 #include <gtest/gtest.h>
 
 #include "aurasimPubSubTypes.h"
-#include "dds/codec.h"
 #include "dds/dds_transport.h"
 #include "dds/domain.h"
 #include "dds/endpoints.h"
 #include "dds/participant_qos.h"
+#include "messages/codec.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
-using testing::ack_of;
-using testing::batch_of;
+using messages::testing::ack_of;
+using messages::testing::batch_of;
+using messages::testing::hand_off_of;
+using messages::testing::same;
 using ::testing::ElementsAre;
-using testing::hand_off_of;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Peer;
-using testing::same;
 using testing::take_until;
 using ::testing::UnorderedElementsAre;
 using namespace std::chrono_literals;
@@ -94,7 +94,7 @@ TEST(TwoRegions, RefuseEachOthersMessagesWhenTheirMapsDiffer) {
   b.transport.send(outbox);
   ASSERT_TRUE(take_until(a, [&] { return a.transport.counters().aura.received > 0; }));
   EXPECT_TRUE(a.inbox.auras.empty());
-  EXPECT_EQ(a.transport.counters().aura.refused.count(WireError::kMapVersion), 1U);
+  EXPECT_EQ(a.transport.counters().aura.refused.count(messages::WireError::kMapVersion), 1U);
 }
 
 TEST(ARow, HearsNeighboursOnly) {
@@ -238,11 +238,11 @@ TEST(AMalformedSample, IsCountedAndTheNextOneStillArrives) {
   core::AuraBatch batch = batch_of(3, RegionId{1});
   for (const std::uint64_t violations : {0U, 1U, 2U}) {
     batch.violations = violations;
-    encode(batch, sample);
+    messages::encode(batch, sample);
     writer->write(&sample);
   }
   EXPECT_TRUE(take_until(a, [&] { return a.transport.counters().aura.received == 3; }));
-  EXPECT_EQ(a.transport.counters().aura.refused.count(WireError::kMalformed), 1U);
+  EXPECT_EQ(a.transport.counters().aura.refused.count(messages::WireError::kMalformed), 1U);
   ASSERT_EQ(a.inbox.auras.size(), 2U);
   EXPECT_EQ(a.inbox.auras[1].violations, 2U);
   participant->delete_contained_entities();

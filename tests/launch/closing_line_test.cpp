@@ -7,8 +7,8 @@ namespace {
 
 class ClosingLine : public ::testing::Test {
  protected:
-  void end(std::uint32_t region, std::uint64_t bodies, dds::NodeState state = dds::NodeState::kFinished) {
-    dds::SeenStatus& seen = statuses_[core::RegionId{region}];
+  void end(std::uint32_t region, std::uint64_t bodies, messages::NodeState state = messages::NodeState::kFinished) {
+    messages::SeenStatus& seen = statuses_[core::RegionId{region}];
     seen.status.state = state;
     seen.status.step = 600;
     seen.status.bodies = bodies;
@@ -17,7 +17,7 @@ class ClosingLine : public ::testing::Test {
   }
   std::string line(bool has_begun = true) const { return closing_line(statuses_, 3, has_begun, 1.0 / 60); }
 
-  std::map<core::RegionId, dds::SeenStatus> statuses_;
+  std::map<core::RegionId, messages::SeenStatus> statuses_;
 };
 
 TEST_F(ClosingLine, SumsWhatTheNodesHaveSaidLast) {
@@ -26,7 +26,7 @@ TEST_F(ClosingLine, SumsWhatTheNodesHaveSaidLast) {
 }
 
 TEST_F(ClosingLine, NamesThoseOfWhomNothingIsKnown) {
-  end(0, 5), end(1, 9, dds::NodeState::kRunning);
+  end(0, 5), end(1, 9, messages::NodeState::kRunning);
   EXPECT_EQ(line(),
             "ended with state 600, 10.00 s: 5 bodies, 10 hand-offs, 0 late and 0 missed collisions; without regions "
             "[1, 2], whose bodies are not known\n");

@@ -16,9 +16,9 @@ class LiveTable : public ::testing::Test {
  protected:
   void have_regions(std::uint32_t count) {
     for (std::uint32_t r = 0; r < count; ++r) {
-      dds::SeenStatus& seen = statuses_[core::RegionId{r}];
+      messages::SeenStatus& seen = statuses_[core::RegionId{r}];
       seen.status.region = core::RegionId{r};
-      seen.status.state = dds::NodeState::kFinished;
+      seen.status.state = messages::NodeState::kFinished;
       seen.status.step = 123'456;
       seen.status.bodies = 10'000;
       seen.status.awake = 10'000;
@@ -37,7 +37,7 @@ class LiveTable : public ::testing::Test {
     return lines;
   }
 
-  std::map<core::RegionId, dds::SeenStatus> statuses_;
+  std::map<core::RegionId, messages::SeenStatus> statuses_;
 };
 
 TEST_F(LiveTable, NoLineIsAsWideAsTheTerminal) {
@@ -60,7 +60,7 @@ TEST_F(LiveTable, NamesWhoListensToWhomSinceWhenAndWhy) {
 TEST_F(LiveTable, SaysWhoComputesOneStepForLong) {
   have_regions(2);
   const std::chrono::steady_clock::time_point now(std::chrono::seconds(100));
-  statuses_[core::RegionId{1}].status.state = dds::NodeState::kRunning;
+  statuses_[core::RegionId{1}].status.state = messages::NodeState::kRunning;
   statuses_[core::RegionId{1}].seen = now - std::chrono::seconds(12);
   EXPECT_THAT(live_table(statuses_, {}, now), HasSubstr("region 1 computes one step for 12 s\n"));
   EXPECT_THAT(live_table(statuses_, {}, now), Not(HasSubstr("region 0 computes")));
@@ -68,7 +68,7 @@ TEST_F(LiveTable, SaysWhoComputesOneStepForLong) {
 
 TEST_F(LiveTable, NamesWhoseMessagesAreRefused) {
   have_regions(1);
-  statuses_[core::RegionId{0}].status.refused = {{core::RegionId{2}, 3}, {dds::kNoRegion, 170}};
+  statuses_[core::RegionId{0}].status.refused = {{core::RegionId{2}, 3}, {messages::kNoRegion, 170}};
   EXPECT_THAT(lines({}).back(), HasSubstr("region 0 has refused messages: 3 of region 2, 170 of no node"));
 }
 

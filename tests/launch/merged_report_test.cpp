@@ -12,14 +12,14 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST(ClosingLineOfAReport, CountsBodies) {
-  node::Accounts accounts;
+  records::Accounts accounts;
   accounts.bodies = 448;
   EXPECT_THAT(closing_line(accounts), StartsWith("448 bodies alive, 0 lost, 0 duplicated; 0 hand-offs"));
 }
 
 /// A disk was full: nobody has written down who is there.
 TEST(ClosingLineOfAReport, SaysWhatIsNotKnown) {
-  node::Accounts accounts;
+  records::Accounts accounts;
   accounts.unaccounted = 448;
   accounts.incomplete.push_back({core::RegionId{2}, 700, "No space left on device"});
   EXPECT_THAT(closing_line(accounts), HasSubstr("not known of 448 bodies"));

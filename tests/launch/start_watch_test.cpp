@@ -12,8 +12,8 @@ using testing::HasSubstr;
 
 class Start : public testing::Test {
  protected:
-  void says(std::uint32_t region, dds::NodeState state) {
-    dds::SeenStatus& seen = statuses_[core::RegionId{region}];
+  void says(std::uint32_t region, messages::NodeState state) {
+    messages::SeenStatus& seen = statuses_[core::RegionId{region}];
     seen.status.state = state;
     seen.seen = now_;
   }
@@ -24,39 +24,39 @@ class Start : public testing::Test {
 
   StartWatch::Clock::time_point now_{};
   StartWatch watch_{3, 20s, now_};  // and 10 s more
-  std::map<core::RegionId, dds::SeenStatus> statuses_;
+  std::map<core::RegionId, messages::SeenStatus> statuses_;
 };
 
 TEST_F(Start, WaitsForWhoIsOnTheWay) {
   EXPECT_EQ(after(29s), "");
-  says(0, dds::NodeState::kStarting);
+  says(0, messages::NodeState::kStarting);
   EXPECT_EQ(after(29s), "");
-  says(0, dds::NodeState::kWaiting);
+  says(0, messages::NodeState::kWaiting);
   EXPECT_EQ(after(29s), "") << "each step further gives the rest as long again";
-  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, dds::NodeState::kWaiting);
+  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, messages::NodeState::kWaiting);
   EXPECT_EQ(after(29s), "");
-  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, dds::NodeState::kWaiting);
+  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, messages::NodeState::kWaiting);
   EXPECT_EQ(after(29s), "");
-  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, dds::NodeState::kWaiting);
+  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, messages::NodeState::kWaiting);
   EXPECT_EQ(after(29s), "") << "nobody is silent, though nobody comes further: the nodes' own time-outs see to that";
 }
 
 TEST_F(Start, NamesWhoNeverSpoke) {
-  says(1, dds::NodeState::kWaiting);
+  says(1, messages::NodeState::kWaiting);
   EXPECT_EQ(after(20s), "");
-  says(1, dds::NodeState::kWaiting);
+  says(1, messages::NodeState::kWaiting);
   EXPECT_EQ(after(11s), "");
-  says(1, dds::NodeState::kWaiting);
+  says(1, messages::NodeState::kWaiting);
   EXPECT_THAT(after(20s), HasSubstr("the nodes of regions [0, 2] have said nothing for 30 s"));
 }
 
 TEST_F(Start, NamesWhoHasFallenSilent) {
-  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, dds::NodeState::kWaiting);
+  for (const std::uint32_t all : {0U, 1U, 2U}) says(all, messages::NodeState::kWaiting);
   EXPECT_EQ(after(0s), "");
   EXPECT_EQ(after(20s), "");
-  for (const std::uint32_t some : {0U, 1U}) says(some, dds::NodeState::kWaiting);
+  for (const std::uint32_t some : {0U, 1U}) says(some, messages::NodeState::kWaiting);
   EXPECT_EQ(after(10s), "");
-  for (const std::uint32_t some : {0U, 1U}) says(some, dds::NodeState::kWaiting);
+  for (const std::uint32_t some : {0U, 1U}) says(some, messages::NodeState::kWaiting);
   EXPECT_THAT(after(1s), HasSubstr("the nodes of regions [2] have said nothing"));
 }
 

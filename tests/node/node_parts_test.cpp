@@ -22,7 +22,7 @@ using core::Step;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double kStep_s = 1.0 / 60;
+constexpr double kBirthStep_s = 1.0 / 60;
 
 core::Snapshot state_with(std::vector<std::uint64_t> ids,
                           std::vector<std::pair<std::uint32_t, std::uint32_t>> contacts) {
@@ -73,16 +73,16 @@ std::vector<std::uint64_t> ids_of(const std::vector<NewBody>& bodies) {
 
 TEST(Births, BodiesOfOrdersComeWhenTheirStateIsNear) {
   ToBeBorn births;
-  births.begin({}, 0, kStep_s);
+  births.begin({}, 0, kBirthStep_s);
   births.spawns = {spawn(1, 11, 50), spawn(2, 12, 40)};
-  EXPECT_THAT(births.take_due({}, 39, kStep_s), IsEmpty());
-  const std::vector<NewBody> due = births.take_due({}, 40, kStep_s);
+  EXPECT_THAT(births.take_due({}, 39, kBirthStep_s), IsEmpty());
+  const std::vector<NewBody> due = births.take_due({}, 40, kBirthStep_s);
   ASSERT_THAT(ids_of(due), ElementsAre(12));
   EXPECT_EQ(due[0].record.birth, 40);
   ASSERT_TRUE(due[0].order);
   EXPECT_EQ(due[0].order->request, 102U);
-  EXPECT_THAT(ids_of(births.take_due({}, 60, kStep_s)), ElementsAre(11));
-  EXPECT_THAT(births.take_due({}, 60, kStep_s), IsEmpty());
+  EXPECT_THAT(ids_of(births.take_due({}, 60, kBirthStep_s)), ElementsAre(11));
+  EXPECT_THAT(births.take_due({}, 60, kBirthStep_s), IsEmpty());
 }
 
 core::Order shape_order(std::uint64_t sequence, Step at_step, const core::MeshRef& mesh) {

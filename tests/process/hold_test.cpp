@@ -15,9 +15,9 @@ using core::Step;
 using namespace std::chrono_literals;
 
 /// Of a client that knows state `from`.
-dds::RunCommand step(std::uint64_t request, Step from, std::int64_t count, core::Generation generation = 1) {
-  dds::RunCommand command;
-  command.kind = dds::RunCommandKind::kStep;
+messages::RunCommand step(std::uint64_t request, Step from, std::int64_t count, core::Generation generation = 1) {
+  messages::RunCommand command;
+  command.kind = messages::RunCommandKind::kStep;
   command.request = request;
   command.generation = generation;
   command.at_step = from + count;
@@ -25,10 +25,10 @@ dds::RunCommand step(std::uint64_t request, Step from, std::int64_t count, core:
   return command;
 }
 
-Step end_of(Step paused_at, const std::vector<dds::RunCommand>& steps) {
+Step end_of(Step paused_at, const std::vector<messages::RunCommand>& steps) {
   AskedSteps asked;
   asked.begin(paused_at);
-  for (const dds::RunCommand& one : steps) asked.add(one);
+  for (const messages::RunCommand& one : steps) asked.add(one);
   return asked.end();
 }
 
@@ -74,7 +74,7 @@ TEST(AskedSteps, AddUpWhenThereAreMoreThanAreKept) {
 TEST(AskedSteps, LeadAllNodesToOneStateInWhateverOrderTheyHear) {
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
     std::mt19937 random(seed);
-    std::vector<dds::RunCommand> steps;
+    std::vector<messages::RunCommand> steps;
     Step known = 100, sum = 100;
     for (std::uint64_t request = 1; request <= 20; ++request) {
       const auto count = static_cast<std::int64_t>(1 + random() % 9);
@@ -117,7 +117,7 @@ TEST_F(PauseFollowing, ANodeDoesNotFollowAStepThatItIsAboutToHearOf) {
 class Awaited : public ::testing::Test {
  protected:
   void step_after(std::uint64_t program, std::uint64_t number) {
-    dds::RunCommand command = step(1, 100, 5);
+    messages::RunCommand command = step(1, 100, 5);
     command.after = {program, number};
     words_.add(command, now_);
   }

@@ -16,7 +16,7 @@ class LongStep : public ::testing::Test {
  protected:
   LongStep() {
     seen_.status.region = core::RegionId{3};
-    seen_.status.state = dds::NodeState::kRunning;
+    seen_.status.state = messages::NodeState::kRunning;
     seen_.status.step = 17;
     seen_.seen = begin_;
   }
@@ -30,7 +30,7 @@ class LongStep : public ::testing::Test {
   }
 
   const LongSteps::Clock::time_point begin_{100s};
-  dds::SeenStatus seen_;
+  messages::SeenStatus seen_;
   LongSteps steps_;
 };
 
@@ -43,7 +43,7 @@ TEST_F(LongStep, IsNotSaidOfTheDeadNorOfThoseWhoStand) {
   seen_.lost = true;
   EXPECT_EQ(long_step(seen_, begin_ + 12s), std::nullopt);
   seen_.lost = false;
-  seen_.status.state = dds::NodeState::kPaused;
+  seen_.status.state = messages::NodeState::kPaused;
   EXPECT_EQ(long_step(seen_, begin_ + 12s), std::nullopt);
 }
 

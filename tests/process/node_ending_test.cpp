@@ -29,7 +29,7 @@ class NodeEndingTest : public ::testing::Test {
     }
     return {};
   }
-  void is_seen(dds::NodeState state, bool lost = false) {
+  void is_seen(messages::NodeState state, bool lost = false) {
     seen_.emplace();
     seen_->status.state = state;
     seen_->lost = lost;
@@ -38,7 +38,7 @@ class NodeEndingTest : public ::testing::Test {
 
   const Clock::time_point begin_ = Clock::time_point(100s);
   Clock::time_point now_ = begin_;
-  std::optional<dds::SeenStatus> seen_;
+  std::optional<messages::SeenStatus> seen_;
   NodeEnding ending_{begin_};
 };
 
@@ -51,23 +51,23 @@ TEST_F(NodeEndingTest, ANodeThatNobodyHasHeardOfEndsWithinTwoSeconds) {
 }
 
 TEST_F(NodeEndingTest, ASlowWorldIsLeftToReachTheStateInWhichAllStop) {
-  is_seen(dds::NodeState::kRunning);
+  is_seen(messages::NodeState::kRunning);
   EXPECT_EQ(first_deed(20s, 1).urge, Urge::kNone);
 }
 
 TEST_F(NodeEndingTest, OneThatStandsStillIsToldOnceAndThenWaitedFor) {
-  is_seen(dds::NodeState::kRunning);
+  is_seen(messages::NodeState::kRunning);
   EXPECT_EQ(first_deed(2s).urge, Urge::kTerminate);
   EXPECT_EQ(first_deed(29s).urge, Urge::kNone);
 }
 
 TEST_F(NodeEndingTest, OneThatWritesItsReportIsLeftInPeaceEvenIfItIsNotHeard) {
-  is_seen(dds::NodeState::kFinished, true);
+  is_seen(messages::NodeState::kFinished, true);
   EXPECT_EQ(first_deed(29s).urge, Urge::kNone);
 }
 
 TEST_F(NodeEndingTest, SilenceIsWaitedOutForThreeSeconds) {
-  is_seen(dds::NodeState::kRunning, true);
+  is_seen(messages::NodeState::kRunning, true);
   EXPECT_EQ(first_deed(3s).urge, Urge::kTerminate);
   const Deed deed = first_deed(29s);
   EXPECT_EQ(deed.urge, Urge::kKill);
@@ -76,7 +76,7 @@ TEST_F(NodeEndingTest, SilenceIsWaitedOutForThreeSeconds) {
 }
 
 TEST_F(NodeEndingTest, NobodyIsWaitedForForEver) {
-  is_seen(dds::NodeState::kFinished);
+  is_seen(messages::NodeState::kFinished);
   EXPECT_EQ(first_deed(40s).urge, Urge::kKill);
 }
 

@@ -88,10 +88,10 @@ TEST(NodePhases, EveryOneIsReachedAndHasAWayOut) {
 
 TEST(NodePhases, AreToldAsTheStateOfTheNode) {
   EXPECT_FALSE(state_of(P::kListening)) << "a node's word would disturb a run that is already here";
-  EXPECT_EQ(state_of(P::kMeeting), dds::NodeState::kStarting);
-  EXPECT_EQ(state_of(P::kChanging), dds::NodeState::kPaused);
-  EXPECT_EQ(state_of(P::kLingering), dds::NodeState::kFinished);
-  EXPECT_EQ(state_of(P::kFenced), dds::NodeState::kFailed);
+  EXPECT_EQ(state_of(P::kMeeting), messages::NodeState::kStarting);
+  EXPECT_EQ(state_of(P::kChanging), messages::NodeState::kPaused);
+  EXPECT_EQ(state_of(P::kLingering), messages::NodeState::kFinished);
+  EXPECT_EQ(state_of(P::kFenced), messages::NodeState::kFailed);
 }
 
 }  // namespace

@@ -71,13 +71,13 @@ struct OutageSim::Process {
   bool knows_world = true;
   core::Generation generation = 0, restoring = 0, stands_in = 0;
   core::Step step = 0;
-  dds::Status status;
+  messages::Status status;
   SeenNodes nodes;
   std::map<std::uint64_t, HeardProcess> heard;  ///< by process
   std::map<core::RegionId, std::set<core::Step>> parts;
   std::vector<core::RegionId> keepers;
   std::map<core::RegionId, std::set<core::Step>> unsent;  ///< own parts, by keeper
-  std::optional<dds::RunCommand> restore;
+  std::optional<messages::RunCommand> restore;
   std::set<core::RegionId> given;  ///< regions whose parts have come, for `restoring`
   Time deadline{};
   bool is_started = false;

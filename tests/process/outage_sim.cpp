@@ -12,7 +12,7 @@ namespace aurasim::process::test {
 namespace {
 
 using namespace std::chrono_literals;
-using dds::NodeState;
+using messages::NodeState;
 
 constexpr auto kTick = 100ms;
 constexpr auto kLease = 10s;
@@ -88,7 +88,7 @@ void OutageSim::deliver(Process& from, Process& to) {
     heard.generation = from.generation;
   }
   for (const core::Step step : std::exchange(from.unsent[to.region], {})) to.parts[from.region].insert(step);
-  for (const dds::RunCommand& restore : restores_) {
+  for (const messages::RunCommand& restore : restores_) {
     const bool is_its_own = restore.members[core::value_of(from.region)].process == from.id;
     if (is_its_own && restore.region == from.region && sender_of(to, restore.region) == &from) {
       hear_of_restore(to, restore);
@@ -166,7 +166,7 @@ void OutageSim::act(Process& process) {
   if (process.phase == Phase::kEnded) return;
   const bool stands = process.phase == Phase::kStands || process.phase == Phase::kGathers ||
                       process.phase == Phase::kConnects || process.phase == Phase::kTakesOver;
-  dds::Status& status = process.status;
+  messages::Status& status = process.status;
   status.state = process.phase == Phase::kRuns          ? NodeState::kRunning
                  : process.phase == Phase::kWaits       ? NodeState::kWaiting
                  : !process.knows_world                 ? NodeState::kSpare
@@ -264,7 +264,7 @@ void OutageSim::lead(Process& process, const SeenNodes& nodes) {
   process.recovery.note_kept(nodes, 0);
   std::optional<RestorePlan> plan = plan_restore(nodes, hosts_);
   if (!plan || plan->lead != process.region) return;
-  dds::RunCommand restore = plan->command;
+  messages::RunCommand restore = plan->command;
   restore.generation = std::max(restore.generation, process.current() + 1);
   if (restore.count == 1 && !process.recovery.may_begin_again(0)) return;
   if (restore.count == 1) restore.at_step = 0;
@@ -274,7 +274,7 @@ void OutageSim::lead(Process& process, const SeenNodes& nodes) {
   process.restore = restore;
 }
 
-void OutageSim::hear_of_restore(Process& process, const dds::RunCommand& restore) {
+void OutageSim::hear_of_restore(Process& process, const messages::RunCommand& restore) {
   const core::Generation known = std::max(process.current(), process.restore ? process.restore->generation : 0);
   const RestoreMeaning meaning = meaning_of(restore, process.region, process.id, process.generation, known);
   if (meaning == RestoreMeaning::kGoBack) process.restore = restore;
@@ -295,7 +295,7 @@ void OutageSim::go_back(Process& process) {
     process.phase = Phase::kConnects;
     process.deadline = now_ + kPatienceWithParts;
   }
-  const auto is_here = [&](const dds::RunCommand::Member& member) {
+  const auto is_here = [&](const messages::RunCommand::Member& member) {
     const auto other = std::ranges::find(processes_, member.process, [](const auto& p) { return p->id; });
     if (other == processes_.end() || (*other)->phase == Phase::kEnded) return false;
     const bool meets = (*other)->phase == Phase::kConnects || (*other)->phase == Phase::kWaits ||
@@ -324,7 +324,7 @@ void OutageSim::go_back(Process& process) {
 }
 
 void OutageSim::begin(Process& process) {
-  const dds::RunCommand& restore = *process.restore;
+  const messages::RunCommand& restore = *process.restore;
   process.generation = process.restoring;
   process.phase = Phase::kRuns;
   process.knows_world = true;

@@ -74,7 +74,7 @@ class OutageSim {
   void lead(Process& process, const SeenNodes& nodes);
   void go_back(Process& process);
   void begin(Process& process);
-  void hear_of_restore(Process& process, const dds::RunCommand& restore);
+  void hear_of_restore(Process& process, const messages::RunCommand& restore);
   void start_stand_in(std::uint32_t host, core::RegionId region);
   SeenNodes nodes_of(Process& process) const;
   Process* sender_of(const Process& process, core::RegionId region) const;
@@ -86,7 +86,7 @@ class OutageSim {
   std::vector<std::unique_ptr<Process>> processes_;
   std::vector<Outage> outages_;
   std::vector<Kill> kills_;
-  std::vector<dds::RunCommand> restores_;
+  std::vector<messages::RunCommand> restores_;
   core::Generation newest_begun_ = 0;
   std::map<core::Generation, std::pair<std::uint64_t, core::RegionId>> begun_with_;  ///< node of region 0, and lead
   std::vector<core::Step> went_back_to_;

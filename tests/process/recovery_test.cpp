@@ -8,7 +8,7 @@ namespace aurasim::process {
 namespace {
 
 using core::RegionId;
-using dds::NodeState;
+using messages::NodeState;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using namespace std::chrono_literals;
@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 class Standing : public ::testing::Test {
  protected:
   void hear(std::uint32_t region, NodeState state = NodeState::kRecovering) {
-    dds::SeenStatus& seen = nodes_[RegionId{region}];
+    messages::SeenStatus& seen = nodes_[RegionId{region}];
     seen.lost = false;
     seen.status.region = RegionId{region};
     seen.status.process = 100 + region;
@@ -153,7 +153,7 @@ TEST_F(Standing, TheFirstStateIsNotBegunAgainOnceALaterOneWasKept) {
 
 TEST_F(Standing, WhoWasLeftOutGivesWayOnceTheOthersCompute) {
   Recovery recovery = recovery_of(0);
-  dds::RunCommand restore;
+  messages::RunCommand restore;
   restore.generation = 3;
   restore.at_step = 240;
   for (std::uint64_t region = 0; region < 4; ++region)

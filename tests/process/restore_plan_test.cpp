@@ -8,13 +8,13 @@ namespace {
 
 using core::RegionId;
 using core::Step;
-using dds::NodeState;
+using messages::NodeState;
 
 class RestorePlans : public ::testing::Test {
  protected:
   /// Stands, with its own parts of these states.
-  dds::Status& survivor(std::uint32_t region, std::initializer_list<Step> own, core::Generation era = 0) {
-    dds::SeenStatus& seen = nodes_[RegionId{region}];
+  messages::Status& survivor(std::uint32_t region, std::initializer_list<Step> own, core::Generation era = 0) {
+    messages::SeenStatus& seen = nodes_[RegionId{region}];
     seen.status.region = RegionId{region};
     seen.status.process = 100 + region;
     seen.status.state = NodeState::kRecovering;
@@ -26,14 +26,14 @@ class RestorePlans : public ::testing::Test {
     nodes_[RegionId{region}].status.parts.push_back({RegionId{whose}, step});
   }
   void takes_over(std::uint32_t region) {
-    dds::SeenStatus& seen = nodes_[RegionId{region}];
+    messages::SeenStatus& seen = nodes_[RegionId{region}];
     seen.status.region = RegionId{region};
     seen.status.process = 200 + region;
     seen.status.state = NodeState::kSpare;
   }
   std::optional<RestorePlan> plan(std::size_t regions = 3) { return plan_restore(nodes_, regions); }
 
-  std::map<RegionId, dds::SeenStatus> nodes_;
+  std::map<RegionId, messages::SeenStatus> nodes_;
 };
 
 TEST_F(RestorePlans, NobodyGoesBackBeforeEveryRegionHasSomebodyWhoStands) {
@@ -81,7 +81,7 @@ TEST_F(RestorePlans, TheNewestStateWhosePartsAreAllThere) {
   const auto made = plan();
   ASSERT_TRUE(made);
   EXPECT_EQ(made->lead, RegionId{0});
-  const dds::RunCommand& command = made->command;
+  const messages::RunCommand& command = made->command;
   EXPECT_EQ(command.at_step, 120);
   EXPECT_EQ(command.count, 0);
   EXPECT_EQ(command.generation, 1U);

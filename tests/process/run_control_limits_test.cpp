@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Kind = dds::RunCommandKind;
+using Kind = messages::RunCommandKind;
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
@@ -22,7 +22,7 @@ class ARunCommand : public ::testing::Test {
     for (const auto end = now_ + time; now_ < end; now_ += 250ms) limits_.note(step_ += 15, now_);
   }
   std::string problem(Kind kind, core::Step at_step, std::int64_t epoch_ns = kNow) {
-    dds::RunCommand command;
+    messages::RunCommand command;
     command.kind = kind;
     command.at_step = at_step;
     command.epoch_ns = epoch_ns;
@@ -76,7 +76,7 @@ TEST_F(ARunCommand, NamesATimeWithinAMinute) {
 }
 
 TEST_F(ARunCommand, NamesItBySendersClock) {
-  dds::RunCommand command;
+  messages::RunCommand command;
   command.kind = Kind::kStart;
   command.clock_ahead = 1h;
   command.epoch_ns = kNow + 3600 * kSecond;
@@ -86,7 +86,7 @@ TEST_F(ARunCommand, NamesItBySendersClock) {
 }
 
 TEST_F(ARunCommand, RestoresNoGenerationOutOfNowhere) {
-  dds::RunCommand command;
+  messages::RunCommand command;
   command.kind = Kind::kRestore;
   command.epoch_ns = kNow;
   command.generation = 4;

@@ -11,11 +11,11 @@ using core::Step;
 
 class StepsBack : public ::testing::Test {
  protected:
-  dds::Status& node(std::uint32_t region, std::initializer_list<Step> own) {
-    dds::Status& status = nodes_[RegionId{region}].status;
+  messages::Status& node(std::uint32_t region, std::initializer_list<Step> own) {
+    messages::Status& status = nodes_[RegionId{region}].status;
     status.region = RegionId{region};
     status.process = 100 + region;
-    status.state = dds::NodeState::kPaused;
+    status.state = messages::NodeState::kPaused;
     status.generation = 3;
     status.era = 2;
     status.parts.clear();
@@ -23,7 +23,7 @@ class StepsBack : public ::testing::Test {
     return status;
   }
 
-  std::map<RegionId, dds::SeenStatus> nodes_;
+  std::map<RegionId, messages::SeenStatus> nodes_;
 };
 
 TEST_F(StepsBack, GoToTheNewestStateThatAllKeep) {
@@ -31,7 +31,7 @@ TEST_F(StepsBack, GoToTheNewestStateThatAllKeep) {
   node(1, {60, 120, 180});
   const auto back = plan_step_back(nodes_, 2, 1000);
   ASSERT_TRUE(back);
-  EXPECT_EQ(back->kind, dds::RunCommandKind::kRestore);
+  EXPECT_EQ(back->kind, messages::RunCommandKind::kRestore);
   EXPECT_EQ(back->at_step, 180);
   EXPECT_EQ(back->generation, 4U);
   EXPECT_EQ(back->era, 2U);
@@ -55,7 +55,7 @@ TEST_F(StepsBack, AreForARunThatIsWhole) {
   EXPECT_FALSE(plan_step_back(nodes_, 2, 100)) << "region 1 is not there";
   node(1, {60});
   EXPECT_TRUE(plan_step_back(nodes_, 2, 100));
-  node(1, {60}).state = dds::NodeState::kRecovering;
+  node(1, {60}).state = messages::NodeState::kRecovering;
   EXPECT_FALSE(plan_step_back(nodes_, 2, 100));
   node(1, {60}).era = 1;
   EXPECT_FALSE(plan_step_back(nodes_, 2, 100));

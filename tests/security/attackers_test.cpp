@@ -248,8 +248,8 @@ TEST_F(Attackers, WhoAreOperatorsAreGivenNoMoreThanAnybodyElse) {
       core::Command command;
       command.ask = core::SetRate{0.5};
       client.send(command, 0);
-      RunCommand pause;
-      pause.kind = RunCommandKind::kPause;
+      messages::RunCommand pause;
+      pause.kind = messages::RunCommandKind::kPause;
       steering.send(pause);
       commands += server.take().size();
       words += control.take_commands().size();

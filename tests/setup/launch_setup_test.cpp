@@ -71,7 +71,7 @@ TEST(NodeSetup, KnowsItsRegionItsGenerationAndItsMode) {
 
 TEST(WorldMap, NamesSceneRegionsAndWhatAllMustAgreeOn) {
   const config::Launch launch = launch_of("");
-  const dds::WorldMap map = world_map(launch);
+  const messages::WorldMap map = world_map(launch);
   EXPECT_EQ(map.regions.size(), 2U);
   EXPECT_EQ(map.map_version, launch.regions.version());
   EXPECT_EQ(map.agreement, launch.agreement());

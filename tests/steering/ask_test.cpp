@@ -34,8 +34,8 @@ TEST(Asks, EveryKindHasTheMeaningOfItsName) {
   const auto steering = [](const char* text) {
     return std::get<Steer>(read_ask(Json::parse(text), MeshFiles::kAllowed).what);
   };
-  EXPECT_EQ(steering(R"({"kind":"pause"})").kind, dds::RunCommandKind::kPause);
-  EXPECT_EQ(steering(R"({"kind":"stop"})").kind, dds::RunCommandKind::kStop);
+  EXPECT_EQ(steering(R"({"kind":"pause"})").kind, messages::RunCommandKind::kPause);
+  EXPECT_EQ(steering(R"({"kind":"stop"})").kind, messages::RunCommandKind::kStop);
   EXPECT_EQ(steering(R"({"kind":"step"})").count, 1);
   EXPECT_EQ(steering(R"({"kind":"step","count":7})").count, 7);
   EXPECT_EQ(std::get<Drain>(read_ask({{"kind", "drain"}, {"region", 2}}, MeshFiles::kAllowed).what).region,

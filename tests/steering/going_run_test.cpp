@@ -6,15 +6,15 @@
 namespace aurasim::steering {
 namespace {
 
-using dds::NodeState;
+using messages::NodeState;
 
-dds::SeenStatus node_in(NodeState state) {
-  dds::SeenStatus seen;
+messages::SeenStatus node_in(NodeState state) {
+  messages::SeenStatus seen;
   seen.status.state = state;
   return seen;
 }
 
-dds::SeenStatus lost(dds::SeenStatus seen) {
+messages::SeenStatus lost(messages::SeenStatus seen) {
   seen.lost = true;
   return seen;
 }

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dds/wire_error.h"
+#include "messages/wire_error.h"
 #include "system_fixture.h"
 
 namespace aurasim::system_test {
@@ -26,7 +26,7 @@ class Echo : public SystemTest {
     for (std::string line; std::getline(lines, line);) {
       samples.push_back(nlohmann::json::parse(line, nullptr, false));
       EXPECT_TRUE(samples.back().is_object()) << line;
-      EXPECT_EQ(samples.back().value("version", 0), dds::kProtocolVersion) << line;
+      EXPECT_EQ(samples.back().value("version", 0), messages::kProtocolVersion) << line;
     }
     return samples;
   }

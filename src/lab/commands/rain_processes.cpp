@@ -11,7 +11,7 @@
 
 #include "host/spawn.h"
 #include "lab/scale/rain_run.h"
-#include "node/report_rows.h"
+#include "records/report_rows.h"
 #include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
@@ -26,7 +26,7 @@ bool run_program(std::vector<std::string> words) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-lab::StepLoad load_of(const node::StepRow& row) {
+lab::StepLoad load_of(const records::StepRow& row) {
   lab::StepLoad load;
   load.physics_ms = row.physics_ms;
   load.protocol_ms = row.protocol_ms;
@@ -49,7 +49,7 @@ lab::StepLoad load_of(const node::StepRow& row) {
 std::vector<lab::Window> windows_of_report(const std::filesystem::path& report, std::size_t regions, double step_s) {
   lab::WindowSums sums(regions, std::llround(lab::kWindow_s / step_s), step_s);
   std::vector<std::uint64_t> violations(regions, 0);
-  node::read_csv<node::StepRow>(report / "steps.csv", [&](const node::StepRow& row) {
+  records::read_csv<records::StepRow>(report / "steps.csv", [&](const records::StepRow& row) {
     if (row.step == 0) return;
     const std::size_t region = core::value_of(row.region);
     lab::StepLoad load = load_of(row);

@@ -1,7 +1,7 @@
 #include "lab/scale/message_sizes.h"
 
 #include "core/aura.h"
-#include "dds/wire_bytes.h"
+#include "messages/wire_bytes.h"
 
 namespace aurasim::lab {
 namespace {
@@ -41,7 +41,7 @@ double each(SizeOf&& size_of) {
 }  // namespace
 
 nlohmann::json message_sizes() {
-  dds::WireBytes coder;
+  messages::WireBytes coder;
   const auto updates = [&](core::AuraKind kind) {
     return each([&](std::size_t n) { return coder.of(batch_of(n, kind)).size(); });
   };

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "node/csv.h"
-#include "node/durations.h"
+#include "records/csv.h"
+#include "records/durations.h"
 
 namespace aurasim::lab {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 struct WindowRow : Window {
   template <class Value>
   static constexpr auto mean_of(std::string_view name, Value StepLoad::*member, std::string_view format = "{}") {
-    return node::Column{name, [member](auto& row) -> auto& {return row.mean.*member;
+    return records::Column{name, [member](auto& row) -> auto& {return row.mean.*member;
   }
   , format
 };
@@ -27,12 +27,12 @@ struct WindowRow : Window {
 
 static constexpr auto columns() {
   constexpr std::string_view kTime = "{:.4f}";
-  return std::tuple{node::Column{"region", &WindowRow::region},
-                    node::Column{"begin_s", &WindowRow::begin_s, "{:g}"},
-                    node::Column{"slow_down", &WindowRow::slow_down, kTime},
-                    node::Column{"frame_max_ms", &WindowRow::frame_max_ms, kTime},
-                    node::Column{"frame_p95_ms", &WindowRow::frame_p95_ms, kTime},
-                    node::Column{"frame_mean_ms", &WindowRow::frame_mean_ms, kTime},
+  return std::tuple{records::Column{"region", &WindowRow::region},
+                    records::Column{"begin_s", &WindowRow::begin_s, "{:g}"},
+                    records::Column{"slow_down", &WindowRow::slow_down, kTime},
+                    records::Column{"frame_max_ms", &WindowRow::frame_max_ms, kTime},
+                    records::Column{"frame_p95_ms", &WindowRow::frame_p95_ms, kTime},
+                    records::Column{"frame_mean_ms", &WindowRow::frame_mean_ms, kTime},
                     mean_of("physics_ms", &StepLoad::physics_ms, kTime),
                     mean_of("protocol_ms", &StepLoad::protocol_ms, kTime),
                     mean_of("transport_ms", &StepLoad::transport_ms, kTime),
@@ -89,7 +89,7 @@ void describe_frames(std::vector<double> frames, Window& window) {
   double sum = 0;
   for (const double frame : frames) sum += frame;
   window.frame_mean_ms = sum / static_cast<double>(frames.size());
-  window.frame_p95_ms = node::percentile(frames, 0.95);
+  window.frame_p95_ms = records::percentile(frames, 0.95);
 }
 
 }  // namespace
@@ -154,8 +154,8 @@ std::vector<Window> WindowSums::windows() const {
 void write_windows(const std::filesystem::path& file, const std::vector<Window>& windows) {
   const std::filesystem::path part = file.string() + ".part";
   std::ofstream out(part, std::ios::trunc);
-  out << node::csv_header<WindowRow>();
-  for (const Window& window : windows) out << node::csv_line(WindowRow{window});
+  out << records::csv_header<WindowRow>();
+  for (const Window& window : windows) out << records::csv_line(WindowRow{window});
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write {}", part.string()));
   std::filesystem::rename(part, file);  // renamed when complete, so an existing file is whole
@@ -163,7 +163,7 @@ void write_windows(const std::filesystem::path& file, const std::vector<Window>&
 
 std::vector<Window> read_windows(const std::filesystem::path& file) {
   std::vector<Window> windows;
-  const std::size_t broken = node::read_csv<WindowRow>(file, [&](const WindowRow& row) { windows.push_back(row); });
+  const std::size_t broken = records::read_csv<WindowRow>(file, [&](const WindowRow& row) { windows.push_back(row); });
   if (broken > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), broken));
   return windows;
 }

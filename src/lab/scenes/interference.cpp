@@ -11,7 +11,7 @@
 #include "lab/scenes/json.h"
 #include "lab/virtual_cluster.h"
 #include "node/node.h"
-#include "node/setpoint_record.h"
+#include "records/setpoint_record.h"
 
 namespace aurasim::lab {
 namespace {
@@ -106,7 +106,7 @@ class RequestReader {
 };
 
 core::BodySetpoint body_setpoint_in(const Json& json) {
-  const auto quantity = node::quantity_named(json.at("quantity").get<std::string>());
+  const auto quantity = records::quantity_named(json.at("quantity").get<std::string>());
   if (!quantity) throw std::runtime_error(fmt::format("no quantity {}", json.at("quantity").dump()));
   core::BodySetpoint body{body_in(json.at("body")), *quantity, {}};
   if (json.contains("value")) body.value = vec3_in(json["value"]);

@@ -15,8 +15,8 @@
 #include "lab/on_threads.h"
 #include "lab/scenes/random_world.h"
 #include "lab/scenes/shrink.h"
-#include "node/csv.h"
 #include "physics/region_world.h"
+#include "records/csv.h"
 
 namespace aurasim::lab {
 namespace {
@@ -39,7 +39,7 @@ struct SeedRow {
   bool has_failed() const { return !equal || unflagged > unflagged_on_one; }
 
   static constexpr auto columns() {
-    using node::Column;
+    using records::Column;
     return std::tuple{Column{"seed", &SeedRow::seed},
                       Column{"equal", &SeedRow::equal},
                       Column{"first_difference", &SeedRow::first_difference},
@@ -115,7 +115,7 @@ void agree_on_rules(const ScenesPlan& plan, const std::filesystem::path& directo
 
 std::map<std::uint64_t, SeedRow> read_rows(const std::filesystem::path& file) {
   std::map<std::uint64_t, SeedRow> rows;
-  node::read_csv<SeedRow>(file, [&](const SeedRow& row) { rows[row.seed] = row; });
+  records::read_csv<SeedRow>(file, [&](const SeedRow& row) { rows[row.seed] = row; });
   return rows;
 }
 
@@ -125,8 +125,8 @@ class SeedQueue {
   SeedQueue(const ScenesPlan& plan, const std::filesystem::path& file, const std::function<void(const Progress&)>& show)
       : show_(show) {
     const std::map<std::uint64_t, SeedRow> done = read_rows(file);
-    std::string text = node::csv_header<SeedRow>();
-    for (const auto& [seed, row] : done) text += node::csv_line(row);
+    std::string text = records::csv_header<SeedRow>();
+    for (const auto& [seed, row] : done) text += records::csv_line(row);
     std::ofstream(file) << text;  // without a row that a crash has cut off
     out_.open(file, std::ios::app);
     for (std::uint64_t seed = plan.first; seed <= plan.last; ++seed) {
@@ -143,7 +143,7 @@ class SeedQueue {
 
   void give(const SeedRow& row) {
     const std::lock_guard lock(mutex_);
-    out_ << node::csv_line(row);
+    out_ << records::csv_line(row);
     if (!out_.flush()) throw std::runtime_error("cannot write seeds.csv");
     const auto now = static_cast<double>(++given_), left = static_cast<double>(missing_.size()) - now;
     const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
