@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Includes go one way. A folder knows those of the lines above its own, and within a line nobody but itself:
-#   core, security
-#   physics, transport, config, rtps (core only)
-#   dds, node, host, command_line
+#   core
+#   physics, transport, config, rtps, messages, topics, host (core only)
+#   security (knows topics), node, command_line
+#   dds, records (knows node)
 #   cut
 #   setup, steering, process, launch (each knows those before it)
 #   overseer, agent (knows overseer; neither knows process and launch)
@@ -23,17 +24,20 @@ mapfile -t files < <(find . -mindepth 1 \( -name '*.h' -o -name '*.cpp' \) -prin
 awk '
   BEGIN {
     allow("core", "core")
-    allow("security", "security")
+    allow("topics", "core topics")
+    allow("security", "core topics security")
+    allow("messages", "core messages")
     allow("physics", "core physics")
     allow("transport", "core transport")
     allow("config", "core config")
     allow("rtps", "core rtps")
-    allow("dds", "core security transport config rtps dds")
+    allow("dds", "core topics security transport config rtps messages dds")
     allow("node", "core physics transport node")
+    allow("records", "core physics transport node records")
     allow("host", "core host")
     allow("command_line", "config host command_line")
-    allow("cut", "core security physics config dds host cut")
-    below = "core security physics transport config rtps dds node host command_line cut setup"
+    allow("cut", "core security physics config messages host cut")
+    below = "core topics security physics transport config rtps messages dds node records host command_line cut setup"
     allow("setup", below)
     allow("steering", below " steering")
     allow("process", below " steering process")
@@ -48,6 +52,7 @@ awk '
     allow("lab", below " lab")
 
     wrap("physics", "BulletCollision BulletDynamics LinearMath bullet")
+    wrap("messages", "fastdds fastrtps fastcdr")
     wrap("dds", "fastdds fastrtps fastcdr")
     wrap("config", "yaml-cpp assimp")
     wrap("command_line", "CLI")
@@ -80,7 +85,7 @@ awk '
   # "folder/file.h", from the root of src.
   function check_own(name,    parts) {
     if (name ~ /^(aurasim|ros2)[A-Za-z]*\.h$/) {  # generated from idl/
-      if (folder != "dds") refuse("only dds knows the wire types")
+      if (folder != "messages" && folder != "dds") refuse("only messages and dds know the wire types")
       return
     }
     split(name, parts, "/")

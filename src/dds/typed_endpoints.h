@@ -10,12 +10,15 @@
 
 #include "aurasim.h"
 #include "dds/endpoints.h"
+#include "messages/checkpoint_codec.h"
 #include "messages/cluster_graph_codec.h"
 #include "messages/codec.h"
 #include "messages/command_codec.h"
+#include "messages/control_codec.h"
 #include "messages/interest_codec.h"
 #include "messages/observation_codec.h"
 #include "messages/replica_codec.h"
+#include "messages/setpoint_codec.h"
 
 namespace aurasim::dds {
 
