@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Writes what the program says of its keys and asks into docs/: the marked blocks of keys.md and commands.md, and the
-# JSON schemas. To be run after a change of keys or asks; a test fails until it was.
+# Writes what the program says of its keys, asks and topics into docs/: the marked blocks of keys.md, commands.md and
+# protocol.md, and the JSON schemas. To be run after a change of keys, asks or topics; a test fails until it was.
 #   scripts/write_keys.sh [PROGRAM=build/release/aurasim]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,3 +25,4 @@ write_block() {
 }
 "$program" schema --markdown | write_block docs/keys.md keys
 "$program" schema --asks | write_block docs/commands.md asks
+"$program" schema --json topics | scripts/topics_table.py | write_block docs/protocol.md topics

@@ -15,6 +15,7 @@
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
 #include "setup/silence.h"
+#include "topics/topics.h"
 
 namespace aurasim::cli {
 namespace {
@@ -30,7 +31,15 @@ struct EchoArguments {
   std::uint64_t count = 0;
   double duration_s = 0;
   bool json = false;
+
+  topics::TopicId id() const { return topics::topic_named(topic).value(); }
 };
+
+std::vector<std::string> topic_names() {
+  std::vector<std::string> names;
+  for (const topics::Topic& topic : topics::all()) names.emplace_back(topic.name);
+  return names;
+}
 
 void print_sample(const nlohmann::ordered_json& sample, bool json) {
   if (json) {
@@ -44,7 +53,7 @@ void print_sample(const nlohmann::ordered_json& sample, bool json) {
 
 /// Checks the partition, because DDS accepts a pattern that matches nothing and then delivers nothing.
 void check_partition(const EchoArguments& arguments, const config::Launch& launch) {
-  const std::vector<std::string> partitions = dds::partitions_of_topic(arguments.topic, launch.regions.size());
+  const std::vector<std::string> partitions = topics::partitions_in_run(arguments.id(), launch.regions.size());
   const auto fits = [&](const std::string& name) {
     return ::fnmatch(arguments.partition.c_str(), name.c_str(), 0) == 0;
   };
@@ -69,13 +78,13 @@ int echo(const EchoArguments& arguments) {
   const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   if (!arguments.partition.empty()) check_partition(arguments, launch);
   const std::string partition =
-      arguments.partition.empty() ? dds::every_partition_of_topic(arguments.topic) : arguments.partition;
+      arguments.partition.empty() ? topics::every_partition_of(arguments.id()) : arguments.partition;
   using security::Role;
   const auto member = setup::member_for(launch, arguments.keys.as,
                                         {Role::kRecorder, Role::kViewer, Role::kOperator, Role::kSpare, Role::kRegion});
   check_permission(arguments.topic, partition, member);
   dds::Participant participant(setup::with_keys(setup::dds_settings(launch), launch, member));
-  dds::TopicEcho topic(participant, arguments.topic, partition);
+  dds::TopicEcho topic(participant, arguments.id(), partition);
   dds::ControlBus control(participant, {.only_watches = true});
   host::catch_stop_signals();
   const auto begin = Clock::now();
@@ -103,7 +112,7 @@ int echo(const EchoArguments& arguments) {
 void add_echo(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("echo", "print what is said on a topic of a run");
   const auto arguments = std::make_shared<EchoArguments>();
-  command->add_option("TOPIC", arguments->topic, "its name")->required()->check(CLI::IsMember(dds::topic_names()));
+  command->add_option("TOPIC", arguments->topic, "its name")->required()->check(CLI::IsMember(topic_names()));
   arguments->files.add_to(*command);
   arguments->keys.add_to(*command);
   command->add_option("--partition", arguments->partition, "such as region/3, region/*, world; default: all");

@@ -7,6 +7,7 @@
 #include "config/key_page.h"
 #include "config/key_schema.h"
 #include "steering/ask_page.h"
+#include "topics/topics.h"
 
 namespace aurasim::cli {
 namespace {
@@ -24,6 +25,8 @@ int print_keys(const SchemaArguments& arguments) {
     text = steering::asks_as_markdown();
   } else if (arguments.json == "asks") {
     text = steering::ask_schema();
+  } else if (arguments.json == "topics") {
+    text = topics::as_json();
   } else if (arguments.markdown) {
     text = config::keys_as_markdown();
   } else if (!arguments.json.empty()) {
@@ -47,8 +50,10 @@ void add_schema(CLI::App& program, command_line::Action& action) {
   auto* markdown = command->add_flag("--markdown", arguments->markdown, "as docs/keys.md has them");
   auto* asks = command->add_flag("--asks", arguments->asks, "what a run can be asked, as docs/commands.md has it")
                    ->excludes(markdown);
-  command->add_option("--json", arguments->json, "as a JSON schema: of launch files, of scene files, or of asks")
-      ->check(CLI::IsMember({"launch", "scene", "asks"}))
+  command
+      ->add_option("--json", arguments->json,
+                   "as a JSON schema: of launch files, of scene files, or of asks; or the table of topics")
+      ->check(CLI::IsMember({"launch", "scene", "asks", "topics"}))
       ->excludes(markdown)
       ->excludes(asks);
   command->footer("Example:\n  aurasim schema injector");

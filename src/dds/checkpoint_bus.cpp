@@ -30,13 +30,16 @@ struct CheckpointBus::Impl {
       : participant(participant_in),
         region(region_in),
         wakeup(participant.domain().wakeup()),
-        to_all(participant.domain(), in_world(TopicId::kCheckpoint), wakeup) {
+        to_all(participant.domain(), EndpointSpec{TopicId::kCheckpoint, {topics::kWorldPartition}, {}, {}}, wakeup) {
     read();
   }
 
   void read() {
     reader.emplace(participant.domain(),
-                   EndpointSpec{TopicId::kCheckpoint, {in_life(partition_to(region), life), kWorldPartition}, region},
+                   EndpointSpec{TopicId::kCheckpoint,
+                                {topics::partition_of(TopicId::kCheckpoint, {.destination = region, .life = life}),
+                                 topics::kWorldPartition},
+                                region},
                    wakeup);
   }
 
@@ -64,9 +67,10 @@ void CheckpointBus::use_keepers(const std::vector<core::RegionId>& keepers, core
   if (std::exchange(impl_->life, life) != life) impl_->read();
   impl_->to_keepers.clear();
   for (const core::RegionId keeper : keepers) {
-    const std::string partition = in_life(partition_of(impl_->region, keeper), life);
-    impl_->to_keepers.emplace_back(impl_->participant.domain(),
-                                   EndpointSpec{TopicId::kCheckpoint, {partition}, impl_->region}, impl_->wakeup);
+    impl_->to_keepers.emplace_back(
+        impl_->participant.domain(),
+        on(TopicId::kCheckpoint, {.source = impl_->region, .destination = keeper, .life = life}, impl_->region),
+        impl_->wakeup);
   }
 }
 

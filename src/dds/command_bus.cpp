@@ -54,8 +54,8 @@ struct CommandServerEndpoint::Impl {
         region(region_in),
         map_version(map_version_in),
         wakeup(participant.domain().wakeup()),
-        commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
-        replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup) {}
+        commands(participant.domain(), on(TopicId::kCommand), wakeup),
+        replies(participant.domain(), on(TopicId::kCommandReply), wakeup) {}
 
   Participant& participant;
   core::RegionId region;
@@ -121,9 +121,9 @@ struct CommandClientEndpoint::Impl {
   explicit Impl(Participant& participant_in)
       : participant(participant_in),
         wakeup(participant.domain().wakeup()),
-        commands(participant.domain(), in_world(TopicId::kCommand), wakeup),
-        replies(participant.domain(), in_world(TopicId::kCommandReply), wakeup),
-        shapes(participant.domain(), in_world(TopicId::kShape), wakeup) {}
+        commands(participant.domain(), on(TopicId::kCommand), wakeup),
+        replies(participant.domain(), on(TopicId::kCommandReply), wakeup),
+        shapes(participant.domain(), on(TopicId::kShape), wakeup) {}
 
   Participant& participant;
   std::uint64_t sender = draw_id();

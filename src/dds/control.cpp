@@ -44,8 +44,7 @@ bool is_old_news(const messages::RunCommand& command, const Origin& origin) {
 
 std::optional<Writer> status_writer_of(Domain& domain, std::optional<RegionId> region, Wakeup& wakeup) {
   if (!region) return std::nullopt;
-  return std::optional<Writer>(std::in_place, domain,
-                               EndpointSpec{TopicId::kNodeStatus, {partition_of(*region)}, region}, wakeup);
+  return std::optional<Writer>(std::in_place, domain, on(TopicId::kNodeStatus, {.source = region}, region), wakeup);
 }
 
 }  // namespace
@@ -92,19 +91,19 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
       settings(settings_in),
       wakeup(participant.domain().wakeup()),
       status_writer(status_writer_of(participant.domain(), settings.region, wakeup)),
-      status_reader(participant.domain(), {TopicId::kNodeStatus, {kEveryRegionPartition}, {}}, wakeup),
-      map_reader(participant.domain(), in_world(TopicId::kRegionMap), wakeup),
+      status_reader(participant.domain(), on(TopicId::kNodeStatus), wakeup),
+      map_reader(participant.domain(), on(TopicId::kRegionMap), wakeup),
       roster({settings.region_count, settings.agreement, settings.run, settings.region,
               status_writer ? status_writer->guid() : Guid(), participant.stays_on_this_host(),
               participant.domain().believes_silence()},
              participant.domain().speakers()) {
   if (!settings.only_watches) {
-    command_writer.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+    command_writer.emplace(participant.domain(), on(TopicId::kRunControl), wakeup);
     if (!settings.only_sends) {
-      command_reader.emplace(participant.domain(), in_world(TopicId::kRunControl), wakeup);
+      command_reader.emplace(participant.domain(), on(TopicId::kRunControl), wakeup);
     }
   }
-  if (settings.region) map_writer.emplace(participant.domain(), in_world(TopicId::kRegionMap), wakeup);
+  if (settings.region) map_writer.emplace(participant.domain(), on(TopicId::kRegionMap), wakeup);
 }
 
 void ControlBus::Impl::take_statuses() {
@@ -214,7 +213,7 @@ void ControlBus::hear_of_death(const messages::RunCommand& lost) {
 bool ControlBus::publish_map(const messages::WorldMap& map) {
   // In a run with keys only nodes may publish maps, so other processes create the writer only when needed.
   if (!impl_->map_writer) {
-    impl_->map_writer.emplace(impl_->participant.domain(), in_world(TopicId::kRegionMap), impl_->wakeup);
+    impl_->map_writer.emplace(impl_->participant.domain(), on(TopicId::kRegionMap), impl_->wakeup);
   }
   impl_->participant.progress();
   messages::encode(map, impl_->map);

@@ -26,17 +26,17 @@ constexpr std::size_t kEndpointsOfALink = 6;
 struct Link {
   Link(Domain& domain, RegionId self, RegionId neighbour, core::Generation life, Wakeup& wakeup)
       : region(neighbour),
-        aura_reader(domain, {TopicId::kAura, {in_life(partition_of(neighbour), life)}, self}, wakeup),
+        aura_reader(domain, on(TopicId::kAura, {.source = neighbour, .life = life}, self), wakeup),
         migration_reader(domain, from(neighbour, self, life, TopicId::kMigration), wakeup),
         migration_writer(domain, to(neighbour, self, life, TopicId::kMigration), wakeup),
         ack_reader(domain, from(neighbour, self, life, TopicId::kMigrationAck), wakeup),
         ack_writer(domain, to(neighbour, self, life, TopicId::kMigrationAck), wakeup) {}
 
   static EndpointSpec from(RegionId neighbour, RegionId self, core::Generation life, TopicId topic) {
-    return {topic, {in_life(partition_of(neighbour, self), life)}, self};
+    return on(topic, {.source = neighbour, .destination = self, .life = life}, self);
   }
   static EndpointSpec to(RegionId neighbour, RegionId self, core::Generation life, TopicId topic) {
-    return {topic, {in_life(partition_of(self, neighbour), life)}, self};
+    return on(topic, {.source = self, .destination = neighbour, .life = life}, self);
   }
 
   RegionId region;
@@ -186,7 +186,7 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
       participant(participant_in),
       wakeup(participant.domain().wakeup()),
       aura_writer(participant.domain(),
-                  {TopicId::kAura, {in_life(partition_of(settings.region), settings.life)}, settings.region}, wakeup) {
+                  on(TopicId::kAura, {.source = settings.region, .life = settings.life}, settings.region), wakeup) {
   for (const RegionId neighbour : settings.neighbours) {
     links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, settings.life, wakeup));
   }

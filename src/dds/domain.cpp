@@ -25,31 +25,6 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-struct TopicNames {
-  const char* topic;
-  const char* type;
-};
-
-constexpr std::array<TopicNames, kTopicCount> kTopics = {{
-    {"aura", "aurasim::wire::AuraBatch"},
-    {"migration", "aurasim::wire::Migration"},
-    {"migration_ack", "aurasim::wire::MigrationAck"},
-    {"node_status", "aurasim::wire::NodeStatus"},
-    {"region_map", "aurasim::wire::RegionMap"},
-    {"run_control", "aurasim::wire::RunControl"},
-    {"replica", "aurasim::wire::Replica"},
-    {"replica_key", "aurasim::wire::Replica"},
-    {"command", "aurasim::wire::Command"},
-    {"command_reply", "aurasim::wire::CommandReply"},
-    {"shape", "aurasim::wire::MeshShape"},
-    {"orders", "aurasim::wire::AuraBatch"},
-    {"cluster_graph", "aurasim::wire::ClusterGraph"},
-    {"checkpoint", "aurasim::wire::Checkpoint"},
-    {"control", "aurasim::wire::Setpoints"},
-    {"interest", "aurasim::wire::Interest"},
-    {"observation", "aurasim::wire::Observation"},
-}};
-
 /// Lease of a process whose silence is not believed. It is long, so that DDS does not drop a slow process, which would
 /// have to be discovered anew and would lose what was sent meanwhile. Deaths are reported by other means long before.
 constexpr std::chrono::seconds kPatientLease{30};
@@ -69,30 +44,6 @@ void switch_intraprocess_delivery_off() {
 }
 
 }  // namespace
-
-const char* name_of(TopicId topic) { return kTopics.at(static_cast<std::size_t>(topic)).topic; }
-
-std::string partition_of(core::RegionId source) { return fmt::format("region/{}", core::value_of(source)); }
-
-std::string partition_of(core::RegionId source, core::RegionId destination) {
-  return fmt::format("region/{}/to/{}", core::value_of(source), core::value_of(destination));
-}
-
-std::string partition_of_observer(core::RegionId source, std::uint64_t client) {
-  return fmt::format("{}/observer/{:016x}", partition_of(source), client);
-}
-
-std::string partition_of_observer(std::uint64_t client) { return fmt::format("region/*/observer/{:016x}", client); }
-
-std::string in_life(std::string partition, core::Generation life) {
-  return life == 0 ? std::move(partition) : fmt::format("{}/since/{}", partition, life);
-}
-
-std::string in_any_life(const std::string& partition) { return partition + "/since/*"; }
-
-std::string partition_to(core::RegionId destination) {
-  return fmt::format("region/*/to/{}", core::value_of(destination));
-}
 
 Domain::Domain(const Settings& settings)
     : profiles_(settings.profiles), guard_(std::make_shared<rtps::DatagramGuard>()), speakers_(guard_) {
@@ -164,11 +115,9 @@ eprosima::fastdds::dds::Topic& Domain::topic(TopicId id) {
   const std::lock_guard lock(topics_mutex_);
   const auto index = static_cast<std::size_t>(id);
   if (topics_[index] == nullptr) {
-    topics_[index] = participant_->create_topic(kTopics[index].topic, kTopics[index].type,
-                                                eprosima::fastdds::dds::TOPIC_QOS_DEFAULT);
-    if (topics_[index] == nullptr) {
-      throw DdsError(fmt::format("cannot create the topic {}", kTopics[index].topic));
-    }
+    const topics::Topic& row = topics::at(id);
+    topics_[index] = participant_->create_topic(row.name, row.type, eprosima::fastdds::dds::TOPIC_QOS_DEFAULT);
+    if (topics_[index] == nullptr) throw DdsError(fmt::format("cannot create the topic {}", row.name));
   }
   return *topics_[index];
 }

@@ -22,6 +22,7 @@
 #include "dds/speakers.h"
 #include "dds/watch.h"
 #include "messages/parts.h"
+#include "topics/topics.h"
 
 namespace aurasim::rtps {
 class DatagramGuard;
@@ -29,46 +30,7 @@ class DatagramGuard;
 
 namespace aurasim::dds {
 
-/// The topics of docs/protocol.md.
-enum class TopicId : std::uint8_t {
-  kAura,
-  kMigration,
-  kMigrationAck,
-  kNodeStatus,
-  kRegionMap,
-  kRunControl,
-  kReplica,
-  kReplicaKey,
-  kCommand,
-  kCommandReply,
-  kShape,
-  kOrders,
-  kClusterGraph,
-  kCheckpoint,
-  kControl,
-  kInterest,
-  kObservation
-};
-inline constexpr std::size_t kTopicCount = 17;
-/// Name of a topic ("aura", "migration", ...), which is also the first part of its profile names.
-const char* name_of(TopicId topic);
-
-// Partitions of docs/protocol.md.
-inline const std::string kWorldPartition = "world";
-inline const std::string kEveryRegionPartition = "region/*";
-std::string partition_of(core::RegionId source);
-std::string partition_of(core::RegionId source, core::RegionId destination);
-/// Partition for the messages of region `source` to one observer.
-std::string partition_of_observer(core::RegionId source, std::uint64_t client);
-/// Pattern for the partitions of all regions' messages to one observer.
-std::string partition_of_observer(std::uint64_t client);
-/// Adds the generation to a partition for messages between nodes, once a node has died (dds_transport.h). `life` 0: no
-/// node has died.
-std::string in_life(std::string partition, core::Generation life);
-/// Pattern for `partition` in all generations.
-std::string in_any_life(const std::string& partition);
-/// Pattern for the partitions of messages from any region to `destination`.
-std::string partition_to(core::RegionId destination);
+using topics::TopicId;
 
 /// Thread-safe.
 class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
@@ -131,7 +93,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::optional<SecurityLog::Hearing> refusals_;  ///< receives refusals by keys; only in a run with keys
   std::shared_ptr<DelayLine> delay_line_;
   std::mutex topics_mutex_;
-  std::array<eprosima::fastdds::dds::Topic*, kTopicCount> topics_{};
+  std::array<eprosima::fastdds::dds::Topic*, topics::kTopicCount> topics_{};
   struct Leave {
     void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
   };

@@ -31,7 +31,10 @@ struct EndpointSpec {
   bool best_effort_if_volatile = false;
 };
 
-inline EndpointSpec in_world(TopicId topic) { return {topic, {kWorldPartition}, {}, {}}; }
+/// Spec of an endpoint of `region`, or of nobody's, for the messages of a topic that go this route.
+inline EndpointSpec on(TopicId topic, const topics::Route& route = {}, std::optional<core::RegionId> region = {}) {
+  return {topic, {topics::partition_of(topic, route)}, region, {}};
+}
 
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 

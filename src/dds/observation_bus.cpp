@@ -39,7 +39,7 @@ struct ObservationServer::Impl {
   struct Observer {
     Observer(Impl& of, std::uint64_t client)
         : writer(of.participant.domain(),
-                 {TopicId::kObservation, {partition_of_observer(of.region, client)}, of.region, {}}, of.wakeup) {}
+                 on(TopicId::kObservation, {.source = of.region, .observer = client}, of.region), of.wakeup) {}
 
     core::Interest interest;
     Guid origin;
@@ -52,7 +52,7 @@ struct ObservationServer::Impl {
       : participant(participant_in),
         region(region_in),
         wakeup(participant.domain().wakeup()),
-        interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
+        interests(participant.domain(), on(TopicId::kInterest), wakeup) {}
 
   void hear(core::Interest&& interest, const Origin& origin);
   void forget_the_gone();
@@ -155,8 +155,8 @@ struct ObserverEndpoint::Impl {
       : participant(participant_in),
         settings(settings_in),
         wakeup(participant.domain().wakeup()),
-        observations(participant.domain(), {TopicId::kObservation, {partition_of_observer(client)}, {}, {}}, wakeup),
-        interests(participant.domain(), in_world(TopicId::kInterest), wakeup) {}
+        observations(participant.domain(), on(TopicId::kObservation, {.observer = client}), wakeup),
+        interests(participant.domain(), on(TopicId::kInterest), wakeup) {}
 
   void say_what_is_wanted() {
     if (interests.send_newest(*wanted, std::uint64_t{0}) == WriteResult::kFailed) {

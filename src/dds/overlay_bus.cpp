@@ -12,7 +12,7 @@ class Glance {
  public:
   Glance(Participant& participant, const ObserverSettings& settings, TopicId topic, const char* profile)
       : expected_(expected_of(settings)),
-        reader_(participant.domain(), {topic, {kEveryRegionPartition}, {}, profile}, wakeup_) {}
+        reader_(participant.domain(), {topic, {topics::partition_of(topic)}, {}, profile}, wakeup_) {}
 
   auto take() {
     std::vector<typename TypedReader<Wire>::Message> messages;
@@ -30,7 +30,7 @@ class Glance {
 
 struct ClusterGraphWriter::Impl {
   Impl(Participant& participant, core::RegionId region)
-      : writer(participant.domain(), {TopicId::kClusterGraph, {partition_of(region)}, region, {}}, wakeup) {}
+      : writer(participant.domain(), on(TopicId::kClusterGraph, {.source = region}, region), wakeup) {}
 
   Wakeup wakeup;
   TypedWriter<wire::ClusterGraph> writer;

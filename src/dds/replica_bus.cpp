@@ -13,8 +13,8 @@
 namespace aurasim::dds {
 struct ReplicaWriter::Impl {
   Impl(Participant& participant, core::RegionId region)
-      : deltas(participant.domain(), {TopicId::kReplica, {partition_of(region)}, region, {}}, wakeup),
-        keys(participant.domain(), {TopicId::kReplicaKey, {partition_of(region)}, region, {}}, wakeup) {}
+      : deltas(participant.domain(), on(TopicId::kReplica, {.source = region}, region), wakeup),
+        keys(participant.domain(), on(TopicId::kReplicaKey, {.source = region}, region), wakeup) {}
 
   Wakeup wakeup;
   TypedWriter<wire::Replica> deltas;
@@ -44,8 +44,8 @@ struct ReplicaReader::Impl {
   }
 
   void listen() {
-    deltas.emplace(participant.domain(), EndpointSpec{TopicId::kReplica, {kEveryRegionPartition}, {}, {}}, wakeup);
-    keys.emplace(participant.domain(), EndpointSpec{TopicId::kReplicaKey, {kEveryRegionPartition}, {}, {}}, wakeup);
+    deltas.emplace(participant.domain(), on(TopicId::kReplica), wakeup);
+    keys.emplace(participant.domain(), on(TopicId::kReplicaKey), wakeup);
   }
   void take_from(TypedReader<wire::Replica>& reader, std::vector<core::Replica>& replicas);
   void listen_anew_to_who_became_a_node();

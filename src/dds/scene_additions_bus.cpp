@@ -10,7 +10,7 @@
 namespace aurasim::dds {
 struct SceneAdditionsWriter::Impl {
   Impl(Participant& participant, core::RegionId region_in)
-      : region(region_in), writer(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
+      : region(region_in), writer(participant.domain(), on(TopicId::kOrders), wakeup) {}
 
   core::RegionId region;
   Wakeup wakeup;
@@ -33,7 +33,7 @@ void SceneAdditionsWriter::send(const SceneAdditions& additions) {
 
 struct SceneAdditionsReader::Impl {
   explicit Impl(Participant& participant_in)
-      : participant(participant_in), reader(participant.domain(), in_world(TopicId::kOrders), wakeup) {}
+      : participant(participant_in), reader(participant.domain(), on(TopicId::kOrders), wakeup) {}
 
   Participant& participant;
   Wakeup wakeup;
@@ -64,7 +64,7 @@ std::optional<SceneAdditions> SceneAdditionsReader::take() {
 }
 
 struct MeshWriter::Impl {
-  explicit Impl(Participant& participant) : writer(participant.domain(), in_world(TopicId::kShape), wakeup) {}
+  explicit Impl(Participant& participant) : writer(participant.domain(), on(TopicId::kShape), wakeup) {}
 
   Wakeup wakeup;
   TypedWriter<wire::MeshShape> writer;
@@ -80,7 +80,7 @@ bool MeshWriter::tell_again(std::uint64_t hash, const core::TriangleMesh& mesh) 
 
 struct MeshReader::Impl {
   Impl(Participant& participant_in, const MeshCacheLimits& limits)
-      : participant(participant_in), reader(participant.domain(), in_world(TopicId::kShape), wakeup), meshes(limits) {}
+      : participant(participant_in), reader(participant.domain(), on(TopicId::kShape), wakeup), meshes(limits) {}
 
   /// True when the mesh has the hash that it is named by. Meshes that a node publishes again are not checked: it
   /// checked them on receipt, and worlds saved by others may use other names.

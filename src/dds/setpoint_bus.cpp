@@ -43,7 +43,7 @@ class LastWords {
 
 struct SetpointReader::Impl {
   explicit Impl(Participant& participant)
-      : reader(participant.domain(), in_world(TopicId::kControl), participant.domain().wakeup()) {}
+      : reader(participant.domain(), on(TopicId::kControl), participant.domain().wakeup()) {}
 
   TypedReader<wire::Setpoints> reader;
   LastWords last_words;
@@ -81,7 +81,7 @@ std::uint64_t SetpointReader::refused() const { return impl_->too_many + impl_->
 struct SetpointWriter::Impl {
   explicit Impl(Participant& participant_in)
       : participant(participant_in),
-        writer(participant.domain(), in_world(TopicId::kControl), participant.domain().wakeup()) {}
+        writer(participant.domain(), on(TopicId::kControl), participant.domain().wakeup()) {}
 
   void write(const core::Setpoints& setpoints) {
     if (writer.send(setpoints, std::uint64_t{0}) == WriteResult::kFailed) {

@@ -25,13 +25,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::optional<TopicId> topic_named(const std::string& name) {
-  for (std::size_t i = 0; i < kTopicCount; ++i) {
-    if (name_of(static_cast<TopicId>(i)) == name) return static_cast<TopicId>(i);
-  }
-  return std::nullopt;
-}
-
 types::DynamicType_ptr dynamic_type(const std::string& name) {
   auto* factory = types::TypeObjectFactory::get_instance();
   const auto* identifier = factory->get_type_identifier(name, true);
@@ -85,61 +78,12 @@ Json to_json(types::DynamicData& data, types::MemberId id, types::DynamicType& t
 /// lost.
 EndpointSpec watching(TopicId topic, const std::string& partition) {
   EndpointSpec spec{topic, {partition}, {}, {}};
-  const bool has_lives = topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
-  if (has_lives) spec.partitions.push_back(in_any_life(partition));
+  if (topics::at(topic).by_life) spec.partitions.push_back(topics::in_later_lives(partition));
   spec.best_effort_if_volatile = true;
   return spec;
 }
 
-TopicId checked(const std::string& name) {
-  const std::optional<TopicId> topic = topic_named(name);
-  if (!topic)
-    throw std::invalid_argument(fmt::format("no topic '{}'; there are {}", name, fmt::join(topic_names(), ", ")));
-  return *topic;
-}
-
 }  // namespace
-
-std::vector<std::string> topic_names() {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < kTopicCount; ++i) names.emplace_back(name_of(static_cast<TopicId>(i)));
-  return names;
-}
-
-std::vector<std::string> partitions_of_topic(const std::string& name, std::size_t regions) {
-  std::vector<std::string> partitions;
-  const auto each_region = [&](const auto& add) {
-    for (std::uint32_t r = 0; r < regions; ++r) add(core::RegionId{r});
-  };
-  switch (checked(name)) {
-    case TopicId::kAura:
-    case TopicId::kNodeStatus:
-    case TopicId::kReplica:
-    case TopicId::kReplicaKey:
-    case TopicId::kClusterGraph:
-      each_region([&](core::RegionId source) { partitions.push_back(partition_of(source)); });
-      break;
-    case TopicId::kObservation:  // observations of all observers
-      each_region([&](core::RegionId source) { partitions.push_back(partition_of(source) + "/observer/*"); });
-      break;
-    case TopicId::kMigration:
-    case TopicId::kMigrationAck:
-    case TopicId::kCheckpoint:
-      each_region([&](core::RegionId source) {
-        each_region([&](core::RegionId destination) { partitions.push_back(partition_of(source, destination)); });
-      });
-      break;
-    default:
-      partitions.push_back(kWorldPartition);
-  }
-  return partitions;
-}
-
-std::string every_partition_of_topic(const std::string& name) {
-  const std::vector<std::string> partitions = partitions_of_topic(name, 1);
-  if (checked(name) == TopicId::kCheckpoint) return "*";  // includes the parts that are sent to all
-  return partitions.front() == kWorldPartition ? kWorldPartition : kEveryRegionPartition;
-}
 
 struct TopicEcho::Impl {
   Impl(Participant& participant_in, TopicId topic, const std::string& partition)
@@ -180,8 +124,8 @@ struct TopicEcho::Impl {
   std::vector<types::DynamicTypeMember*> members;  ///< in the order of the IDL
 };
 
-TopicEcho::TopicEcho(Participant& participant, const std::string& topic, const std::string& partition)
-    : impl_(std::make_unique<Impl>(participant, checked(topic), partition)) {}
+TopicEcho::TopicEcho(Participant& participant, TopicId topic, const std::string& partition)
+    : impl_(std::make_unique<Impl>(participant, topic, partition)) {}
 
 TopicEcho::~TopicEcho() = default;
 

@@ -11,24 +11,16 @@
 #include <nlohmann/json.hpp>
 
 #include "dds/participant.h"
+#include "topics/topics.h"
 
 namespace aurasim::dds {
-
-/// Names of all topics, in the order of `TopicId`.
-std::vector<std::string> topic_names();
-
-/// Partitions in which a topic is published in a run of `regions` regions; never empty. Throws std::invalid_argument
-/// when there is no such topic.
-std::vector<std::string> partitions_of_topic(const std::string& topic, std::size_t regions);
-/// One pattern that matches all partitions of a topic. Throws std::invalid_argument when there is no such topic.
-std::string every_partition_of_topic(const std::string& topic);
 
 /// Used by one thread. The participant must outlive it.
 class TopicEcho {
  public:
-  /// Reads `topic` in partitions that match `partition` ("region/*", "world", "*"). Throws std::invalid_argument when
-  /// there is no such topic, DdsError when there can be no reader.
-  TopicEcho(Participant& participant, const std::string& topic, const std::string& partition);
+  /// Reads `topic` in partitions that match `partition` ("region/*", "world", "*"). Throws DdsError when
+  /// there can be no reader.
+  TopicEcho(Participant& participant, topics::TopicId topic, const std::string& partition);
   ~TopicEcho();
 
   /// Returns the next sample, or nothing if none has arrived. Members are in the order of the IDL; infinite numbers are

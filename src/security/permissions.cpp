@@ -8,87 +8,62 @@
 #include <fmt/format.h>
 #include <fnmatch.h>
 
+#include "topics/topics.h"
+
 namespace aurasim::security {
 namespace {
 
 constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "viewer", "operator", "recorder"};
 
-const std::string kWorld = "world";
-const std::string kEveryRegion = "region/*";  // includes the partitions between regions
-const std::string kEveryObserver = "region/*/observer/*";
-
 /// Margin on both dates, because Fast DDS reads them in the time zone of its host.
 constexpr std::chrono::hours kTimeZones{24};
 
-/// Partitions in which a node publishes for neighbours and observers. After a death the generation is part of the
-/// partition's name.
-std::vector<std::string> from(const std::string& region) {
-  return {fmt::format("region/{}", region), fmt::format("region/{}/since/*", region)};
+using topics::Division;
+using topics::Topic;
+
+/// Partitions in which the node of `region` publishes; without a region: the node of any.
+std::vector<std::string> published_from(const Topic& topic, std::optional<core::RegionId> region) {
+  std::vector<std::string> partitions = {topics::partition_of(topic.id, {.source = region})};
+  if (topic.division == Division::kBySource && topic.by_life) {
+    partitions.push_back(topics::in_later_lives(partitions.front()));
+  }
+  if (topic.division == Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
+  return partitions;
 }
 
-/// Rights of a node. `region` is a number, or `*` for a process that may become the node of any region.
-Grants grants_of_node(const std::string& region) {
-  const std::string to_any = fmt::format("region/{}/to/*", region);
-  const std::vector<std::string> own = {fmt::format("region/{}", region)};
-  const std::vector<std::string> to_it = {fmt::format("region/*/to/{}", region),
-                                          fmt::format("region/*/to/{}/since/*", region)};
-  std::vector<std::string> kept_here = to_it;
-  kept_here.push_back(kWorld);
+/// Partitions that the node of `region` reads. The regions that it receives from change with the bodies
+/// (docs/decisions/0003), so it may read those of all sources.
+std::vector<std::string> read_by_node(const Topic& topic, std::optional<core::RegionId> region) {
+  std::vector<std::string> partitions = {topics::partition_of(topic.id, {.destination = region})};
+  const bool to_one = topic.division == Division::kByPair || topic.division == Division::kByPairAndToAll;
+  if (to_one) partitions.push_back(topics::in_later_lives(partitions.front()));
+  if (topic.division == Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
+  return partitions;
+}
+
+Grants grants_of_node(std::optional<core::RegionId> region) {
   Grants grants;
-  grants.publishes = {{"aura", from(region)},
-                      {"migration", {to_any}},
-                      {"migration_ack", {to_any}},
-                      {"node_status", own},
-                      {"region_map", {kWorld}},
-                      {"run_control", {kWorld}},
-                      {"replica", own},
-                      {"replica_key", own},
-                      {"cluster_graph", own},
-                      {"observation", {fmt::format("region/{}/observer/*", region)}},
-                      {"command_reply", {kWorld}},
-                      {"orders", {kWorld}},
-                      {"shape", {kWorld}},
-                      {"checkpoint", {to_any, kWorld}}};
-  // The regions that it receives from change with the bodies (docs/decisions/0003), so it may read all.
-  grants.subscribes = {{"aura", {kEveryRegion}},        {"migration", to_it},     {"migration_ack", to_it},
-                       {"node_status", {kEveryRegion}}, {"region_map", {kWorld}}, {"run_control", {kWorld}},
-                       {"command", {kWorld}},           {"shape", {kWorld}},      {"checkpoint", kept_here},
-                       {"control", {kWorld}},           {"interest", {kWorld}}};
+  for (const Topic& topic : topics::all()) {
+    if (topic.published_by & topics::kNodes) grants.publishes.push_back({topic.name, published_from(topic, region)});
+    if (topic.read_by & topics::kNodes) grants.subscribes.push_back({topic.name, read_by_node(topic, region)});
+  }
   return grants;
 }
 
-std::vector<Grant> what_viewers_see() {
-  return {{"node_status", {kEveryRegion}},
-          {"region_map", {kWorld}},
-          {"replica", {kEveryRegion}},
-          {"replica_key", {kEveryRegion}},
-          {"cluster_graph", {kEveryRegion}},
-          {"aura", {kEveryRegion}},
-          {"orders", {kWorld}},
-          {"shape", {kWorld}},
-          {"observation", {kEveryObserver}}};
-}
-
-/// Right of observers to publish their interests.
-const Grant kInterest = {"interest", {kWorld}};
-
-Grants grants_of_operator() {
+/// Rights of whoever is not a node. `parties`: set of topics::Party.
+Grants grants_of_others(std::uint8_t parties) {
   Grants grants;
-  grants.publishes = {
-      {"command", {kWorld}}, {"shape", {kWorld}}, {"run_control", {kWorld}}, {"control", {kWorld}}, kInterest};
-  grants.subscribes = what_viewers_see();
-  grants.subscribes.push_back({"command_reply", {kWorld}});
-  grants.subscribes.push_back({"run_control", {kWorld}});
+  for (const Topic& topic : topics::all()) {
+    const std::vector<std::string> partitions = {topics::partition_of(topic.id)};
+    if (topic.published_by & parties) grants.publishes.push_back({topic.name, partitions});
+    if (topic.read_by & parties) grants.subscribes.push_back({topic.name, partitions});
+  }
   return grants;
 }
 
 Grants grants_of_recorder() {
   Grants grants;
-  for (const char* topic : {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica",
-                            "replica_key", "command", "command_reply", "shape", "orders", "cluster_graph", "checkpoint",
-                            "control", "interest", "observation"}) {
-    grants.subscribes.push_back({topic, {"*"}});
-  }
+  for (const Topic& topic : topics::all()) grants.subscribes.push_back({topic.name, {"*"}});
   return grants;
 }
 
@@ -119,17 +94,17 @@ std::optional<Role> role_named(std::string_view name) {
 Grants grants_of(Role role, std::uint32_t region) {
   switch (role) {
     case Role::kRegion:
-      return grants_of_node(std::to_string(region));
+      return grants_of_node(core::RegionId{region});
     case Role::kSpare:
-      return grants_of_node("*");
+      return grants_of_node({});
     case Role::kOperator:
-      return grants_of_operator();
+      return grants_of_others(topics::kOperators | topics::kViewers);
     case Role::kRecorder:
       return grants_of_recorder();
     case Role::kViewer:
       break;
   }
-  return {{kInterest}, what_viewers_see()};
+  return grants_of_others(topics::kViewers);
 }
 
 bool is_granted(const std::vector<Grant>& grants, std::string_view topic, const std::string& partition) {

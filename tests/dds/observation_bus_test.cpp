@@ -117,7 +117,7 @@ TEST_F(ObservationBus, WhatIsUnsoundOrTooMuchIsRefusedAndHarmsNobody) {
   ASSERT_TRUE(holds_in_time([&] { return asked() == 1; }));
   Participant at_flood(settings_for(own_domain()));
   Wakeup wakeup;
-  TypedWriter<wire::Interest> flood(at_flood.domain(), in_world(TopicId::kInterest), wakeup);
+  TypedWriter<wire::Interest> flood(at_flood.domain(), on(TopicId::kInterest), wakeup);
   ASSERT_TRUE(holds_in_time([&] { return flood.foreign_reader_count() == 1; }));
   core::Interest insane;
   insane.client = 77;

@@ -34,9 +34,9 @@ using core::value_of;
 /// Reliable, and takes nothing: after the first sample it acknowledges no more.
 class DeafReader {
  public:
-  DeafReader(Domain& domain, TopicId topic, const std::string& partition, RegionId region) {
+  DeafReader(Domain& domain, TopicId topic, const topics::Route& route, RegionId region) {
     eprosima::fastdds::dds::SubscriberQos subscriber_qos;
-    subscriber_qos.partition().push_back(partition.c_str());
+    subscriber_qos.partition().push_back(topics::partition_of(topic, route).c_str());
     auto* const subscriber = domain.participant().create_subscriber(subscriber_qos);
     auto qos = domain.profiles().reader(*subscriber, std::string(name_of(topic)) + "_reader");
     qos.history().kind = eprosima::fastdds::dds::KEEP_ALL_HISTORY_QOS;
@@ -60,28 +60,30 @@ class Stranger {
   void listen_and_never_read() {
     for (const messages::Status& node : nodes_) {
       const RegionId r = node.region;
-      deaf_.emplace_back(domain_, TopicId::kAura, partition_of(r), next(r));
-      deaf_.emplace_back(domain_, TopicId::kMigration, partition_of(r, next(r)), next(r));
-      deaf_.emplace_back(domain_, TopicId::kMigrationAck, partition_of(r, next(r)), next(r));
-      deaf_.emplace_back(domain_, TopicId::kReplica, partition_of(r), next(r));
+      deaf_.emplace_back(domain_, TopicId::kAura, topics::Route{.source = r}, next(r));
+      deaf_.emplace_back(domain_, TopicId::kMigration, topics::Route{.source = r, .destination = next(r)}, next(r));
+      deaf_.emplace_back(domain_, TopicId::kMigrationAck, topics::Route{.source = r, .destination = next(r)}, next(r));
+      deaf_.emplace_back(domain_, TopicId::kReplica, topics::Route{.source = r}, next(r));
     }
-    deaf_.emplace_back(domain_, TopicId::kRunControl, kWorldPartition, RegionId{0});
+    deaf_.emplace_back(domain_, TopicId::kRunControl, topics::Route{}, RegionId{0});
   }
 
   /// "I am the node of region R", on every topic that nodes have.
   void write_where_regions_do() {
     for (const messages::Status& node : nodes_) {
       const RegionId r = node.region;
-      auras_.push_back(writer<wire::AuraBatch>(TopicId::kAura, partition_of(r), r));
-      hand_offs_.push_back(writer<wire::Migration>(TopicId::kMigration, partition_of(r, next(r)), r));
-      acks_.push_back(writer<wire::MigrationAck>(TopicId::kMigrationAck, partition_of(r, next(r)), r));
-      statuses_.push_back(writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(r), r));
+      auras_.push_back(writer<wire::AuraBatch>(TopicId::kAura, topics::Route{.source = r}, r));
+      hand_offs_.push_back(
+          writer<wire::Migration>(TopicId::kMigration, topics::Route{.source = r, .destination = next(r)}, r));
+      acks_.push_back(
+          writer<wire::MigrationAck>(TopicId::kMigrationAck, topics::Route{.source = r, .destination = next(r)}, r));
+      statuses_.push_back(writer<wire::NodeStatus>(TopicId::kNodeStatus, topics::Route{.source = r}, r));
     }
-    nobody_ = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{9}), RegionId{9});
-    runs_ = writer<wire::RunControl>(TopicId::kRunControl, kWorldPartition);
-    maps_ = writer<wire::RegionMap>(TopicId::kRegionMap, kWorldPartition);
-    parts_ = writer<wire::Checkpoint>(TopicId::kCheckpoint, kWorldPartition);
-    orders_ = writer<wire::AuraBatch>(TopicId::kOrders, kWorldPartition);
+    nobody_ = writer<wire::NodeStatus>(TopicId::kNodeStatus, topics::Route{.source = RegionId{9}}, RegionId{9});
+    runs_ = writer<wire::RunControl>(TopicId::kRunControl, topics::Route{});
+    maps_ = writer<wire::RegionMap>(TopicId::kRegionMap, topics::Route{});
+    parts_ = writer<wire::Checkpoint>(TopicId::kCheckpoint, topics::Route{});
+    orders_ = writer<wire::AuraBatch>(TopicId::kOrders, topics::Route{});
     std::this_thread::sleep_for(500ms);  // all are matched
   }
 
@@ -221,9 +223,9 @@ class Stranger {
         ->second.status;
   }
   template <class Wire>
-  std::unique_ptr<TypedWriter<Wire>> writer(TopicId topic, const std::string& partition,
+  std::unique_ptr<TypedWriter<Wire>> writer(TopicId topic, const topics::Route& route,
                                             std::optional<RegionId> region = {}) {
-    return std::make_unique<TypedWriter<Wire>>(domain_, EndpointSpec{topic, {partition}, region}, wakeup_);
+    return std::make_unique<TypedWriter<Wire>>(domain_, on(topic, route, region), wakeup_);
   }
 
   Participant participant_;

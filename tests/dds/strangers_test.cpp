@@ -85,10 +85,9 @@ class AStranger : public ::testing::Test {
   static void publish(ControlBus& bus, std::uint32_t region) { bus.publish_status(of_this_host(region)); }
 
   template <class Wire>
-  std::unique_ptr<TypedWriter<Wire>> writer(TopicId topic, const std::string& partition,
+  std::unique_ptr<TypedWriter<Wire>> writer(TopicId topic, const topics::Route& route = {},
                                             std::optional<RegionId> region = {}) {
-    auto writer =
-        std::make_unique<TypedWriter<Wire>>(stranger_.domain(), EndpointSpec{topic, {partition}, region}, wakeup_);
+    auto writer = std::make_unique<TypedWriter<Wire>>(stranger_.domain(), on(topic, route, region), wakeup_);
     EXPECT_TRUE(holds_in_time([&] { return writer->reader_count() > 0; })) << name_of(topic);
     return writer;
   }
@@ -112,7 +111,7 @@ class AStranger : public ::testing::Test {
 };
 
 TEST_F(AStranger, WithAnAuraWriterIsNotTheEndOfARegion) {
-  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, partition_of(RegionId{1}), RegionId{1});
+  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, {.source = RegionId{1}}, RegionId{1});
   auras->send(forged_batch());
   one_.send_batch(5);
   ASSERT_TRUE(take_until(zero_, [&] { return zero_.transport.counters().aura.received == 2; }));
@@ -126,7 +125,7 @@ TEST_F(AStranger, WithAnAuraWriterIsNotTheEndOfARegion) {
 
 TEST_F(AStranger, HandsNothingOverAndEndsNobodyByWhatCannotBe) {
   const auto hand_offs =
-      writer<wire::Migration>(TopicId::kMigration, partition_of(RegionId{1}, RegionId{0}), RegionId{1});
+      writer<wire::Migration>(TopicId::kMigration, {.source = RegionId{1}, .destination = RegionId{0}}, RegionId{1});
   core::HandOff forged = hand_off_of(2);
   hand_offs->send(forged);
   forged.cluster.bodies[0].v_WB.x() = 1e308;
@@ -138,7 +137,7 @@ TEST_F(AStranger, HandsNothingOverAndEndsNobodyByWhatCannotBe) {
 }
 
 TEST_F(AStranger, IsNotListenedToAnyMoreAfterAHundredLies) {
-  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, partition_of(RegionId{1}), RegionId{1});
+  const auto auras = writer<wire::AuraBatch>(TopicId::kAura, {.source = RegionId{1}}, RegionId{1});
   for (int i = 0; i < 150; ++i) auras->send(forged_batch());
   EXPECT_TRUE(take_until(zero_, [&] { return said().find("not listened to any more") != std::string::npos; }));
   one_.send_batch(5);
@@ -147,14 +146,14 @@ TEST_F(AStranger, IsNotListenedToAnyMoreAfterAHundredLies) {
 }
 
 TEST_F(AStranger, SpeaksOfNoRegionThatTheRunHasNot) {
-  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{9}), RegionId{9});
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, {.source = RegionId{9}}, RegionId{9});
   statuses->send(of_this_host(9));
   ASSERT_TRUE(holds_in_time([&] { return zero_bus_.strangers().size() == 1; }));
   EXPECT_EQ(zero_bus_.statuses().size(), 2U);
 }
 
 TEST_F(AStranger, IsNotTheNodeOfARegionThatHasOne) {
-  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{1}), RegionId{1});
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, {.source = RegionId{1}}, RegionId{1});
   messages::Status forged = of_this_host(1);
   forged.process = 666;
   statuses->send(forged);
@@ -167,7 +166,7 @@ TEST_F(AStranger, IsNotTheNodeOfARegionThatHasOne) {
 }
 
 TEST_F(AStranger, SpeaksOfNoRegionBesideItsPartition) {
-  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, partition_of(RegionId{1}), RegionId{1});
+  const auto statuses = writer<wire::NodeStatus>(TopicId::kNodeStatus, {.source = RegionId{1}}, RegionId{1});
   statuses->send(of_this_host(0));
   ASSERT_TRUE(holds_in_time([&] {
     zero_bus_.statuses();
@@ -177,7 +176,7 @@ TEST_F(AStranger, SpeaksOfNoRegionBesideItsPartition) {
 }
 
 TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {
-  const auto runs = writer<wire::RunControl>(TopicId::kRunControl, kWorldPartition);
+  const auto runs = writer<wire::RunControl>(TopicId::kRunControl);
   messages::RunCommand command;
   command.run = 11;
   using Kind = messages::RunCommandKind;

@@ -14,7 +14,7 @@ namespace {
 using testing::holds_in_time;
 using namespace std::chrono_literals;
 
-EndpointSpec aura_of_region_0() { return {TopicId::kAura, {partition_of(core::RegionId{0})}, {}, {}}; }
+EndpointSpec aura_of_region_0() { return on(TopicId::kAura, {.source = core::RegionId{0}}); }
 
 /// Its answers take a while.
 struct Listener {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/protocol.md is of the version of the protocol that the code has: "Version N (`kProtocolVersion` in `FILE`)"."""
+"""docs/protocol.md is of the version of the protocol that the code has: "version N (`kProtocolVersion` in `FILE`)"."""
 import pathlib
 import re
 import sys
@@ -9,9 +9,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 def main():
     page = (ROOT / "docs" / "protocol.md").read_text()
-    named = re.search(r"Version\s+(\d+)\s+\(`kProtocolVersion`\s+in\s+`([^`]+)`\)", page)
+    named = re.search(r"[Vv]ersion\s+(\d+)\s+\(`kProtocolVersion`\s+in\s+`([^`]+)`\)", page)
     if not named:
-        sys.exit("docs/protocol.md does not say of which version it is: \"Version N (`kProtocolVersion` in `FILE`)\"")
+        sys.exit("docs/protocol.md does not say of which version it is: \"version N (`kProtocolVersion` in `FILE`)\"")
     header = ROOT / named[2]
     constant = re.search(r"\bkProtocolVersion\s*=\s*(\d+)", header.read_text()) if header.exists() else None
     if not constant:

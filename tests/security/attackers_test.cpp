@@ -59,9 +59,9 @@ class Node {
       refusals_.push_back(text);
     };
     domain.emplace(settings);
-    commands.emplace(*domain, in_world(TopicId::kCommand), wakeup);
-    run_control.emplace(*domain, in_world(TopicId::kRunControl), wakeup);
-    auras.emplace(*domain, EndpointSpec{TopicId::kAura, {kEveryRegionPartition}, {}, {}}, wakeup);
+    commands.emplace(*domain, on(TopicId::kCommand), wakeup);
+    run_control.emplace(*domain, on(TopicId::kRunControl), wakeup);
+    auras.emplace(*domain, on(TopicId::kAura), wakeup);
     hand_offs.emplace(*domain, EndpointSpec{TopicId::kMigration, {"region/2/to/1"}, {}, {}}, wakeup);
   }
 
@@ -139,8 +139,8 @@ class Attackers : public ::testing::Test {
 };
 
 TEST(EveryTopic, HasSomebodyWhoMaySayItAndARecorderWhoReadsIt) {
-  for (std::size_t i = 0; i < kTopicCount; ++i) {
-    const std::string topic = name_of(static_cast<TopicId>(i));
+  for (const topics::Topic& row : topics::all()) {
+    const std::string topic = row.name;
     const auto says = [&](Role role) {
       const auto grants = security::grants_of(role, 2);
       return std::ranges::any_of(grants.publishes, [&](const security::Grant& grant) { return grant.topic == topic; });
