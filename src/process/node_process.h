@@ -17,30 +17,24 @@
 #include "config/launch.h"
 #include "cut/saved_world.h"
 #include "dds/control.h"
-#include "dds/dds_transport.h"
-#include "dds/participant.h"
-#include "dds/setpoint_bus.h"
 #include "node/node.h"
 #include "node/pacer.h"
-#include "process/checkpoints.h"
-#include "process/command_server.h"
 #include "process/fence.h"
 #include "process/hold.h"
+#include "process/node_endpoints.h"
 #include "process/node_options.h"
 #include "process/node_phase.h"
+#include "process/node_status.h"
+#include "process/notices.h"
 #include "process/patience.h"
+#include "process/records.h"
 #include "process/recovery.h"
-#include "process/replica_publisher.h"
-#include "process/ros2_link.h"
 #include "process/run_control_limits.h"
 #include "process/saving.h"
+#include "process/setpoint_intake.h"
 #include "process/world_meant.h"
-#include "records/recorder.h"
 
 namespace aurasim::process {
-
-/// Settings of the transport between a region and its neighbours.
-dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region);
 
 /// Thrown when a node has died while all nodes were about to act together. All nodes then go back to a state that is
 /// kept.
@@ -59,13 +53,10 @@ class NodeProcess {
   bool comes_back_as_spare() const;
 
  private:
-  struct Window {  ///< durations of about the last second's steps, milliseconds
-    std::vector<double> frame, physics, protocol, transport;
-    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
-  };
-
+  dds::ControlBus& control() { return endpoints_.control(); }
+  dds::DdsTransport& transport() { return endpoints_.transport(); }
+  Checkpoints& checkpoints() { return endpoints_.checkpoints(); }
   FenceSettings fence_settings() const;
-  std::map<core::RegionId, node::PeerSign> peer_signs();
   bool fence_is_open();
   command_line::ExitCode meet_and_run();
   command_line::ExitCode take_over();
@@ -93,11 +84,9 @@ class NodeProcess {
   bool wait_until_due();
   core::Step farthest_paused_step();
   std::chrono::nanoseconds time_until(core::Step step) const;
-  void note_refusals();
   void note_strangers();
   void note_waiting();
   bool somebody_computes_for_long();
-  void note_faults(const node::StepReport& report);
   void compute_step();
   void execute_commands();
   core::Step first_step() const { return options_.world ? options_.world->step : 0; }
@@ -148,10 +137,8 @@ class NodeProcess {
   void begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
                       const std::map<core::RegionId, std::string>& parts);
   void serve_clients();
-  void hear_programs();
-  bool has_heard_what_steps_name();
-  void open_ros2();
-  void tell_ros2();
+  void take_setpoints();
+  bool has_awaited_setpoints();
   void change_rate(double rate);
   void hold_in(core::Step state);
   void step_on(const messages::RunCommand& step);
@@ -184,12 +171,9 @@ class NodeProcess {
   bool has_all_of_the_last_states();
   messages::RunCommand with_clock_of(core::RegionId region, messages::RunCommand command);
   void compare_clocks();
-  void watch_the_clock();
-  void watch_the_records();
   void enter(NodeEvent event);
   void publish(const std::string& text = {});
   void publish_running();
-  void note(const node::StepReport& report, double frame_ms);
   command_line::ExitCode refuse(const std::string& why);
   command_line::ExitCode not_begun();
   double real_time_factor() const;
@@ -197,29 +181,21 @@ class NodeProcess {
   NodePhase phase_ = NodePhase::kListening;
   config::Launch launch_;
   NodeOptions options_;
-  std::unique_ptr<dds::Participant> participant_;
-  dds::ControlBus control_;
+  NodeEndpoints endpoints_;
   Fence fence_;
-  std::optional<dds::DdsTransport> transport_;   ///< once the domain is known to be free
-  std::optional<ReplicaPublisher> observers_;    ///< likewise
-  std::optional<CommandServer> command_server_;  ///< likewise
-  std::optional<dds::SetpointReader> programs_;  ///< likewise
-  std::optional<Ros2Link> ros2_;                 ///< likewise, where ros2 is on
-  std::vector<core::Order> run_orders_;          ///< orders about the run as a whole that are not due yet
-  Saving saving_;
-  std::optional<Checkpoints> checkpoints_;  ///< once the domain is known to be free
   std::unique_ptr<node::Node> node_;
-  std::optional<records::Recorder> recorder_;
+  Saving saving_;
+  Records records_;
+  Notices notices_;
+  NodeStatus status_;
+  SetpointIntake setpoints_;
+  std::vector<core::Order> run_orders_;  ///< orders about the run as a whole that are not due yet
   node::Pacer pacer_;
-  node::ClockWatch clock_watch_{node::read_clocks()};
-  bool says_records_end_ = false;
-  std::string notice_;  ///< message for users, in the status while the node runs
   core::Generation generation_ = 0;
   std::optional<core::Generation> begun_;  ///< generation that node_ computes in, or has computed in last
   std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
   AskedSteps asked_steps_;                 ///< steps asked for since the run was paused
   PauseFollower pause_follower_;
-  AwaitedWords awaited_words_;
   std::optional<core::Step> stop_at_;
   std::optional<messages::RunCommand> reset_;
   RunControlLimits run_control_limits_;
@@ -238,7 +214,6 @@ class NodeProcess {
   int failed_changes_ = 0;                       ///< in a row
   core::Generation life_ = 0;          ///< generation with which the run went on after the last death or change
   core::Generation life_of_node_ = 0;  ///< the life_ with which node_ has begun
-  std::uint64_t served_map_ = 0;       ///< map version that observers and clients are served for
   bool drains_ = false;                ///< this node gives its region to another process as soon as there is one
   std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: the latest time to do so
   std::set<std::uint64_t> leaving_;                                 ///< processes that drain
@@ -251,22 +226,10 @@ class NodeProcess {
   std::set<std::uint64_t> taken_;  ///< processes of spares that were called
   std::string asks_for_;           ///< decision that a user has to take before the run can go on; empty: none
   bool stops_standing_ = false;    ///< stopped in a recovery: does not wait for the others
-  messages::Status status_;
-  Window window_;
-  double wait_ms_ = 0;
-  std::map<core::Step, records::FrameTimes> frame_times_;  ///< frame times of states that are not recorded yet
-  core::Step hurry_until_ = 0;      ///< a client waits for this state: until then the pace is at least real time
-  std::size_t refusals_noted_ = 0;  ///< number of the protocol's refusals that have been logged
-  std::uint64_t unheard_setpoints_ = 0, unbearable_setpoints_ = 0;  ///< since the start
-  bool says_late_ = false, says_refused_ = false;  ///< the message about late or refused setpoints has been given
-  std::uint64_t broken_bodies_ = 0;                ///< bodies removed here since the start because they broke down
-  std::string fault_;                              ///< the last fault, as a message for users
-  std::string waiting_;                            ///< the nodes that this one waits for, if it takes long
-  std::optional<std::chrono::steady_clock::time_point> waiting_since_;
+  core::Step hurry_until_ = 0;     ///< a client waits for this state: until then the pace is at least real time
   std::chrono::steady_clock::time_point computed_at_;  ///< when the last state was computed
   std::chrono::steady_clock::time_point began_;
   std::chrono::steady_clock::duration paused_{};
-  std::chrono::steady_clock::time_point last_published_;
   std::set<core::RegionId> missed_;  ///< regions whose nodes died while the nodes met; each is logged once
 };
 

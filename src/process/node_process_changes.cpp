@@ -12,6 +12,7 @@
 #include "dds/replica_bus.h"
 #include "host/stop_signal.h"
 #include "node/repartition.h"
+#include "process/long_step.h"
 #include "process/node_process.h"
 #include "setup/launch_setup.h"
 
@@ -106,10 +107,10 @@ void NodeProcess::change_world(const std::string& file) {
 /// Publishes the map and scene of a generation. The agreement stays that of the run's beginning.
 void NodeProcess::publish_map(core::Generation generation, core::Step from_step) {
   messages::WorldMap map = setup::world_map(launch_);
-  map.agreement = status_.agreement;
+  map.agreement = status_.content().agreement;
   map.generation = generation;
   map.from_step = from_step;
-  control_.publish_map(map);
+  control().publish_map(map);
 }
 
 void NodeProcess::begin_anew() {
@@ -125,7 +126,7 @@ void NodeProcess::begin_anew() {
 /// may have to be retransmitted.
 void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
-  last_published_ = {};  // publish the status at once, because the others wait for it
+  status_.make_due();  // publish the status at once, because the others wait for it
   auto deadline = Clock::now() + kPatienceWithOthers;
   const auto stands = [this](const auto& entry) {
     const messages::Status& status = entry.second.status;
@@ -135,7 +136,7 @@ void NodeProcess::wait_until_all_stand() {
   };
   for (;;) {
     publish();
-    const auto& statuses = control_.statuses();
+    const auto& statuses = control().statuses();
     if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
     execute_commands();
     look_for_deaths();
@@ -143,7 +144,7 @@ void NodeProcess::wait_until_all_stand() {
     if (Clock::now() > deadline || host::stop_requested()) {
       throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
     }
-    control_.wait(5ms);
+    control().wait(5ms);
   }
 }
 
@@ -156,10 +157,18 @@ void NodeProcess::settle_all() {
     if (Clock::now() > deadline || host::stop_requested()) {
       throw ChangeFailed("new regions: a neighbour has not come to this state");
     }
-    transport_->wait_for_arrival(5ms);
+    transport().wait_for_arrival(5ms);
   }
   const node::StepReport& report = node_->settle();
-  if (recorder_) recorder_->write_settling(report);
+  records_.write_settling(report);
+}
+
+/// True if some node computes one step for long (long_step.h). It is not dead, so a wait for all nodes goes on.
+bool NodeProcess::somebody_computes_for_long() {
+  const auto now = Clock::now();
+  return std::ranges::any_of(control().statuses(), [&](const auto& entry) {
+    return entry.first != options_.region && long_step(entry.second, now).has_value();
+  });
 }
 
 void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
@@ -170,7 +179,7 @@ void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
     if (phase_ == NodePhase::kWaiting) publish();  // before, others still wait for the last state's status
     execute_commands();
     look_for_deaths();
-    control_.wait(10ms);
+    control().wait(10ms);
   });
 }
 
@@ -181,10 +190,11 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
   const node::RepartitionSettings settings = {options_.region, generation_ + 1, setup::aura_rules(*changed),
                                               &changed->regions};
-  observers_->use_map(changed->regions.version());  // so that observers of the old map do not receive it
-  observers_->publish_census(*node_, settings.census);
+  endpoints_.observers().use_map(changed->regions.version());  // so that observers of the old map do not receive it
+  endpoints_.observers().publish_census(*node_, settings.census);
   const std::vector<core::Departure> departures = node::find_new_hosts(
-      settings, take_census(settings, deadline, *participant_, *node_, [this] { look_for_deaths(); }), *node_);
+      settings, take_census(settings, deadline, endpoints_.participant(), *node_, [this] { look_for_deaths(); }),
+      *node_);
 
   dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
   to_all.neighbours.clear();
@@ -195,36 +205,35 @@ void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   connect_for_change(to_all);
   node::StepReport moved;
   moved.step = node_->current_step();
-  node::Exchange exchange(settings, departures, *transport_, *node_);
+  node::Exchange exchange(settings, departures, transport(), *node_);
   while (!exchange.ready()) {
     look_for_deaths();
     if (Clock::now() > deadline) {
       throw ChangeFailed(fmt::format("new regions: regions {} have not sent their bodies", exchange.silent()));
     }
-    transport_->wait_for_arrival(kRound);
+    transport().wait_for_arrival(kRound);
   }
   for (const node::HandOffRow& row : exchange.finish()) {
     (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
   }
   wait_until_all_stand();
-  if (recorder_) recorder_->write_settling(moved);
-  status_.hand_offs_out += moved.departures.size();
-  status_.hand_offs_in += moved.arrivals.size();
+  records_.write_settling(moved);
+  status_.content().hand_offs_out += moved.departures.size();
+  status_.content().hand_offs_in += moved.arrivals.size();
 
   launch_ = *changed;
-  status_.map_version = launch_.regions.version();
-  status_.footprint = launch_.regions.region(options_.region);
+  status_.use_regions(launch_);
   waits_to_start_ = settings.census + 1;
   connect_for_change(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = setup::node_setup(launch_, options_.region, generation_);
-  observers_->begin_generation(generation_);
-  command_server_->change_map(generation_, node_->current_step());
+  endpoints_.observers().begin_generation(generation_);
+  endpoints_.commands().change_map(generation_, node_->current_step());
   saving_.change_map(start_->request, generation_);
-  served_map_ = launch_.regions.version();
-  control_.use_map(launch_.regions.version());
-  refusals_noted_ = 0;
-  const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, *transport_);
-  observers_->after_step(*node_, report);
+  endpoints_.note_served_map();
+  control().use_map(launch_.regions.version());
+  notices_.begin_refusals();
+  const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, transport());
+  endpoints_.observers().after_step(*node_, report);
   record(node_->confirmed());
   pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
   publish_map(generation_, node_->current_step());

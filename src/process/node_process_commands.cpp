@@ -22,7 +22,7 @@ void NodeProcess::execute(const messages::RunCommand& command) {
     if (is_awaited && can_be_meant(command)) start_ = with_clock_of(core::RegionId{0}, command);
     return;
   }
-  if (command.kind == Kind::kLost) return control_.hear_of_death(command);
+  if (command.kind == Kind::kLost) return control().hear_of_death(command);
   if (command.kind == Kind::kRestore) {
     if (can_be_meant(command)) hear_of_restore(command);
     return;
@@ -79,7 +79,7 @@ void NodeProcess::obey(const messages::RunCommand& command) {
     case Kind::kStep:
       if (!hold_at_) break;
       step_on(command);
-      if (*hold_at_ > node_->current_step()) awaited_words_.add(command, Clock::now());
+      if (*hold_at_ > node_->current_step()) setpoints_.await(command, Clock::now());
       break;
     case Kind::kResume:
       if (hold_at_) pacer_.set_epoch(*hold_at_ + 1, command.epoch_ns, command.clock_ahead, node::read_clocks());
@@ -96,7 +96,7 @@ void NodeProcess::obey(const messages::RunCommand& command) {
       break;
     case Kind::kRate:
       pacer_.set_rate(command.rate, command.at_step, command.epoch_ns, command.clock_ahead, node::read_clocks());
-      status_.rate = command.rate;
+      status_.content().rate = command.rate;
       break;
   }
 }
@@ -129,15 +129,15 @@ void NodeProcess::obey_late_commands() {
     if (restore_->region != options_.region) continue;
     command.generation = generation_;
     command.request = 0;
-    command.request = control_.send(command);
+    command.request = control().send(command);
     execute(command);
   }
 }
 
 bool NodeProcess::can_be_meant(const messages::RunCommand& command) {
-  const std::string why = run_control_limits_.problem_with(command, std::max({generation_, restoring_, status_.era}),
-                                                           node::wall_clock_ns());
-  if (!why.empty()) control_.refuse(command, why);
+  const std::string why = run_control_limits_.problem_with(
+      command, std::max({generation_, restoring_, status_.content().era}), node::wall_clock_ns());
+  if (!why.empty()) control().refuse(command, why);
   return why.empty();
 }
 
@@ -149,7 +149,7 @@ bool NodeProcess::reset_if_due() {
   enter(NodeEvent::kReset);
   begin_generation(reset.generation + 1, reset);
   if (stands) hold_in(node_->current_step());
-  last_published_ = {};  // the client waits for this status
+  status_.make_due();  // the client waits for this status
   return true;
 }
 
@@ -164,8 +164,10 @@ bool NodeProcess::is_about_to_change() const {
 /// Serves clients' commands. The lead, the live node of the lowest region, gives orders their state.
 void NodeProcess::serve_clients() {
   if (is_about_to_change()) return;
-  const auto& statuses = control_.statuses();
-  const auto is_ours = [this](const messages::SeenStatus& seen) { return seen.status.agreement == status_.agreement; };
+  const auto& statuses = control().statuses();
+  const auto is_ours = [this](const messages::SeenStatus& seen) {
+    return seen.status.agreement == status_.content().agreement;
+  };
   RunView run;
   run.leads = true;
   for (const auto& [region, seen] : statuses) {
@@ -185,15 +187,15 @@ void NodeProcess::serve_clients() {
     return lacking;
   };
   run.holds_at = hold_at_;
-  command_server_->serve(*node_, run);
-  saving_.save_as_it_stands(*node_, *command_server_);
+  endpoints_.commands().serve(*node_, run);
+  saving_.save_as_it_stands(*node_, endpoints_.commands());
   if (run.leads) {
     saving_.save_regularly(*node_, first_step());
     compute_until_change();
     step_back(run);
   }
-  status_.meshes = command_server_->meshes();
-  if (const std::optional<double> rate = command_server_->take_wanted_rate()) change_rate(*rate);
+  status_.content().meshes = endpoints_.commands().meshes();
+  if (const std::optional<double> rate = endpoints_.commands().take_wanted_rate()) change_rate(*rate);
 }
 
 /// Sends all nodes another rate as a run command, because steps may be seconds apart. The next step stays due when it
@@ -206,14 +208,14 @@ void NodeProcess::change_rate(double rate) {
   command.at_step = node_->current_step() + 1 + static_cast<core::Step>(steps);
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
   command.rate = rate;
-  command.request = control_.send(command);
+  command.request = control().send(command);
   execute(command);
 }
 
 /// Makes a paused run compute up to a change. A change needs its state to be confirmed, so all nodes compute up to it,
 /// and pause again in the first state of the new world.
 void NodeProcess::compute_until_change() {
-  const std::optional<core::Step> change = command_server_->change_at();
+  const std::optional<core::Step> change = endpoints_.commands().change_at();
   if (!change || !hold_at_ || node_->current_step() < *hold_at_) return;
   const core::Step until_certain = node_->current_step() - node_->confirmed_step();
   messages::RunCommand command;
@@ -223,7 +225,7 @@ void NodeProcess::compute_until_change() {
   command.count = std::max<core::Step>(1, *change + until_certain - *hold_at_);
   command.at_step = *hold_at_ + command.count;
   command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * kRateNoticeS);
-  command.request = control_.send(command);
+  command.request = control().send(command);
   execute(command);
 }
 

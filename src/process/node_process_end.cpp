@@ -48,24 +48,22 @@ command_line::ExitCode NodeProcess::end() {
     enter(comes_to_its_end ? NodeEvent::kLast : NodeEvent::kFence);
   }
   publish(fenced ? fence_.reason() : broken_off_);
-  observers_->while_paused(*node_);
+  endpoints_.observers().while_paused(*node_);
   // Taken first: a node that leaves from now on has finished, and has not died.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (comes_to_its_end) linger();
   const core::Step last = stop_at_ && comes_to_its_end && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
   record(node_->finish(last));
-  if (recorder_ && comes_to_its_end && !node_->settled()) recorder_->write_settling(node_->settle());
-  const dds::TransportCounters& sent = transport_->counters();
+  if (records_.recorder() != nullptr && comes_to_its_end && !node_->settled()) records_.write_settling(node_->settle());
+  const dds::TransportCounters& sent = transport().counters();
   const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
-  if (recorder_) {
-    const char* const outcome = fenced ? "fenced" : comes_to_its_end ? "finished" : "broken off";
-    recorder_->finish(*node_, {factor, outcome, dead, bytes, checkpoints_->sent_bytes(), checkpoints_->left_out()});
-  }
+  const char* const outcome = fenced ? "fenced" : comes_to_its_end ? "finished" : "broken off";
+  records_.finish(*node_, {factor, outcome, dead, bytes, checkpoints().sent_bytes(), checkpoints().left_out()});
   conclude_saves();
   if (fenced) return command_line::ExitCode::kFenced;
   if (!comes_to_its_end) return command_line::ExitCode::kBrokenOff;
   enter(NodeEvent::kSettled);
-  if (broken_bodies_ > 0) return command_line::ExitCode::kBroken;
+  if (notices_.broken_bodies() > 0) return command_line::ExitCode::kBroken;
   return saving_.regular_ones_failed() ? command_line::ExitCode::kNotSaved : command_line::ExitCode::kOk;
 }
 
@@ -85,7 +83,7 @@ void NodeProcess::linger() {
   auto moved = begin;
   const auto others_run = [&] {
     bool running = false;
-    for (const auto& [region, seen] : control_.statuses()) {
+    for (const auto& [region, seen] : control().statuses()) {
       if (region == options_.region || !seen.is_live()) continue;
       running = true;
       const bool has_moved = std::exchange(steps[region], seen.status.step) != seen.status.step;
@@ -98,16 +96,16 @@ void NodeProcess::linger() {
     execute_commands();
     if (recovers() && !all_have_left() && !stops_standing_) look_for_deaths();
     publish();
-    control_.wait(10ms);
+    control().wait(10ms);
   }
   const auto last_word = Clock::now();
-  while (!control_.status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control_.wait(10ms);
+  while (!control().status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control().wait(10ms);
 }
 
 /// True if all messages of the nodes that have ended have arrived, also of later states than this node's: bodies may be
 /// on their way from there.
 bool NodeProcess::has_all_of_the_last_states() {
-  return std::ranges::all_of(control_.statuses(), [this](const auto& entry) {
+  return std::ranges::all_of(control().statuses(), [this](const auto& entry) {
     const auto& [region, seen] = entry;
     return !seen.has_ended() || node_->protocol().intake().has_all(region, seen.status.step);
   });
@@ -117,7 +115,7 @@ bool NodeProcess::has_all_of_the_last_states() {
 /// as well.
 bool NodeProcess::all_have_left() {
   const std::vector<core::RegionId> silent = node_->protocol().intake().dead_regions();
-  return std::ranges::all_of(control_.statuses(), [&](const auto& entry) {
+  return std::ranges::all_of(control().statuses(), [&](const auto& entry) {
     const auto& [region, seen] = entry;
     const bool is_silent = seen.lost || std::ranges::find(silent, region) != silent.end();
     return region == options_.region || seen.has_ended() || (is_silent && !seen.dead);

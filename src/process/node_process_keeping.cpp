@@ -21,38 +21,38 @@ constexpr std::chrono::nanoseconds kNoticeOfStepBack{600'000'000};  // time in w
 
 /// Keeps what the node has completed, and replies to clients.
 void NodeProcess::keep_parts() {
-  saving_.keep_parts(*node_, *command_server_, *checkpoints_, recorder_ ? &*recorder_ : nullptr);
-  saving_.hear(control_.statuses());
-  saving_.reply(*command_server_);
+  saving_.keep_parts(*node_, endpoints_.commands(), checkpoints(), records_.recorder());
+  saving_.hear(control().statuses());
+  saving_.reply(endpoints_.commands());
   note_words_of_saves();
 }
 
 /// The last message about saves goes into the status.
 void NodeProcess::note_words_of_saves() {
-  for (std::string& words : saving_.take_words()) notice_ = std::move(words);
+  for (std::string& words : saving_.take_words()) notices_.note_news(std::move(words));
 }
 
 /// Finishes all saves at the end of the run.
 void NodeProcess::conclude_saves() {
-  saving_.conclude(*command_server_, control_.statuses(), !fence_.closed() && stop_at_ && has_reached(*stop_at_));
+  saving_.conclude(endpoints_.commands(), control().statuses(), !fence_.closed() && stop_at_ && has_reached(*stop_at_));
   note_words_of_saves();
 }
 
 /// Handles the request "step back". All nodes go back to the newest state that all have in memory, or that the lead
 /// finds in its folder. It lies at least half the distance of two kept states back.
 void NodeProcess::step_back(const RunView& run) {
-  const std::optional<core::Command> back = command_server_->take_wanted_back();
+  const std::optional<core::Command> back = endpoints_.commands().take_wanted_back();
   if (!back) return;
   const core::Step latest = node_->current_step() - (launch_.checkpoint_steps() + 1) / 2;
-  status_.parts = checkpoints_->parts();
-  std::map<core::RegionId, messages::SeenStatus> nodes = control_.statuses();
-  nodes[options_.region].status = status_;
+  status_.content().parts = checkpoints().parts();
+  std::map<core::RegionId, messages::SeenStatus> nodes = control().statuses();
+  nodes[options_.region].status = status_.content();
   const std::optional<messages::RunCommand> restore =
       recovers() ? plan_step_back(nodes, launch_.regions.size(), latest) : std::nullopt;
   const cut::SavedState saved = cut::newest_saved_until(options_.saves, saving_.saved_by(), latest);
   if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
-  if (saved.step >= 0) return command_server_->load_instead(*back, saved.name, *node_, run);
-  command_server_->refuse(back->request, fmt::format("no state until {} is kept", latest));
+  if (saved.step >= 0) return endpoints_.commands().load_instead(*back, saved.name, *node_, run);
+  endpoints_.commands().refuse(back->request, fmt::format("no state until {} is kept", latest));
 }
 
 /// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one
@@ -63,9 +63,9 @@ void NodeProcess::send_back(messages::RunCommand restore, const core::Command& b
   restore.epoch_ns = node::wall_clock_ns() + kNoticeOfStepBack.count();
   restore.rate = pacer_.rate();
   if (hold_at_) hold_at_ = restore.at_step;
-  command_server_->go_back_to(back, restore.at_step);
+  endpoints_.commands().go_back_to(back, restore.at_step);
   publish_map(restore.generation, restore.at_step);
-  restore.request = control_.send(restore);
+  restore.request = control().send(restore);
   restore_ = restore;
   repeat_commands(restore);
 }
@@ -73,7 +73,7 @@ void NodeProcess::send_back(messages::RunCommand restore, const core::Command& b
 /// The regions that keep this node's parts, chosen by the hosts of the present nodes.
 std::vector<core::RegionId> NodeProcess::keepers() {
   std::map<core::RegionId, std::uint16_t> hosts;
-  for (const auto& [region, seen] : control_.statuses()) hosts[region] = seen.host;
+  for (const auto& [region, seen] : control().statuses()) hosts[region] = seen.host;
   return keepers_of(options_.region, static_cast<std::uint32_t>(launch_.regions.size()), hosts);
 }
 

@@ -59,7 +59,7 @@ void NodeProcess::begin_to_recover() {
   }
   run_orders_.clear();
   change_.reset();
-  frame_times_.clear();
+  records_.forget_frames();
 }
 
 /// Waits until all nodes agree on a state to go back to. False when the run ends, or this node has to leave it.
@@ -85,14 +85,15 @@ bool NodeProcess::agree_on_restore() {
     }
     note_unheard(nodes);
     publish(what_recovery_waits_for(acts.vacant));
-    if (acts.meets_anew && dds::all_links_are_up(dds::interfaces_of_this_host(), participant_->settings().interfaces)) {
+    if (acts.meets_anew &&
+        dds::all_links_are_up(dds::interfaces_of_this_host(), endpoints_.participant().settings().interfaces)) {
       meet_anew();
     }
     stand_in(acts.stand_ins);
     for (const core::RegionId region : acts.call_spares) call_spare(region);
     if (may_go_on && node_) lead_recovery();
     execute_commands();
-    control_.wait(kInRecovery);
+    control().wait(kInRecovery);
   }
   asks_for_.clear();
   return true;
@@ -101,28 +102,14 @@ bool NodeProcess::agree_on_restore() {
 /// Publishes the regions that this node does not receive from, at once when they change. The others wait for a node
 /// that does not receive from all.
 void NodeProcess::note_unheard(const SeenNodes& nodes) {
-  std::vector<core::RegionId> unheard =
-      unheard_regions(nodes, options_.region, static_cast<std::uint32_t>(launch_.regions.size()));
-  if (unheard == status_.dead) return;
-  status_.dead = std::move(unheard);
-  last_published_ = {};
+  status_.note_unheard(unheard_regions(nodes, options_.region, static_cast<std::uint32_t>(launch_.regions.size())));
 }
 
 /// Leaves DDS and joins it again as a new participant, with the world that this node has (Recovery::meets_anew).
 void NodeProcess::meet_anew() {
   spdlog::warn("region {}: some others do not hear this node, or it hears too few of them: it joins DDS anew",
                core::value_of(options_.region));
-  auto anew = std::make_unique<dds::Participant>(participant_->settings());
-  ros2_.reset();
-  programs_.reset();
-  control_.move_to(*anew);
-  checkpoints_->move_to(*anew);
-  if (observers_) observers_.emplace(launch_, *anew, options_.region);
-  if (command_server_) command_server_.emplace(launch_, *anew, options_.region, options_.saves);
-  if (transport_) transport_.emplace(*anew, transport_settings());
-  participant_ = std::move(anew);
-  programs_.emplace(*participant_);
-  open_ros2();
+  endpoints_.join_anew(transport_settings());
   if (node_) publish_map(generation_, first_step());
   publish();
 }
@@ -138,7 +125,7 @@ bool NodeProcess::has_to_leave_recovery(const SeenNodes& nodes) {
 RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) const {
   return {nodes,
           leaving_,
-          status_.process,
+          status_.content().process,
           node_ != nullptr,
           may_go_on,
           fence_.is_cut_off(),
@@ -147,8 +134,8 @@ RecoveryView NodeProcess::recovery_view(const SeenNodes& nodes, bool may_go_on) 
 
 /// The statuses of all nodes, with this node's own as the others see it.
 SeenNodes NodeProcess::nodes_and_self() {
-  SeenNodes nodes = control_.statuses();
-  nodes[options_.region].status = status_;
+  SeenNodes nodes = control().statuses();
+  nodes[options_.region].status = status_.content();
   return nodes;
 }
 
@@ -158,7 +145,7 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
   if (!regions.empty()) return fmt::format("waits for whoever takes over regions [{}]", fmt::join(regions, ", "));
-  for (const core::RegionId region : status_.dead) regions.push_back(core::value_of(region));
+  for (const core::RegionId region : status_.content().dead) regions.push_back(core::value_of(region));
   if (!regions.empty()) return fmt::format("does not hear regions [{}], which others hear", fmt::join(regions, ", "));
   return "waits until all others stand";
 }
@@ -166,7 +153,7 @@ std::string NodeProcess::what_recovery_waits_for(const std::vector<core::RegionI
 /// Ends the run because no process has come for these regions, after all attempts. All nodes end with the same reason.
 void NodeProcess::give_up(const std::vector<core::RegionId>& vacant) {
   for (const core::RegionId region : vacant) {
-    control_.send(steering::about_process(messages::RunCommandKind::kEnd, options_.run, region, 0));
+    control().send(steering::about_process(messages::RunCommandKind::kEnd, options_.run, region, 0));
   }
   std::vector<std::uint32_t> regions;
   for (const core::RegionId region : vacant) regions.push_back(core::value_of(region));
@@ -185,7 +172,7 @@ void NodeProcess::break_off(const std::string& why) {
 /// Sends the restore command once each region has a process. The lowest region that knows the world sends it.
 void NodeProcess::lead_recovery() {
   const SeenNodes nodes = nodes_and_self();
-  recovery_.note_kept(nodes, status_.era);
+  recovery_.note_kept(nodes, status_.content().era);
   std::optional<RestorePlan> plan = plan_restore(nodes, launch_.regions.size());
   if (!plan || plan->lead != options_.region) return;
   messages::RunCommand restore = plan->command;
@@ -198,7 +185,7 @@ void NodeProcess::lead_recovery() {
   restore.epoch_ns = now.wall_ns + std::chrono::nanoseconds(pacer_.due(restore.at_step) - now.steady).count();
   restore.rate = pacer_.rate();
   publish_map(restore.generation, restore.at_step);
-  restore.request = control_.send(restore);
+  restore.request = control().send(restore);
   restore_ = restore;
   repeat_commands(restore);
 }
@@ -227,7 +214,7 @@ void NodeProcess::hear_of_restore(const messages::RunCommand& restore) {
   if (restore.members.size() != launch_.regions.size()) return;
   const core::Generation begun = node_ ? generation_ : 0;
   const core::Generation known = std::max({generation_, restoring_, restore_ ? restore_->generation : 0});
-  const RestoreMeaning meaning = meaning_of(restore, options_.region, status_.process, begun, known);
+  const RestoreMeaning meaning = meaning_of(restore, options_.region, status_.content().process, begun, known);
   if (meaning == RestoreMeaning::kGoBack) restore_ = with_clock_of(restore.region, restore);
   if (meaning == RestoreMeaning::kLeftOut) recovery_.note_left_out(restore);
   if (meaning == RestoreMeaning::kReplaced && node_) give_way(restore.at_step);
@@ -247,8 +234,7 @@ void NodeProcess::throw_away_after(core::Step step) {
     spdlog::warn("region {}: states {} to {} of this process are thrown away", core::value_of(options_.region),
                  step + 1, node_->current_step());
   }
-  const bool has_successor = recorder_ && recorder_->is_replaced();
-  if (has_successor) return recorder_.reset();
+  if (records_.is_replaced()) return records_.close();
   record_after(step);
 }
 
@@ -262,7 +248,7 @@ void NodeProcess::repeat_commands(const messages::RunCommand& restore) {
     command.kind = kind;
     command.at_step = at_step;
     command.request = 0;
-    control_.send(command);
+    control().send(command);
   };
   if (reset_) repeat(messages::RunCommandKind::kReset, std::max(reset_->at_step, restore.at_step));
   if (hold_at_) repeat(messages::RunCommandKind::kPause, *hold_at_);

@@ -42,22 +42,17 @@ void NodeProcess::take_map_of(const messages::RunCommand& restore) {
   const messages::WorldMap* map = nullptr;
   const auto deadline = Clock::now() + kPatienceWithParts;
   while (map == nullptr) {
-    for (const auto& [version, known] : control_.maps()) {
-      if (known.generation == restore.generation && known.agreement == status_.agreement) map = &known;
+    for (const auto& [version, known] : control().maps()) {
+      if (known.generation == restore.generation && known.agreement == status_.content().agreement) map = &known;
     }
     if (map == nullptr) wait_in_recovery(deadline, "the map");
   }
   if (map->scene != launch_.scene.name) launch_ = config::with_scene(launch_, map->scene);
   if (map->map_version != launch_.regions.version()) launch_ = config::with_regions(launch_, map->regions);
-  status_.map_version = launch_.regions.version();
-  status_.footprint = launch_.regions.region(options_.region);
-  control_.use_map(launch_.regions.version());
-  open_ros2();
-  if (observers_ && command_server_ && programs_ && served_map_ == launch_.regions.version()) return;
-  observers_.emplace(launch_, *participant_, options_.region);
-  command_server_.emplace(launch_, *participant_, options_.region, options_.saves);
-  programs_.emplace(*participant_);
-  served_map_ = launch_.regions.version();
+  status_.use_regions(launch_);
+  control().use_map(launch_.regions.version());
+  endpoints_.open_ros2();
+  endpoints_.serve_map();
 }
 
 void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
@@ -68,7 +63,7 @@ void NodeProcess::wait_in_recovery(Clock::time_point deadline, const char* for_w
   execute_commands();
   look_for_deaths();
   publish();
-  control_.wait(kRestoreRound);
+  control().wait(kRestoreRound);
 }
 
 /// Puts the world together from all parts, with all orders that any node knows by now.
@@ -77,7 +72,7 @@ core::WorldCut NodeProcess::gather(const messages::RunCommand& restore, std::map
   const std::size_t regions = launch_.regions.size();
   const auto deadline = Clock::now() + kPatienceWithParts;
   const auto give = [&](core::RegionId region, Kind kind, const std::string& octets) {
-    checkpoints_->give({region, kind, restore.generation, restore.at_step, octets});
+    checkpoints().give({region, kind, restore.generation, restore.at_step, octets});
   };
   core::WorldCut whole;
   if (from_first) {
@@ -86,12 +81,12 @@ core::WorldCut NodeProcess::gather(const messages::RunCommand& restore, std::map
     for (std::uint32_t r = 0; r < regions; ++r) {
       const core::RegionId region{r};
       if (restore.members[r].holder != options_.region) continue;
-      if (const std::string* octets = checkpoints_->find(region, restore.at_step)) give(region, Kind::kGoBack, *octets);
+      if (const std::string* octets = checkpoints().find(region, restore.at_step)) give(region, Kind::kGoBack, *octets);
     }
-    while (checkpoints_->given(restore.generation, Kind::kGoBack).size() < regions) {
+    while (checkpoints().given(restore.generation, Kind::kGoBack).size() < regions) {
       wait_in_recovery(deadline, "the parts of the world");
     }
-    parts = checkpoints_->given(restore.generation, Kind::kGoBack);
+    parts = checkpoints().given(restore.generation, Kind::kGoBack);
     std::vector<core::WorldCut> cuts;
     for (const auto& [region, octets] : parts) cuts.push_back(decode_part(octets));
     whole = core::merge(std::move(cuts));
@@ -101,11 +96,11 @@ core::WorldCut NodeProcess::gather(const messages::RunCommand& restore, std::map
   if (restore.members.at(core::value_of(options_.region)).survives && node_) {
     give(options_.region, Kind::kOrders, cut::encode(saving_.as_saved(node_->orders_now(whole))));
   }
-  while (checkpoints_->given(restore.generation, Kind::kOrders).size() < survivors) {
+  while (checkpoints().given(restore.generation, Kind::kOrders).size() < survivors) {
     wait_in_recovery(deadline, "the orders that others know");
   }
   std::vector<core::WorldCut> all = {std::move(whole)};
-  for (const auto& [region, octets] : checkpoints_->given(restore.generation, Kind::kOrders)) {
+  for (const auto& [region, octets] : checkpoints().given(restore.generation, Kind::kOrders)) {
     all.push_back(decode_part(octets));
   }
   return core::merge(std::move(all));
@@ -120,14 +115,8 @@ core::WorldCut NodeProcess::decode_part(const std::string& octets) const {
 
 /// Opens the records to go on after state `step`. The run goes on even if that fails.
 void NodeProcess::record_after(std::optional<core::Step> step) {
-  recorder_.reset();  // or it would write the rest of its rows into the files of the next
-  if (!options_.report) return;
-  try {
-    recorder_.emplace(*options_.report, options_.region, step);
-  } catch (const std::runtime_error& error) {
-    fault_ = fmt::format("nothing is recorded from here on: {}", error.what());
-    spdlog::error("region {}: {}", core::value_of(options_.region), fault_);
-  }
+  const std::string problem = records_.go_on_after(step);
+  if (!problem.empty()) notices_.note_fault(fmt::format("nothing is recorded from here on: {}", problem));
 }
 
 void NodeProcess::begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
@@ -135,20 +124,21 @@ void NodeProcess::begin_restored(const messages::RunCommand& restore, const core
   const bool from_first = restore.count == 1;
   node_ = make_node();
   life_of_node_ = life_;
-  command_server_->go_back(*node_, generation_);
+  endpoints_.commands().go_back(*node_, generation_);
   record_after(from_first ? std::nullopt : std::optional(restore.at_step));
   pacer_.set_rate(restore.rate, restore.at_step, restore.epoch_ns, restore.clock_ahead, node::read_clocks());
-  status_.rate = restore.rate;
+  status_.content().rate = restore.rate;
   fence_.begin_anew();
-  checkpoints_->go_back(restore.era, restore.at_step, parts);
-  status_.era = restore.era;
+  checkpoints().go_back(restore.era, restore.at_step, parts);
+  status_.content().era = restore.era;
   reset_.reset();
   if (restore.region != options_.region) hold_at_.reset();  // the node that sent the restore repeats the pause
   if (began_ == Clock::time_point{}) began_ = pacer_.due(first_step());
   begin_with(node_->start(world, from_first ? node::Recorded::kNo : node::Recorded::kYes));
   const double stood_s = std::chrono::duration<double>(Clock::now() - recovering_since_).count();
-  notice_ = fmt::format("went back to state {} after {:.2f} s", node_->current_step(), stood_s);
-  spdlog::info("region {} {}", core::value_of(options_.region), notice_);
+  const std::string news = fmt::format("went back to state {} after {:.2f} s", node_->current_step(), stood_s);
+  spdlog::info("region {} {}", core::value_of(options_.region), news);
+  notices_.note_news(news);
 }
 
 }  // namespace aurasim::process

@@ -33,7 +33,7 @@ std::optional<std::string> NodeProcess::death() {
   if (is_running) own.silent = node_->protocol().intake().dead_regions();
   if (restore_) own.restore = &*restore_;
   own.is_going_back = is_going_back_;
-  return why_stand(control_.statuses(), own);
+  return why_stand(control().statuses(), own);
 }
 
 /// To be called while all wait for each other. Throws SomebodyDied if a node has died.
@@ -42,19 +42,19 @@ void NodeProcess::look_for_deaths() {
 }
 
 bool NodeProcess::has_successor() {
-  return std::ranges::any_of(control_.strangers(), [this](const messages::SeenStatus& stranger) {
+  return std::ranges::any_of(control().strangers(), [this](const messages::SeenStatus& stranger) {
     const messages::Status& other = stranger.status;
     return other.region == options_.region && other.state == messages::NodeState::kSpare &&
-           other.agreement == status_.agreement && other.run == options_.run;
+           other.agreement == status_.content().agreement && other.run == options_.run;
   });
 }
 
 bool NodeProcess::call_spare(core::RegionId region) {
-  const std::vector<messages::Status> spares = control_.spares();
+  const std::vector<messages::Status> spares = control().spares();
   const auto free =
       std::ranges::find_if(spares, [this](const messages::Status& spare) { return !taken_.contains(spare.process); });
   if (free == spares.end()) return false;
-  control_.send(steering::about_process(messages::RunCommandKind::kTake, options_.run, region, free->process));
+  control().send(steering::about_process(messages::RunCommandKind::kTake, options_.run, region, free->process));
   taken_.insert(free->process);
   recovery_.note_called(region, Clock::now());
   return true;
@@ -73,16 +73,16 @@ void NodeProcess::stand_in(const std::vector<core::RegionId>& regions) {
 /// lowest region calls a spare; if there is none, the host of the next region starts a process.
 void NodeProcess::hear_of_drain(const messages::RunCommand& drain) {
   if (!recovers()) return;
-  const auto& statuses = control_.statuses();
+  const auto& statuses = control().statuses();
   const auto meant = statuses.find(drain.region);
-  const bool is_self = drain.region == options_.region && drain.process == status_.process;
+  const bool is_self = drain.region == options_.region && drain.process == status_.content().process;
   const bool is_there = is_self || (meant != statuses.end() && meant->second.status.process == drain.process);
   if (!is_there || !leaving_.insert(drain.process).second) return;
   drains_ = drains_ || is_self;
   if (options_.has_launcher) return;
   const bool leads = std::ranges::none_of(
       statuses, [this](const auto& entry) { return entry.first < options_.region && entry.second.is_live(); });
-  if (!control_.spares().empty()) {
+  if (!control().spares().empty()) {
     if (leads) call_spare(drain.region);
   } else if (!is_self && recovery_.is_next_after(drain.region, recovery_view(statuses, true))) {
     spdlog::info("the node of region {} is to leave: this host takes it over, beside region {}",
@@ -94,7 +94,7 @@ void NodeProcess::hear_of_drain(const messages::RunCommand& drain) {
 /// True if another node stays that can go on with this node's world.
 bool NodeProcess::can_leave_to_others() {
   if (!recovers()) return false;
-  return std::ranges::any_of(control_.statuses(), [this](const auto& entry) {
+  return std::ranges::any_of(control().statuses(), [this](const auto& entry) {
     return entry.first != options_.region && entry.second.is_live() && !leaving_.contains(entry.second.status.process);
   });
 }
@@ -103,9 +103,9 @@ bool NodeProcess::can_leave_to_others() {
 void NodeProcess::leave_if_asked() {
   if (!host::asked_to_leave() || leaves_by_) return;
   leaves_by_ = Clock::now() + kPatienceWithSuccessor;
-  messages::RunCommand drain =
-      steering::about_process(messages::RunCommandKind::kDrain, options_.run, options_.region, status_.process);
-  control_.send(drain);
+  messages::RunCommand drain = steering::about_process(messages::RunCommandKind::kDrain, options_.run, options_.region,
+                                                       status_.content().process);
+  control().send(drain);
   hear_of_drain(drain);
 }
 
@@ -114,9 +114,9 @@ void NodeProcess::leave_if_asked() {
 bool NodeProcess::may_leave() {
   if (!has_successor()) return false;
   if (!successor_since_) successor_since_ = node_->current_step();
-  const std::vector<messages::KeptPart> ours = checkpoints_->parts();
-  const std::vector<core::RegionId>& keepers = checkpoints_->keepers();
-  const auto& statuses = control_.statuses();
+  const std::vector<messages::KeptPart> ours = checkpoints().parts();
+  const std::vector<core::RegionId>& keepers = checkpoints().keepers();
+  const auto& statuses = control().statuses();
   const bool stands = phase_ == NodePhase::kPaused;  // a paused run has no newer state
   return std::ranges::any_of(ours, [&](const messages::KeptPart& part) {
     if (part.region != options_.region || (part.step < *successor_since_ && !stands)) return false;
@@ -134,8 +134,8 @@ bool NodeProcess::may_leave() {
 command_line::ExitCode NodeProcess::leave_to_successor() {
   spdlog::info("region {} leaves after state {}: {}", core::value_of(options_.region), node_->current_step(),
                has_successor() ? "another process takes over" : "nobody has come to take over yet");
-  control_.send(
-      steering::about_process(messages::RunCommandKind::kLost, options_.run, options_.region, status_.process));
+  control().send(steering::about_process(messages::RunCommandKind::kLost, options_.run, options_.region,
+                                         status_.content().process));
   return command_line::ExitCode::kOk;
 }
 

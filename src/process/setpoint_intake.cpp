@@ -1,0 +1,44 @@
+#include "process/setpoint_intake.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace aurasim::process {
+
+void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64_t endpoints_refused, core::Step step,
+                          const Give& give) {
+  for (const core::Setpoints& setpoints : received) {
+    switch (give(setpoints)) {
+      case core::Heard::kInTime:
+        break;
+      case core::Heard::kLate:
+        ++counts_.late;
+        if (!std::exchange(says_late_, true)) {
+          spdlog::warn("setpoints for state {} have come in state {}; how many are late is counted", setpoints.at_step,
+                       step);
+        }
+        break;
+      case core::Heard::kRefused:
+        ++unheard_;
+        break;
+    }
+    ++counts_.received;
+  }
+  counts_.refused = endpoints_refused + unheard_ + unbearable_;
+  if (counts_.refused > 0 && !std::exchange(says_refused_, true)) {
+    spdlog::warn("setpoints were refused: not understood, too many, too far ahead, or more than a body can bear");
+  }
+}
+
+bool SetpointIntake::has_all_awaited(const AwaitedWords::HasHeard& has_heard, core::Step next, Clock::time_point now) {
+  const bool all_received = awaited_.are_here(has_heard, now);
+  for (const core::ProgramWord& word : awaited_.take_given_up()) {
+    ++unheard_;
+    spdlog::warn("a step names setpoints {} of program {:x}, which have not come: state {} is computed without them",
+                 word.number, word.program, next);
+  }
+  return all_received;
+}
+
+}  // namespace aurasim::process

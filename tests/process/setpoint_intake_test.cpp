@@ -1,0 +1,71 @@
+// Counts of setpoints that are late or refused, and setpoints that a step waits for.
+#include "process/setpoint_intake.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+
+class SetpointIntakeTest : public ::testing::Test {
+ protected:
+  static constexpr std::chrono::steady_clock::time_point kBegin{100s};
+
+  void take(std::vector<core::Heard> answers, std::uint64_t endpoints_refused = 0) {
+    const std::vector<core::Setpoints> received(answers.size());
+    std::size_t next = 0;
+    intake_.take(received, endpoints_refused, 10, [&](const core::Setpoints&) { return answers.at(next++); });
+  }
+  bool may_compute(bool is_here, SetpointIntake::Clock::time_point now) {
+    return intake_.has_all_awaited([is_here](const core::ProgramWord&) { return is_here; }, 11, now);
+  }
+  void await(std::uint64_t number) {
+    messages::RunCommand step;
+    step.after = {5, number};
+    intake_.await(step, kBegin);
+  }
+
+  SetpointIntake intake_;
+};
+
+TEST_F(SetpointIntakeTest, CountsWhatTheNodeAnswers) {
+  take({core::Heard::kInTime, core::Heard::kLate, core::Heard::kRefused, core::Heard::kInTime});
+  EXPECT_EQ(intake_.counts().received, 4U);
+  EXPECT_EQ(intake_.counts().late, 1U);
+  EXPECT_EQ(intake_.counts().refused, 1U);
+}
+
+TEST_F(SetpointIntakeTest, CountsRefusalsOfTheEndpointsAndOfBodiesToo) {
+  intake_.note_unbearable(3);
+  take({core::Heard::kRefused}, 4);
+  EXPECT_EQ(intake_.counts().refused, 8U);
+  take({}, 6);
+  EXPECT_EQ(intake_.counts().refused, 10U) << "the endpoints count by themselves";
+}
+
+TEST_F(SetpointIntakeTest, AStepWaitsForTheSetpointsThatItNames) {
+  EXPECT_TRUE(may_compute(false, kBegin)) << "nothing is named";
+  await(3);
+  EXPECT_FALSE(may_compute(false, kBegin + 500ms));
+  EXPECT_TRUE(may_compute(true, kBegin + 600ms));
+  EXPECT_TRUE(may_compute(false, kBegin + 700ms)) << "received once is enough";
+}
+
+TEST_F(SetpointIntakeTest, SetpointsThatDoNotComeAreGivenUpAndCountAsRefused) {
+  await(3);
+  EXPECT_TRUE(may_compute(false, kBegin + 1s));
+  take({});
+  EXPECT_EQ(intake_.counts().refused, 1U);
+}
+
+TEST_F(SetpointIntakeTest, AnotherWorldWaitsForNothing) {
+  await(3);
+  intake_.begin_world();
+  EXPECT_TRUE(may_compute(false, kBegin));
+}
+
+}  // namespace
+}  // namespace aurasim::process
