@@ -114,7 +114,7 @@ std::vector<core::Setpoints> NodeEndpoints::take_setpoints(core::Generation gene
 std::uint64_t NodeEndpoints::refused_setpoints() const { return programs_->refused() + (ros2_ ? ros2_->refused() : 0); }
 
 void NodeEndpoints::publish_ros2(node::Node& node, core::Generation generation) {
-  if (ros2_) ros2_->tell(node, generation, leads());
+  if (ros2_) ros2_->publish(node, generation, leads());
 }
 
 std::map<core::RegionId, node::PeerSign> NodeEndpoints::peer_signs() {

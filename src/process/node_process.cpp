@@ -1,16 +1,13 @@
 #include "process/node_process.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "core/command.h"
 #include "dds/random_id.h"
 #include "host/stop_signal.h"
 #include "process/long_step.h"
@@ -60,10 +57,10 @@ NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& option
       records_(options.report, options.region),
       notices_(options.region, node::read_clocks()),
       status_(identity_of_node(launch, options), Clock::now()),
-      pacer_(launch.step_s(), launch.time.pace == config::Pace::kWall),
-      recovery_(recovery_settings(launch, options, !endpoints_.stays_on_this_host())) {
-  stop_at_ = options.steps;
-}
+      schedule_(launch.step_s(), launch.time.pace == config::Pace::kWall, options.steps),
+      start_(options.region, launch.regions.size()),
+      leaving_(options.region, status_.content().process),
+      recovery_(recovery_settings(launch, options, !endpoints_.stays_on_this_host())) {}
 
 FenceSettings NodeProcess::fence_settings() const {
   FenceSettings settings;
@@ -98,8 +95,10 @@ command_line::ExitCode NodeProcess::meet_and_run() {
   publish();
   endpoints_.open(transport_settings());
   if (!meet_neighbours() || !wait_for_start()) return not_begun();
-  compare_clocks();
-  begin_generation(start_->generation, *start_);
+  for (const std::string& text : wrong_clocks(control().statuses(), endpoints_.stays_on_this_host())) {
+    spdlog::warn("{}", text);
+  }
+  begin_generation(start_.start()->generation, *start_.start());
   return run_steps();
 }
 
@@ -112,7 +111,7 @@ command_line::ExitCode NodeProcess::take_over() {
   endpoints_.open_checkpoints();
   recover("takes the region over");
   if (fence_.closed()) return refuse(fence_.reason());
-  if (!node_ && !broken_off_.empty()) return end_without_world();
+  if (!node_ && restoration_.is_broken_off()) return end_without_world();
   return node_ ? run_steps() : not_begun();
 }
 
@@ -163,24 +162,21 @@ void NodeProcess::begin_generation(core::Generation generation, const messages::
   node_->accept_early_mail(std::move(mail));
   endpoints_.commands().begin_generation(*node_, generation);
   records_.begin();
-  pacer_.set_epoch(first_step(), begin.epoch_ns, begin.clock_ahead, node::read_clocks());
-  hold_at_.reset();
+  schedule_.begin_world(first_step(), begin, node::read_clocks());
   setpoints_.begin_world();
-  paused_ = {};
   begin_with(options_.world ? node_->start(*options_.world) : node_->start());
-  began_ = std::max(pacer_.due(first_step()), Clock::now());
+  schedule_.note_begun(first_step(), Clock::now());
 }
 
 /// To be called when the first state of a generation is there.
 void NodeProcess::begin_with(const node::StepReport& report) {
-  run_orders_.clear();
-  stops_standing_ = false;
-  run_control_limits_.begin(node_->current_step(), Clock::now());
+  changes_.begin_world();
+  restoration_.begin_world();
+  commands_.begin(node_->current_step(), Clock::now());
   if (recovers()) host::let_sigterm_ask_to_leave(options_.has_launcher);
-  hurry_until_ = 0;
   notices_.begin_refusals();
   records_.forget_frames();
-  saving_.begin(start_->request, generation_, node_->current_step());
+  saving_.begin(start_.start()->request, generation_, node_->current_step());
   if (launch_.regions.size() > 1) checkpoints().use_keepers(keepers(), life_);
   endpoints_.observers().begin_generation(generation_);
   endpoints_.observers().after_step(*node_, report);
@@ -202,15 +198,15 @@ command_line::ExitCode NodeProcess::run_steps() {
   for (;;) {
     try {
       run_until_end();
-      const bool leaves = leaves_now() || (leaves_by_ && can_leave_to_others());
-      return leaves && broken_off_.empty() ? leave_to_successor() : end();
+      const bool leaves = leaves_now() || (leaving_.has_begun() && can_leave_to_others());
+      return leaves && !restoration_.is_broken_off() ? leave_to_successor() : end();
     } catch (const SomebodyDied& died) {
       if (recovers()) {
         recover(died.what());
       } else {
         break_off(died.what());
       }
-      if (!node_ && !broken_off_.empty()) return end_without_world();
+      if (!node_ && restoration_.is_broken_off()) return end_without_world();
     }
   }
 }
@@ -218,10 +214,10 @@ command_line::ExitCode NodeProcess::run_steps() {
 void NodeProcess::run_until_end() {
   while (!finished() && !leaves_now()) {
     leave_if_asked();
-    obey_early_commands();
+    execute_early_commands();
     execute_commands();
     look_for_deaths();
-    obey_late_commands();
+    execute_late_commands();
     serve_clients();
     keep_parts();
     if (reset_if_due() || change_if_due()) continue;
@@ -239,20 +235,10 @@ void NodeProcess::run_until_end() {
 bool NodeProcess::wait_until_due() {
   const core::Step next = node_->current_step() + 1;
   const auto begin = Clock::now();
-  if (hold_at_) hold_at_ = pause_follower_.holds_at(*hold_at_, farthest_paused_step(), begin);
-  if (hold_at_ && node_->current_step() >= *hold_at_) {
-    if (phase_ != NodePhase::kPaused) enter(NodeEvent::kHeld);
-    publish();
-    node_->ready();
-    endpoints_.observers().while_paused(*node_);
-    // Observers wait for the states of bodies that are under way to this node.
-    if (node_->has_all_until(node_->current_step())) {
-      control().wait(20ms);
-    } else {
-      transport().wait_for_arrival(2ms);
-    }
-    fence_is_open();
-    paused_ += Clock::now() - begin;
+  if (schedule_.holds_at()) schedule_.follow(farthest_paused_step(), begin);
+  if (schedule_.is_held_in(node_->current_step())) {
+    wait_in_pause();
+    schedule_.note_pause(Clock::now() - begin);
     return false;
   }
   if (phase_ == NodePhase::kPaused) enter(NodeEvent::kGoesOn);
@@ -260,7 +246,7 @@ bool NodeProcess::wait_until_due() {
     control().wait(20ms);
     return false;
   }
-  if (const std::chrono::nanoseconds until = time_until(next); until > 0ns) {
+  if (const std::chrono::nanoseconds until = schedule_.time_until(next, node::read_clocks()); until > 0ns) {
     transport().wait_for_arrival(std::min<std::chrono::nanoseconds>(until, 20ms));
     node_->ready();
     publish_running();
@@ -275,6 +261,21 @@ bool NodeProcess::wait_until_due() {
   note_waiting();
   publish_running();
   return false;
+}
+
+/// Waits a moment in the state in which the run is paused.
+void NodeProcess::wait_in_pause() {
+  if (phase_ != NodePhase::kPaused) enter(NodeEvent::kHeld);
+  publish();
+  node_->ready();
+  endpoints_.observers().while_paused(*node_);
+  // Observers wait for the states of bodies that are under way to this node.
+  if (node_->has_all_until(node_->current_step())) {
+    control().wait(20ms);
+  } else {
+    transport().wait_for_arrival(2ms);
+  }
+  fence_is_open();
 }
 
 /// The latest state in which a node of this world is paused.
@@ -300,7 +301,7 @@ void NodeProcess::compute_step() {
   saving_.look_at_doubtful(*node_, std::nullopt);
   endpoints_.commands().after_step(report);  // before observers_, because observers need the additions
   endpoints_.observers().after_step(*node_, report);
-  run_orders_.insert(run_orders_.end(), report.orders.begin(), report.orders.end());
+  changes_.add(report.orders);
   for (const core::Order& order : report.orders) {
     if (std::holds_alternative<core::Save>(order.action)) saving_.expect(order);
   }
@@ -308,12 +309,13 @@ void NodeProcess::compute_step() {
   node_->protocol().report_frame(report.step, frame_ms / 1e3);
   records_.note_frame(report.step, frame_ms);
   record(node_->confirmed());
-  computed_at_ = Clock::now();
-  run_control_limits_.note(report.step, computed_at_);
+  const auto now = Clock::now();
+  schedule_.note_computed(now);
+  commands_.note(report.step, now);
   notices_.note_computed();
-  status_.note_step(report, frame_ms, Clock::now());
+  status_.note_step(report, frame_ms, now);
   publish_running();
-  apply_orders();
+  take_reached_changes();
 }
 
 /// Notes a redo, which all nodes do after the same state. Observers keep the states that they have until the run has
@@ -332,7 +334,7 @@ void NodeProcess::note_redo(const node::StepReport& report) {
   status_.content().redos = node_->redos();
   endpoints_.observers().put_back();
   record(node_->confirmed());
-  computed_at_ = Clock::now();
+  schedule_.note_computed(Clock::now());
   publish_running();
 }
 
@@ -362,18 +364,6 @@ void NodeProcess::note_waiting() {
     missing.push_back({region, is_known ? long_step(other->second, now) : std::nullopt, status_.refused_of(region)});
   }
   notices_.note_missing(next, missing, now);
-}
-
-/// Time until `step` is due. In slow motion, states before a pause, a reset or the end are due as in real time.
-std::chrono::nanoseconds NodeProcess::time_until(core::Step step) const {
-  const std::chrono::nanoseconds until = pacer_.until(step, node::read_clocks());
-  if (step > hurry_until_) return until;
-  const auto in_real_time = computed_at_ + std::chrono::duration<double>(launch_.step_s()) - Clock::now();
-  return std::min(until, std::max(0ns, std::chrono::duration_cast<std::chrono::nanoseconds>(in_real_time)));
-}
-
-void NodeProcess::execute_commands() {
-  for (const messages::RunCommand& command : control().take_commands()) execute(command);
 }
 
 }  // namespace aurasim::process

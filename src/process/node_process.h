@@ -1,13 +1,13 @@
-// One node as a process: joins the DDS domain, waits for its neighbours, keeps pace, executes run commands, records.
+// One node as a process: joins the DDS domain, waits for its neighbours, computes states at their time, executes run
+// commands, records, and recovers with the others when a node dies. It is a loop over parts. Each part owns its state
+// and decides; this class waits, sends and receives (docs/architecture.md, "A process").
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -15,12 +15,12 @@
 
 #include "command_line/exit_code.h"
 #include "config/launch.h"
-#include "cut/saved_world.h"
-#include "dds/control.h"
+#include "host/long_work.h"
 #include "node/node.h"
-#include "node/pacer.h"
+#include "process/command_queue.h"
 #include "process/fence.h"
-#include "process/hold.h"
+#include "process/leaving.h"
+#include "process/meeting.h"
 #include "process/node_endpoints.h"
 #include "process/node_options.h"
 #include "process/node_phase.h"
@@ -29,10 +29,11 @@
 #include "process/patience.h"
 #include "process/records.h"
 #include "process/recovery.h"
-#include "process/run_control_limits.h"
+#include "process/restoration.h"
+#include "process/run_changes.h"
+#include "process/run_schedule.h"
 #include "process/saving.h"
 #include "process/setpoint_intake.h"
-#include "process/world_meant.h"
 
 namespace aurasim::process {
 
@@ -53,130 +54,140 @@ class NodeProcess {
   bool comes_back_as_spare() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   dds::ControlBus& control() { return endpoints_.control(); }
   dds::DdsTransport& transport() { return endpoints_.transport(); }
   Checkpoints& checkpoints() { return endpoints_.checkpoints(); }
+  bool recovers() const { return launch_.recovers(); }
+  core::Step first_step() const { return options_.world ? options_.world->step : 0; }
+  core::Step present_step() const { return node_ ? node_->current_step() : first_step(); }
+
+  // The loop (node_process.cpp)
   FenceSettings fence_settings() const;
   bool fence_is_open();
   command_line::ExitCode meet_and_run();
   command_line::ExitCode take_over();
-  bool domain_is_free();
-  bool hears_another_node();
-  double share_of_nodes();
-  bool meet_neighbours();
-  bool another_run_is_here();
-  bool another_agreement_is_here();
-  bool the_same_run_is_here();
-  void name_the_dead();
-  std::uint64_t met();
-  std::string who_does_not_wait();
-  void start_when_all_wait();
-  void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
-  bool wait_for_start();
+  command_line::ExitCode refuse(const std::string& why);
+  command_line::ExitCode not_begun();
+  void enter(NodeEvent event);
+  dds::TransportSettings transport_settings();
+  std::unique_ptr<node::Node> make_node();
   /// `begin`: the command that names the start time.
   void begin_generation(core::Generation generation, const messages::RunCommand& begin);
-  std::unique_ptr<node::Node> make_node();
   void begin_with(const node::StepReport& report);
-  dds::TransportSettings transport_settings();
+  void record(std::span<const node::StepReport> reports);
   command_line::ExitCode run_steps();
   void run_until_end();
-  command_line::ExitCode end();
   bool wait_until_due();
+  void wait_in_pause();
   core::Step farthest_paused_step();
-  std::chrono::nanoseconds time_until(core::Step step) const;
-  void note_strangers();
-  void note_waiting();
-  bool somebody_computes_for_long();
   void compute_step();
-  void execute_commands();
-  core::Step first_step() const { return options_.world ? options_.world->step : 0; }
-  void compute_until_change();
-  void step_back(const RunView& run);
-  void send_back(messages::RunCommand restore, const core::Command& back);
-  void keep_parts();
-  void note_words_of_saves();
-  void conclude_saves();
-  bool recovers() const { return launch_.recovers(); }
-  std::optional<std::string> death();
-  void look_for_deaths();
-  bool has_successor();
-  std::vector<core::RegionId> keepers();
-  bool leaves_now() { return drains_ && may_leave(); }
-  bool may_leave();
-  bool can_leave_to_others();
-  void leave_if_asked();
-  command_line::ExitCode leave_to_successor();
-  void recover(const std::string& why);
-  void begin_to_recover();
-  bool agree_on_restore();
-  void meet_anew();
-  void note_unheard(const SeenNodes& nodes);
-  bool has_to_leave_recovery(const SeenNodes& nodes);
-  RecoveryView recovery_view(const SeenNodes& nodes, bool may_go_on) const;
-  SeenNodes nodes_and_self();
-  std::string what_recovery_waits_for(const std::vector<core::RegionId>& vacant);
-  void give_up(const std::vector<core::RegionId>& vacant);
-  void break_off(const std::string& why);
-  command_line::ExitCode end_without_world();
-  bool call_spare(core::RegionId region);
-  void stand_in(const std::vector<core::RegionId>& regions);
-  void hear_of_drain(const messages::RunCommand& drain);
-  void lead_recovery();
-  bool may_begin_again(core::Generation era);
-  void hear_of_restore(const messages::RunCommand& restore);
-  void hear_of_end(const messages::RunCommand& end);
-  void give_way(core::Step step);
-  void throw_away_after(core::Step step);
-  void repeat_commands(const messages::RunCommand& restore);
-  void go_back(const messages::RunCommand& restore);
-  void take_map_of(const messages::RunCommand& restore);
-  void wait_in_recovery(std::chrono::steady_clock::time_point deadline, const char* for_what);
-  core::WorldCut gather(const messages::RunCommand& restore, std::map<core::RegionId, std::string>& parts);
-  core::WorldCut decode_part(const std::string& octets) const;
-  void record_after(std::optional<core::Step> step);
-  void begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
-                      const std::map<core::RegionId, std::string>& parts);
-  void serve_clients();
+  void note_redo(const node::StepReport& report);
   void take_setpoints();
   bool has_awaited_setpoints();
-  void change_rate(double rate);
-  void hold_in(core::Step state);
-  void step_on(const messages::RunCommand& step);
-  void apply_orders();
+  void note_waiting();
+
+  // Meeting (node_process_meeting.cpp)
+  bool domain_is_free();
+  bool another_run_is_here();
+  bool hears_another_node();
+  bool meet_neighbours();
+  bool wait_for_start();
+  void note_meeting(Patience& patience, host::LongWork& waiting);
+  void log_early_deaths();
+  void start_when_all_wait();
+  void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
+
+  // Run commands and clients (node_process_commands.cpp)
+  void execute_commands();
   void execute(const messages::RunCommand& command);
+  void execute_end(const messages::RunCommand& end);
+  void apply(const messages::RunCommand& command);
+  void command_all(messages::RunCommand command);
+  void execute_early_commands();
+  void execute_late_commands();
+  bool is_plausible(const messages::RunCommand& command);
   Worlds known_worlds() const;
-  void obey(const messages::RunCommand& command);
-  void obey_early_commands();
-  void obey_late_commands();
-  bool can_be_meant(const messages::RunCommand& command);
-  /// True if another world has begun.
   bool reset_if_due();
+  void serve_clients();
+  void compute_until_change();
+
+  // Changes of the run as a whole (node_process_changes.cpp)
+  void take_reached_changes();
   bool change_if_due();
   void change_scene(const std::string& name);
   void change_world(const std::string& file);
+  void change_regions(const std::vector<core::Rectangle>& boxes);
   void begin_anew();
   void publish_map(core::Generation generation, core::Step from_step);
-  void change_regions(const std::vector<core::Rectangle>& boxes);
-  void settle_all();
   void wait_until_all_stand();
+  void settle_all();
+  bool somebody_computes_for_long();
   void connect_for_change(const dds::TransportSettings& settings);
-  bool finished();
-  bool has_reached(core::Step step) const;
-  void keep_the_end();
-  bool is_about_to_change() const;
-  void record(std::span<const node::StepReport> reports);
-  void note_redo(const node::StepReport& report);
-  void linger();
-  bool all_have_left();
-  bool has_all_of_the_last_states();
-  messages::RunCommand with_clock_of(core::RegionId region, messages::RunCommand command);
-  void compare_clocks();
-  void enter(NodeEvent event);
+  void begin_changed_map();
+
+  // Kept parts and saved worlds (node_process_keeping.cpp)
+  void keep_parts();
+  void note_words_of_saves();
+  void conclude_saves();
+  void step_back(const RunView& run);
+  void send_back(messages::RunCommand restore, const core::Command& back);
+  std::vector<core::RegionId> keepers();
+
+  // Recovery (node_process_recovery.cpp)
+  std::optional<std::string> death();
+  void look_for_deaths();
+  void recover(const std::string& why);
+  void begin_to_recover();
+  bool agree_on_restore();
+  void execute(const RecoveryActs& acts);
+  void join_anew();
+  bool has_to_leave_recovery(const SeenNodes& nodes);
+  RecoveryView recovery_view(const SeenNodes& nodes, bool may_go_on) const;
+  SeenNodes nodes_and_self();
+  void give_up(const std::vector<core::RegionId>& vacant);
+  void break_off(const std::string& why);
+  void lead_recovery();
+  void send_restore(messages::RunCommand restore);
+  bool may_begin_again(core::Generation era);
+  void execute_restore(const messages::RunCommand& restore);
+  void give_way(core::Step step);
+  void throw_away_after(core::Step step);
+
+  // The way back to a kept state (node_process_restore.cpp)
+  void go_back();
+  void take_map_of(const messages::RunCommand& restore);
+  void wait_in_recovery(Clock::time_point deadline, const char* for_what);
+  void record_after(std::optional<core::Step> step);
+  void begin_restored(const messages::RunCommand& restore, const core::WorldCut& world,
+                      const std::map<core::RegionId, std::string>& parts);
+
+  // Other processes for a region (node_process_leaving.cpp)
+  void call_spare(core::RegionId region);
+  void spawn_successor(core::RegionId region);
+  void execute_drain(const messages::RunCommand& drain);
+  void leave_if_asked();
+  bool can_leave_to_others();
+  bool leaves_now();
+  command_line::ExitCode leave_to_successor();
+
+  // The status (node_process_status.cpp)
   void publish(const std::string& text = {});
   void publish_running();
-  command_line::ExitCode refuse(const std::string& why);
-  command_line::ExitCode not_begun();
+  void note_strangers();
   double real_time_factor() const;
+
+  // The end (node_process_end.cpp)
+  bool finished();
+  bool has_reached(core::Step step) const;
+  bool has_reached_the_end() const;
+  void keep_the_end();
+  command_line::ExitCode end();
+  command_line::ExitCode end_without_world();
+  void linger();
+  bool others_have_left();
+  bool has_all_of_the_last_states();
 
   NodePhase phase_ = NodePhase::kListening;
   config::Launch launch_;
@@ -189,48 +200,17 @@ class NodeProcess {
   Notices notices_;
   NodeStatus status_;
   SetpointIntake setpoints_;
-  std::vector<core::Order> run_orders_;  ///< orders about the run as a whole that are not due yet
-  node::Pacer pacer_;
+  RunSchedule schedule_;
+  CommandQueue commands_;
+  RunChanges changes_;
+  AwaitedStart start_;
+  EarlyDeaths early_deaths_;
+  Leaving leaving_;
+  Recovery recovery_;
+  Restoration restoration_;
   core::Generation generation_ = 0;
-  std::optional<core::Generation> begun_;  ///< generation that node_ computes in, or has computed in last
-  std::optional<core::Step> hold_at_;      ///< paused once this state has been computed
-  AskedSteps asked_steps_;                 ///< steps asked for since the run was paused
-  PauseFollower pause_follower_;
-  std::optional<core::Step> stop_at_;
-  std::optional<messages::RunCommand> reset_;
-  RunControlLimits run_control_limits_;
-  std::optional<messages::RunCommand> start_;
-  core::Generation waits_to_start_ = 0;  ///< generation that a start command has to name
-  std::optional<core::Order> change_;    ///< order that changes the run as a whole, due now
-  struct BeforeChange {
-    config::Launch launch;
-    std::shared_ptr<const core::WorldCut> world;
-  };
-  std::optional<BeforeChange> before_change_;    ///< set while a change is under way
-  std::vector<messages::RunCommand> early_;      ///< commands of a generation that has not begun here
-  std::vector<messages::RunCommand> late_;       ///< commands of generations before restore_'s, received since restore_
-  std::optional<messages::RunCommand> restore_;  ///< the newest restore command
-  core::Generation restoring_ = 0;               ///< generation that a recovery is about to begin, or has begun
-  int failed_changes_ = 0;                       ///< in a row
   core::Generation life_ = 0;          ///< generation with which the run went on after the last death or change
   core::Generation life_of_node_ = 0;  ///< the life_ with which node_ has begun
-  bool drains_ = false;                ///< this node gives its region to another process as soon as there is one
-  std::optional<std::chrono::steady_clock::time_point> leaves_by_;  ///< asked to leave: the latest time to do so
-  std::set<std::uint64_t> leaving_;                                 ///< processes that drain
-  std::optional<core::Step> successor_since_;                       ///< state in which the successor was first seen
-  std::string broken_off_;          ///< why the run ends before its time: another region's node has died
-  bool is_going_back_ = false;      ///< all have agreed on restore_, and not all have begun
-  core::Generation stands_in_ = 0;  ///< generation published while waiting in a recovery
-  std::chrono::steady_clock::time_point recovering_since_;
-  Recovery recovery_;
-  std::set<std::uint64_t> taken_;  ///< processes of spares that were called
-  std::string asks_for_;           ///< decision that a user has to take before the run can go on; empty: none
-  bool stops_standing_ = false;    ///< stopped in a recovery: does not wait for the others
-  core::Step hurry_until_ = 0;     ///< a client waits for this state: until then the pace is at least real time
-  std::chrono::steady_clock::time_point computed_at_;  ///< when the last state was computed
-  std::chrono::steady_clock::time_point began_;
-  std::chrono::steady_clock::duration paused_{};
-  std::set<core::RegionId> missed_;  ///< regions whose nodes died while the nodes met; each is logged once
 };
 
 }  // namespace aurasim::process

@@ -1,19 +1,16 @@
 // The changes of a whole run while it runs: another scene, another world, other regions. All nodes come to a change
 // after the same state.
 #include <algorithm>
-#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "config/launch_variants.h"
-#include "dds/replica_bus.h"
 #include "host/stop_signal.h"
-#include "node/repartition.h"
 #include "process/long_step.h"
 #include "process/node_process.h"
+#include "process/region_change.h"
 #include "setup/launch_setup.h"
 
 namespace aurasim::process {
@@ -24,7 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatienceWithOthers = 20s;
 constexpr auto kRound = 5ms;
-constexpr int kMostFailedChanges = 3;  // in a row
 
 /// Thrown when a change of the run fails, with what went wrong and the regions concerned.
 class ChangeFailed : public std::runtime_error {
@@ -32,60 +28,33 @@ class ChangeFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Collects from all regions the bodies that they host.
-std::vector<node::Resident> take_census(const node::RepartitionSettings& settings, Clock::time_point deadline,
-                                        dds::Participant& participant, const node::Node& node,
-                                        const std::function<void()>& look_for_deaths) {
-  dds::ObserverSettings watched;
-  watched.map_version = settings.map->version();
-  watched.region_count = static_cast<std::uint32_t>(settings.map->size());
-  watched.prototype_count = static_cast<std::uint32_t>(node.scene().prototypes.size());
-  dds::ReplicaReader reader(participant, watched);
-  node::Census census(settings, node.current_step());
-  while (!census.complete()) {
-    if (Clock::now() > deadline) {
-      throw ChangeFailed(fmt::format("new regions: regions {} have not published what they host", census.silent()));
-    }
-    look_for_deaths();
-    reader.wait(kRound);
-    for (const core::Replica& replica : reader.take()) census.accept(replica);
-  }
-  return census.take();
-}
-
 }  // namespace
 
-/// Applies the orders about the run as a whole whose state has been computed.
-void NodeProcess::apply_orders() {
-  std::erase_if(run_orders_, [this](const core::Order& order) {
-    const bool changes = core::changes_the_run(order.action);
-    if (changes ? !has_reached(order.at_step) : node_->current_step() < order.at_step) return false;
-    if (changes) {
-      record(node_->finish(order.at_step));
-      change_ = order;
-    }
-    return true;
-  });
+/// Removes the orders about the run as a whole whose state has been computed. A change becomes due, and the node is
+/// finished in its state.
+void NodeProcess::take_reached_changes() {
+  for (const core::Step step : changes_.take_reached(node_->current_step(), node_->confirmed_step())) {
+    record(node_->finish(step));
+  }
 }
 
+/// True if another world, or a world of other regions, has begun.
 bool NodeProcess::change_if_due() {
-  if (!change_) return false;
-  const core::Order order = *std::exchange(change_, std::nullopt);
-  before_change_ = BeforeChange{launch_, options_.world};
-  const bool stands = hold_at_.has_value();
+  if (!changes_.is_due()) return false;
+  const core::Order order = changes_.begin({launch_, options_.world});
+  const bool stands = schedule_.holds_at().has_value();
   try {
     if (const auto* scene = std::get_if<core::ChangeScene>(&order.action)) change_scene(scene->name);
     if (const auto* regions = std::get_if<core::Repartition>(&order.action)) change_regions(regions->boxes);
     if (const auto* load = std::get_if<core::Load>(&order.action)) change_world(load->file);
   } catch (const ChangeFailed& failed) {
     // All nodes are here and can go back to the world before the change, so the change is tried once more.
-    if (!recovers() || host::stop_requested() || ++failed_changes_ > kMostFailedChanges) throw;
+    if (!recovers() || host::stop_requested() || !changes_.may_try_again()) throw;
     throw SomebodyDied(failed.what());
   }
-  failed_changes_ = 0;
+  changes_.finish();
   life_of_node_ = life_;
-  before_change_.reset();
-  if (stands) hold_in(node_->current_step());
+  if (stands) schedule_.hold_in(node_->current_step());
   return true;
 }
 
@@ -113,13 +82,14 @@ void NodeProcess::publish_map(core::Generation generation, core::Step from_step)
   control().publish_map(map);
 }
 
+/// Begins the changed world from its first state, in a new generation.
 void NodeProcess::begin_anew() {
   wait_until_all_stand();
-  waits_to_start_ = generation_ + 1;
-  publish_map(waits_to_start_, first_step());  // first, so that observers read the new scene before its bodies come
+  start_.await(generation_ + 1);
+  publish_map(start_.generation(), first_step());  // first, so that observers read the new scene before its bodies come
   node_.reset();
   connect_for_change(neighbour_transport(launch_, options_.region));
-  begin_generation(waits_to_start_, *start_);
+  begin_generation(start_.generation(), *start_.start());
 }
 
 /// Waits until all nodes wait in the state of the change. No node may close its transport earlier, because its messages
@@ -183,62 +153,54 @@ void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
   });
 }
 
+/// Changes to other regions. Bodies and orders stay; each body goes to the host that the new map wants.
 void NodeProcess::change_regions(const std::vector<core::Rectangle>& boxes) {
   settle_all();
   wait_until_all_stand();
   const auto deadline = Clock::now() + kPatienceWithOthers;
-  const auto changed = std::make_unique<config::Launch>(config::with_regions(launch_, boxes));
-  const node::RepartitionSettings settings = {options_.region, generation_ + 1, setup::aura_rules(*changed),
-                                              &changed->regions};
-  endpoints_.observers().use_map(changed->regions.version());  // so that observers of the old map do not receive it
-  endpoints_.observers().publish_census(*node_, settings.census);
-  const std::vector<core::Departure> departures = node::find_new_hosts(
-      settings, take_census(settings, deadline, endpoints_.participant(), *node_, [this] { look_for_deaths(); }),
-      *node_);
-
-  dds::TransportSettings to_all = neighbour_transport(*changed, options_.region);
-  to_all.neighbours.clear();
-  for (std::uint32_t r = 0; r < changed->regions.size(); ++r) {
-    if (core::RegionId{r} != options_.region) to_all.neighbours.push_back(core::RegionId{r});
-  }
-  waits_to_start_ = settings.census;
-  connect_for_change(to_all);
-  node::StepReport moved;
-  moved.step = node_->current_step();
-  node::Exchange exchange(settings, departures, transport(), *node_);
-  while (!exchange.ready()) {
+  RegionChange change(launch_, boxes, options_.region, generation_);
+  change.begin_census(endpoints_, *node_);
+  while (!change.has_census()) {
+    if (Clock::now() > deadline) throw ChangeFailed(change.missing_in_census());
     look_for_deaths();
-    if (Clock::now() > deadline) {
-      throw ChangeFailed(fmt::format("new regions: regions {} have not sent their bodies", exchange.silent()));
-    }
+    change.receive_census(kRound);
+  }
+  change.end_census(*node_);
+  start_.await(change.generation());
+  connect_for_change(change.transport_to_all());
+  change.begin_exchange(transport(), *node_);
+  while (!change.has_all_bodies()) {
+    look_for_deaths();
+    if (Clock::now() > deadline) throw ChangeFailed(change.missing_in_exchange());
     transport().wait_for_arrival(kRound);
   }
-  for (const node::HandOffRow& row : exchange.finish()) {
-    (row.source == options_.region ? moved.departures : moved.arrivals).push_back(row);
-  }
+  const node::StepReport moved = change.finish(*node_);
   wait_until_all_stand();
   records_.write_settling(moved);
-  status_.content().hand_offs_out += moved.departures.size();
-  status_.content().hand_offs_in += moved.arrivals.size();
+  status_.note_moved(moved);
+  launch_ = change.launch();
+  start_.await(change.generation() + 1);
+  begin_changed_map();
+  spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
+               moved.arrivals.size());
+}
 
-  launch_ = *changed;
+/// Goes on in the present state with the regions of launch_, in the awaited generation.
+void NodeProcess::begin_changed_map() {
   status_.use_regions(launch_);
-  waits_to_start_ = settings.census + 1;
   connect_for_change(neighbour_transport(launch_, options_.region));
   const node::NodeSetup setup = setup::node_setup(launch_, options_.region, generation_);
   endpoints_.observers().begin_generation(generation_);
   endpoints_.commands().change_map(generation_, node_->current_step());
-  saving_.change_map(start_->request, generation_);
+  saving_.change_map(start_.start()->request, generation_);
   endpoints_.note_served_map();
   control().use_map(launch_.regions.version());
   notices_.begin_refusals();
   const node::StepReport& report = node_->take_map(setup.protocol, launch_.regions, transport());
   endpoints_.observers().after_step(*node_, report);
   record(node_->confirmed());
-  pacer_.set_epoch(node_->current_step() + 1, start_->epoch_ns, start_->clock_ahead, node::read_clocks());
+  schedule_.go_on_after(node_->current_step(), *start_.start(), node::read_clocks());
   publish_map(generation_, node_->current_step());
-  spdlog::info("new regions after step {}: {} bodies sent, {} taken in", node_->current_step(), moved.departures.size(),
-               moved.arrivals.size());
 }
 
 }  // namespace aurasim::process

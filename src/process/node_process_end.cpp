@@ -1,12 +1,10 @@
 // How a node ends its run, and leaves so that the other nodes can end theirs.
 #include <algorithm>
-#include <map>
-#include <utility>
 
 #include <spdlog/spdlog.h>
 
 #include "host/stop_signal.h"
-#include "process/long_step.h"
+#include "process/lingering.h"
 #include "process/node_process.h"
 
 namespace aurasim::process {
@@ -15,17 +13,18 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kLinger = 1500ms;
-constexpr auto kPatienceWithRunners = 30s;  // since any node was last seen to go on
-constexpr auto kPatienceWithReaders = 1s;   // some readers may have left without notice
+constexpr auto kPatienceWithReaders = 1s;  // some readers may have left without notice
 
 }  // namespace
 
 bool NodeProcess::finished() {
-  if (leaves_by_ && (!can_leave_to_others() || Clock::now() > *leaves_by_)) return true;
-  return host::stop_requested() || stops_standing_ || (stop_at_ && has_reached(*stop_at_)) || fence_.closed() ||
-         !broken_off_.empty();
+  if (leaving_.has_begun() && (!can_leave_to_others() || leaving_.is_overdue(Clock::now()))) return true;
+  return host::stop_requested() || restoration_.stop_asked() || has_reached_the_end() || fence_.closed() ||
+         restoration_.is_broken_off();
 }
+
+/// True if the last state of the run is known, computed and confirmed.
+bool NodeProcess::has_reached_the_end() const { return schedule_.stop_at() && has_reached(*schedule_.stop_at()); }
 
 /// True if the state has been computed and is confirmed.
 bool NodeProcess::has_reached(core::Step step) const {
@@ -34,25 +33,23 @@ bool NodeProcess::has_reached(core::Step step) const {
 
 /// Keeps the next state in which the run ends or changes, if it is known.
 void NodeProcess::keep_the_end() {
-  if (stop_at_) node_->keep(*stop_at_);
-  for (const core::Order& order : run_orders_) {
-    if (core::changes_the_run(order.action)) node_->keep(order.at_step);
-  }
+  if (schedule_.stop_at()) node_->keep(*schedule_.stop_at());
+  for (const core::Step step : changes_.states_to_keep()) node_->keep(step);
 }
 
 command_line::ExitCode NodeProcess::end() {
   const double factor = real_time_factor();
-  const bool fenced = fence_.closed(), comes_to_its_end = !fenced && broken_off_.empty();
+  const bool fenced = fence_.closed(), comes_to_its_end = !fenced && !restoration_.is_broken_off();
   if (fenced) spdlog::error("{}", fence_.reason());
   if (!comes_to_its_end || phase_ != NodePhase::kLingering) {
     enter(comes_to_its_end ? NodeEvent::kLast : NodeEvent::kFence);
   }
-  publish(fenced ? fence_.reason() : broken_off_);
+  publish(fenced ? fence_.reason() : restoration_.why_broken_off());
   endpoints_.observers().while_paused(*node_);
   // Taken first: a node that leaves from now on has finished, and has not died.
   const std::vector<core::RegionId> dead = node_->protocol().intake().dead_regions();
   if (comes_to_its_end) linger();
-  const core::Step last = stop_at_ && comes_to_its_end && has_reached(*stop_at_) ? *stop_at_ : node_->current_step();
+  const core::Step last = comes_to_its_end && has_reached_the_end() ? *schedule_.stop_at() : node_->current_step();
   record(node_->finish(last));
   if (records_.recorder() != nullptr && comes_to_its_end && !node_->settled()) records_.write_settling(node_->settle());
   const dds::TransportCounters& sent = transport().counters();
@@ -70,36 +67,29 @@ command_line::ExitCode NodeProcess::end() {
 /// Ends a process of a run that has broken off, which has no world yet.
 command_line::ExitCode NodeProcess::end_without_world() {
   enter(NodeEvent::kFence);
-  publish(broken_off_);
+  publish(restoration_.why_broken_off());
   return command_line::ExitCode::kBrokenOff;
 }
 
-/// Waits after the last state. The others may still need this node's last messages, and this node their
-/// acknowledgements. In a free-running run one node may come to the last state long before the rest; if it left, they
-/// would take it for dead.
+/// Waits after the last state until the others have left (lingering.h), and until all readers know the last status.
 void NodeProcess::linger() {
-  const auto begin = Clock::now();
-  std::map<core::RegionId, core::Step> steps;
-  auto moved = begin;
-  const auto others_run = [&] {
-    bool running = false;
-    for (const auto& [region, seen] : control().statuses()) {
-      if (region == options_.region || !seen.is_live()) continue;
-      running = true;
-      const bool has_moved = std::exchange(steps[region], seen.status.step) != seen.status.step;
-      if (has_moved || long_step(seen, Clock::now())) moved = Clock::now();
-    }
-    return running && !host::stop_requested() && Clock::now() < moved + kPatienceWithRunners;
+  Lingering lingering(options_.region, Clock::now());
+  const auto is_complete = [this] {
+    return node_->ready_to_settle() && others_have_left() && has_all_of_the_last_states();
   };
-  while (!(node_->ready_to_settle() && all_have_left() && has_all_of_the_last_states()) &&
-         (Clock::now() < begin + kLinger || others_run())) {
+  while (lingering.stays(control().statuses(), is_complete(), host::stop_requested(), Clock::now())) {
     execute_commands();
-    if (recovers() && !all_have_left() && !stops_standing_) look_for_deaths();
+    if (recovers() && !others_have_left() && !restoration_.stop_asked()) look_for_deaths();
     publish();
     control().wait(10ms);
   }
   const auto last_word = Clock::now();
   while (!control().status_is_known() && Clock::now() < last_word + kPatienceWithReaders) control().wait(10ms);
+}
+
+/// True if all other nodes have left or died.
+bool NodeProcess::others_have_left() {
+  return all_have_left(control().statuses(), options_.region, node_->protocol().intake().dead_regions());
 }
 
 /// True if all messages of the nodes that have ended have arrived, also of later states than this node's: bodies may be
@@ -108,17 +98,6 @@ bool NodeProcess::has_all_of_the_last_states() {
   return std::ranges::all_of(control().statuses(), [this](const auto& entry) {
     const auto& [region, seen] = entry;
     return !seen.has_ended() || node_->protocol().intake().has_all(region, seen.status.step);
-  });
-}
-
-/// True if all other nodes have left or died. The last status of a node that has ended may be lost, so silence counts
-/// as well.
-bool NodeProcess::all_have_left() {
-  const std::vector<core::RegionId> silent = node_->protocol().intake().dead_regions();
-  return std::ranges::all_of(control().statuses(), [&](const auto& entry) {
-    const auto& [region, seen] = entry;
-    const bool is_silent = seen.lost || std::ranges::find(silent, region) != silent.end();
-    return region == options_.region || seen.has_ended() || (is_silent && !seen.dead);
   });
 }
 

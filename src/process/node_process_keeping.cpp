@@ -5,8 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "process/keepers.h"
 #include "process/node_process.h"
@@ -34,7 +32,7 @@ void NodeProcess::note_words_of_saves() {
 
 /// Finishes all saves at the end of the run.
 void NodeProcess::conclude_saves() {
-  saving_.conclude(endpoints_.commands(), control().statuses(), !fence_.closed() && stop_at_ && has_reached(*stop_at_));
+  saving_.conclude(endpoints_.commands(), control().statuses(), !fence_.closed() && has_reached_the_end());
   note_words_of_saves();
 }
 
@@ -45,10 +43,8 @@ void NodeProcess::step_back(const RunView& run) {
   if (!back) return;
   const core::Step latest = node_->current_step() - (launch_.checkpoint_steps() + 1) / 2;
   status_.content().parts = checkpoints().parts();
-  std::map<core::RegionId, messages::SeenStatus> nodes = control().statuses();
-  nodes[options_.region].status = status_.content();
   const std::optional<messages::RunCommand> restore =
-      recovers() ? plan_step_back(nodes, launch_.regions.size(), latest) : std::nullopt;
+      recovers() ? plan_step_back(nodes_and_self(), launch_.regions.size(), latest) : std::nullopt;
   const cut::SavedState saved = cut::newest_saved_until(options_.saves, saving_.saved_by(), latest);
   if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
   if (saved.step >= 0) return endpoints_.commands().load_instead(*back, saved.name, *node_, run);
@@ -58,16 +54,10 @@ void NodeProcess::step_back(const RunView& run) {
 /// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one
 /// was.
 void NodeProcess::send_back(messages::RunCommand restore, const core::Command& back) {
-  restore.run = options_.run;
-  restore.region = options_.region;
   restore.epoch_ns = node::wall_clock_ns() + kNoticeOfStepBack.count();
-  restore.rate = pacer_.rate();
-  if (hold_at_) hold_at_ = restore.at_step;
+  schedule_.hold_earlier_in(restore.at_step);
   endpoints_.commands().go_back_to(back, restore.at_step);
-  publish_map(restore.generation, restore.at_step);
-  restore.request = control().send(restore);
-  restore_ = restore;
-  repeat_commands(restore);
+  send_restore(restore);
 }
 
 /// The regions that keep this node's parts, chosen by the hosts of the present nodes.

@@ -30,10 +30,11 @@ void NodeProcess::publish(const std::string& text) {
   status_.note_published(state, now);
   note_strangers();
   messages::Status& status = status_.content();
-  status.holds_at = hold_at_;
+  status.holds_at = schedule_.holds_at();
+  status.rate = schedule_.rate();
   status.text = text;
   const bool stands = phase_ == NodePhase::kRecovering || phase_ == NodePhase::kSpare;
-  status.generation = stands ? stands_in_ : generation_;
+  status.generation = stands ? restoration_.stands_in() : generation_;
   status.step = node_ ? node_->current_step() : 0;
   if (endpoints_.has_checkpoints()) status.parts = checkpoints().parts();
   if (recovers() && node_) recovery_.note_kept(control().statuses(), status.era);
@@ -55,9 +56,9 @@ void NodeProcess::note_strangers() {
   status_.note_refused_strangers(endpoints_.participant().refused_of_strangers());
 }
 
+/// Simulated seconds per second since the world began, pauses left out.
 double NodeProcess::real_time_factor() const {
-  const double wall_s = std::chrono::duration<double>(Clock::now() - began_ - paused_).count();
-  return wall_s > 0 ? static_cast<double>(node_->current_step() - first_step()) * launch_.step_s() / wall_s : 1;
+  return schedule_.real_time_factor(node_->current_step() - first_step(), Clock::now());
 }
 
 }  // namespace aurasim::process

@@ -46,8 +46,12 @@ void NodeStatus::note_step(const node::StepReport& report, double frame_ms, Cloc
   status_.awake = report.awake;
   status_.foreign_auras = report.foreign_auras;
   status_.largest_cluster = report.largest_cluster;
-  status_.hand_offs_out += report.departures.size();
-  status_.hand_offs_in += report.arrivals.size();
+  note_moved(report);
+}
+
+void NodeStatus::note_moved(const node::StepReport& moved) {
+  status_.hand_offs_out += moved.departures.size();
+  status_.hand_offs_in += moved.arrivals.size();
 }
 
 void NodeStatus::note_node(const node::Node& node) {

@@ -42,6 +42,8 @@ class NodeStatus {
   void use_regions(const config::Launch& launch);
   /// Counts a state that was computed in `frame_ms`.
   void note_step(const node::StepReport& report, double frame_ms, Clock::time_point now);
+  /// Counts bodies that have changed their hosts without a step.
+  void note_moved(const node::StepReport& moved);
   /// Takes over what `node` counts by itself, and the percentiles of the last second.
   void note_node(const node::Node& node);
   /// Replaces the regions that the node does not receive from. A change is published at once, because the others wait

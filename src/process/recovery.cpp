@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace aurasim::process {
 namespace {
@@ -21,6 +22,12 @@ constexpr auto kPatienceWithDiscovery = 2500ms;
 constexpr auto kPatienceOfSuccessor = 30s;
 constexpr auto kPatienceWithStandIn = 20s;
 constexpr int kMostStandIns = 3;  // in a row for one region, near one state
+
+std::vector<std::uint32_t> numbers_of(const std::vector<core::RegionId>& regions) {
+  std::vector<std::uint32_t> numbers;
+  for (const core::RegionId region : regions) numbers.push_back(core::value_of(region));
+  return numbers;
+}
 
 bool stands(NodeState state) {
   return state == NodeState::kRecovering || state == NodeState::kSpare || state == NodeState::kCutOff;
@@ -94,6 +101,24 @@ RestoreMeaning meaning_of(const messages::RunCommand& restore, core::RegionId re
     return restore.generation < known ? RestoreMeaning::kLeftOut : RestoreMeaning::kReplaced;
   }
   return restore.generation > known ? RestoreMeaning::kGoBack : RestoreMeaning::kNothing;
+}
+
+std::string what_recovery_waits_for(bool is_cut_off, const std::string& question,
+                                    const std::vector<core::RegionId>& vacant,
+                                    const std::vector<core::RegionId>& unheard) {
+  if (is_cut_off) return "hears too few of the others, and waits for them";
+  if (!question.empty()) return question;
+  if (!vacant.empty()) {
+    return fmt::format("waits for whoever takes over regions [{}]", fmt::join(numbers_of(vacant), ", "));
+  }
+  if (!unheard.empty()) {
+    return fmt::format("does not hear regions [{}], which others hear", fmt::join(numbers_of(unheard), ", "));
+  }
+  return "waits until all others stand";
+}
+
+std::string nobody_takes_over(const std::vector<core::RegionId>& vacant) {
+  return fmt::format("nobody takes over regions [{}], whose nodes have died", fmt::join(numbers_of(vacant), ", "));
 }
 
 void Recovery::begin(Clock::time_point now) {
@@ -190,6 +215,16 @@ bool Recovery::calls_spares(const SeenNodes& nodes, Clock::time_point now) const
   return std::ranges::none_of(nodes, [this](const auto& entry) {
     return entry.first < settings_.region && !entry.second.lost && entry.second.status.state == NodeState::kRecovering;
   });
+}
+
+std::optional<std::uint64_t> Recovery::call_spare(const std::vector<messages::Status>& spares, core::RegionId region,
+                                                  Clock::time_point now) {
+  const auto free = std::ranges::find_if(
+      spares, [this](const messages::Status& spare) { return !called_spares_.contains(spare.process); });
+  if (free == spares.end()) return std::nullopt;
+  called_spares_.insert(free->process);
+  called_[region] = now;
+  return free->process;
 }
 
 bool Recovery::tried_too_often(core::RegionId region, core::Step step) {

@@ -27,6 +27,14 @@ std::vector<core::RegionId> unheard_regions(const SeenNodes& nodes, core::Region
 /// not count.
 std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generation era, std::uint32_t regions);
 
+/// Message for users: what a node waits for in a recovery. `vacant`: regions without a node. `unheard`: regions that
+/// the node does not receive from. `question`: decision that a user has to take; empty: none.
+std::string what_recovery_waits_for(bool is_cut_off, const std::string& question,
+                                    const std::vector<core::RegionId>& vacant,
+                                    const std::vector<core::RegionId>& unheard);
+/// Why the run ends when no process takes over these regions, whose nodes have died.
+std::string nobody_takes_over(const std::vector<core::RegionId>& vacant);
+
 /// What a node knows of its own world when it decides whether it has to wait.
 struct OwnWorld {
   core::RegionId region{};
@@ -94,8 +102,10 @@ class Recovery {
   /// The node waits from now on.
   void begin(Clock::time_point now);
   RecoveryActs look(const RecoveryView& view, Clock::time_point now);
-  /// Notes that a spare was called for this region. No other one is called in the next seconds.
-  void note_called(core::RegionId region, Clock::time_point now) { called_[region] = now; }
+  /// Chooses a spare for this region and notes the call: no other one is called in the next seconds. Returns the number
+  /// of its process. Nothing if each of `spares` was called before.
+  std::optional<std::uint64_t> call_spare(const std::vector<messages::Status>& spares, core::RegionId region,
+                                          Clock::time_point now);
 
   /// Notes a restore that names another process for this region. It counts once the others compute in its generation.
   void note_left_out(const messages::RunCommand& restore) { left_out_[restore.generation] = restore.at_step; }
@@ -133,6 +143,7 @@ class Recovery {
   Clock::time_point met_;                                      ///< when this process last left DDS and joined it again
   std::map<core::RegionId, Clock::time_point> cut_off_since_;  ///< heard nodes that publish that they are cut off
   std::map<core::RegionId, Clock::time_point> called_;         ///< regions that spares were called for
+  std::set<std::uint64_t> called_spares_;                      ///< their processes
   std::map<core::RegionId, StandIn> stood_in_;                 ///< how often in a row this host stood in for a region
   std::optional<core::Step> kept_;
   core::Generation kept_era_ = 0;

@@ -51,7 +51,7 @@ bool Ros2Link::is_due(core::Step step) {
   return again;
 }
 
-void Ros2Link::tell(node::Node& node, core::Generation generation, bool leads) {
+void Ros2Link::publish(node::Node& node, core::Generation generation, bool leads) {
   if (generation_ != generation) begin(generation);
   if (!is_due(node.current_step())) return;
   const dds::Ros2Time now = ros2_time(node.current_step(), launch_.time.step_hz);
@@ -59,12 +59,12 @@ void Ros2Link::tell(node::Node& node, core::Generation generation, bool leads) {
   const bool wants_joints = !joints_->empty() && bus_.wants_joints();
   if (!wants_joints && !bus_.wants_tf()) return;
   const core::Snapshot& snapshot = node.world().snapshot();
-  if (bus_.wants_tf()) tell_bodies(snapshot, now);
+  if (bus_.wants_tf()) publish_bodies(snapshot, now);
   if (!wants_joints) return;
   if (const dds::Ros2Joints joints = joints_->in(snapshot); !joints.name.empty()) bus_.say_joints(now, joints);
 }
 
-void Ros2Link::tell_bodies(const core::Snapshot& snapshot, dds::Ros2Time now) {
+void Ros2Link::publish_bodies(const core::Snapshot& snapshot, dds::Ros2Time now) {
   transforms_.clear();
   for (const core::BodyState& body : snapshot.bodies) {
     if (body.birth <= snapshot.step) transforms_.push_back({names_->of(body.id), body.pose});

@@ -22,7 +22,7 @@ class Ros2Link {
 
   /// Publishes what is due of the newest state, and in a paused run sends it to readers that have just come. May be
   /// called as often as wanted between two states. `leads`: this node also publishes the time.
-  void tell(node::Node& node, core::Generation generation, bool leads);
+  void publish(node::Node& node, core::Generation generation, bool leads);
   /// Messages received since the last call, as setpoints that name no state.
   std::vector<core::Setpoints> take(core::Generation generation);
   std::uint64_t refused() const { return bus_.refused(); }
@@ -30,7 +30,7 @@ class Ros2Link {
  private:
   bool is_due(core::Step step);
   void begin(core::Generation generation);
-  void tell_bodies(const core::Snapshot& snapshot, dds::Ros2Time now);
+  void publish_bodies(const core::Snapshot& snapshot, dds::Ros2Time now);
 
   const config::Launch& launch_;
   dds::Ros2Bus bus_;

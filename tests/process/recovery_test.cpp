@@ -170,5 +170,40 @@ TEST_F(Standing, WhoWasLeftOutGivesWayOnceTheOthersCompute) {
   EXPECT_EQ(look(recovery, 0).replaced_in, 240);
 }
 
+TEST_F(Standing, ASpareIsCalledOnceForOneRegion) {
+  Recovery recovery = recovery_of(0);
+  messages::Status first, second;
+  first.process = 71;
+  second.process = 72;
+  EXPECT_EQ(recovery.call_spare({first, second}, RegionId{2}, now_), 71U);
+  EXPECT_EQ(recovery.call_spare({first, second}, RegionId{3}, now_), 72U);
+  EXPECT_EQ(recovery.call_spare({first, second}, RegionId{1}, now_), std::nullopt) << "both have been called";
+  EXPECT_EQ(recovery.call_spare({}, RegionId{1}, now_), std::nullopt);
+}
+
+TEST_F(Standing, NoOtherSpareIsCalledSoonForARegionThatHasGotOne) {
+  Recovery recovery = recovery_of(0);
+  for (const std::uint32_t region : {0U, 1U, 2U, 3U}) hear(region);
+  lose(1);
+  for (const std::uint32_t region : {0U, 2U, 3U}) does_not_hear(region, {RegionId{1}});
+  EXPECT_THAT(look(recovery, 0).call_spares, ElementsAre(RegionId{1}));
+  EXPECT_THAT(look(recovery, 0).call_spares, ElementsAre(RegionId{1})) << "there was no spare";
+  messages::Status spare;
+  spare.process = 71;
+  recovery.call_spare({spare}, RegionId{1}, now_);
+  EXPECT_THAT(look(recovery, 0).call_spares, IsEmpty());
+}
+
+TEST(WhatRecoveryWaitsFor, IsTheMostUrgentReason) {
+  const std::vector<RegionId> none, two = {RegionId{2}}, both = {RegionId{1}, RegionId{3}};
+  EXPECT_EQ(what_recovery_waits_for(true, "begin again?", two, both),
+            "hears too few of the others, and waits for them");
+  EXPECT_EQ(what_recovery_waits_for(false, "begin again?", two, both), "begin again?");
+  EXPECT_EQ(what_recovery_waits_for(false, "", two, both), "waits for whoever takes over regions [2]");
+  EXPECT_EQ(what_recovery_waits_for(false, "", none, both), "does not hear regions [1, 3], which others hear");
+  EXPECT_EQ(what_recovery_waits_for(false, "", none, none), "waits until all others stand");
+  EXPECT_EQ(nobody_takes_over(both), "nobody takes over regions [1, 3], whose nodes have died");
+}
+
 }  // namespace
 }  // namespace aurasim::process
