@@ -47,6 +47,16 @@ core::Step PauseFollower::holds_at(core::Step holds_at, core::Step farthest, Tim
   return now < *behind_since_ + kLongestUnderWay ? holds_at : farthest;
 }
 
+core::Step farthest_pause(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::Generation generation) {
+  core::Step farthest = 0;
+  for (const auto& [region, seen] : nodes) {
+    const messages::Status& status = seen.status;
+    const bool is_paused = status.state == messages::NodeState::kPaused && status.generation == generation;
+    if (is_paused && seen.is_live()) farthest = std::max(farthest, status.step);
+  }
+  return farthest;
+}
+
 void AwaitedWords::add(const messages::RunCommand& step, Time now) {
   if (step.after.number > 0) words_.push_back({step.after, now});
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,9 @@ class PauseFollower {
  private:
   std::optional<Time> behind_since_;
 };
+
+/// The latest state in which a live node of this generation is paused; 0: none is.
+core::Step farthest_pause(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::Generation generation);
 
 /// Setpoint messages of programs that step commands name. No state is computed until all have been received.
 class AwaitedWords {

@@ -1,5 +1,7 @@
 #include "process/long_step.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "process/patience.h"
@@ -26,6 +28,12 @@ std::optional<std::string> long_step(const messages::SeenStatus& seen, std::chro
   const auto time = computes_for(seen, now);
   if (!time) return std::nullopt;
   return fmt::format("computes one step for {} s", whole_seconds(*time));
+}
+
+bool computes_for_long(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+                       std::chrono::steady_clock::time_point now) {
+  return std::ranges::any_of(
+      nodes, [&](const auto& entry) { return entry.first != self && long_step(entry.second, now).has_value(); });
 }
 
 std::optional<std::string> LongSteps::news(const messages::SeenStatus& seen, Clock::time_point now) {

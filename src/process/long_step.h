@@ -15,6 +15,11 @@ namespace aurasim::process {
 /// alive or does not compute.
 std::optional<std::string> long_step(const messages::SeenStatus& seen, std::chrono::steady_clock::time_point now);
 
+/// True if a node of another region than `self` computes one step for long. It is not dead, so a wait for all nodes
+/// goes on.
+bool computes_for_long(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+                       std::chrono::steady_clock::time_point now);
+
 /// Chooses the long steps to log: each once after 10 s, and again each time that its duration has doubled.
 class LongSteps {
  public:

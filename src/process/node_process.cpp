@@ -235,7 +235,7 @@ void NodeProcess::run_until_end() {
 bool NodeProcess::wait_until_due() {
   const core::Step next = node_->current_step() + 1;
   const auto begin = Clock::now();
-  if (schedule_.holds_at()) schedule_.follow(farthest_paused_step(), begin);
+  if (schedule_.holds_at()) schedule_.follow(farthest_pause(control().statuses(), generation_), begin);
   if (schedule_.is_held_in(node_->current_step())) {
     wait_in_pause();
     schedule_.note_pause(Clock::now() - begin);
@@ -276,17 +276,6 @@ void NodeProcess::wait_in_pause() {
     transport().wait_for_arrival(2ms);
   }
   fence_is_open();
-}
-
-/// The latest state in which a node of this world is paused.
-core::Step NodeProcess::farthest_paused_step() {
-  core::Step farthest = 0;
-  for (const auto& [region, seen] : control().statuses()) {
-    const messages::Status& status = seen.status;
-    const bool is_paused = status.state == messages::NodeState::kPaused && status.generation == generation_;
-    if (is_paused && seen.is_live()) farthest = std::max(farthest, status.step);
-  }
-  return farthest;
 }
 
 void NodeProcess::compute_step() {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -81,7 +80,6 @@ class NodeProcess {
   void run_until_end();
   bool wait_until_due();
   void wait_in_pause();
-  core::Step farthest_paused_step();
   void compute_step();
   void note_redo(const node::StepReport& report);
   void take_setpoints();
@@ -97,7 +95,8 @@ class NodeProcess {
   void note_meeting(Patience& patience, host::LongWork& waiting);
   void log_early_deaths();
   void start_when_all_wait();
-  void connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait);
+  void begin_to_connect(dds::TransportSettings settings);
+  const char* go_on_connecting();
 
   // Run commands and clients (node_process_commands.cpp)
   void execute_commands();
@@ -123,7 +122,6 @@ class NodeProcess {
   void publish_map(core::Generation generation, core::Step from_step);
   void wait_until_all_stand();
   void settle_all();
-  bool somebody_computes_for_long();
   void connect_for_change(const dds::TransportSettings& settings);
   void begin_changed_map();
 

@@ -1,6 +1,5 @@
 // The changes of a whole run while it runs: another scene, another world, other regions. All nodes come to a change
 // after the same state.
-#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -98,19 +97,13 @@ void NodeProcess::wait_until_all_stand() {
   enter(NodeEvent::kChanges);
   status_.make_due();  // publish the status at once, because the others wait for it
   auto deadline = Clock::now() + kPatienceWithOthers;
-  const auto stands = [this](const auto& entry) {
-    const messages::Status& status = entry.second.status;
-    const bool is_here = status.state == messages::NodeState::kPaused && status.generation == generation_ &&
-                         status.step >= node_->current_step();
-    return entry.first == options_.region || is_here || status.generation > generation_;
-  };
   for (;;) {
     publish();
-    const auto& statuses = control().statuses();
-    if (std::all_of(statuses.begin(), statuses.end(), stands)) return;
+    if (all_stand(control().statuses(), options_.region, generation_, node_->current_step())) return;
     execute_commands();
     look_for_deaths();
-    if (somebody_computes_for_long()) deadline = Clock::now() + kPatienceWithOthers;
+    if (computes_for_long(control().statuses(), options_.region, Clock::now()))
+      deadline = Clock::now() + kPatienceWithOthers;
     if (Clock::now() > deadline || host::stop_requested()) {
       throw ChangeFailed(fmt::format("step {}: not every node has come to the change", node_->current_step()));
     }
@@ -133,24 +126,18 @@ void NodeProcess::settle_all() {
   records_.write_settling(report);
 }
 
-/// True if some node computes one step for long (long_step.h). It is not dead, so a wait for all nodes goes on.
-bool NodeProcess::somebody_computes_for_long() {
-  const auto now = Clock::now();
-  return std::ranges::any_of(control().statuses(), [&](const auto& entry) {
-    return entry.first != options_.region && long_step(entry.second, now).has_value();
-  });
-}
-
+/// Connects the nodes anew for the awaited generation, and waits until it starts.
 void NodeProcess::connect_for_change(const dds::TransportSettings& settings) {
   const auto deadline = Clock::now() + kPatienceWithOthers;
-  connect_anew(settings, [&](const char* for_what) {
+  begin_to_connect(settings);
+  while (const char* const missing = go_on_connecting()) {
     if (host::stop_requested()) throw ChangeFailed("told to stop while the run changes");
-    if (Clock::now() > deadline) throw ChangeFailed(fmt::format("a change has waited in vain for {}", for_what));
+    if (Clock::now() > deadline) throw ChangeFailed(fmt::format("a change has waited in vain for {}", missing));
     if (phase_ == NodePhase::kWaiting) publish();  // before, others still wait for the last state's status
     execute_commands();
     look_for_deaths();
     control().wait(10ms);
-  });
+  }
 }
 
 /// Changes to other regions. Bodies and orders stay; each body goes to the host that the new map wants.

@@ -126,19 +126,24 @@ void NodeProcess::start_when_all_wait() {
 }
 
 /// Makes endpoints for the awaited generation. They match only endpoints of the same generation, and not those of dead
-/// processes or those that others are about to drop, where messages would be lost. `wait` returns soon, or throws.
-void NodeProcess::connect_anew(dds::TransportSettings settings, const std::function<void(const char*)>& wait) {
+/// processes or those that others are about to drop, where messages would be lost.
+void NodeProcess::begin_to_connect(dds::TransportSettings settings) {
   settings.life = life_ = start_.generation();
   endpoints_.connect(settings);
-  while (!transport().all_matched()) wait("its neighbours");
-  generation_ = start_.generation();
-  start_.forget();
-  enter(NodeEvent::kStands);
-  while (!start_.start()) {
-    start_when_all_wait();
-    if (!start_.start()) wait("the others");
+}
+
+/// Goes on after begin_to_connect(). Returns what the node waits for; null once the awaited generation has started.
+const char* NodeProcess::go_on_connecting() {
+  if (generation_ != start_.generation()) {
+    if (!transport().all_matched()) return "its neighbours";
+    generation_ = start_.generation();
+    start_.forget();
+    enter(NodeEvent::kStands);
   }
+  start_when_all_wait();
+  if (!start_.start()) return "the others";
   enter(NodeEvent::kStarted);
+  return nullptr;
 }
 
 }  // namespace aurasim::process

@@ -35,7 +35,8 @@ void NodeProcess::go_back() {
   const core::WorldCut world = gathering.take_world();
   start_.await(restore.generation);
   deadline = Clock::now() + kPatienceWithParts;
-  connect_anew(transport_settings(), [&](const char* for_what) { wait_in_recovery(deadline, for_what); });
+  begin_to_connect(transport_settings());
+  while (const char* const missing = go_on_connecting()) wait_in_recovery(deadline, missing);
   begin_restored(restore, world, gathering.parts());
   restoration_.finish();
 }

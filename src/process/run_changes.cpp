@@ -10,6 +10,16 @@ constexpr int kMostFailedChanges = 3;  ///< in a row
 
 }  // namespace
 
+bool all_stand(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+               core::Generation generation, core::Step step) {
+  return std::ranges::all_of(nodes, [&](const auto& entry) {
+    const messages::Status& status = entry.second.status;
+    const bool is_here =
+        status.state == messages::NodeState::kPaused && status.generation == generation && status.step >= step;
+    return entry.first == self || is_here || status.generation > generation;
+  });
+}
+
 std::vector<core::Step> RunChanges::states_to_keep() const {
   std::vector<core::Step> states;
   for (const core::Order& order : waiting_) {

@@ -2,6 +2,7 @@
 // is due, and what to go back to if a change fails. Uses no DDS and no clock.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,8 +11,14 @@
 #include "config/launch.h"
 #include "core/order.h"
 #include "core/world_cut.h"
+#include "messages/control_messages.h"
 
 namespace aurasim::process {
+
+/// True if all nodes wait in state `step`, the state of a change, or have begun a later generation. No node may close
+/// its transport earlier, because its messages may have to be retransmitted. The node of region `self` does not count.
+bool all_stand(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+               core::Generation generation, core::Step step);
 
 class RunChanges {
  public:

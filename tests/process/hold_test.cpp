@@ -178,5 +178,20 @@ TEST_F(Awaited, ANewWorldWaitsForNothingThatWasSaidToTheOneBefore) {
   EXPECT_TRUE(goes_on());
 }
 
+TEST(FarthestPause, IsThatOfLiveNodesOfThisGeneration) {
+  std::map<core::RegionId, messages::SeenStatus> nodes;
+  EXPECT_EQ(farthest_pause(nodes, 2), 0);
+  for (std::uint32_t region = 0; region < 4; ++region) {
+    nodes[core::RegionId{region}].status.state = messages::NodeState::kPaused;
+    nodes[core::RegionId{region}].status.generation = 2;
+    nodes[core::RegionId{region}].status.step = 100 + region;
+  }
+  EXPECT_EQ(farthest_pause(nodes, 2), 103);
+  nodes[core::RegionId{3}].lost = true;
+  nodes[core::RegionId{2}].status.state = messages::NodeState::kRunning;
+  nodes[core::RegionId{1}].status.generation = 1;
+  EXPECT_EQ(farthest_pause(nodes, 2), 100);
+}
+
 }  // namespace
 }  // namespace aurasim::process
