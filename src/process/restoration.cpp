@@ -17,7 +17,7 @@ void Restoration::begin(Clock::time_point now) {
 }
 
 void Restoration::begin_attempt(core::Generation generation) {
-  stands_in_ = newest(generation);
+  waits_in_ = newest(generation);
   is_going_back_ = false;
 }
 

@@ -47,7 +47,7 @@ class Restoration {
   /// True if a node that has begun `generation` computes in it, and no later one is about to begin.
   bool computes_in(core::Generation generation) const { return restoring_ <= generation; }
   /// Generation that the status names while the node waits.
-  core::Generation stands_in() const { return stands_in_; }
+  core::Generation waits_in() const { return waits_in_; }
   Clock::duration waited(Clock::time_point now) const { return now - since_; }
 
   /// A stop command was received. `waits`: while the node waits in a recovery. Then it does not wait for the others.
@@ -70,7 +70,7 @@ class Restoration {
   std::optional<messages::RunCommand> restore_;  ///< the newest restore command
   core::Generation restoring_ = 0;               ///< generation that a recovery is about to begin, or has begun
   bool is_going_back_ = false;                   ///< all have agreed on restore_, and not all have begun
-  core::Generation stands_in_ = 0;
+  core::Generation waits_in_ = 0;
   Clock::time_point since_;
   bool stop_asked_ = false;
   std::string question_;

@@ -10,8 +10,8 @@ constexpr int kMostFailedChanges = 3;  ///< in a row
 
 }  // namespace
 
-bool all_stand(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
-               core::Generation generation, core::Step step) {
+bool all_wait_in(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+                 core::Generation generation, core::Step step) {
   return std::ranges::all_of(nodes, [&](const auto& entry) {
     const messages::Status& status = entry.second.status;
     const bool is_here =

@@ -17,8 +17,8 @@ namespace aurasim::process {
 
 /// True if all nodes wait in state `step`, the state of a change, or have begun a later generation. No node may close
 /// its transport earlier, because its messages may have to be retransmitted. The node of region `self` does not count.
-bool all_stand(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
-               core::Generation generation, core::Step step);
+bool all_wait_in(const std::map<core::RegionId, messages::SeenStatus>& nodes, core::RegionId self,
+                 core::Generation generation, core::Step step);
 
 class RunChanges {
  public:

@@ -63,5 +63,13 @@ TEST_F(LongStep, TheNextOneIsToldAnew) {
   EXPECT_NE(steps_.news(seen_, begin_ + 25s), std::nullopt);
 }
 
+TEST_F(LongStep, OfAnyOtherNodeIsNoReasonToGiveUpWaiting) {
+  const std::map<core::RegionId, messages::SeenStatus> nodes = {{core::RegionId{3}, seen_}};
+  EXPECT_FALSE(computes_for_long(nodes, core::RegionId{0}, begin_ + 1s));
+  EXPECT_TRUE(computes_for_long(nodes, core::RegionId{0}, begin_ + 30s));
+  EXPECT_FALSE(computes_for_long(nodes, core::RegionId{3}, begin_ + 30s)) << "this node itself";
+  EXPECT_FALSE(computes_for_long({}, core::RegionId{0}, begin_ + 30s));
+}
+
 }  // namespace
 }  // namespace aurasim::process

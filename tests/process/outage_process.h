@@ -56,7 +56,7 @@ struct OutageSim::Process {
     }
     return signs;
   }
-  core::Generation current() const { return std::max(generation, restoring); }
+  core::Generation current() const { return restoration.newest(generation); }
 
   std::uint64_t id;
   std::uint32_t host;
@@ -69,7 +69,7 @@ struct OutageSim::Process {
   Recovery recovery;
   Phase phase = Phase::kRuns;
   bool knows_world = true;
-  core::Generation generation = 0, restoring = 0, stands_in = 0;
+  core::Generation generation = 0;
   core::Step step = 0;
   messages::Status status;
   SeenNodes nodes;
@@ -77,8 +77,8 @@ struct OutageSim::Process {
   std::map<core::RegionId, std::set<core::Step>> parts;
   std::vector<core::RegionId> keepers;
   std::map<core::RegionId, std::set<core::Step>> unsent;  ///< own parts, by keeper
-  std::optional<messages::RunCommand> restore;
-  std::set<core::RegionId> given;  ///< regions whose parts have come, for `restoring`
+  Restoration restoration;
+  std::set<core::RegionId> given;  ///< regions whose parts have come, for the generation of the restore
   Time deadline{};
   bool is_started = false;
   std::set<core::RegionId> silent;  ///< streams that have ended since `generation` began

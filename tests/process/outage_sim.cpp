@@ -95,9 +95,10 @@ void OutageSim::deliver(Process& from, Process& to) {
     }
   }
   const bool gives = from.phase == Phase::kGathers || from.phase == Phase::kConnects || from.phase == Phase::kWaits;
-  if (!gives || to.phase != Phase::kGathers || from.restoring != to.restoring) return;
-  for (std::size_t r = 0; r < from.restore->members.size(); ++r) {
-    if (from.restore->members[r].holder == from.region) to.given.insert(core::RegionId{static_cast<std::uint32_t>(r)});
+  if (!gives || to.phase != Phase::kGathers || from.current() != to.current()) return;
+  for (std::size_t r = 0; r < from.restoration.restore()->members.size(); ++r) {
+    if (from.restoration.restore()->members[r].holder == from.region)
+      to.given.insert(core::RegionId{static_cast<std::uint32_t>(r)});
   }
 }
 
@@ -138,12 +139,9 @@ void OutageSim::run_until(Time end) {
 
 void OutageSim::act(Process& process) {
   const bool running = process.phase == Phase::kRuns;
-  OwnWorld own;
-  own.region = process.region;
-  own.current = process.current();
-  if (running) own.silent.assign(process.silent.begin(), process.silent.end());
-  if (process.restore) own.restore = &*process.restore;
-  own.is_going_back = !running && process.phase != Phase::kStands && process.phase != Phase::kTakesOver;
+  std::vector<core::RegionId> silent;
+  if (running) silent.assign(process.silent.begin(), process.silent.end());
+  const OwnWorld own = process.restoration.own_world(process.region, process.generation, std::move(silent));
   if (running || own.is_going_back) {
     if (const auto why = why_stand(process.nodes, own)) stand(process, *why);
   }
@@ -172,7 +170,7 @@ void OutageSim::act(Process& process) {
                  : !process.knows_world                 ? NodeState::kSpare
                  : stands && process.fence.is_cut_off() ? NodeState::kCutOff
                                                         : NodeState::kRecovering;
-  status.generation = stands ? process.stands_in : process.current();
+  status.generation = stands ? process.restoration.waits_in() : process.current();
   status.step = process.step;
   status.parts.clear();
   for (const auto& [region, steps] : process.parts) {
@@ -210,18 +208,20 @@ void OutageSim::keep_part(Process& process) {
 void OutageSim::stand(Process& process, const std::string& why) {
   tell(process, "stands: " + why);
   process.phase = process.knows_world ? Phase::kStands : Phase::kTakesOver;
-  process.stands_in = process.current();
+  process.restoration.begin(now_);
+  process.restoration.begin_attempt(process.generation);
   process.recovery.begin(now_);
   process.fence.watch_closely();
 }
 
 void OutageSim::agree(Process& process) {
-  if (process.restore && process.restore->generation > process.current()) {
-    process.restoring = process.restore->generation;
+  if (process.restoration.is_agreed(process.generation)) {
+    process.restoration.go_back();
     process.phase = Phase::kGathers;
     process.given.clear();
-    for (std::size_t r = 0; r < process.restore->members.size(); ++r) {
-      if (process.restore->members[r].holder == process.region) {
+    const std::vector<messages::RunCommand::Member>& members = process.restoration.restore()->members;
+    for (std::size_t r = 0; r < members.size(); ++r) {
+      if (members[r].holder == process.region) {
         process.given.insert(core::RegionId{static_cast<std::uint32_t>(r)});
       }
     }
@@ -271,13 +271,13 @@ void OutageSim::lead(Process& process, const SeenNodes& nodes) {
   restore.region = process.region;
   tell(process, fmt::format("all go back to state {} as generation {}", restore.at_step, restore.generation));
   restores_.push_back(restore);
-  process.restore = restore;
+  process.restoration.use(restore);
 }
 
 void OutageSim::hear_of_restore(Process& process, const messages::RunCommand& restore) {
-  const core::Generation known = std::max(process.current(), process.restore ? process.restore->generation : 0);
-  const RestoreMeaning meaning = meaning_of(restore, process.region, process.id, process.generation, known);
-  if (meaning == RestoreMeaning::kGoBack) process.restore = restore;
+  const RestoreMeaning meaning =
+      process.restoration.meaning(restore, process.region, process.id, process.generation, process.generation);
+  if (meaning == RestoreMeaning::kGoBack) process.restoration.use(restore);
   if (meaning == RestoreMeaning::kLeftOut) process.recovery.note_left_out(restore);
   if (meaning == RestoreMeaning::kReplaced && process.knows_world) give_way(process);
 }
@@ -299,33 +299,34 @@ void OutageSim::go_back(Process& process) {
     const auto other = std::ranges::find(processes_, member.process, [](const auto& p) { return p->id; });
     if (other == processes_.end() || (*other)->phase == Phase::kEnded) return false;
     const bool meets = (*other)->phase == Phase::kConnects || (*other)->phase == Phase::kWaits ||
-                       ((*other)->phase == Phase::kRuns && (*other)->generation == process.restoring);
+                       ((*other)->phase == Phase::kRuns && (*other)->generation == process.current());
     return member.process == process.id ||
-           (meets && (*other)->restoring == process.restoring && !process.heard[member.process].lost &&
+           (meets && (*other)->current() == process.current() && !process.heard[member.process].lost &&
             passes((*other)->host, process.host) && passes(process.host, (*other)->host));
   };
   if (process.phase == Phase::kConnects) {
-    if (!std::ranges::all_of(process.restore->members, is_here)) return;
+    if (!std::ranges::all_of(process.restoration.restore()->members, is_here)) return;
     process.phase = Phase::kWaits;
     process.is_started = false;
     return;
   }
   const auto waits = [&](const auto& entry) {
     return entry.first == process.region || (!entry.second.lost && entry.second.status.state == NodeState::kWaiting &&
-                                             entry.second.status.generation == process.restoring);
+                                             entry.second.status.generation == process.current());
   };
   if (process.region == core::RegionId{0} && process.nodes.size() == hosts_) {
     process.is_started = process.is_started || std::ranges::all_of(process.nodes, waits);
   } else if (const Process* const first = sender_of(process, core::RegionId{0})) {
-    const bool said = first->is_started && first->restoring == process.restoring;
+    const bool said = first->is_started && first->current() == process.current();
     process.is_started = process.is_started || (said && passes(first->host, process.host));
   }
   if (process.is_started) begin(process);
 }
 
 void OutageSim::begin(Process& process) {
-  const messages::RunCommand& restore = *process.restore;
-  process.generation = process.restoring;
+  const messages::RunCommand& restore = *process.restoration.restore();
+  process.generation = process.current();
+  process.restoration.finish();
   process.phase = Phase::kRuns;
   process.knows_world = true;
   process.step = restore.at_step;

@@ -18,6 +18,7 @@
 #include "dds/node_roster.h"
 #include "process/fence.h"
 #include "process/recovery.h"
+#include "process/restoration.h"
 
 namespace aurasim::process::test {
 

@@ -39,13 +39,13 @@ TEST_F(RestorationTest, IsAgreedWithARestoreOfALaterGeneration) {
 TEST_F(RestorationTest, ANodeThatDiesOnTheWayBackNeedsAnotherRestore) {
   restoration_.use(restore_of(4));
   restoration_.begin_attempt(3);
-  EXPECT_EQ(restoration_.stands_in(), 3U);
+  EXPECT_EQ(restoration_.waits_in(), 3U);
   restoration_.go_back();
   EXPECT_EQ(restoration_.newest(3), 4U);
   EXPECT_FALSE(restoration_.computes_in(3)) << "generation 4 is about to begin";
   EXPECT_TRUE(restoration_.own_world(RegionId{1}, 3, {}).is_going_back);
   restoration_.begin_attempt(3);
-  EXPECT_EQ(restoration_.stands_in(), 4U);
+  EXPECT_EQ(restoration_.waits_in(), 4U);
   EXPECT_FALSE(restoration_.is_agreed(3));
   EXPECT_FALSE(restoration_.own_world(RegionId{1}, 3, {}).is_going_back);
   restoration_.use(restore_of(5));

@@ -90,27 +90,27 @@ TEST_F(RunChangesTest, IsTriedThreeTimesInARow) {
   EXPECT_TRUE(changes_.may_try_again()) << "a success between";
 }
 
-TEST(AllStand, OnceEachOtherNodeWaitsInTheStateOfTheChangeOrIsPastIt) {
+TEST(AllWaitIn, TheStateOfTheChangeOnceEachOtherNodeIsThereOrPastIt) {
   std::map<core::RegionId, messages::SeenStatus> nodes;
   for (std::uint32_t region = 0; region < 3; ++region) {
     nodes[core::RegionId{region}].status.state = messages::NodeState::kPaused;
     nodes[core::RegionId{region}].status.generation = 2;
     nodes[core::RegionId{region}].status.step = 40;
   }
-  const auto stand = [&] { return all_stand(nodes, core::RegionId{0}, 2, 40); };
-  EXPECT_TRUE(stand());
+  const auto all_wait = [&] { return all_wait_in(nodes, core::RegionId{0}, 2, 40); };
+  EXPECT_TRUE(all_wait());
   messages::Status& other = nodes[core::RegionId{2}].status;
   other.step = 39;
-  EXPECT_FALSE(stand());
+  EXPECT_FALSE(all_wait());
   other.step = 41;
-  EXPECT_TRUE(stand());
+  EXPECT_TRUE(all_wait());
   other.state = messages::NodeState::kRunning;
-  EXPECT_FALSE(stand());
+  EXPECT_FALSE(all_wait());
   other.generation = 3;
   other.step = 0;
-  EXPECT_TRUE(stand()) << "it has gone on, so it stood";
+  EXPECT_TRUE(all_wait()) << "it has gone on, so it was there";
   nodes[core::RegionId{0}].status.state = messages::NodeState::kRunning;
-  EXPECT_TRUE(stand()) << "this node's own status may be old";
+  EXPECT_TRUE(all_wait()) << "this node's own status may be old";
 }
 
 }  // namespace

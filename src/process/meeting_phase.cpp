@@ -1,0 +1,119 @@
+#include "process/meeting_phase.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "host/stop_signal.h"
+#include "setup/silence.h"
+
+namespace aurasim::process {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kListenFirst = 500ms;  // announcements come every 50 ms at first
+
+/// Progress messages while nodes are awaited. Only the node of region 0 logs them, for all.
+host::LongWork waiting_for_nodes(std::size_t regions) {
+  return {fmt::format("waiting for the nodes of {} regions to be there", regions),
+          [](const std::string& text) { spdlog::info("{}", text); }};
+}
+
+}  // namespace
+
+bool MeetingPhase::domain_is_free() {
+  const auto begin = Clock::now();
+  // A node with a status has published a map, too, which may still be on its way.
+  while (Clock::now() < begin + (run_.control().strangers().empty() ? kListenFirst : 6 * kListenFirst)) {
+    if (host::stop_requested() || another_run_is_here()) return false;
+    run_.control().wait(20ms);
+  }
+  return true;
+}
+
+/// True if another run is in the domain. Refuses to run then.
+bool MeetingPhase::another_run_is_here() {
+  const messages::Status& self = run_.status.content();
+  const OwnRun own = {run_.options.region, run_.options.run,       self.agreement,         self.map_version,
+                      run_.first_step(),   run_.launch.dds.domain, run_.launch.scene.name, run_.launch.regions.size()};
+  std::string why = refusal_of_maps(run_.control().maps(), own);
+  if (why.empty()) why = refusal_of_strangers(run_.control().strangers(), own, run_.endpoints.has_transport());
+  if (why.empty()) return false;
+  run_.refuse(why);
+  return true;
+}
+
+bool MeetingPhase::receives_from_others() {
+  return std::ranges::any_of(run_.control().statuses(),
+                             [this](const auto& entry) { return entry.first != run_.options.region; });
+}
+
+bool MeetingPhase::meet_neighbours() {
+  const auto began = Clock::now();
+  Patience patience(run_.options.start_time_out, began);
+  setup::SilenceWord silence(run_.launch, run_.endpoints.participant());
+  host::LongWork waiting = waiting_for_nodes(run_.launch.regions.size());
+  while (!run_.transport().all_matched()) {
+    if (host::stop_requested() || another_run_is_here()) return false;
+    log_early_deaths();
+    silence.look(receives_from_others());
+    note_meeting(patience, waiting);
+    if (patience.is_over(Clock::now())) {
+      try {
+        run_.transport().wait_until_matched(0ns);
+      } catch (const dds::NeighboursMissing& missing) {
+        const bool is_alone = !receives_from_others();
+        run_.refuse(fmt::format(
+            "after {} s, {} of them with nothing new: {}{}", whole_seconds(Clock::now() - began),
+            whole_seconds(patience.waited(Clock::now())), missing.what(),
+            is_alone ? setup::word_about_keys(run_.endpoints.participant().peers_by_keys(), run_.launch) : ""));
+        return false;
+      }
+    }
+    run_.control().wait(50ms);
+  }
+  if (another_run_is_here()) return false;
+  run_.enter(NodeEvent::kMet);
+  return true;
+}
+
+bool MeetingPhase::wait_for_start() {
+  run_.publish();
+  const auto began = Clock::now();
+  Patience patience(run_.options.start_time_out, began);
+  host::LongWork waiting = waiting_for_nodes(run_.launch.regions.size());
+  while (!run_.start.start()) {
+    if (host::stop_requested() || another_run_is_here()) return false;
+    note_meeting(patience, waiting);
+    if (patience.is_over(Clock::now())) {
+      run_.refuse(fmt::format("the run has not started in {} s, and for {} s there was nothing new; {}",
+                              whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())),
+                              who_does_not_wait(run_.control().statuses(), run_.launch.regions.size())));
+      return false;
+    }
+    log_early_deaths();
+    run_.publish();
+    run_.start_when_all_wait();
+    executor_.execute_commands();
+    run_.control().wait(50ms);
+  }
+  run_.enter(NodeEvent::kStarted);
+  return true;
+}
+
+/// Notes how far all have met.
+void MeetingPhase::note_meeting(Patience& patience, host::LongWork& waiting) {
+  const SeenNodes& nodes = run_.control().statuses();
+  patience.look(progress_of_meeting(nodes, run_.transport().found()), Clock::now());
+  if (run_.options.region != core::RegionId{0}) return;
+  waiting.reached(share_of_nodes(nodes, run_.options.region, run_.launch.regions.size()));
+}
+
+void MeetingPhase::log_early_deaths() {
+  for (const std::string& text : early_deaths_.look(run_.control().statuses())) spdlog::warn("{}", text);
+}
+
+}  // namespace aurasim::process
