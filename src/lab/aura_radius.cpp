@@ -1,9 +1,6 @@
 #include "lab/aura_radius.h"
 
-#include <fstream>
 #include <memory>
-
-#include <fmt/format.h>
 
 #include "core/make_aura.h"
 
@@ -46,20 +43,6 @@ double head_on_reach_m(AuraChoice choice, const Conditions& conditions) {
     (meets ? near_m : far_m) = gap_m;
   }
   return near_m;
-}
-
-void write_aura_radius(const std::filesystem::path& directory, int substeps) {
-  std::ofstream out(directory / "aura_radius.csv");
-  out << "factor,tolerance,lookahead,thesis_m,tight_m,swept_m\n";
-  const auto row = [&](Factor factor, double tolerance) {
-    const Conditions c = conditions_at({factor, tolerance, {}}, tolerance, substeps);
-    out << fmt::format("{},{},{},{:.4f},{:.4f},{:.4f}\n", name_of(factor), shown(factor, tolerance),
-                       lookahead(c.promised), aura_reach_m(AuraChoice::kThesis, c), aura_reach_m(AuraChoice::kTight, c),
-                       head_on_reach_m(AuraChoice::kSwept, c));
-  };
-  for (int v = 1; v <= 64; ++v) row(Factor::kSpeed, v);
-  for (int i = 1; i <= 160; ++i) row(Factor::kLatency, 0.0002 * i);
-  for (int i = 1; i <= 160; ++i) row(Factor::kFrame, 0.00025 * i);
 }
 
 }  // namespace aurasim::lab

@@ -1,14 +1,12 @@
-// All trials of an experiment: lists them, runs them on a few threads, and goes on where an earlier run stopped.
+// All trials of an experiment: lists them, and runs them on a few threads.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "lab/metrics.h"
+#include "lab/on_threads.h"
 #include "lab/trial.h"
 
 namespace aurasim::lab {
@@ -21,15 +19,11 @@ struct Job {
 };
 
 struct Campaign {
-  std::string name;       ///< "collision" or "loss"
-  bool over_dds = false;  ///< in real time; otherwise in virtual time
   std::vector<Job> jobs;
   std::vector<Variant> variants;
   std::uint32_t repeats = 50;
   std::uint64_t seed = 1;
   int substeps = 1;
-
-  std::size_t rows_per_job() const { return repeats * (variants.size() + 1); }
 };
 
 /// Each aura with each way to wait.
@@ -55,15 +49,9 @@ Trial labelled(Trial trial, const Job& job, const Variant& variant, std::uint32_
 std::vector<Trial> run_job(const Campaign& campaign, const Job& job);
 using JobRunner = std::function<std::vector<Trial>(const Campaign&, const Job&)>;
 
-struct Progress {
-  double share = 0;  ///< share of the work done, 0 to 1
-  double elapsed_s = 0;
-  double left_s = 0;
-};
-
-/// Runs the trials that DIR/collisions.csv lacks and appends them. Throws std::runtime_error when DIR holds another
-/// campaign. Returns false when `stop` became true before the end. `run` is called on `threads` threads.
-bool run_campaign(const Campaign& campaign, const std::filesystem::path& directory, const JobRunner& run, int threads,
-                  const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
+/// Runs the trials on `threads` threads, and calls `take` with each, in the order of the jobs. Returns false if
+/// `progress` ended it early.
+bool run_campaign(const Campaign& campaign, const JobRunner& run, int threads, const Progress& progress,
+                  const std::function<void(const Trial&)>& take);
 
 }  // namespace aurasim::lab

@@ -4,18 +4,10 @@
 #include <cmath>
 #include <map>
 
-#include <time.h>
-
 #include "lab/virtual_cluster.h"
 
 namespace aurasim::lab {
 namespace {
-
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
   ClusterRules cluster;
@@ -117,9 +109,9 @@ MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap
   Meter meter(c, rules, run.steps);
   std::vector<double> cpu_s(cluster.size(), 0);
   while (cluster.slowest() < run.steps + more) {
-    const double before = thread_cpu_s();
+    const double before = thread_time_s();
     const VirtualCluster::Event event = cluster.next();
-    cpu_s[core::value_of(event.region)] += thread_cpu_s() - before;
+    cpu_s[core::value_of(event.region)] += thread_time_s() - before;
     for (const node::HashPart& part : event.report->hash) {
       if (part.step <= run.steps) run.hash[static_cast<std::size_t>(part.step)] += part.sum;
     }

@@ -48,6 +48,8 @@ struct Trial {
   bool flagged = false;                    ///< the node that saw the contact holds a violation for its possible cause
   double slow_down = 1;                    ///< time taken over time simulated
 
+  friend bool operator==(const Trial&, const Trial&) = default;
+
   bool late() const { return contact && is_late(*contact, kStep_s); }
   bool missed() const { return is_missed(contact, central_step.has_value()); }
   bool thrashed() const { return is_thrashed(hand_offs); }
@@ -76,6 +78,10 @@ struct Tally {
 
   void add(const Trial& trial);
   void add(const Tally& other);
+  /// Share of the trials, percent.
+  double percent(std::uint64_t part) const {
+    return trials > 0 ? 100 * static_cast<double>(part) / static_cast<double>(trials) : 0;
+  }
   double mean_slow_down() const { return trials > 0 ? slow_down_sum / static_cast<double>(trials) : 1; }
 };
 

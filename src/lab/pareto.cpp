@@ -2,10 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "config/presets.h"
 #include "lab/stability/stability.h"
@@ -16,6 +12,8 @@ namespace {
 
 /// Errors below this count as this, so that one perfect case does not outweigh the others.
 constexpr double kSmallest = 1e-6;
+/// Length of each case.
+constexpr double kSimulated_s = 3;
 
 struct PlannedRun {
   RunRules rules;
@@ -36,8 +34,8 @@ std::vector<PlannedRun> physics_points(const ParetoPlan& plan) {
   RunRules rules;
   for (const auto& [solver, name] : physics::kSolverNames) {
     rules.solver = solver;
-    for (const int directions : plan.friction_directions) {
-      if (!knows_directions(solver) && directions != plan.friction_directions.front()) continue;
+    for (const int directions : {1, 2}) {
+      if (!knows_directions(solver) && directions != 1) continue;
       rules.friction_directions = directions;
       for (const int substeps : plan.substeps) {
         rules.substeps = substeps;
@@ -79,14 +77,14 @@ std::vector<PlannedRun> node_points() {
   return points;
 }
 
-std::vector<Case> cases_of(const ParetoPlan& plan) {
+std::vector<Case> pareto_cases() {
   std::vector<Case> cases;
   for (const ParetoError& error : pareto_errors()) {
     const bool is_there =
         std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == error.case_name; });
     if (!is_there) cases.push_back(stability_case(error.case_name));
   }
-  for (Case& c : cases) c.duration_s = std::min(c.duration_s, plan.simulated_s);
+  for (Case& c : cases) c.duration_s = std::min(c.duration_s, kSimulated_s);
   return cases;
 }
 
@@ -126,23 +124,6 @@ bool is_about_physics(const ParetoPoint& p) {
          p.rules.aura == usual.aura;
 }
 
-std::string_view aura_name(core::AuraKind aura) { return aura == core::AuraKind::kTight ? "tight" : "swept"; }
-
-void write_csv(const std::vector<ParetoPoint>& points, const std::filesystem::path& file) {
-  std::ofstream out(file);
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-  out << "solver,iterations,substeps,friction_directions,nodes,sync,lookahead,aura,preset";
-  for (const ParetoError& error : pareto_errors()) out << "," << error.name;
-  out << ",error,cpu_us_per_step,same_bits,on_front\n";
-  for (const ParetoPoint& p : points) {
-    out << fmt::format("{},{},{},{},{},{},{},{},{}", physics::name_of(p.rules.solver), p.rules.iterations,
-                       p.rules.substeps, p.rules.friction_directions, p.nodes, name_of(p.rules.sync), p.rules.lookahead,
-                       aura_name(p.rules.aura), p.preset);
-    for (const double error : p.errors) out << fmt::format(",{:.6g}", error);
-    out << fmt::format(",{:.6g},{:.2f},{},{}\n", p.error, p.cpu_us_per_step, p.same_bits ? 1 : 0, p.on_front ? 1 : 0);
-  }
-}
-
 }  // namespace
 
 const std::vector<ParetoError>& pareto_errors() {
@@ -165,12 +146,12 @@ void mark_front(std::vector<ParetoPoint>& points) {
   }
 }
 
-std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress& progress) {
+std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const Progress& progress) {
   std::vector<PlannedRun> planned = physics_points(plan);
   if (plan.nodes) {
     for (const PlannedRun& point : node_points()) planned.push_back(point);
   }
-  const std::vector<Case> cases = cases_of(plan);
+  const std::vector<Case> cases = pareto_cases();
   std::vector<ParetoPoint> points;
   for (const PlannedRun& point : planned) {
     if (!progress(static_cast<double>(points.size()) / static_cast<double>(planned.size()))) break;
@@ -186,19 +167,6 @@ std::vector<Target> pareto_targets(const std::vector<ParetoPoint>& points) {
     if (p.rules.sync == core::SyncMode::kDeterministic && !p.same_bits) ++other_bits;
   }
   return {{"deterministic points whose bits differ from those of one node", other_bits, 0}};
-}
-
-std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
-                                 const std::filesystem::path& directory) {
-  std::filesystem::create_directories(directory);
-  write_csv(points, directory / "pareto.csv");
-  const std::vector<Target> targets = pareto_targets(points);
-  nlohmann::json summary;
-  summary["simulated_s"] = plan.simulated_s;
-  summary["points"] = points.size();
-  summary["targets"] = json_of(targets);
-  std::ofstream(directory / "summary.json") << summary.dump(2) << "\n";
-  return targets;
 }
 
 }  // namespace aurasim::lab

@@ -1,25 +1,22 @@
 // The pareto experiment: cost and error of each setup of the physics and the nodes.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "lab/measured_run.h"
+#include "lab/on_threads.h"
 #include "lab/summary.h"
 
 namespace aurasim::lab {
 
 struct ParetoPlan {
-  double simulated_s = 3;
   std::vector<int> iterations = {5, 10, 20, 50};
   std::vector<int> substeps = {1, 2, 4, 8};
-  std::vector<int> friction_directions = {1, 2};
   bool nodes = true;  ///< also vary the settings of nodes: their number, sync mode, lookahead, aura
 };
 
-/// One error of one case, as a column of pareto.csv.
+/// One error of one case, as a metric of the results.
 struct ParetoError {
   const char* name;
   const char* case_name;
@@ -41,14 +38,8 @@ struct ParetoPoint {
 /// Marks the points on the front: among those that vary the physics, no other point is both cheaper and better.
 void mark_front(std::vector<ParetoPoint>& points);
 
-/// Called before each run with the share done; false from it ends the experiment.
-using ParetoProgress = std::function<bool(double share)>;
-std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const ParetoProgress& progress);
+std::vector<ParetoPoint> run_pareto(const ParetoPlan& plan, const Progress& progress);
 
 std::vector<Target> pareto_targets(const std::vector<ParetoPoint>& points);
-
-/// Writes pareto.csv and summary.json; returns the requirements.
-std::vector<Target> write_pareto(const std::vector<ParetoPoint>& points, const ParetoPlan& plan,
-                                 const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "lab/thesis_tables.h"
-#include "lab/trial_file.h"
 
 namespace aurasim::lab {
 namespace {
@@ -22,17 +20,6 @@ bool is(const Key& key, AuraChoice aura, SyncMode sync) { return is(key, aura) &
 bool is_aura(const Key& key) {
   const bool promises = key.variant.aura != AuraChoice::kNone && key.variant.aura != AuraChoice::kThesis;
   return !key.variant.central && promises;
-}
-
-double percent(std::uint64_t part, std::uint64_t all) {
-  return all > 0 ? 100 * static_cast<double>(part) / static_cast<double>(all) : 0;
-}
-
-nlohmann::json json_of(const ThesisRow& row) {
-  return {{"trials", row.trials},
-          {"late_percent", row.late_percent},
-          {"missed_percent", row.missed_percent},
-          {"thrashed", row.thrashed}};
 }
 
 /// Smallest count of late and missed collisions of nodes without aura within tolerance, among the series.
@@ -68,7 +55,7 @@ class TargetList {
   std::vector<Target> targets_;
 };
 
-double late_percent(const Tally& t) { return percent(t.late, t.trials); }
+double late_percent(const Tally& t) { return t.percent(t.late); }
 std::uint64_t wrong(const Tally& t) { return t.late + t.missed; }
 std::uint64_t thrashed(const Tally& t) { return t.thrashed; }
 std::uint64_t pulled_twice(const Tally& t) { return t.pulled_twice; }
@@ -87,36 +74,6 @@ void target_beyond(TargetList& list, const ThesisRow& row, double worst_percent)
                late_percent, beyond(AuraChoice::kTightAtThesisSize));
 }
 
-nlohmann::json tables(const Tallies& tallies, const std::array<ThesisRow, 9>& thesis, bool within) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const ThesisRow& row : thesis) {
-    nlohmann::json line = {{"series", row.series}, {"thesis", json_of(row)}, {"ours", nlohmann::json::object()}};
-    for (const auto& [key, tally] : tallies.entries()) {
-      if (key.series != row.series || key.within != within || key.pairs != PairKind::kHeadOn) continue;
-      const std::string name =
-          key.variant.central ? "central" : fmt::format("{} {}", name_of(key.variant.aura), name_of(key.variant.sync));
-      line["ours"][name] = json_of(tally);
-    }
-    rows.push_back(line);
-  }
-  return rows;
-}
-
-nlohmann::json by_variant(const Tallies& tallies) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const auto& [key, tally] : tallies.entries()) {
-    nlohmann::json row = json_of(tally);
-    row["pairs"] = name_of(key.pairs);
-    row["series"] = key.series;
-    row["aura"] = key.variant.central ? "central" : name_of(key.variant.aura);
-    row["sync"] = key.variant.central ? "" : name_of(key.variant.sync);
-    row["tolerance_kept"] = key.within;
-    if (key.value >= 0) row["value"] = key.value;
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 }  // namespace
 
 void Tallies::add(const Trial& trial) {
@@ -131,33 +88,6 @@ void Tallies::add(const Trial& trial) {
     found = entries_.rbegin();
   }
   found->tally.add(trial);
-}
-
-nlohmann::json json_of(const Tally& t) {
-  return {{"trials", t.trials},
-          {"late", t.late},
-          {"missed", t.missed},
-          {"thrashed", t.thrashed},
-          {"pulled_twice", t.pulled_twice},
-          {"late_percent", percent(t.late, t.trials)},
-          {"missed_percent", percent(t.missed, t.trials)},
-          {"late_without_violation", t.late_without_violation},
-          {"missed_without_violation", t.missed_without_violation},
-          {"later_than_central", t.later_than_central},
-          {"same_bits_as_central", t.same_bits},
-          {"with_violations", t.with_violations},
-          {"mean_slow_down", t.mean_slow_down()},
-          {"most_slow_down", t.slow_down_most},
-          {"most_penetration_time_ms", 1e3 * t.penetration_time_most_s}};
-}
-
-nlohmann::json json_of(const std::vector<Target>& targets) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const Target& t : targets) {
-    out.push_back(
-        {{"name", t.name}, {"found", t.found}, {t.at_least ? "at_least" : "at_most", t.allowed}, {"met", t.met()}});
-  }
-  return out;
 }
 
 std::vector<Target> collision_targets(const Tallies& tallies) {
@@ -215,31 +145,6 @@ std::vector<Target> loss_targets(const Tallies& tallies) {
   const Tally naive = tallies.sum(at_15(AuraChoice::kNone, SyncMode::kBounded));
   if (naive.trials > 0) list.at_least("late and missed, none, bounded, 15% loss", double(wrong(naive)), 1);
   return list.take();
-}
-
-std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::path& directory) {
-  Tallies tallies;
-  read_trials(directory / "collisions.csv", [&](const Trial& trial) { tallies.add(trial); });
-  const bool loss = campaign.name == "loss";
-  const std::vector<Target> targets = loss ? loss_targets(tallies) : collision_targets(tallies);
-  const auto sum = [&](auto&& wanted) { return json_of(tallies.sum(wanted)); };
-  nlohmann::json out = {{"experiment", campaign.name}, {"virtual", !campaign.over_dds},
-                        {"step_ms", 1e3 * kStep_s},    {"substeps", campaign.substeps},
-                        {"seed", campaign.seed},       {"repeats", campaign.repeats}};
-  out["within_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && k.within; });
-  out["beyond_tolerance"] = sum([](const Key& k) { return is(k, AuraChoice::kSwept) && !k.within; });
-  out["late_without_violation"] = tallies.sum(is_aura).late_without_violation;
-  out["thesis_aura"] = sum([](const Key& k) { return is(k, AuraChoice::kThesis); });
-  out["naive"] = sum([](const Key& k) { return is(k, AuraChoice::kNone) && (k.within || k.series == "loss"); });
-  out["control"] = sum([](const Key& k) { return k.variant.central; });
-  out["targets"] = json_of(targets);
-  if (!loss) {
-    out["table_5_1"] = tables(tallies, kThesisWithin, true);
-    out["table_5_2"] = tables(tallies, kThesisBeyond, false);
-  }
-  out["by"] = by_variant(tallies);
-  std::ofstream(directory / "summary.json") << out.dump(1) << "\n";
-  return targets;
 }
 
 }  // namespace aurasim::lab

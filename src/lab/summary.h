@@ -1,15 +1,9 @@
-// summary.json: sums over collisions.csv beside the thesis's numbers, and the requirements for them.
+// Sums over trials, and the requirements for them.
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "lab/campaign.h"
 #include "lab/metrics.h"
 
 namespace aurasim::lab {
@@ -50,22 +44,15 @@ class Tallies {
     Key key;
     Tally tally;
   };
-  /// In order of first appearance.
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
   std::vector<Entry> entries_;
 };
 
-nlohmann::json json_of(const Tally& tally);
-nlohmann::json json_of(const std::vector<Target>& targets);
-
 /// Requirements from docs/design.md, "What is counted", and from the thesis's numbers. Only those for which the
 /// campaign has trials.
 std::vector<Target> collision_targets(const Tallies& tallies);
 std::vector<Target> loss_targets(const Tallies& tallies);
-
-/// Reads DIR/collisions.csv and writes DIR/summary.json; returns the targets.
-std::vector<Target> summarise(const Campaign& campaign, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -14,6 +14,7 @@
 #include "core/setpoint.h"
 #include "lab/wire_post.h"
 #include "node/node.h"
+#include "node/timed.h"
 #include "transport/memory_transport.h"
 
 namespace aurasim::lab {
@@ -46,6 +47,9 @@ struct ClusterRules {
   core::Step shuffle_ranks_steps = 0;  ///< about every so many steps ranks change; 0: as in a real run
   std::uint64_t seed = 1;
 };
+
+/// CPU time of this thread, seconds.
+inline double thread_time_s() { return node::now_s(node::PhaseClock::kThreadCpu); }
 
 /// Setup of a node, without region and generation.
 node::NodeSetup node_setup(const ClusterRules& rules);

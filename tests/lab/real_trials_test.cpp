@@ -13,7 +13,6 @@ namespace {
 /// By variant; the control is not among them.
 std::array<Tally, 2> try_over_dds(PairKind kind, const Series& series, std::uint32_t repeats) {
   Campaign campaign;
-  campaign.over_dds = true;
   campaign.repeats = repeats;
   campaign.variants = {{AuraChoice::kSwept, core::SyncMode::kBounded, false},
                        {AuraChoice::kNone, core::SyncMode::kBounded, false}};

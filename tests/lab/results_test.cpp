@@ -1,4 +1,5 @@
 // Stored results: what a run appends, and what a quick run is compared with.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -107,7 +108,7 @@ TEST(Suites, ASuiteThatIsStoppedSaysNothingMoreOfItsCases) {
   for (const Suite& suite : suites()) {
     if (suite.name == std::string_view("correctness_over_dds")) continue;  // it needs DDS
     int asked = 0;
-    suite.run(Effort::kQuick, [&](double share) {
+    suite.run({}, [&](double share) {
       EXPECT_GE(share, 0) << suite.name;
       EXPECT_LE(share, 1) << suite.name;
       return ++asked < 1;
@@ -115,6 +116,23 @@ TEST(Suites, ASuiteThatIsStoppedSaysNothingMoreOfItsCases) {
     EXPECT_GE(asked, 1) << suite.name;
     EXPECT_LE(asked, 3) << suite.name;
   }
+}
+
+/// The parts of a suite, run alone, give the rows that they have in the whole.
+TEST(Suites, APartAloneHasTheRowsThatItHasAmongOthers) {
+  const auto go_on = [](double) { return true; };
+  const SuiteResults spring = run_accuracy_suite({Effort::kQuick, {"spring"}}, go_on);
+  const SuiteResults both = run_accuracy_suite({Effort::kQuick, {"free_fall", "spring"}}, go_on);
+  ASSERT_FALSE(spring.rows.empty());
+  for (const ResultRow& row : spring.rows) {
+    if (row.unit == "us") continue;
+    const auto same = [&](const ResultRow& other) {
+      return other.what == row.what && other.metric == row.metric && other.value == row.value;
+    };
+    EXPECT_TRUE(std::ranges::any_of(both.rows, same)) << row.what << ", " << row.metric;
+    EXPECT_TRUE(row.what.starts_with("spring/") || row.what.starts_with("requirement/")) << row.what;
+  }
+  EXPECT_GT(both.rows.size(), spring.rows.size());
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST_F(Scenes, ACampaignGoesOnWhereItStoppedAndRefusesOtherRules) {
   plan.rules = rules(20);
   plan.shrink_s = 0;
   int shown = 0;
-  const auto show = [&](const Progress&) { ++shown; };
+  const auto show = [&](double) { return ++shown > 0; };
   EXPECT_TRUE(run_scenes(plan, folder_, 1, show, kUnstopped));
   EXPECT_EQ(shown, 2);
   std::ofstream(folder_ / "seeds.csv", std::ios::app) << "3,1,";  // cut off by a crash
@@ -199,7 +199,7 @@ TEST_F(Scenes, AFailingSeedStaysWithItsShrunkWorld) {
   plan.rules.overrides = {"aura.radius=none", "time.redo=off"};
   plan.shrink_s = 1;
   EXPECT_TRUE(run_scenes(
-      plan, folder_, 1, [](const Progress&) {}, kUnstopped));
+      plan, folder_, 1, [](double) { return true; }, kUnstopped));
   EXPECT_EQ(summarise_scenes(plan, folder_)["failed_seeds"], nlohmann::json::array({1}));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "seed_1" / kLaunchFile));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "seed_1" / "shrunk" / "README.md"));

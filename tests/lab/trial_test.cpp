@@ -56,7 +56,6 @@ INSTANTIATE_TEST_SUITE_P(Pairs, EachKind, testing::ValuesIn(kPairKinds),
 /// speeds explain.
 TEST(Trial, ASpinningCornerIsNotLateBecauseItIsFasterThanItsBody) {
   Campaign campaign;
-  campaign.name = "collision";
   campaign.variants = {{AuraChoice::kSwept, SyncMode::kBounded}};
   for (const Trial& trial : run_job(campaign, {PairKind::kBoxes, thesis_series()[0], 8})) {
     EXPECT_FALSE(trial.late() || trial.missed()) << "repeat " << trial.repeat;
@@ -75,7 +74,6 @@ TEST(Trial, NoPairIsHandedOverBeforeTheNodesTalk) {
 /// The first pull comes 13 steps before the contact here, with both bodies over the other region already.
 TEST(Trial, APairDoesNotGoHomeBetweenThePullAndTheContact) {
   Campaign campaign;
-  campaign.name = "collision";
   campaign.variants = {{AuraChoice::kSwept, SyncMode::kBounded}};
   for (const auto& [series, value] : {std::pair{0, 8.0}, {1, 16.0}}) {
     for (const Trial& trial : run_job(campaign, {PairKind::kRandom, thesis_series()[series], value})) {

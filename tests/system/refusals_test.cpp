@@ -105,7 +105,7 @@ TEST_F(Refusals, RegionsThatTakeTurnsAreWarnedOf) {
 }
 
 TEST_F(Refusals, ACommandOfTheLaboratoryIsNamedWithItsProgram) {
-  expect_refused({"experiment", "stability", "--cases", "tower"}, 2, "aurasim-lab experiment stability --cases tower");
+  expect_refused({"experiment", "scenes", "--seeds", "1-2"}, 2, "aurasim-lab experiment scenes --seeds 1-2");
 }
 
 TEST_F(Refusals, AReportIsNotWrittenWhereNothingWasRecorded) {

@@ -1,9 +1,6 @@
 // One function per command of the laboratory. Each adds itself to `aurasim-lab experiment`, but for `run`.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "command_line/command_line.h"
 
 namespace aurasim::lab::commands {
@@ -14,16 +11,9 @@ void add_experiment(CLI::App& program, command_line::Action& action);
 /// The command `run SUITE`, beside `experiment`.
 void add_run(CLI::App& program, command_line::Action& action);
 
-void add_stability(CLI::App& experiment, command_line::Action& action);
-void add_pareto(CLI::App& experiment, command_line::Action& action);
-void add_scalability(CLI::App& experiment, command_line::Action& action);
-void add_bandwidth(CLI::App& experiment, command_line::Action& action);
 void add_scenes(CLI::App& experiment, command_line::Action& action);
 void add_endurance(CLI::App& experiment, command_line::Action& action);
 void add_speed(CLI::App& experiment, command_line::Action& action);
 void add_speed_errors(CLI::App& experiment, command_line::Action& action);
-
-/// Allowed values of options that choose a solver.
-std::vector<std::string> solver_names();
 
 }  // namespace aurasim::lab::commands

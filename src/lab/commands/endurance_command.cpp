@@ -1,15 +1,13 @@
 // `aurasim-lab experiment endurance`.
-#include <atomic>
 #include <chrono>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command_line/exit_code.h"
-#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
+#include "lab/commands/stop_flag.h"
 #include "lab/scenes/endurance.h"
 #include "setup/launch_setup.h"
 
@@ -38,13 +36,7 @@ int run_endurance(const command_line::FileArguments& files, lab::EndurancePlan p
   wanted.overrides.emplace_back("time.sync=deterministic");
   const config::Launch launch = config::read_launch(wanted.file, wanted.overrides);
   plan.setup_of = [](const config::Launch& of, core::RegionId region) { return setup::node_setup(of, region, 0); };
-  host::catch_stop_signals();
-  std::atomic<bool> stop = false;
-  const std::jthread watch([&stop](const std::stop_token& done) {
-    for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
-      if (host::stop_requested()) stop = true;
-    }
-  });
+  const StopFlag stop;
   const auto begin = std::chrono::steady_clock::now();
   const lab::Endured end = lab::endure(
       launch, plan, [begin](const lab::Endured& so_far) { print_line(so_far, begin); }, stop);

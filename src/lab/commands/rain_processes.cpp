@@ -66,10 +66,8 @@ std::vector<lab::Window> windows_of_report(const std::filesystem::path& report, 
 }
 
 std::optional<std::vector<lab::Window>> run_processes(const lab::Rain& rain, const std::filesystem::path& launch_file,
-                                                      const std::vector<std::string>& more,
                                                       const std::filesystem::path& report) {
-  std::vector<std::string> overrides = rain.overrides();
-  overrides.insert(overrides.end(), more.begin(), more.end());
+  const std::vector<std::string> overrides = rain.overrides();
   const config::Launch launch = config::read_launch(launch_file, overrides);
   std::filesystem::create_directories(report);
   std::vector<std::string> words = {setup::program_beside("aurasim", "`scripts/build.sh release` builds it.").string(),

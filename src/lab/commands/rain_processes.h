@@ -11,10 +11,9 @@
 
 namespace aurasim::lab::commands {
 
-/// Runs `aurasim launch` on the launch file with the rain's overrides and `more`, and reads its report. Nothing when
+/// Runs `aurasim launch` on the launch file with the rain's overrides, and reads its report. Nothing when
 /// the run fails. In the resulting windows, times are of the wall clock, and counts of bytes and datagrams are 0.
 std::optional<std::vector<lab::Window>> run_processes(const lab::Rain& rain, const std::filesystem::path& launch_file,
-                                                      const std::vector<std::string>& more,
                                                       const std::filesystem::path& report);
 
 /// The windows made from the steps of a report.

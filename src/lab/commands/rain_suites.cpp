@@ -2,13 +2,13 @@
 #include "lab/commands/rain_suites.h"
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "config/shipped_files.h"
 #include "lab/commands/rain_processes.h"
@@ -16,7 +16,6 @@
 #include "lab/scale/message_sizes.h"
 #include "lab/scale/rain_summary.h"
 #include "lab/scale/scalability.h"
-#include "lab/suites/trial_folder.h"
 #include "setup/launch_setup.h"
 
 namespace aurasim::lab::commands {
@@ -116,23 +115,34 @@ class Medians {
   std::map<std::pair<std::string, std::string>, std::vector<double>> values_;
 };
 
-using Runs = std::vector<std::pair<Rain, std::vector<Window>>>;
+/// Rains, and the windows of each.
+struct Runs {
+  std::vector<Rain> rains;
+  std::vector<std::vector<Window>> windows;
+};
 
-/// Each run in numbers, and how many times less its frames take than those of the same rain on one node.
+/// How many times less the frames of several nodes take than those of the same rain on one node.
+std::vector<Figure> gains(const RainFigures& one, const RainFigures& f) {
+  return {{"largest frame, times less", "ratio", one.frame_max_ms / f.frame_max_ms},
+          {"95th percentile, times less", "ratio", one.frame_p95_ms / f.frame_p95_ms},
+          {"last 5 s, times less", "ratio", one.last_frame_ms / f.last_frame_ms},
+          {"growth per body, times less", "ratio", one.growth_per_body / f.growth_per_body}};
+}
+
+/// Each run in numbers, and beside the same rain on one node.
 void add_runs(const Runs& runs, const std::string& group, bool is_traffic, std::vector<ResultRow>& out) {
   Medians medians;
-  for (const auto& [rain, windows] : runs) {
+  for (std::size_t i = 0; i < runs.rains.size(); ++i) {
+    const Rain& rain = runs.rains[i];
     const std::string what = case_of(rain, group);
-    const RainFigures f = figures_of(windows, rain.regions.count);
+    const RainFigures f = figures_of(runs.windows[i], rain.regions.count);
     for (const Figure& figure : is_traffic ? traffic(rain, f) : figures(f)) medians.add(what, figure);
-    medians.add(what, {"bodies in real time", "1", bodies_in_real_time(windows)});
+    medians.add(what, {"bodies in real time", "1", bodies_in_real_time(runs.windows[i])});
     if (rain.regions.count == 1 || (rain.series != "columns" && rain.series != "cuts")) continue;
-    for (const auto& [other, others] : runs) {
+    for (std::size_t k = 0; k < runs.rains.size(); ++k) {
+      const Rain& other = runs.rains[k];
       if (other.regions.count != 1 || other.series != rain.series || other.repeat != rain.repeat) continue;
-      const RainFigures one = figures_of(others, 1);
-      medians.add(what, {"largest frame, times less", "ratio", one.frame_max_ms / f.frame_max_ms});
-      medians.add(what, {"95th percentile, times less", "ratio", one.frame_p95_ms / f.frame_p95_ms});
-      medians.add(what, {"last 5 s, times less", "ratio", one.last_frame_ms / f.last_frame_ms});
+      for (const Figure& gain : gains(figures_of(runs.windows[k], 1), f)) medians.add(what, gain);
     }
   }
   medians.rows_into(out);
@@ -145,15 +155,13 @@ struct Part {
   bool is_traffic = false;
 };
 
-std::vector<Part> parts_of(Effort effort) {
+/// The parts of a full run. A quick run has two series of the shorter one. If series are named, other series and parts
+/// without any are left out.
+std::vector<Part> parts_of(const SuitePlan& wanted) {
   ScalabilityPlan shorter, wide, narrow, bandwidth;
   shorter.run_s = 20;
   bandwidth.series = bandwidth_series();
   bandwidth.run_s = 10;
-  if (effort == Effort::kQuick) {
-    shorter.series = {"border", "lookahead"};
-    return {{", 20 s", shorter}};
-  }
   wide.series = {"columns", "cuts"};
   wide.auras = {"swept"};
   wide.repeats = 3;
@@ -161,19 +169,15 @@ std::vector<Part> parts_of(Effort effort) {
   narrow.series = {"columns"};
   narrow.columns = {1, 2, 4, 8};
   narrow.lookahead = 1;
-  return {{", K = 2", wide}, {", K = 1", narrow}, {", 20 s", shorter}, {"", bandwidth, true}};
-}
-
-void add_sizes(std::vector<ResultRow>& out) {
-  const auto bytes = [&](const std::string& what, double size) { out.push_back({"size/" + what, "bytes", size, "B"}); };
-  const nlohmann::json sizes = message_sizes();
-  bytes("aura batch with nothing in it", sizes["aura_batch"]);
-  for (const auto& [aura, size] : sizes["aura_update"].items()) bytes("each aura update, " + aura, size);
-  bytes("each aura deleted", sizes["aura_delete"]);
-  bytes("hand-off with nothing in it", sizes["hand_off"]);
-  bytes("each body handed over", sizes["hand_off_body"]);
-  bytes("each contact point handed over", sizes["hand_off_contact_point"]);
-  bytes("acknowledgement", sizes["ack"]);
+  std::vector<Part> parts = {{", K = 2", wide}, {", K = 1", narrow}, {", 20 s", shorter}, {"", bandwidth, true}};
+  if (!wanted.is_full()) {
+    if (wanted.only.empty()) shorter.series = {"border", "lookahead"};
+    parts = {{", 20 s", shorter}, {"", bandwidth, true}};
+    if (wanted.only.empty()) parts.pop_back();
+  }
+  for (Part& part : parts) std::erase_if(part.plan.series, [&](const auto& series) { return !wanted.wants(series); });
+  std::erase_if(parts, [](const Part& part) { return part.plan.series.empty(); });
+  return parts;
 }
 
 double found_in(const std::vector<ResultRow>& rows, const std::string& what, const std::string& metric) {
@@ -200,55 +204,54 @@ void add_requirements(SuiteResults& results) {
   add_targets(results, targets);
 }
 
-SuiteResults run_scalability(Effort effort, const SuiteProgress& progress) {
+SuiteResults run_scalability(const SuitePlan& wanted, const Progress& progress) {
   RainPlace place;
   place.launch_file = rain_launch_file();
   place.setup_of = [](const config::Launch& launch, core::RegionId region) {
     return setup::node_setup(launch, region, 0);
   };
   SuiteResults results;
-  const std::vector<Part> parts = parts_of(effort);
+  const std::vector<Part> parts = parts_of(wanted);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const TrialFolder folder;
-    std::atomic<bool> stop = false;
     const std::vector<Rain> rains = rains_of(parts[i].plan);
-    const bool finished = run_rains(
-        rains, place, folder.path(), kRunsAtATime,
-        [&](const Progress& now) {
-          stop = stop || !progress((static_cast<double>(i) + now.share) / static_cast<double>(parts.size()));
-        },
-        stop);
-    if (!finished) return results;
-    Runs runs;
-    for (const Rain& rain : rains) runs.emplace_back(rain, read_windows(windows_file(folder.path(), rain)));
-    add_runs(runs, parts[i].group, parts[i].is_traffic, results.rows);
+    auto windows = run_rains(rains, place, kRunsAtATime, [&](double share) {
+      return progress((static_cast<double>(i) + share) / static_cast<double>(parts.size()));
+    });
+    if (!windows) return results;
+    add_runs({rains, std::move(*windows)}, parts[i].group, parts[i].is_traffic, results.rows);
   }
-  add_sizes(results.rows);
-  if (effort == Effort::kFull) add_requirements(results);
+  for (const ResultRow& size : message_sizes()) results.rows.push_back(size);
+  if (wanted.is_full() && wanted.only.empty()) add_requirements(results);
   return results;
 }
 
+std::vector<std::string> scalability_parts() {
+  std::vector<std::string> parts = scalability_series();
+  for (const std::string& series : bandwidth_series()) parts.push_back(series);
+  return parts;
+}
+
 /// One and two nodes. A quick run has one repeat with K = 1.
-SuiteResults run_scalability_clock(Effort effort, const SuiteProgress& progress) {
+SuiteResults run_scalability_clock(const SuitePlan& wanted, const Progress& progress) {
   ScalabilityPlan plan;
   plan.series = {"columns"};
   plan.columns = {1, 2};
   plan.auras = {"swept"};
-  const bool is_full = effort == Effort::kFull;
-  plan.repeats = is_full ? 3 : 1;
+  plan.repeats = wanted.is_full() ? 3 : 1;
   SuiteResults results;
   double done = 0;
-  const std::vector<int> lookaheads = is_full ? std::vector{2, 1} : std::vector{1};
+  const std::vector<int> lookaheads = wanted.is_full() ? std::vector{2, 1} : std::vector{1};
   for (const int k : lookaheads) {
     plan.lookahead = k;
-    const TrialFolder folder;
-    Runs runs;
-    const std::vector<Rain> rains = rains_of(plan);
-    for (const Rain& rain : rains) {
-      if (!progress(done++ / static_cast<double>(lookaheads.size() * rains.size()))) return results;
-      const auto windows = run_processes(rain, rain_launch_file(), {}, folder.path() / rain.name());
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / fmt::format("aurasim-lab-{}", ::getpid());
+    Runs runs{rains_of(plan), {}};
+    for (const Rain& rain : runs.rains) {
+      if (!progress(done++ / static_cast<double>(lookaheads.size() * runs.rains.size()))) return results;
+      const auto windows = run_processes(rain, rain_launch_file(), folder);
+      std::filesystem::remove_all(folder);
       if (!windows) throw std::runtime_error("the run " + rain.name() + " failed; what it wrote is above");
-      runs.emplace_back(rain, *windows);
+      runs.windows.push_back(*windows);
     }
     add_runs(runs, fmt::format(", K = {}, {:g} s", k, plan.run_s), false, results.rows);
   }
@@ -258,9 +261,10 @@ SuiteResults run_scalability_clock(Effort effort, const SuiteProgress& progress)
 }  // namespace
 
 std::vector<Suite> rain_suites() {
-  return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/speed.md)", run_scalability},
+  return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/speed.md)", run_scalability,
+           scalability_parts},
           {"scalability_clock", "rain on one and two real nodes, by the wall clock (docs/speed.md)",
-           run_scalability_clock}};
+           run_scalability_clock, [] { return std::vector<std::string>(); }}};
 }
 
 }  // namespace aurasim::lab::commands

@@ -1,11 +1,13 @@
 // `aurasim-lab run SUITE`.
-#include <chrono>
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "command_line/exit_code.h"
@@ -14,7 +16,6 @@
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
 #include "lab/commands/rain_suites.h"
-#include "lab/commands/target_list.h"
 #include "lab/suites/results_file.h"
 #include "lab/suites/suites.h"
 
@@ -24,6 +25,7 @@ namespace {
 struct RunArguments {
   std::string suite;
   std::string results = "docs/results";
+  std::vector<std::string> only;
   bool full = false;
 };
 
@@ -40,6 +42,17 @@ lab::Suite suite_named(const std::string& name) {
   throw std::invalid_argument("no suite of this name: " + name);
 }
 
+void print(const std::vector<lab::Target>& targets) {
+  for (const lab::Target& t : targets) {
+    fmt::print("{:<6} {:>10.4g}  {} {:.4g}  {}\n", t.met() ? "met" : "MISSED", t.found,
+               t.at_least ? "at least" : "at most ", t.allowed, t.name);
+  }
+}
+
+bool all_met(const std::vector<lab::Target>& targets) {
+  return std::ranges::all_of(targets, [](const auto& t) { return t.met(); });
+}
+
 int fail() { return static_cast<int>(command_line::ExitCode::kFailed); }
 
 /// False if a row is further from the stored full run than its tolerance.
@@ -53,23 +66,34 @@ bool compare(const std::filesystem::path& file, const std::vector<lab::ResultRow
   return found.empty();
 }
 
+/// Throws std::invalid_argument for a part that the suite does not have.
+void check_parts(const lab::Suite& suite, const std::vector<std::string>& only) {
+  const std::vector<std::string> parts = suite.parts();
+  for (const std::string& part : only) {
+    if (std::ranges::find(parts, part) != parts.end()) continue;
+    throw std::invalid_argument(
+        fmt::format("--only: found {}, allowed for the suite {}: {}", part, suite.name, fmt::join(parts, ", ")));
+  }
+}
+
 int run_suite(const RunArguments& arguments) {
-  host::catch_stop_signals();
   const lab::Suite suite = suite_named(arguments.suite);
-  const auto begin = std::chrono::steady_clock::now();
-  ProgressBar bar;
-  const auto results = suite.run(arguments.full ? lab::Effort::kFull : lab::Effort::kQuick, [&](double share) {
-    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    bar.show({share, elapsed_s, share > 0 ? elapsed_s * (1 - share) / share : 0});
-    return !host::stop_requested();
-  });
-  bar.end();
+  check_parts(suite, arguments.only);
+  lab::SuiteResults results;
+  {
+    ProgressBar bar;
+    results = suite.run({arguments.full ? lab::Effort::kFull : lab::Effort::kQuick, arguments.only}, std::ref(bar));
+  }
   if (host::stop_requested()) {
     spdlog::warn("stopped before the end; nothing was stored. Run the same command again");
     return fail();
   }
+  // Some requirements are sums over all parts.
+  if (!arguments.only.empty())
+    std::erase_if(results.rows, [](const auto& row) { return row.what.starts_with("requirement/"); });
   const std::filesystem::path file = std::filesystem::path(arguments.results) / (arguments.suite + ".jsonl");
-  const bool as_stored = arguments.full || compare(file, results.rows);
+  const bool is_whole = arguments.full && arguments.only.empty();
+  const bool as_stored = is_whole || compare(file, results.rows);
   lab::append_results(file, results.rows, lab::provenance_here(host::commit(), !arguments.full));
   fmt::print("{} rows appended to {}\n", results.rows.size(), file.string());
   print(results.targets);
@@ -91,10 +115,15 @@ void add_run(CLI::App& program, command_line::Action& action) {
   command->add_flag("--full,!--quick", arguments->full,
                     "everything that the page shows; a quick run measures some of it, and says where it differs from "
                     "the stored full run");
+  command
+      ->add_option("--only", arguments->only,
+                   "these parts of the suite alone; a part that is not there is answered with all that are")
+      ->delimiter(',');
   command->add_option("--results", arguments->results, "folder with SUITE.jsonl, to which the rows are appended");
   command->footer(about +
                   "scripts/render_pages.py puts stored results into the pages. Example:\n"
-                  "  aurasim-lab run accuracy --full");
+                  "  aurasim-lab run accuracy --full\n"
+                  "  aurasim-lab run accuracy --only card_house,wedge --results out");
   command->callback([arguments, &action] { action = [arguments] { return run_suite(*arguments); }; });
 }
 

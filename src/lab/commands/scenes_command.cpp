@@ -1,18 +1,15 @@
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "command_line/exit_code.h"
-#include "host/stop_signal.h"
 #include "lab/commands/commands.h"
 #include "lab/commands/progress_bar.h"
-#include "lab/conditions.h"
+#include "lab/commands/stop_flag.h"
 #include "lab/scenes/scenes.h"
 #include "setup/launch_setup.h"
 
@@ -73,23 +70,16 @@ int run_case(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
 }
 
 int run_seeds(const lab::ScenesPlan& plan, const ScenesArguments& arguments) {
-  host::catch_stop_signals();
-  std::atomic<bool> stop = false;
-  const std::jthread watch([&stop](const std::stop_token& done) {  // a world may be made smaller for a minute
-    for (; !done.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
-      if (host::stop_requested()) stop = true;
-    }
-  });
+  const StopFlag stop;
   ProgressBar bar;
-  const bool finished = lab::run_scenes(
-      plan, arguments.out, arguments.threads, [&](const lab::Progress& progress) { bar.show(progress); }, stop);
-  bar.end();
+  const bool finished = lab::run_scenes(plan, arguments.out, arguments.threads, std::ref(bar), stop);
   const nlohmann::json sums = lab::summarise_scenes(plan, arguments.out);
   fmt::print("{} seeds: {} differ from one node; {} late, {} missed, {} of them without a flag\n",
              sums["seeds"].get<int>(), sums["differ"].get<int>(), sums["late"].get<int>(), sums["missed"].get<int>(),
              sums["unflagged"].get<int>());
   if (!sums["failed_seeds"].empty()) fmt::print("failed: {}\n", sums["failed_seeds"].dump());
-  if (!finished) spdlog::warn("stopped; the same command goes on from here");
+  if (!finished)
+    spdlog::warn("stopped after {} seeds. Run the same command again to continue", sums["seeds"].get<int>());
   return static_cast<int>(finished && sums["failed_seeds"].empty() ? command_line::ExitCode::kOk
                                                                    : command_line::ExitCode::kFailed);
 }

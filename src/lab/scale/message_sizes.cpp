@@ -40,7 +40,7 @@ double each(SizeOf&& size_of) {
 
 }  // namespace
 
-nlohmann::json message_sizes() {
+std::vector<ResultRow> message_sizes() {
   messages::WireBytes coder;
   const auto updates = [&](core::AuraKind kind) {
     return each([&](std::size_t n) { return coder.of(batch_of(n, kind)).size(); });
@@ -50,16 +50,19 @@ nlohmann::json message_sizes() {
     batch.deletes.resize(n);
     return coder.of(batch).size();
   };
-  return {{"aura_batch", coder.of(core::AuraBatch{}).size()},
-          {"aura_update",
-           {{"swept", updates(core::AuraKind::kSwept)},
-            {"tight", updates(core::AuraKind::kTight)},
-            {"thesis", updates(core::AuraKind::kThesis)}}},
-          {"aura_delete", each(deletes)},
-          {"hand_off", coder.of(hand_off_of(0, 0)).size()},
-          {"hand_off_body", each([&](std::size_t n) { return coder.of(hand_off_of(n, 0)).size(); })},
-          {"hand_off_contact_point", each([&](std::size_t n) { return coder.of(hand_off_of(1, n)).size(); })},
-          {"ack", coder.of(core::HandOffAck{}, 0).size()}};
+  const auto row = [](const char* what, auto size) {
+    return ResultRow{std::string("size/") + what, "bytes", static_cast<double>(size), "B"};
+  };
+  return {
+      row("aura batch with nothing in it", coder.of(core::AuraBatch{}).size()),
+      row("each aura update, swept", updates(core::AuraKind::kSwept)),
+      row("each aura update, thesis", updates(core::AuraKind::kThesis)),
+      row("each aura update, tight", updates(core::AuraKind::kTight)),
+      row("each aura deleted", each(deletes)),
+      row("hand-off with nothing in it", coder.of(hand_off_of(0, 0)).size()),
+      row("each body handed over", each([&](std::size_t n) { return coder.of(hand_off_of(n, 0)).size(); })),
+      row("each contact point handed over", each([&](std::size_t n) { return coder.of(hand_off_of(1, n)).size(); })),
+      row("acknowledgement", coder.of(core::HandOffAck{}, 0).size())};
 }
 
 }  // namespace aurasim::lab

@@ -16,9 +16,9 @@ constexpr int kInTheMiddle = 1;
 core::Step Rain::steps(double step_s) const { return std::llround(run_s / step_s); }
 
 std::string Rain::name() const {
-  return fmt::format("{}-{}-in-{}-{}-U{:g}-K{}-{}-S{}-{:g}per_s-{:g}of{:g}s-border{:g}-{:g}m_s-{:g}B_s-{}", series,
-                     regions.name(), world.name(), aura, uncertainty, lookahead, solver, substeps, rate_per_s, rain_s,
-                     run_s, border_share, fall_m_s, bandwidth_B_s, repeat);
+  return fmt::format("{}-{}-in-{}-{}-U{:g}-K{}-{:g}per_s-{:g}of{:g}s-border{:g}-{:g}m_s-{:g}B_s-{}", series,
+                     regions.name(), world.name(), aura, uncertainty, lookahead, rate_per_s, rain_s, run_s,
+                     border_share, fall_m_s, bandwidth_B_s, repeat);
 }
 
 std::vector<std::string> Rain::overrides() const {
@@ -27,8 +27,8 @@ std::vector<std::string> Rain::overrides() const {
       "scene.layout=" + world.yaml(),
       "aura.radius=" + aura,
       fmt::format("aura.uncertainty={}", uncertainty),
-      "physics.solver=" + solver,
-      fmt::format("time.substeps={}", substeps),
+      "physics.solver=soft_step",
+      "time.substeps=4",
       "time.lookahead=" + (lookahead > 0 ? fmt::to_string(lookahead) : std::string("auto")),
   };
   // One region has no boundaries: everything falls into its middle. The same holds if no body is to fall near

@@ -20,8 +20,6 @@ struct Rain {
   std::string aura = "swept";
   double uncertainty = 0.5;  ///< U
   int lookahead = 0;         ///< K; 0: from the tolerances
-  std::string solver = "soft_step";
-  int substeps = 4;
   double rate_per_s = 160;
   double rain_s = 60;         ///< how long it rains, simulated seconds
   double run_s = 60;          ///< length of the run, simulated seconds

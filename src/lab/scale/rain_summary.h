@@ -1,13 +1,9 @@
-// summary.json of the scalability experiment: each run in a few numbers, and how much faster several nodes are than
-// one.
+// Each run of the scalability experiment in a few numbers.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "lab/scale/rain.h"
 #include "lab/scale/window.h"
 
 namespace aurasim::lab {
@@ -21,23 +17,18 @@ struct RainFigures {
   double physics_ms = 0;       ///< means of the last window, summed over nodes
   double protocol_ms = 0;
   double transport_ms = 0;
-  double watch_ms = 0, cut_ms = 0, hash_ms = 0;
   double overhead_share = 0;    ///< protocol and transport over physics, last window
   std::uint64_t hand_offs = 0;  ///< bodies
   std::uint64_t returns = 0;    ///< hand-offs that bring a body back within a second
   std::uint64_t aura_updates = 0;
   std::uint64_t aura_bytes = 0, hand_off_bytes = 0, link_bytes = 0, datagrams = 0;
   double slow_down = 1;
-  std::size_t bodies = 0, awake = 0, projecting = 0;  ///< in the last step
-  std::size_t largest_cluster = 0;                    ///< of any step
+  std::size_t bodies = 0, projecting = 0;  ///< in the last step
+  std::size_t largest_cluster = 0;         ///< of any step
   double most_hosted_share = 0;  ///< largest share of the bodies on one node at the end of a window, times the nodes
   std::uint64_t violations = 0;
-  std::uint64_t late = 0;
 };
 
 RainFigures figures_of(const std::vector<Window>& windows, std::size_t nodes);
-
-/// Reads the windows of the runs that have been made, writes DIR/summary.json and returns it.
-nlohmann::json summarise_rains(const std::vector<Rain>& rains, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -1,15 +1,9 @@
 #include "lab/scale/scalability.h"
 
-#include <algorithm>
-#include <chrono>
-#include <mutex>
-
-#include "lab/on_threads.h"
+#include <utility>
 
 namespace aurasim::lab {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 Layout columns(std::size_t count, double width_m = 80) { return {Layout::Kind::kColumns, count, width_m}; }
 
@@ -18,10 +12,7 @@ Rain begin(const ScalabilityPlan& plan, const std::string& series, const Layout&
   rain.series = series;
   rain.regions = regions;
   rain.world = world;
-  rain.rate_per_s = plan.rate_per_s;
   rain.rain_s = rain.run_s = plan.run_s;
-  rain.solver = plan.solver;
-  rain.substeps = plan.substeps;
   rain.lookahead = regions.count > 1 ? plan.lookahead : 0;
   return rain;
 }
@@ -50,7 +41,7 @@ void add_series(const ScalabilityPlan& plan, const std::string& series, std::vec
   } else if (series == "weak") {
     for (const std::size_t n : {1, 2, 4, 8}) {
       out.push_back(begin(plan, series, columns(n), columns(n)));
-      out.back().rate_per_s = plan.rate_per_s / 8 * static_cast<double>(n);
+      out.back().rate_per_s *= static_cast<double>(n) / 8;
     }
   } else if (series == "border") {
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
@@ -92,48 +83,6 @@ double work_of(const Rain& rain) {
   return rain.run_s * (static_cast<double>(rain.bodies()) + 100 * static_cast<double>(rain.regions.count));
 }
 
-/// Hands runs to threads and adds up the work done.
-class Queue {
- public:
-  Queue(std::vector<Rain> rains, const std::function<void(const Progress&)>& show)
-      : rains_(std::move(rains)), shares_(rains_.size(), 0), begin_(Clock::now()), show_(show) {
-    for (const Rain& rain : rains_) all_ += work_of(rain);
-  }
-
-  const Rain* take(std::size_t& index) {
-    const std::lock_guard lock(mutex_);
-    index = next_++;
-    return index < rains_.size() ? &rains_[index] : nullptr;
-  }
-
-  void done(std::size_t index, double share) {
-    const std::lock_guard lock(mutex_);
-    shares_[index] = share;
-    double sum = 0;
-    for (std::size_t i = 0; i < rains_.size(); ++i) sum += shares_[i] * work_of(rains_[i]);
-    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
-    show_({sum / all_, elapsed_s, sum > 0 ? elapsed_s * (all_ - sum) / sum : 0});
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<Rain> rains_;
-  std::vector<double> shares_;
-  std::size_t next_ = 0;
-  double all_ = 0;
-  Clock::time_point begin_;
-  const std::function<void(const Progress&)>& show_;
-};
-
-void work(Queue& queue, const RainPlace& place, const std::filesystem::path& directory, const std::atomic<bool>& stop) {
-  std::size_t index = 0;
-  while (const Rain* rain = stop ? nullptr : queue.take(index)) {
-    const auto result = run_rain(
-        *rain, place, [&](double share) { queue.done(index, share); }, stop);
-    if (result) write_windows(windows_file(directory, *rain), *result);
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> scalability_series() {
@@ -152,20 +101,17 @@ std::vector<Rain> rains_of(const ScalabilityPlan& plan) {
   return rains;
 }
 
-std::filesystem::path windows_file(const std::filesystem::path& directory, const Rain& rain) {
-  return directory / "runs" / (rain.name() + ".csv");
-}
-
-bool run_rains(const std::vector<Rain>& rains, const RainPlace& place, const std::filesystem::path& directory,
-               int threads, const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop) {
-  std::filesystem::create_directories(directory / "runs");
-  std::vector<Rain> missing;
-  for (const Rain& rain : rains) {
-    if (!std::filesystem::exists(windows_file(directory, rain))) missing.push_back(rain);
-  }
-  Queue queue(std::move(missing), show);
-  on_threads(threads, [&] { work(queue, place, directory, stop); });
-  return !stop;
+std::optional<std::vector<std::vector<Window>>> run_rains(const std::vector<Rain>& rains, const RainPlace& place,
+                                                          int threads, const Progress& progress) {
+  std::vector<double> costs;
+  for (const Rain& rain : rains) costs.push_back(work_of(rain));
+  std::vector<std::vector<Window>> windows(rains.size());
+  const bool finished = on_threads(threads, costs, progress, [&](const WorkPiece& piece) {
+    auto result = run_rain(rains[piece.index], place, piece.shown, piece.stop);
+    if (result) windows[piece.index] = std::move(*result);
+  });
+  if (!finished) return std::nullopt;
+  return windows;
 }
 
 }  // namespace aurasim::lab

@@ -1,14 +1,11 @@
-// The scalability experiment (thesis section 5.1): lists its runs and runs them on a few threads. A complete run is not
-// repeated.
+// The scalability experiment (thesis section 5.1): lists its runs and runs them on a few threads.
 #pragma once
 
-#include <atomic>
-#include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "lab/campaign.h"
+#include "lab/on_threads.h"
 #include "lab/scale/rain.h"
 #include "lab/scale/rain_run.h"
 
@@ -34,19 +31,14 @@ struct ScalabilityPlan {
   std::vector<std::string> auras = {"swept", "tight", "thesis"};
   std::vector<std::size_t> columns = {1, 2, 4, 8, 10};
   std::uint32_t repeats = 1;
-  double rate_per_s = 160;
   double run_s = 60;
-  std::string solver = "soft_step";
-  int substeps = 4;
   int lookahead = 0;  ///< K of runs with several nodes, except series "lookahead"; 0: from the tolerances
 };
 
 std::vector<Rain> rains_of(const ScalabilityPlan& plan);
 
-/// Runs those of `rains` that DIR/runs lacks. Returns false when `stop` became true before the end.
-bool run_rains(const std::vector<Rain>& rains, const RainPlace& place, const std::filesystem::path& directory,
-               int threads, const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
-
-std::filesystem::path windows_file(const std::filesystem::path& directory, const Rain& rain);
+/// The windows of each rain. Nothing if `progress` ended it early.
+std::optional<std::vector<std::vector<Window>>> run_rains(const std::vector<Rain>& rains, const RainPlace& place,
+                                                          int threads, const Progress& progress);
 
 }  // namespace aurasim::lab

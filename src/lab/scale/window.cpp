@@ -1,60 +1,13 @@
 #include "lab/scale/window.h"
 
 #include <algorithm>
-#include <fstream>
 #include <span>
 #include <stdexcept>
-#include <string_view>
-#include <tuple>
 
-#include <fmt/format.h>
-
-#include "records/csv.h"
 #include "records/durations.h"
 
 namespace aurasim::lab {
 namespace {
-
-/// A window as it is in a file.
-struct WindowRow : Window {
-  template <class Value>
-  static constexpr auto mean_of(std::string_view name, Value StepLoad::*member, std::string_view format = "{}") {
-    return records::Column{name, [member](auto& row) -> auto& {return row.mean.*member;
-  }
-  , format
-};
-}  // namespace
-
-static constexpr auto columns() {
-  constexpr std::string_view kTime = "{:.4f}";
-  return std::tuple{records::Column{"region", &WindowRow::region},
-                    records::Column{"begin_s", &WindowRow::begin_s, "{:g}"},
-                    records::Column{"slow_down", &WindowRow::slow_down, kTime},
-                    records::Column{"frame_max_ms", &WindowRow::frame_max_ms, kTime},
-                    records::Column{"frame_p95_ms", &WindowRow::frame_p95_ms, kTime},
-                    records::Column{"frame_mean_ms", &WindowRow::frame_mean_ms, kTime},
-                    mean_of("physics_ms", &StepLoad::physics_ms, kTime),
-                    mean_of("protocol_ms", &StepLoad::protocol_ms, kTime),
-                    mean_of("transport_ms", &StepLoad::transport_ms, kTime),
-                    mean_of("watch_ms", &StepLoad::watch_ms, kTime),
-                    mean_of("cut_ms", &StepLoad::cut_ms, kTime),
-                    mean_of("hash_ms", &StepLoad::hash_ms, kTime),
-                    mean_of("bodies", &StepLoad::bodies),
-                    mean_of("awake", &StepLoad::awake),
-                    mean_of("projecting", &StepLoad::projecting),
-                    mean_of("foreign", &StepLoad::foreign),
-                    mean_of("largest_cluster", &StepLoad::largest_cluster),
-                    mean_of("departures", &StepLoad::departures),
-                    mean_of("returns", &StepLoad::returns),
-                    mean_of("aura_updates", &StepLoad::aura_updates),
-                    mean_of("aura_bytes", &StepLoad::aura_bytes),
-                    mean_of("hand_off_bytes", &StepLoad::hand_off_bytes),
-                    mean_of("link_bytes", &StepLoad::link_bytes),
-                    mean_of("datagrams", &StepLoad::datagrams),
-                    mean_of("violations", &StepLoad::violations),
-                    mean_of("late", &StepLoad::late)};
-}
-};  // namespace aurasim::lab
 
 void add_times(StepLoad& sum, const StepLoad& load, double weight) {
   sum.physics_ms += weight * load.physics_ms;
@@ -148,23 +101,6 @@ std::vector<Window> WindowSums::windows() const {
       windows[windows.size() - 1 - r].begin_s = static_cast<double>(first) * step_s_;
     }
   }
-  return windows;
-}
-
-void write_windows(const std::filesystem::path& file, const std::vector<Window>& windows) {
-  const std::filesystem::path part = file.string() + ".part";
-  std::ofstream out(part, std::ios::trunc);
-  out << records::csv_header<WindowRow>();
-  for (const Window& window : windows) out << records::csv_line(WindowRow{window});
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("cannot write {}", part.string()));
-  std::filesystem::rename(part, file);  // renamed when complete, so an existing file is whole
-}
-
-std::vector<Window> read_windows(const std::filesystem::path& file) {
-  std::vector<Window> windows;
-  const std::size_t broken = records::read_csv<WindowRow>(file, [&](const WindowRow& row) { windows.push_back(row); });
-  if (broken > 0) throw std::runtime_error(fmt::format("{}: {} broken rows", file.string(), broken));
   return windows;
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "core/ids.h"
@@ -68,8 +66,5 @@ class WindowSums {
   double step_s_;
   std::vector<std::vector<StepLoad>> loads_;  ///< by region and step, from step 1
 };
-
-void write_windows(const std::filesystem::path& file, const std::vector<Window>& windows);
-std::vector<Window> read_windows(const std::filesystem::path& file);
 
 }  // namespace aurasim::lab

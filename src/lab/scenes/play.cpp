@@ -5,17 +5,10 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include "cut/cut_file.h"
 
 namespace aurasim::lab {
-
-double thread_time_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 core::WorldCut through_a_file(core::WorldCut cut) {
   return cut::decode(cut::encode({{}, 0, 1, 0, std::move(cut)})).cut;

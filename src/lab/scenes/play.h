@@ -43,9 +43,6 @@ class Saver {
   std::vector<core::WorldCut> parts_;
 };
 
-/// CPU time of this thread, s.
-double thread_time_s();
-
 void note_report(const node::StepReport& report, Played& played);
 /// Notes an event of the cluster. A redo is counted once, not once for each node.
 void note_redo(const VirtualCluster::Event& event, Played& played);

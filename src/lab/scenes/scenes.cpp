@@ -1,7 +1,6 @@
 #include "lab/scenes/scenes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -11,37 +10,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "lab/conditions.h"
-#include "lab/on_threads.h"
 #include "lab/scenes/random_world.h"
 #include "lab/scenes/shrink.h"
-#include "physics/region_world.h"
 #include "records/csv.h"
 
 namespace aurasim::lab {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// seeds.csv: one seed.
-struct SeedRow {
+struct SeedRow : WorldOutcome {
   std::uint64_t seed = 0;
-  bool equal = false;
-  std::optional<core::Step> first_difference;
-  std::uint64_t late = 0, missed = 0, unflagged = 0, unflagged_on_one = 0;
-  std::uint64_t violations = 0, speed = 0, latency = 0, promise = 0, span = 0;
-  std::uint64_t redos = 0, computed_again = 0;
-  std::uint64_t hand_offs = 0, broken = 0;
-  std::uint64_t regions = 0, bodies = 0, largest_cluster = 0;
-  double regions_s = 0, one_s = 0;
-  std::string error;
-
-  bool has_failed() const { return !equal || unflagged > unflagged_on_one; }
 
   static constexpr auto columns() {
     using records::Column;
     return std::tuple{Column{"seed", &SeedRow::seed},
-                      Column{"equal", &SeedRow::equal},
+                      Column{"equal", [](const SeedRow& row) { return row.is_equal(); }},
                       Column{"first_difference", &SeedRow::first_difference},
                       Column{"late", &SeedRow::late},
                       Column{"missed", &SeedRow::missed},
@@ -65,18 +48,8 @@ struct SeedRow {
   }
 };
 
-SeedRow row_of(std::uint64_t seed, const WorldOutcome& o) {
-  SeedRow row;
-  row.seed = seed;
-  row.equal = o.is_equal();
-  row.first_difference = o.first_difference;
-  row.late = o.late, row.missed = o.missed, row.unflagged = o.unflagged, row.unflagged_on_one = o.unflagged_on_one;
-  row.violations = o.violations, row.speed = o.speed, row.latency = o.latency, row.promise = o.promise;
-  row.redos = o.redos, row.computed_again = o.computed_again;
-  row.span = o.span, row.hand_offs = o.hand_offs, row.broken = o.broken;
-  row.regions = o.regions, row.bodies = o.bodies, row.largest_cluster = o.largest_cluster;
-  row.regions_s = o.regions_s, row.one_s = o.one_s;
-  row.error = o.error;
+SeedRow row_of(std::uint64_t seed, const WorldOutcome& outcome) {
+  SeedRow row{outcome, seed};
   std::ranges::replace_if(
       row.error, [](char c) { return c == ',' || c == '\n'; }, ';');
   return row;
@@ -119,45 +92,33 @@ std::map<std::uint64_t, SeedRow> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
-/// Hands out the missing seeds and appends their rows.
-class SeedQueue {
+/// seeds.csv, to which rows are appended.
+class SeedFile {
  public:
-  SeedQueue(const ScenesPlan& plan, const std::filesystem::path& file, const std::function<void(const Progress&)>& show)
-      : show_(show) {
-    const std::map<std::uint64_t, SeedRow> done = read_rows(file);
+  explicit SeedFile(const std::filesystem::path& file) : done_(read_rows(file)) {
     std::string text = records::csv_header<SeedRow>();
-    for (const auto& [seed, row] : done) text += records::csv_line(row);
+    for (const auto& [seed, row] : done_) text += records::csv_line(row);
     std::ofstream(file) << text;  // without a row that a crash has cut off
     out_.open(file, std::ios::app);
-    for (std::uint64_t seed = plan.first; seed <= plan.last; ++seed) {
-      if (!done.contains(seed)) missing_.push_back(seed);
+  }
+
+  std::vector<std::uint64_t> missing(std::uint64_t first, std::uint64_t last) const {
+    std::vector<std::uint64_t> seeds;
+    for (std::uint64_t seed = first; seed <= last; ++seed) {
+      if (!done_.contains(seed)) seeds.push_back(seed);
     }
-    all_ = static_cast<double>(plan.last - plan.first + 1);
+    return seeds;
   }
-
-  std::optional<std::uint64_t> take() {
-    const std::lock_guard lock(mutex_);
-    if (next_ == missing_.size()) return std::nullopt;
-    return missing_[next_++];
-  }
-
-  void give(const SeedRow& row) {
+  void append(const SeedRow& row) {
     const std::lock_guard lock(mutex_);
     out_ << records::csv_line(row);
     if (!out_.flush()) throw std::runtime_error("cannot write seeds.csv");
-    const auto now = static_cast<double>(++given_), left = static_cast<double>(missing_.size()) - now;
-    const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
-    show_({(all_ - left) / all_, elapsed, elapsed * left / now});
   }
 
  private:
+  std::map<std::uint64_t, SeedRow> done_;
   std::mutex mutex_;
   std::ofstream out_;
-  std::vector<std::uint64_t> missing_;
-  std::size_t next_ = 0, given_ = 0;
-  double all_ = 0;
-  Clock::time_point begin_ = Clock::now();
-  const std::function<void(const Progress&)>& show_;
 };
 
 void write_readme(const Shrunk& shrunk, const TrialRules& rules, std::uint64_t seed,
@@ -213,18 +174,18 @@ std::optional<SeedRow> run_seed(const ScenesPlan& plan, std::uint64_t seed, cons
 
 }  // namespace
 
-bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
-                const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop) {
+bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads, const Progress& progress,
+                const std::atomic<bool>& stop) {
   agree_on_rules(plan, directory);
-  SeedQueue queue(plan, directory / "seeds.csv", show);
-  on_threads(threads, [&] {
-    while (!stop) {
-      const auto seed = queue.take();
-      if (!seed) return;
-      if (const auto row = run_seed(plan, *seed, directory, stop)) queue.give(*row);
-    }
-  });
-  return !stop;
+  SeedFile file(directory / "seeds.csv");
+  const std::vector<std::uint64_t> seeds = file.missing(plan.first, plan.last);
+  const bool finished =
+      on_threads(threads, std::vector<double>(seeds.size(), 1), progress, [&](const WorkPiece& piece) {
+        if (stop) return;
+        const std::uint64_t seed = seeds[piece.index];
+        if (const auto row = run_seed(plan, seed, directory, stop)) file.append(*row);
+      });
+  return finished && !stop;
 }
 
 nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::path& directory) {
@@ -237,8 +198,8 @@ nlohmann::json summarise_scenes(const ScenesPlan& plan, const std::filesystem::p
   for (const auto& [seed, row] : read_rows(directory / "seeds.csv")) {
     if (seed < plan.first || seed > plan.last) continue;
     ++seeds;
-    differ += !row.equal;
-    differ_unflagged += !row.equal && (row.unflagged > row.unflagged_on_one || row.violations == 0);
+    differ += !row.is_equal();
+    differ_unflagged += !row.is_equal() && (row.unflagged > row.unflagged_on_one || row.violations == 0);
     late += row.late, missed += row.missed, unflagged += row.unflagged, hand_offs += row.hand_offs;
     redos += row.redos, seeds_with_redos += row.redos > 0, computed_again += row.computed_again;
     with_violations += row.violations > 0;

@@ -4,12 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "lab/campaign.h"
+#include "lab/on_threads.h"
 #include "lab/scenes/world_trial.h"
 
 namespace aurasim::lab {
@@ -23,9 +21,10 @@ struct ScenesPlan {
 
 /// Runs the seeds that DIR/seeds.csv lacks, on `threads` threads, and appends a row as each ends. The worlds of those
 /// that fail stay in DIR/seed_N, shrunk in DIR/seed_N/shrunk; all do with `keep`. Throws std::runtime_error when DIR
-/// holds seeds that were run by other rules. Returns false when `stop` became true before the end.
-bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads,
-                const std::function<void(const Progress&)>& show, const std::atomic<bool>& stop);
+/// holds seeds that were run by other rules. Returns false if `progress` or `stop`, which also ends the seeds at work,
+/// ended it early.
+bool run_scenes(const ScenesPlan& plan, const std::filesystem::path& directory, int threads, const Progress& progress,
+                const std::atomic<bool>& stop);
 
 /// Sums over the plan's seeds that have been run; also written to DIR/summary.json. `failed_seeds` lists those that
 /// failed.

@@ -23,7 +23,10 @@ namespace aurasim::lab {
 std::string scene_text(const SpeedScene& scene);
 void write_scene_text(const SpeedScene& scene, const std::filesystem::path& file);
 
-/// Reads the same scene to the last bit. Throws std::runtime_error, "file:line: ...".
-SpeedScene read_scene_text(const std::filesystem::path& file);
+/// DIR/scenes/NAME.txt.
+std::filesystem::path scene_file(const std::filesystem::path& directory, const std::string& name);
+/// The scene of this name, as large as the one in DIR/scenes. Throws std::runtime_error if the file is of another
+/// version of the program.
+SpeedScene scene_written_in(const std::filesystem::path& directory, const std::string& name);
 
 }  // namespace aurasim::lab

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -106,6 +107,26 @@ void write_scene_text(const SpeedScene& scene, const std::filesystem::path& file
   out << text;
   out.close();
   if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+std::filesystem::path scene_file(const std::filesystem::path& directory, const std::string& name) {
+  return directory / "scenes" / (name + ".txt");
+}
+
+SpeedScene scene_written_in(const std::filesystem::path& directory, const std::string& name) {
+  const std::filesystem::path file = scene_file(directory, name);
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("cannot read " + file.string());
+  std::stringstream found;
+  found << in.rdbuf();
+  for (const SceneSize size : {SceneSize::kQuick, SceneSize::kWhole}) {
+    SpeedScene scene = speed_scene(name, size);
+    if (scene_text(scene) == found.str()) return scene;
+  }
+  throw std::runtime_error(
+      fmt::format("{}: another version of this program wrote this scene. Run the speed experiment "
+                  "again, in another folder",
+                  file.string()));
 }
 
 }  // namespace aurasim::lab

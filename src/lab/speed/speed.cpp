@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -52,30 +53,24 @@ SpeedSettings settings_named(const std::string& name, const std::string& solver)
   throw std::invalid_argument("there are no settings \"" + name + "\"");
 }
 
-/// Precision of our runs. Other engines' runs are in the same table, and some compute in single precision.
-constexpr const char* kPrecision = "double";
-
 void append_row(const SpeedRun& run, const std::filesystem::path& file) {
   const bool is_new = !std::filesystem::exists(file);
   std::ofstream out(file, std::ios::app);
-  if (is_new) {
-    out << "scene,engine,precision,threads,steps,body_steps,cpu_ms,late_steps,late_cpu_ms,wall_ms,late_wall_ms\n";
-  }
-  out << fmt::format("{},{},{},{},{},{:.0f},{:.3f},{},{:.3f},{:.3f},{:.3f}\n", run.scene, run.engine, kPrecision,
-                     run.threads, run.steps, run.body_steps, run.cpu_ms, run.late_steps, run.late_cpu_ms, run.wall_ms,
-                     run.late_wall_ms);
+  if (is_new) out << records::csv_header<SpeedRun>();
+  out << records::csv_line(run);
   out.close();
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
 SpeedRun run_into(const std::filesystem::path& directory, const SpeedScene& scene, const SpeedSettings& settings) {
-  const std::string engine = "aurasim-" + settings.name;
-  const std::filesystem::path file =
-      directory / "states" / fmt::format("{}.{}.{}.{}.txt", scene.name, engine, kPrecision, settings.physics.threads);
-  std::ofstream states(file);
+  std::ostringstream states;
   SpeedRun run = run_speed(scene, settings, states);
-  states.close();
-  if (!states) throw std::runtime_error("cannot write " + file.string());
+  const std::filesystem::path file =
+      directory / "states" / fmt::format("{}.{}.{}.{}.txt", run.scene, run.engine, run.precision, run.threads);
+  std::ofstream out(file);
+  out << states.str();
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + file.string());
   append_row(run, directory / "runs.csv");
   return run;
 }
@@ -100,6 +95,7 @@ SpeedRun run_speed(const SpeedScene& all, const SpeedSettings& settings, std::os
   SpeedRun run;
   run.scene = all.name;
   run.engine = "aurasim-" + settings.name;
+  run.precision = "double";
   run.threads = settings.physics.threads;
   run.steps = all.steps;
   run.late_steps = late_steps_of(all);
@@ -129,13 +125,12 @@ SpeedRun run_speed(const SpeedScene& all, const SpeedSettings& settings, std::os
 }
 
 std::vector<SpeedRun> run_speed(const SpeedPlan& plan, const std::filesystem::path& directory,
-                                const std::function<bool(double share)>& next) {
+                                const Progress& progress) {
   const std::vector<std::string>& names = plan.scenes.empty() ? speed_scene_names() : plan.scenes;
   std::vector<SpeedScene> scenes;
   for (const std::string& name : names) {
-    const std::filesystem::path file = directory / "scenes" / (name + ".txt");
-    write_scene_text(speed_scene(name, plan.size), file);
-    scenes.push_back(read_scene_text(file));  // what the others are given
+    scenes.push_back(speed_scene(name, plan.size));
+    write_scene_text(scenes.back(), scene_file(directory, name));
   }
   std::filesystem::create_directories(directory / "states");
   const double whole = static_cast<double>(plan.repeats) * static_cast<double>(scenes.size() * plan.settings.size());
@@ -143,7 +138,7 @@ std::vector<SpeedRun> run_speed(const SpeedPlan& plan, const std::filesystem::pa
   for (int repeat = 0; repeat < plan.repeats; ++repeat) {
     for (const SpeedScene& scene : scenes) {
       for (const std::string& name : plan.settings) {
-        if (!next(static_cast<double>(runs.size()) / whole)) return runs;
+        if (!progress(static_cast<double>(runs.size()) / whole)) return runs;
         SpeedSettings settings = settings_named(name, plan.solver);
         settings.physics.threads = plan.threads;
         runs.push_back(run_into(directory, scene, settings));

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "lab/speed/overlap.h"
 #include "lab/speed/scene_text.h"
@@ -115,23 +112,17 @@ SpeedErrors errors_of(const SpeedScene& scene, const std::vector<SeenState>& sta
   return errors;
 }
 
-void write_speed_errors(const std::filesystem::path& directory) {
+std::vector<StateErrors> errors_of_states(const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(directory / "states")) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  std::ofstream out(directory / "errors.csv");
-  out << "scene,engine,precision,threads,overlap_m,in_static_m,drift_m,sunk_m,fallen,lost,energy,joint_gap_m,"
-         "hinge_turn_rad\n";
+  std::vector<StateErrors> all;
   for (const std::filesystem::path& file : files) {
     const std::vector<std::string> run = parts_of_name(file);
-    const SpeedScene scene = read_scene_text(directory / "scenes" / (run[0] + ".txt"));
-    const SpeedErrors e = errors_of(scene, read_states(file, scene));
-    out << fmt::format("{},{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{:.4g},{:.4g},{:.4g}\n", run[0], run[1], run[2],
-                       run[3], e.overlap_m, e.in_static_m, e.drift_m, e.sunk_m, e.fallen, e.lost, e.energy,
-                       e.joint_gap_m, e.hinge_turn_rad);
+    const SpeedScene scene = scene_written_in(directory, run[0]);
+    all.push_back({run[0], run[1], run[2], run[3], errors_of(scene, read_states(file, scene))});
   }
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + (directory / "errors.csv").string());
+  return all;
 }
 
 }  // namespace aurasim::lab

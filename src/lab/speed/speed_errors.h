@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "lab/speed/states.h"
@@ -22,7 +23,13 @@ struct SpeedErrors {
 
 SpeedErrors errors_of(const SpeedScene& scene, const std::vector<SeenState>& states);
 
-/// Writes errors.csv for all of DIR/states, whose files are named SCENE.ENGINE.PRECISION.THREADS.txt, by DIR/scenes.
-void write_speed_errors(const std::filesystem::path& directory);
+/// The errors of one run.
+struct StateErrors {
+  std::string scene, engine, precision, threads;
+  SpeedErrors errors;
+};
+
+/// The errors of all files of DIR/states, which are named SCENE.ENGINE.PRECISION.THREADS.txt.
+std::vector<StateErrors> errors_of_states(const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

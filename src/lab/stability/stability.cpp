@@ -26,20 +26,18 @@ std::vector<Planned> planned_runs(const StabilityPlan& plan) {
   std::vector<Planned> runs;
   for (Case& c : stability_cases()) {
     if (!wanted(plan, c.name)) continue;
-    c.duration_s = std::min(c.duration_s, plan.longest_s);
     for (const int hz : plan.step_hz) {
       RunRules rules;
       rules.step_hz = hz;
       runs.push_back({c, rules, ""});
     }
-    if (!plan.presets) continue;
     for (const config::Preset& preset : config::kPresets) runs.push_back({c, preset_rules(preset.name), preset.name});
   }
   if (plan.standing_s <= 0) return runs;
   for (const char* name : kStanding) {
     if (!wanted(plan, name)) continue;
     Case c = stability_case(name);
-    c.duration_s = std::min(plan.standing_s, plan.longest_s);
+    c.duration_s = plan.standing_s;
     runs.push_back({c, preset_rules("balanced"), "balanced", true});
     c.name += "_may_sleep";
     for (core::Prototype& prototype : c.scene.prototypes) prototype.can_sleep = true;
@@ -69,7 +67,7 @@ StabilityRow run_stability(const Case& c, const RunRules& rules) {
   return {c, rules, run_case(c, rules, one_node()), run_case(c, rules, columns_at(c.border_x_m, 2)), "", false};
 }
 
-std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const StabilityProgress& progress) {
+std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const Progress& progress) {
   const std::vector<Planned> runs = planned_runs(plan);
   const auto cost = [](const Planned& run) {
     return run.what.duration_s * run.rules.step_hz * run.rules.substeps *
@@ -79,7 +77,7 @@ std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const Stabili
   for (const Planned& run : runs) whole += cost(run);
   std::vector<StabilityRow> rows;
   for (const Planned& run : runs) {
-    if (!progress(done / whole, run.what.name)) break;
+    if (!progress(done / whole)) break;
     StabilityRow& row = rows.emplace_back(run_stability(run.what, run.rules));
     row.preset = run.preset;
     row.is_standing = run.is_standing;

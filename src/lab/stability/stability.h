@@ -1,12 +1,12 @@
-// The stability experiment: every hard case at several steps, on one node and on a border between two.
+// The stability experiment: every hard case at several steps and with every preset, on one node and on a border between
+// two.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "lab/measured_run.h"
+#include "lab/on_threads.h"
 #include "lab/summary.h"
 
 namespace aurasim::lab {
@@ -14,8 +14,6 @@ namespace aurasim::lab {
 struct StabilityPlan {
   std::vector<std::string> cases;  ///< none: every case
   std::vector<int> step_hz = {60, 120, 240, 1000};
-  bool presets = true;     ///< each case also with every preset, at 60 steps per second
-  double longest_s = 1e9;  ///< longest time of a case, simulated seconds
   double standing_s = 60;  ///< how long piles have to stand with the preset `balanced`; 0: left out
 };
 
@@ -38,14 +36,9 @@ StabilityRow run_stability(const Case& c, const RunRules& rules);
 /// The rules of a preset, at 60 steps per second.
 RunRules preset_rules(const std::string& preset);
 
-/// `done` is called before each run with the share done and the name of the next case; false from it ends the run.
-using StabilityProgress = std::function<bool(double share, const std::string& next)>;
-std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const StabilityProgress& progress);
+std::vector<StabilityRow> run_stability(const StabilityPlan& plan, const Progress& progress);
 
 /// The requirements, of those cases that were run.
 std::vector<Target> stability_targets(const std::vector<StabilityRow>& rows);
-
-/// Writes stability.csv and summary.json; returns the requirements.
-std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory);
 
 }  // namespace aurasim::lab

@@ -1,41 +1,12 @@
-// stability.csv and summary.json.
+// The requirements of the stability experiment.
 #include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <stdexcept>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "lab/stability/stability.h"
-#include "physics/region_world.h"
 
 namespace aurasim::lab {
 namespace {
-
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
-
-std::ofstream open_file(const std::filesystem::path& file) {
-  std::ofstream out(file);
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-  return out;
-}
-
-void write_csv(const std::vector<StabilityRow>& rows, const std::filesystem::path& file) {
-  std::ofstream out = open_file(file);
-  out << "case,measured,unit,reference,seed,simulated_s,step_hz,substeps,iterations,friction_directions,preset,"
-         "error_one_node,error_two_nodes,same_bits,first_difference_step,hand_offs,cpu_us_per_step\n";
-  for (const StabilityRow& row : rows) {
-    for (std::size_t i = 0; i < row.what.metrics.size(); ++i) {
-      const Metric& metric = row.what.metrics[i];
-      out << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{},{},{},{:.2f}\n", row.what.name,
-                         quoted(metric.measured), metric.unit, quoted(row.what.reference), row.what.seed,
-                         row.what.duration_s, row.rules.step_hz, row.rules.substeps, row.rules.iterations,
-                         row.rules.friction_directions, row.preset, row.one.errors[i], row.two.errors[i],
-                         row.same_bits() ? 1 : 0, row.first_difference(), row.two.hand_offs, row.one.cpu_us_per_step);
-    }
-  }
-}
 
 /// One metric of one case at most `allowed`, at a step rate with Bullet's settings, or with a preset.
 struct Requirement {
@@ -79,17 +50,6 @@ std::vector<Target> stability_targets(const std::vector<StabilityRow>& rows) {
                            "card_house_may_sleep", "pyramid_may_sleep", "mass_ratio_100_may_sleep"}) {
     require(targets, rows, {name, 1, 0, 0, "balanced", true});
   }
-  return targets;
-}
-
-std::vector<Target> write_stability(const std::vector<StabilityRow>& rows, const std::filesystem::path& directory) {
-  std::filesystem::create_directories(directory);
-  write_csv(rows, directory / "stability.csv");
-  const std::vector<Target> targets = stability_targets(rows);
-  nlohmann::json summary;
-  summary["runs"] = rows.size();
-  summary["targets"] = json_of(targets);
-  open_file(directory / "summary.json") << summary.dump(2) << "\n";
   return targets;
 }
 

@@ -12,6 +12,9 @@ namespace {
 /// Share of the time that the stability experiment takes of both.
 constexpr double kStabilityShare = 0.7;
 
+/// The part of the suite beside the cases of the stability experiment.
+constexpr const char* kPareto = "pareto";
+
 /// Cases with few bodies.
 const std::vector<std::string> kQuickCases = {"free_fall",       "spring",  "dzhanibekov", "sliding_box",
                                               "bouncing_ball_1", "wedge",   "stack_5",     "mass_ratio_100",
@@ -66,10 +69,17 @@ void add_pareto_rows(const std::vector<ParetoPoint>& points, std::vector<ResultR
 
 }  // namespace
 
-SuiteResults run_accuracy_suite(Effort effort, const SuiteProgress& progress) {
+std::vector<std::string> accuracy_parts() {
+  std::vector<std::string> parts;
+  for (const Case& c : stability_cases()) parts.push_back(c.name);
+  parts.emplace_back(kPareto);
+  return parts;
+}
+
+SuiteResults run_accuracy_suite(const SuitePlan& plan, const Progress& progress) {
   StabilityPlan stability;
   ParetoPlan pareto;
-  if (effort == Effort::kQuick) {
+  if (!plan.is_full()) {
     stability.cases = kQuickCases;
     stability.step_hz = {60, 240};
     stability.standing_s = 0;
@@ -77,11 +87,14 @@ SuiteResults run_accuracy_suite(Effort effort, const SuiteProgress& progress) {
     pareto.iterations = {10};
     pareto.nodes = false;
   }
+  if (!plan.only.empty()) stability.cases = plan.only;
   SuiteResults results;
-  const auto rows =
-      run_stability(stability, [&](double share, const std::string&) { return progress(kStabilityShare * share); });
-  add_stability_rows(rows, results.rows);
-  add_targets(results, stability_targets(rows));
+  if (plan.only != std::vector<std::string>{kPareto}) {
+    const auto rows = run_stability(stability, [&](double share) { return progress(kStabilityShare * share); });
+    add_stability_rows(rows, results.rows);
+    add_targets(results, stability_targets(rows));
+  }
+  if (!plan.wants(kPareto)) return results;
   const auto points =
       run_pareto(pareto, [&](double share) { return progress(kStabilityShare + (1 - kStabilityShare) * share); });
   add_pareto_rows(points, results.rows);

@@ -1,5 +1,4 @@
 // The experiments collision and loss, in virtual time and over DDS, as rows of results.
-#include <atomic>
 #include <map>
 #include <utility>
 
@@ -7,18 +6,17 @@
 
 #include "config/shipped_files.h"
 #include "lab/aura_radius.h"
-#include "lab/loss.h"
+#include "lab/collision.h"
 #include "lab/real_trials.h"
 #include "lab/suites/suites.h"
-#include "lab/suites/trial_folder.h"
 #include "lab/thesis_tables.h"
-#include "lab/trial_file.h"
 
 namespace aurasim::lab {
 namespace {
 
 /// Share of the time that the collision experiment takes of both.
 constexpr double kCollisionShare = 0.9;
+constexpr const char* kLoss = "loss";  ///< the part of the suites beside the kinds of pairs
 constexpr int kThreads = 2;
 constexpr std::uint32_t kDomain = 61;  ///< of DDS, for trials in real time
 
@@ -68,27 +66,18 @@ void add(const Trial& trial, Trials& all) {
   }
 }
 
-/// Runs campaigns, adds up their trials, and shows how far it is.
-class Runner {
- public:
-  Runner(JobRunner run_job, int threads, const SuiteProgress& progress)
-      : run_job_(std::move(run_job)), threads_(threads), progress_(progress) {}
+/// Runs campaigns and adds up their trials.
+struct Runner {
+  JobRunner run_job;
+  int threads = 1;
+  const Progress& progress;
 
   /// Runs a campaign to its end, which is `part` of the work after the share `before`. False if it was stopped.
   bool run(const Campaign& campaign, double before, double part, Trials& all) const {
-    const TrialFolder folder;
-    std::atomic<bool> stop = false;
-    const bool finished = run_campaign(
-        campaign, folder.path(), run_job_, threads_,
-        [&](const Progress& now) { stop = stop || !progress_(before + part * now.share); }, stop);
-    if (finished) read_trials(folder.path() / "collisions.csv", [&](const Trial& trial) { add(trial, all); });
-    return finished;
+    return run_campaign(
+        campaign, run_job, threads, [&](double share) { return progress(before + part * share); },
+        [&](const Trial& trial) { add(trial, all); });
   }
-
- private:
-  JobRunner run_job_;
-  int threads_;
-  const SuiteProgress& progress_;
 };
 
 class Rows {
@@ -99,8 +88,7 @@ class Rows {
     out_.push_back({what, metric, static_cast<double>(found), "1", static_cast<int>(of.trials)});
   }
   void percent(const std::string& what, const char* metric, std::uint64_t found, const Tally& of) {
-    const double share = of.trials > 0 ? 100 * static_cast<double>(found) / static_cast<double>(of.trials) : 0;
-    out_.push_back({what, metric, share, "%", static_cast<int>(of.trials)});
+    out_.push_back({what, metric, of.percent(found), "%", static_cast<int>(of.trials)});
   }
   void value(const std::string& what, const char* metric, double found, const char* unit) {
     out_.push_back({what, metric, found, unit});
@@ -181,54 +169,60 @@ void add_loss(const Trials& loss, SuiteResults& results) {
 
 }  // namespace
 
-SuiteResults run_correctness_suite(Effort effort, const SuiteProgress& progress) {
+std::vector<std::string> correctness_parts() {
+  std::vector<std::string> parts;
+  for (const PairKind kind : kPairKinds) parts.emplace_back(name_of(kind));
+  parts.emplace_back(kLoss);
+  return parts;
+}
+
+SuiteResults run_correctness_suite(const SuitePlan& wanted, const Progress& progress) {
   CollisionPlan plan = full_plan();
-  const bool is_full = effort == Effort::kFull;
-  if (!is_full) plan.pairs = {PairKind::kCorner};
-  const Runner runner(run_job, kThreads, progress);
+  if (!wanted.is_full() && wanted.only.empty()) plan.pairs = {PairKind::kCorner};
+  std::erase_if(plan.pairs, [&](PairKind kind) { return !wanted.wants(std::string(name_of(kind))); });
+  const Runner runner{run_job, kThreads, progress};
+  const bool has_loss = wanted.only.empty() ? wanted.is_full() : wanted.wants(kLoss);
   SuiteResults results;
   Trials collision, loss;
-  if (!runner.run(collision_campaign(plan), 0, kCollisionShare, collision)) return results;
-  add_rows(collision, results.rows);
-  add_aura_sizes(results.rows);
-  if (!is_full) return results;  // a sum over a part of the pairs is no sum of the stored run
-  add_thesis(results.rows);
-  add_targets(results, collision_targets(collision.tallies));
-  plan.pairs = {PairKind::kHeadOn};
+  if (!plan.pairs.empty()) {
+    if (!runner.run(collision_campaign(plan), 0, kCollisionShare, collision)) return results;
+    add_rows(collision, results.rows);
+    add_aura_sizes(results.rows);
+  }
+  if (wanted.is_full() && wanted.only.empty()) {  // a sum over a part of the pairs is no sum of the stored run
+    add_thesis(results.rows);
+    add_targets(results, collision_targets(collision.tallies));
+  }
+  if (!has_loss) return results;
   if (!runner.run(loss_campaign(plan), kCollisionShare, 1 - kCollisionShare, loss)) return results;
   add_loss(loss, results);
   return results;
 }
 
-SuiteResults run_correctness_over_dds_suite(Effort effort, const SuiteProgress& progress) {
+std::vector<std::string> correctness_over_dds_parts() { return {std::string(name_of(PairKind::kHeadOn)), kLoss}; }
+
+SuiteResults run_correctness_over_dds_suite(const SuitePlan& wanted, const Progress& progress) {
   CollisionPlan plan = full_plan();
   plan.pairs = {PairKind::kHeadOn};
   plan.auras = {AuraChoice::kNone, AuraChoice::kTight, AuraChoice::kSwept};
   plan.repeats = 20;
   plan.values_of_head_on_pairs = 4;
-  const bool is_full = effort == Effort::kFull;
+  const bool has_pairs = wanted.only.empty() ? wanted.is_full() : wanted.wants(correctness_over_dds_parts().front());
   RealLaboratory laboratory(kDomain, config::shipped_profiles());
-  const Runner runner([&](const Campaign& all, const Job& job) { return laboratory.run_job(all, job); }, 1, progress);
-  const double share = is_full ? kCollisionShare : 0;
+  const Runner runner{[&](const Campaign& all, const Job& job) { return laboratory.run_job(all, job); }, 1, progress};
+  const double share = has_pairs ? kCollisionShare : 0;
   SuiteResults results;
   Trials collision, loss;
-  Campaign campaign = collision_campaign(plan);
-  campaign.over_dds = true;
-  if (is_full) {
-    if (!runner.run(campaign, 0, share, collision)) return results;
+  if (has_pairs) {
+    if (!runner.run(collision_campaign(plan), 0, share, collision)) return results;
     add_rows(collision, results.rows);
     add_targets(results, collision_targets(collision.tallies));
   }
+  if (!wanted.wants(kLoss)) return results;
   plan.values_of_head_on_pairs = 5;
-  campaign = loss_campaign(plan);
-  campaign.over_dds = true;
-  if (!runner.run(campaign, share, 1 - share, loss)) return results;
-  if (is_full) {
-    add_loss(loss, results);
-  } else {  // trials in real time scatter: only the requirements are compared
-    add_targets(results, loss_targets(loss.tallies));
-    results.rows.clear();
-  }
+  if (!runner.run(loss_campaign(plan), share, 1 - share, loss)) return results;
+  add_loss(loss, results);
+  if (!wanted.is_full()) results.rows.clear();  // trials in real time scatter: only the requirements are checked
   return results;
 }
 

@@ -93,8 +93,16 @@ class Comparison {
 
 }  // namespace
 
-SuiteResults run_solvers_suite(Effort effort, const SuiteProgress& progress) {
-  const int rounds = effort == Effort::kFull ? 3 : 1;
+std::vector<std::string> solvers_parts() {
+  std::vector<std::string> parts;
+  for (const Question& question : kQuestions) {
+    if (parts.empty() || parts.back() != question.case_name) parts.emplace_back(question.case_name);
+  }
+  return parts;
+}
+
+SuiteResults run_solvers_suite(const SuitePlan& plan, const Progress& progress) {
+  const int rounds = plan.is_full() ? 3 : 1;
   const std::vector<Candidate> all = candidates();
   SuiteResults results;
   const Question* before = nullptr;
@@ -102,7 +110,8 @@ SuiteResults run_solvers_suite(Effort effort, const SuiteProgress& progress) {
   double done = 0;
   const double whole = static_cast<double>(kQuestions.size() * all.size()) * rounds;
   for (const Question& question : kQuestions) {
-    if (effort == Effort::kQuick && !question.quick) continue;
+    const bool belongs = plan.is_full() || question.quick || !plan.only.empty();
+    if (!belongs || !plan.wants(question.case_name)) continue;
     const bool same_case = before != nullptr && std::string(before->case_name) == question.case_name;
     if (!same_case) {
       comparison.assign(1, Comparison(case_of(question), all.size()));

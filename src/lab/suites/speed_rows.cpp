@@ -1,58 +1,34 @@
 #include "lab/suites/speed_rows.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "lab/scale/fit.h"
+#include "lab/speed/speed.h"
 
 namespace aurasim::lab {
 namespace {
 
-using Row = std::map<std::string, std::string>;
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-/// A file of comma-separated values without quotes, whose first line names the columns.
-std::vector<Row> read_rows(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  if (!std::getline(in, line)) throw std::runtime_error("cannot read " + file.string());
-  const std::vector<std::string> names = cells_of(line);
-  std::vector<Row> rows;
-  while (std::getline(in, line)) {
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != names.size()) throw std::runtime_error(file.string() + ": malformed line: " + line);
-    for (std::size_t i = 0; i < names.size(); ++i) (i == 0 ? rows.emplace_back() : rows.back())[names[i]] = cells[i];
-  }
-  return rows;
-}
-
-double number(const Row& row, const char* column) { return std::stod(row.at(column)); }
-
 struct Error {
-  const char* column;
+  double SpeedErrors::*value;
   const char* metric;
   double scale;
   const char* unit;
 };
-constexpr Error kOverlap = {"overlap_m", "deepest overlap", 1e3, "mm"};
-constexpr Error kInStatic = {"in_static_m", "deepest in the ground", 1e3, "mm"};
-constexpr Error kSunk = {"sunk_m", "most sunk", 1e3, "mm"};
-constexpr Error kDrift = {"drift_m", "farthest drift", 1, "m"};
-constexpr Error kFallen = {"fallen", "fallen", 1, "1"};
-constexpr Error kLost = {"lost", "lost", 1, "1"};
-constexpr Error kEnergy = {"energy", "energy gained", 100, "%"};
-constexpr Error kGap = {"joint_gap_m", "widest joint gap", 1e3, "mm"};
-constexpr Error kTurn = {"hinge_turn_rad", "hinge off axis or limits", 1, "rad"};
+constexpr Error kOverlap = {&SpeedErrors::overlap_m, "deepest overlap", 1e3, "mm"};
+constexpr Error kInStatic = {&SpeedErrors::in_static_m, "deepest in the ground", 1e3, "mm"};
+constexpr Error kSunk = {&SpeedErrors::sunk_m, "most sunk", 1e3, "mm"};
+constexpr Error kDrift = {&SpeedErrors::drift_m, "farthest drift", 1, "m"};
+constexpr Error kFallen = {&SpeedErrors::fallen, "fallen", 1, "1"};
+constexpr Error kLost = {&SpeedErrors::lost, "lost", 1, "1"};
+constexpr Error kEnergy = {&SpeedErrors::energy, "energy gained", 100, "%"};
+constexpr Error kGap = {&SpeedErrors::joint_gap_m, "widest joint gap", 1e3, "mm"};
+constexpr Error kTurn = {&SpeedErrors::hinge_turn_rad, "hinge off axis or limits", 1, "rad"};
 
 /// What is told of a scene beside its speed.
 const std::map<std::string, std::vector<Error>> kErrors = {{"rain", {kOverlap, kInStatic, kLost}},
@@ -64,68 +40,70 @@ const std::map<std::string, std::vector<Error>> kErrors = {{"rain", {kOverlap, k
                                                            {"sleepers", {kSunk, kDrift, kOverlap}}};
 
 /// All runs of one scene by one engine with one number of threads.
-class Runs {
- public:
-  void add(const Row& row) { rows_.push_back(row); }
-  const Row& first() const { return rows_.front(); }
-  int count() const { return static_cast<int>(rows_.size()); }
+using Runs = std::vector<SpeedRun>;
 
-  double median_of(const char* what, const char* per) const {
-    std::vector<double> values;
-    for (const Row& row : rows_) values.push_back(number(row, what) / number(row, per));
-    return median(values);
-  }
-  /// From the fastest run to the slowest, as a share of the median.
-  double spread_percent() const {
-    std::vector<double> values;
-    for (const Row& row : rows_) values.push_back(number(row, "cpu_ms"));
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    return 100 * (*most - *least) / median(values);
-  }
-
- private:
-  std::vector<Row> rows_;
-};
-
-std::string case_of(const Row& row) {
-  const std::string threads = row.at("threads") == "1" ? "" : ", " + row.at("threads") + " threads";
-  return row.at("scene") + threads + "/" + row.at("engine") + ", " + row.at("precision");
+template <class Value>
+double median_of(const Runs& runs, const Value& value) {
+  std::vector<double> values;
+  for (const SpeedRun& run : runs) values.push_back(value(run));
+  return median(std::move(values));
 }
 
-std::string alone(Row row) {
-  row["threads"] = "1";
-  return case_of(row);
+/// From the fastest run to the slowest, as a share of the median.
+double spread_percent(const Runs& runs) {
+  const auto [least, most] = std::ranges::minmax(runs, {}, &SpeedRun::cpu_ms);
+  return 100 * (most.cpu_ms - least.cpu_ms) / median_of(runs, [](const SpeedRun& run) { return run.cpu_ms; });
 }
 
-void add_times(const Runs& runs, const std::map<std::string, Runs>& all, std::vector<ResultRow>& out) {
-  const std::string what = case_of(runs.first());
-  const int n = runs.count();
-  out.push_back({what, "CPU", runs.median_of("cpu_ms", "steps"), "ms", n});
-  if (runs.first().at("threads") == "1") {
-    out.push_back({what, "CPU at the end", runs.median_of("late_cpu_ms", "late_steps"), "ms", n});
-    out.push_back({what, "body-steps per CPU second", 1e3 * runs.median_of("body_steps", "cpu_ms"), "1", n});
-    out.push_back({what, "spread of the CPU time", runs.spread_percent(), "%", n});
+std::string case_of(const std::string& scene, const std::string& engine, const std::string& precision,
+                    const std::string& threads) {
+  return scene + (threads == "1" ? "" : ", " + threads + " threads") + "/" + engine + ", " + precision;
+}
+
+std::string case_of(const SpeedRun& run, int threads) {
+  return case_of(run.scene, run.engine, run.precision, std::to_string(threads));
+}
+
+double wall_ms(const SpeedRun& run) { return run.wall_ms / static_cast<double>(run.steps); }
+
+void add_times(const std::string& what, const Runs& runs, const std::map<std::string, Runs>& all,
+               std::vector<ResultRow>& out) {
+  const auto add = [&](const char* metric, double value, const char* unit) {
+    out.push_back({what, metric, value, unit, static_cast<int>(runs.size())});
+  };
+  const auto median_per = [&](double SpeedRun::*value, auto SpeedRun::*per) {
+    return median_of(runs, [&](const SpeedRun& run) { return run.*value / static_cast<double>(run.*per); });
+  };
+  add("CPU", median_per(&SpeedRun::cpu_ms, &SpeedRun::steps), "ms");
+  if (runs.front().threads == 1) {
+    add("CPU at the end", median_per(&SpeedRun::late_cpu_ms, &SpeedRun::late_steps), "ms");
+    add("body-steps per CPU second", 1e3 * median_per(&SpeedRun::body_steps, &SpeedRun::cpu_ms), "1");
+    add("spread of the CPU time", spread_percent(runs), "%");
     return;
   }
-  const double wall_ms = runs.median_of("wall_ms", "steps");
-  out.push_back({what, "wall", wall_ms, "ms", n});
-  const auto one = all.find(alone(runs.first()));
+  add("wall", median_of(runs, wall_ms), "ms");
+  const auto one = all.find(case_of(runs.front(), 1));
   if (one == all.end()) return;
-  out.push_back({what, "faster by", one->second.median_of("wall_ms", "steps") / wall_ms, "ratio", n});
+  add("faster by", median_of(one->second, wall_ms) / median_of(runs, wall_ms), "ratio");
 }
 
 }  // namespace
 
 std::vector<ResultRow> speed_rows(const std::filesystem::path& directory) {
+  if (!std::filesystem::exists(directory / "runs.csv"))
+    throw std::runtime_error("cannot read " + (directory / "runs.csv").string());
   std::map<std::string, Runs> all;
-  for (const Row& row : read_rows(directory / "runs.csv")) all[case_of(row)].add(row);
+  const std::size_t broken = records::read_csv<SpeedRun>(
+      directory / "runs.csv", [&](const SpeedRun& run) { all[case_of(run, run.threads)].push_back(run); });
+  if (broken > 0) throw std::runtime_error(fmt::format("{}/runs.csv: {} broken rows", directory.string(), broken));
   std::vector<ResultRow> rows;
-  for (const auto& [what, runs] : all) add_times(runs, all, rows);
-  for (const Row& row : read_rows(directory / "errors.csv")) {
-    const auto wanted = kErrors.find(row.at("scene"));
+  for (const auto& [what, runs] : all) add_times(what, runs, all, rows);
+  for (const StateErrors& of : errors_of_states(directory)) {
+    const auto wanted = kErrors.find(of.scene);
     if (wanted == kErrors.end()) continue;
     for (const Error& error : wanted->second) {
-      rows.push_back({case_of(row), error.metric, error.scale * number(row, error.column), error.unit});
+      rows.push_back({case_of(of.scene, of.engine, of.precision, of.threads), error.metric,
+                      error.scale * of.errors.*error.value, error.unit});
     }
   }
   return rows;

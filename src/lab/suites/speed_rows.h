@@ -1,4 +1,4 @@
-// The files of the speed experiment (runs.csv and errors.csv, of our step and of other engines) as rows of results.
+// The runs of the speed experiment (runs.csv and states, of our step and of other engines) as rows of results.
 #pragma once
 
 #include <filesystem>
