@@ -36,6 +36,7 @@ node::NodeSetup node_setup(const ClusterRules& rules) {
   setup.physics.substeps = rules.aura.substeps;
   setup.hash_states = rules.hash_states;
   setup.clock = rules.clock;
+  setup.recorded = rules.recorded;
   return setup;
 }
 
@@ -81,17 +82,22 @@ double VirtualCluster::due_s(const Member& member) const {
 }
 
 VirtualCluster::Event VirtualCluster::next() {
+  if (const std::optional<Event> event = try_next()) return *event;
+  throw std::logic_error("every node of the cluster waits for a message that nobody sends");
+}
+
+std::optional<VirtualCluster::Event> VirtualCluster::try_next() {
   for (;;) {
     double event_s = std::numeric_limits<double>::infinity();
     Member* chosen = nullptr;
     for (Member& member : members_) {
-      if (member.node->current_step() >= last_) continue;
+      if (!member.is_alive || member.node->current_step() >= member.last) continue;
       const double at_s = member.waiting ? std::max(network_.next_arrival_s(), network_.now_s()) : due_s(member);
       if (at_s >= event_s) continue;
       event_s = at_s;
       chosen = &member;
     }
-    if (!chosen) throw std::logic_error("every node of the cluster waits for a message that nobody sends");
+    if (!chosen) return std::nullopt;
     network_.advance_to(std::max(event_s, network_.now_s()));
     if (chosen->waiting) {
       for (Member& member : members_) member.waiting = false;
@@ -102,18 +108,33 @@ VirtualCluster::Event VirtualCluster::next() {
       continue;
     }
     compute(*chosen, network_.now_s());
-    return {chosen->node->region(), report_};
+    return Event{chosen->node->region(), report_};
   }
 }
 
+void VirtualCluster::end_in(core::Step last) {
+  for (Member& member : members_) member.last = last;
+}
+
 void VirtualCluster::stand_in(core::Step state) {
-  last_ = state;
+  end_in(state);
   while (slowest() < state) next();
-  last_ = std::numeric_limits<core::Step>::max();
+  end_in(std::numeric_limits<core::Step>::max());
+  deliver_all();
+}
+
+void VirtualCluster::deliver_all() {
   while (std::isfinite(network_.next_arrival_s())) {
     network_.advance_to(std::max(network_.next_arrival_s(), network_.now_s()));
-    for (Member& member : members_) member.node->ready();
+    for (Member& member : members_) {
+      if (member.is_alive) member.node->ready();
+    }
   }
+}
+
+void VirtualCluster::crash(core::RegionId region, double lease_s) {
+  network_.crash(region, lease_s);
+  stop(region);
 }
 
 void VirtualCluster::compute(Member& member, double at_s) {
@@ -127,13 +148,17 @@ void VirtualCluster::compute(Member& member, double at_s) {
 
 core::Step VirtualCluster::confirmed() const {
   core::Step confirmed = std::numeric_limits<core::Step>::max();
-  for (const Member& member : members_) confirmed = std::min(confirmed, member.node->confirmed_step());
+  for (const Member& member : members_) {
+    if (member.is_alive) confirmed = std::min(confirmed, member.node->confirmed_step());
+  }
   return confirmed;
 }
 
 core::Step VirtualCluster::slowest() const {
   core::Step slowest = std::numeric_limits<core::Step>::max();
-  for (const Member& member : members_) slowest = std::min(slowest, member.node->current_step());
+  for (const Member& member : members_) {
+    if (member.is_alive) slowest = std::min(slowest, member.node->current_step());
+  }
   return slowest;
 }
 

@@ -22,6 +22,9 @@ namespace aurasim::lab {
 /// Distance at which all regions are neighbours. Trials have at most four regions.
 inline constexpr double kEverywhere_m = 1e9;
 
+/// Bandwidth of a link that is never full, bytes per second.
+inline constexpr double kUnlimited_B_s = std::numeric_limits<double>::infinity();
+
 /// A link that passes no messages between two regions from `from_s` to `until_s`, in the run's simulated time.
 struct BrokenLink {
   core::RegionId a{}, b{};
@@ -39,12 +42,13 @@ struct ClusterRules {
   transport::Faults network;
   std::vector<BrokenLink> broken_links;
   /// If set, messages are coded as for DDS (lab/wire_post.h), and each node's link has this bandwidth, bytes per
-  /// second.
+  /// second. Otherwise they are handed over as they are.
   std::optional<double> bandwidth_B_s;
   double shortest_frame_s = 0;
   double longest_frame_s = 0;
-  std::vector<double> phase_s;         ///< by region: delay of its steps after the shared epoch
-  core::Step shuffle_ranks_steps = 0;  ///< about every so many steps ranks change; 0: as in a real run
+  std::vector<double> phase_s;            ///< by region: delay of its steps after the shared epoch
+  core::Step shuffle_ranks_steps = 0;     ///< about every so many steps ranks change; 0: as in a real run
+  std::vector<core::Setpoints> recorded;  ///< effects of an earlier run, which this one repeats
   std::uint64_t seed = 1;
 };
 
@@ -66,9 +70,23 @@ class VirtualCluster {
     core::RegionId region{};
     const node::StepReport* report = nullptr;  ///< valid until the next event
   };
+  /// Throws std::logic_error if every node waits for messages that nobody sends.
   Event next();
+  /// The same; nothing if every node is in its last state, or waits for messages that nobody sends.
+  std::optional<Event> try_next();
+  /// From now on no node computes a state after `last`, or the node of this region does not.
+  void end_in(core::Step last);
+  void end_in(core::RegionId region, core::Step last) { member(region).last = last; }
   /// Pauses in `state`: all nodes compute this state and none the next, and all messages under way arrive.
   void stand_in(core::Step state);
+  /// Lets all messages under way arrive. No node computes a state.
+  void deliver_all();
+  /// The end of a region's process. The other nodes hear of it `lease_s` later.
+  void crash(core::RegionId region, double lease_s);
+  /// Stops a node, which then computes no state. What it has sent still arrives.
+  void stop(core::RegionId region) { member(region).is_alive = false; }
+  bool is_alive(std::size_t region) const { return members_[region].is_alive; }
+  double now_s() const { return network_.now_s(); }
 
   std::size_t size() const { return members_.size(); }
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
@@ -78,9 +96,9 @@ class VirtualCluster {
   std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
   /// Precondition: ClusterRules::bandwidth_B_s is set.
   const WirePost& post() const { return *post_; }
-  /// The newest state that is confirmed on every node (node/node.h).
+  /// The newest state that is confirmed on every live node (node/node.h).
   core::Step confirmed() const;
-  /// The lowest state that a node is in.
+  /// The lowest state that a live node is in.
   core::Step slowest() const;
   /// Number of violations, all nodes together.
   std::uint64_t violations() const;
@@ -95,7 +113,11 @@ class VirtualCluster {
     double free_s = 0;     ///< end of its last frame
     double lag_s = 0;      ///< delay of its last frame's begin behind the clock
     bool waiting = false;  ///< its step is due, but messages of neighbours are missing
+    bool is_alive = true;
+    core::Step last = std::numeric_limits<core::Step>::max();  ///< it computes no later state
   };
+
+  Member& member(core::RegionId region) { return members_[core::value_of(region)]; }
 
   double due_s(const Member& member) const;
   void compute(Member& member, double at_s);
@@ -108,7 +130,6 @@ class VirtualCluster {
   std::vector<Member> members_;
   std::uint64_t random_;
   const node::StepReport* report_ = nullptr;
-  core::Step last_ = std::numeric_limits<core::Step>::max();  ///< no node computes a later state
 };
 
 }  // namespace aurasim::lab

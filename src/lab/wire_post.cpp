@@ -1,8 +1,6 @@
 #include "lab/wire_post.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "messages/wire_bytes.h"
@@ -19,12 +17,15 @@ void forget_before(Map& kept, std::uint32_t redo, core::Step step) {
       kept, [&](const auto& entry) { return std::get<0>(entry.first) + 1 < redo || std::get<1>(entry.first) < step; });
 }
 
+/// Adds the message to the inbox's list, or its refusal if it could not be decoded. `envelope`: what is known of it.
 template <class Message>
-Message required(messages::Decoded<Message> decoded) {
+void arrive(messages::Decoded<Message> decoded, const Message& envelope, core::MessageKind kind,
+            std::vector<Message>& list, core::Inbox& inbox) {
   if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
-    throw std::logic_error("a node refuses what another has sent: " + std::string(messages::name_of(*error)));
+    inbox.refusals.push_back({envelope.source, envelope.generation, envelope.stamp, kind, messages::name_of(*error)});
+  } else {
+    list.push_back(std::get<Message>(std::move(decoded)));
   }
-  return std::move(std::get<Message>(decoded));
 }
 
 }  // namespace
@@ -35,20 +36,20 @@ class WirePost::Endpoint : public transport::Transport {
       : post_(post), network_(post.network_.endpoint(region)), region_(region) {}
 
   void take(core::Inbox& inbox) override {
-    const std::size_t auras = inbox.auras.size();
-    const std::size_t hand_offs = inbox.hand_offs.size();
-    network_.take(inbox);
-    for (std::size_t i = auras; i < inbox.auras.size(); ++i) {
-      const core::AuraBatch& envelope = inbox.auras[i];
+    core::Inbox arrived;
+    network_.take(arrived);
+    for (const core::AuraBatch& envelope : arrived.auras) {
       const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
-      inbox.auras[i] = required(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp}), expected_));
+      arrive(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp}), expected_), envelope, core::MessageKind::kAura,
+             inbox.auras, inbox);
     }
-    for (std::size_t i = hand_offs; i < inbox.hand_offs.size(); ++i) {
-      const core::HandOff& envelope = inbox.hand_offs[i];
+    for (const core::HandOff& envelope : arrived.hand_offs) {
       const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
       const Bytes& bytes = kept.hand_offs.at({envelope.redo, envelope.stamp, envelope.destination, envelope.sequence});
-      inbox.hand_offs[i] = required(coder_.hand_off(bytes, expected_));
+      arrive(coder_.hand_off(bytes, expected_), envelope, core::MessageKind::kHandOff, inbox.hand_offs, inbox);
     }
+    inbox.acks.insert(inbox.acks.end(), arrived.acks.begin(), arrived.acks.end());
+    inbox.peers.insert(inbox.peers.end(), arrived.peers.begin(), arrived.peers.end());
   }
 
   /// The network carries envelopes only; the bytes stay here. A step's messages leave together, when the link has sent
@@ -94,6 +95,7 @@ class WirePost::Endpoint : public transport::Transport {
 
   std::size_t put_away(const core::AuraBatch& batch, std::size_t copies, core::Outbox& envelopes) {
     envelopes.aura.source = batch.source;
+    envelopes.aura.generation = batch.generation;
     envelopes.aura.redo = batch.redo;
     envelopes.aura.stamp = batch.stamp;
     const Bytes& bytes = kept().auras[{batch.redo, batch.stamp}] = coder_.of(batch);
@@ -105,6 +107,7 @@ class WirePost::Endpoint : public transport::Transport {
   std::size_t put_away(const core::HandOff& hand_off, core::Outbox& envelopes) {
     core::HandOff& envelope = envelopes.hand_offs.emplace_back();
     envelope.source = hand_off.source;
+    envelope.generation = hand_off.generation;
     envelope.destination = hand_off.destination;
     envelope.redo = hand_off.redo;
     envelope.stamp = hand_off.stamp;

@@ -1,6 +1,7 @@
 // Puts the coding of real messages between the nodes of one process and their network in memory: what a node sends is
-// encoded and serialised, what it takes is deserialised, checked and decoded, as with DDS but for the sockets. So bytes
-// can be counted, the cost of coding is included, and links can have a limited bandwidth.
+// encoded and serialised, what it takes is deserialised, checked and decoded, as with DDS but for the sockets. What is
+// refused arrives as a refusal. So bytes can be counted, the cost of coding is included, and links can have a limited
+// bandwidth.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "agent/merged_states.h"
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 #include "node/observation_feed.h"
 #include "physics/state_hash.h"
@@ -92,7 +92,7 @@ class Watched {
   std::vector<node::ObservationFeed> feeds_;
   std::map<std::uint32_t, std::map<std::pair<Step, core::BodyId>, core::BodyRecord>> ahead_;
   MergedStates states_;
-  test::ClusterSim sim_;
+  test::CheckedRun sim_;
 };
 
 /// Where, or nothing. Host and epoch are no matter of the world's.
@@ -129,10 +129,10 @@ test::ClusterOptions options_for(int seed) {
   options.aura.lookahead = 1 + seed % 3;
   options.aura.top_speed_m_s = 40;
   options.aura.redo = true;
-  options.over_the_wire = true;
-  options.solver = seed % 2 == 0 ? physics::Solver::kSoftStep : physics::Solver::kSequentialImpulse;
-  options.faults.latency_s = 0.004 * (seed % 5);
-  options.faults.jitter_s = 0.004 * (seed % 3);
+  options.bandwidth_B_s = lab::kUnlimited_B_s;
+  options.physics.solver = seed % 2 == 0 ? physics::Solver::kSoftStep : physics::Solver::kSequentialImpulse;
+  options.network.latency_s = 0.004 * (seed % 5);
+  options.network.jitter_s = 0.004 * (seed % 3);
   return options;
 }
 

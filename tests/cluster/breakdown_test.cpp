@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -24,7 +24,7 @@ class BreakdownInACluster : public testing::TestWithParam<core::SyncMode> {
     options_.sync = GetParam();
     options_.aura.top_speed_m_s = 40;
     options_.neighbour_distance_m = 1e9;
-    options_.over_the_wire = true;
+    options_.bandwidth_B_s = lab::kUnlimited_B_s;
   }
   /// A spawn of a prototype of the scene that nobody has looked at.
   void spawn(core::Step at_step, const Vec3& p_WB, const Vec3& v_WB, const Vec3& w_WB = Vec3::Zero()) {
@@ -40,14 +40,14 @@ class BreakdownInACluster : public testing::TestWithParam<core::SyncMode> {
 TEST_P(BreakdownInACluster, ABodyOutOfAllBoundsIsTakenOutInTheSameStateOnOneNodeAndOnFour) {
   spawn(80, {3, 3, 30}, {2e6, 0, 0});
   spawn(90, {-3, 3, 40}, {0, 0, 0}, {0, 0, 2e6});
-  const Outcome four = ClusterSim(scene_, options_).run(kBreakdownSteps);
+  const Outcome four = CheckedRun(scene_, options_).run(kBreakdownSteps);
   const Outcome one = run_central(scene_, options_, kBreakdownSteps);
-  ASSERT_EQ(four.broken.size(), one.broken.size());
-  ASSERT_GE(one.broken.size(), 1u);
-  for (std::size_t i = 0; i < one.broken.size(); ++i) {
-    EXPECT_EQ(four.broken[i].body, one.broken[i].body);
-    EXPECT_EQ(four.broken[i].step, one.broken[i].step);
-    EXPECT_FALSE(one.broken[i].fault.empty());
+  ASSERT_EQ(four.broken_bodies.size(), one.broken_bodies.size());
+  ASSERT_GE(one.broken_bodies.size(), 1u);
+  for (std::size_t i = 0; i < one.broken_bodies.size(); ++i) {
+    EXPECT_EQ(four.broken_bodies[i].body, one.broken_bodies[i].body);
+    EXPECT_EQ(four.broken_bodies[i].step, one.broken_bodies[i].step);
+    EXPECT_FALSE(one.broken_bodies[i].fault.empty());
   }
   EXPECT_THAT(four.dead, IsEmpty());
   EXPECT_EQ(four.lost + four.doubled, 0u);
@@ -58,7 +58,7 @@ TEST_P(BreakdownInACluster, ASpinThatNoWorldCanBearIsDeclined) {
   options_.orders.push_back({80, core::SetVelocity{scene_.bodies[0].id, {0, 0, 0}, Vec3(1e6, 1e6, 1e6)}});
   options_.orders.push_back({80, core::Impulse{scene_.bodies[1].id, {1e7, 0, 0}, Vec3(100, 100, 100)}});
   std::size_t declined = 0;
-  ClusterSim cluster(scene_, options_);
+  CheckedRun cluster(scene_, options_);
   cluster.on_state = [&](node::Node&, const node::StepReport& report, double) { declined += report.declined.size(); };
   const Outcome o = cluster.run(kBreakdownSteps);
   EXPECT_EQ(declined, 2u);
@@ -74,7 +74,7 @@ TEST_P(BreakdownInACluster, WhoSendsWhatNobodyCanUseIsHeldForDead) {
                                              {1e300, 0, 0},  // more than any world can bear
                                              {0, 0, 0}}});
   std::vector<core::Refusal> refusals;
-  ClusterSim cluster(scene_, options_);
+  CheckedRun cluster(scene_, options_);
   cluster.on_state = [&](node::Node& node, const node::StepReport&, double) {
     for (const core::Refusal& refusal : node.protocol().intake().refusals()) refusals.push_back(refusal);
   };

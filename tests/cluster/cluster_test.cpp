@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -48,12 +48,12 @@ ClusterOptions options_for(const Layout& layout, int seed) {
   options.aura.lookahead = 1 + seed % 3;
   options.aura.substeps = 1 << (seed % 3);
   options.aura.top_speed_m_s = 40;
-  options.faults.loss = 0.05 * (seed % 5);
-  options.faults.duplicate = 0.05 * (seed % 3);
-  options.faults.keep_order = seed % 2 == 0;
-  options.faults.latency_s = 0.004 * (seed % 7);
-  options.faults.jitter_s = 0.006 * (seed % 4);
-  options.frame_jitter_s = 0.004 * (seed % 3);
+  options.network.loss = 0.05 * (seed % 5);
+  options.network.duplicate = 0.05 * (seed % 3);
+  options.network.keep_order = seed % 2 == 0;
+  options.network.latency_s = 0.004 * (seed % 7);
+  options.network.jitter_s = 0.006 * (seed % 4);
+  options.set_frame_jitter(0.004 * (seed % 3));
   return options;
 }
 
@@ -85,7 +85,7 @@ TEST_P(ClusterTest, InBoundedModeNothingIsLostDoubledOrLate) {
   std::uint64_t hand_offs = 0;
   for (int seed = 1; seed <= seeds(); ++seed) {
     const core::Scene scene = scene_for(layout_, seed);
-    const Outcome o = ClusterSim(scene, options_for(layout_, seed)).run(kSteps);
+    const Outcome o = CheckedRun(scene, options_for(layout_, seed)).run(kSteps);
     expect_exactly_once(o, seed);
     EXPECT_EQ(o.late + o.missed, 0u) << describe(seed, o);
     EXPECT_EQ(o.with_dead, 0u) << describe(seed, o);
@@ -104,7 +104,7 @@ TEST_P(ClusterTest, WhoEndsFirstTakesInWhatComesFromLaterStates) {
     ClusterOptions options = options_for(layout_, seed);
     options.sync = seed % 2 == 0 ? SyncMode::kBounded : SyncMode::kFreeRunning;
     options.overrun = 5;
-    ClusterSim sim(scene, options);
+    CheckedRun sim(scene, options);
     const Outcome o = sim.run(last);
     EXPECT_EQ(o.lost + o.doubled, 0u) << describe(seed, o);
     std::set<core::BodyId> hosted;
@@ -125,7 +125,7 @@ TEST_P(ClusterTest, InDeterministicModeEveryStateHasTheBitsOfTheCentralRun) {
     const core::Scene scene = scene_for(layout_, seed);
     ClusterOptions options = options_for(layout_, seed);
     options.sync = SyncMode::kDeterministic;
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome o = CheckedRun(scene, options).run(kSteps);
     const Outcome central = run_central(scene, options, kSteps);
     expect_exactly_once(o, seed);
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
@@ -141,14 +141,14 @@ TEST_P(ClusterTest, WhoOutranksWhomMayChangeAtAnyTime) {
     ClusterOptions options = options_for(layout_, seed);
     options.shuffle_ranks_steps = 5 * (seed % 7) + 20;
     options.sync = SyncMode::kDeterministic;
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome o = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(o.doubled + o.lost + o.severed + o.bad_phases, 0u) << describe(seed, o);
     const Outcome central = run_central(scene, options, kSteps);
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
     EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
                                          << first.first - o.hash.begin();
     options.sync = SyncMode::kBounded;
-    const Outcome bounded = ClusterSim(scene, options).run(kSteps);
+    const Outcome bounded = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(bounded.late + bounded.missed + bounded.lost + bounded.doubled, 0u) << describe(seed, bounded);
     hand_offs += o.hand_offs;
   }
@@ -161,7 +161,7 @@ TEST_P(ClusterTest, FreeRunningIsNeverWrongWithoutSayingSo) {
     const core::Scene scene = scene_for(layout_, seed);
     ClusterOptions options = options_for(layout_, seed);
     options.sync = SyncMode::kFreeRunning;
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome o = CheckedRun(scene, options).run(kSteps);
     expect_exactly_once(o, seed);
     EXPECT_EQ(o.unflagged, 0u) << describe(seed, o);
   }
@@ -173,7 +173,7 @@ TEST_P(ClusterTest, TightAurasMissNothingEither) {
     ClusterOptions options = options_for(layout_, seed);
     options.aura.kind = AuraKind::kTight;
     options.aura.top_speed_m_s = 25;
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome o = CheckedRun(scene, options).run(kSteps);
     expect_exactly_once(o, seed);
     EXPECT_EQ(o.late + o.missed, 0u) << describe(seed, o);
   }
@@ -186,7 +186,7 @@ TEST_P(ClusterTest, WithoutAurasCollisionsAreLateOrMissed) {
     const core::Scene scene = scene_for(layout_, seed);
     ClusterOptions options = options_for(layout_, seed);
     options.aura.kind = AuraKind::kNone;
-    const Outcome o = ClusterSim(scene, options).run(kSteps);
+    const Outcome o = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(o.lost + o.doubled, 0u) << describe(seed, o);
     wrong += o.late + o.missed;
   }
@@ -200,7 +200,7 @@ TEST(ClusterBits, WithoutAurasTheBitsDiffer) {
   ClusterOptions options = options_for(layout, 1);
   options.sync = SyncMode::kDeterministic;
   options.aura.kind = AuraKind::kNone;
-  EXPECT_NE(ClusterSim(scene, options).run(kSteps).hash, run_central(scene, options, kSteps).hash);
+  EXPECT_NE(CheckedRun(scene, options).run(kSteps).hash, run_central(scene, options, kSteps).hash);
 }
 
 INSTANTIATE_TEST_SUITE_P(Layouts, ClusterTest, testing::Range<std::size_t>(0, 5),

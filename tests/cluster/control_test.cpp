@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test::steered {
@@ -29,11 +29,11 @@ ClusterOptions options_for(int rows, int columns, int seed, bool redo) {
   options.aura.lookahead = 1 + seed % 3;
   options.aura.top_speed_m_s = 40;
   options.aura.redo = redo;
-  options.solver = seed % 2 == 0 ? physics::Solver::kSoftStep : physics::Solver::kSequentialImpulse;
-  options.faults.loss = 0.05;
-  options.faults.duplicate = 0.05;
-  options.faults.latency_s = 0.004 * (seed % 4);
-  options.faults.jitter_s = 0.006;
+  options.physics.solver = seed % 2 == 0 ? physics::Solver::kSoftStep : physics::Solver::kSequentialImpulse;
+  options.network.loss = 0.05;
+  options.network.duplicate = 0.05;
+  options.network.latency_s = 0.004 * (seed % 4);
+  options.network.jitter_s = 0.006;
   return options;
 }
 
@@ -90,7 +90,7 @@ void add_pairs(core::Scene& scene, int seed) {
 enum class Words : std::uint8_t { kAnyhow, kInOrder };
 
 /// Each node hears a word in a state of its own, `early` to `latest` states before the word's.
-void let_hear(ClusterSim& cluster, const std::vector<core::Setpoints>& words, int seed, int early, int latest,
+void let_hear(CheckedRun& cluster, const std::vector<core::Setpoints>& words, int seed, int early, int latest,
               Words order) {
   struct Due {
     Step heard;
@@ -123,7 +123,7 @@ void let_hear(ClusterSim& cluster, const std::vector<core::Setpoints>& words, in
 
 Outcome run(const core::Scene& scene, const ClusterOptions& options, const std::vector<core::Setpoints>& words,
             int seed, int early, int latest, Words order = Words::kAnyhow) {
-  ClusterSim cluster(scene, options);
+  CheckedRun cluster(scene, options);
   let_hear(cluster, words, seed, early, latest, order);
   return cluster.run(kSteps);
 }
@@ -168,7 +168,7 @@ TEST_P(SteeredCluster, IsTheSameAgainFromItsRecord) {
     ASSERT_FALSE(live.effects.empty());
     ClusterOptions again = on_one_node(options);
     again.recorded = live.effects;
-    const Outcome one = ClusterSim(scene, again).run(kSteps);
+    const Outcome one = CheckedRun(scene, again).run(kSteps);
     // What nobody could foresee may have let two touch on two hosts: without a redo that is counted, not mended. With
     // one, states that were reported may be computed again with words that were late on one host and not on the other.
     const bool is_sound = live.late + live.missed + live.late_words == 0;
@@ -250,7 +250,7 @@ class PlacedStatics : public testing::TestWithParam<bool> {  ///< with redo
  protected:
   static ClusterOptions options(int seed) {
     ClusterOptions options = options_for(seed % 2 + 1, 2 + seed % 2, seed, GetParam());
-    options.solver = physics::Solver::kSoftStep;
+    options.physics.solver = physics::Solver::kSoftStep;
     return options;
   }
   static core::Scene scene(int seed) {
@@ -282,7 +282,7 @@ TEST_P(PlacedStatics, AreTheSameAgainFromTheirRecord) {
     for (const bool alone : {true, false}) {
       ClusterOptions again = alone ? on_one_node(options(seed)) : options(seed);
       again.recorded = live.effects;
-      const Outcome replayed = ClusterSim(world, again).run(kSteps);
+      const Outcome replayed = CheckedRun(world, again).run(kSteps);
       EXPECT_GT(first_difference(live, replayed), kSteps) << "seed " << seed << (alone ? ", alone" : "");
       EXPECT_EQ(replayed.effects.size(), live.effects.size()) << "seed " << seed;
     }
@@ -296,8 +296,8 @@ TEST(PlacedStaticsLate, TakeTheTimeOfAnOrderFromThenOn) {
   core::Scene world = thrown_bodies(0, kCell, kCell, 0, 1);
   add_movers(world);
   ClusterOptions options = options_for(2, 2, 3, true);
-  options.solver = physics::Solver::kSoftStep;
-  ClusterSim cluster(world, options);
+  options.physics.solver = physics::Solver::kSoftStep;
+  CheckedRun cluster(world, options);
   const std::vector<core::Setpoints> words = ways_for(world, 4);
   auto next = std::make_shared<std::map<RegionId, std::size_t>>();
   cluster.on_state = [&words, next](node::Node& node, const node::StepReport&, double) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 #include "config/launch.h"
 
@@ -57,7 +57,7 @@ class SleepersThatOverlap : public testing::TestWithParam<double> {
 };
 
 TEST_P(SleepersThatOverlap, AreFoundWhenTheyComeTogetherAndNotAgainWhenTheyWake) {
-  const Outcome o = ClusterSim(scene_, options_).run(kWoken + 60);
+  const Outcome o = CheckedRun(scene_, options_).run(kWoken + 60);
   EXPECT_EQ(o.late, 1u) << describe(o);
   EXPECT_EQ(o.unflagged, 0u) << describe(o);
   for (const auto& [region, seen] : o.wrong) EXPECT_LE(seen.collision.step, kFound) << describe(o);
@@ -79,12 +79,12 @@ TEST(LinkCut, WhatIsFoundAfterItIsNeverUnflagged) {
     options.seed = static_cast<std::uint64_t>(seed);
     options.aura.lookahead = launch.lookahead();
     options.aura.substeps = launch.time.substeps;
-    options.faults.latency_s = 0.0002;
-    options.faults.jitter_s = 0.001;
-    options.frame_jitter_s = 0.006;
+    options.network.latency_s = 0.0002;
+    options.network.jitter_s = 0.001;
+    options.set_frame_jitter(0.006);
     const double from_s = 2 + 0.25 * seed;
     options.cut = LinkCut{RegionId{static_cast<std::uint32_t>(seed % 4)}, from_s, from_s + 5};
-    const Outcome o = ClusterSim(launch.scene, options).run(15 * 60);
+    const Outcome o = CheckedRun(launch.scene, options).run(15 * 60);
     EXPECT_EQ(o.unflagged, 0u) << "seed " << seed << ", " << describe(o);
     EXPECT_EQ(o.lost + o.doubled + o.bad_phases, 0u) << "seed " << seed;
     wrong += o.late + o.missed;

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -94,7 +94,7 @@ class Impacts : public testing::Test {
     options.aura.top_speed_m_s = 60;
     options.aura.redo = true;
     options.aura.gravity = scene.gravity;
-    const Outcome o = ClusterSim(scene, options).run(steps);
+    const Outcome o = CheckedRun(scene, options).run(steps);
     EXPECT_EQ(o.lost + o.doubled, 0u) << "seed " << seed;
     EXPECT_EQ(o.hash, run_central(scene, options, steps).hash) << "seed " << seed;
     hand_offs_ += o.hand_offs;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -23,10 +23,10 @@ ClusterOptions listening_options_for(int seed) {
   options.aura.substeps = 2;
   options.aura.top_speed_m_s = 40;
   options.aura.redo = true;
-  options.over_the_wire = true;
-  options.faults.latency_s = 0.004 * (seed % 7);
-  options.faults.jitter_s = 0.006 * (seed % 4);
-  options.faults.keep_order = seed % 2 == 0;
+  options.bandwidth_B_s = lab::kUnlimited_B_s;
+  options.network.latency_s = 0.004 * (seed % 7);
+  options.network.jitter_s = 0.006 * (seed % 4);
+  options.network.keep_order = seed % 2 == 0;
   return options;
 }
 
@@ -34,7 +34,7 @@ class Listening : public testing::TestWithParam<int> {};
 
 TEST_P(Listening, FollowsBodiesSoThatNothingIsMissed) {
   const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
-  ClusterSim apart(scene, listening_options_for(GetParam()));
+  CheckedRun apart(scene, listening_options_for(GetParam()));
   const Outcome outcome = apart.run(kListeningSteps);
   const Outcome central = run_central(scene, listening_options_for(GetParam()), kListeningSteps);
   EXPECT_EQ(outcome.hash, central.hash) << outcome.redos << " redos";
@@ -46,7 +46,7 @@ TEST_P(Listening, FollowsBodiesSoThatNothingIsMissed) {
 TEST_P(Listening, IsMutualFromTheSameStateOn) {
   const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
   const ClusterOptions options = listening_options_for(GetParam());
-  ClusterSim apart(scene, options);
+  CheckedRun apart(scene, options);
   apart.run(kListeningSteps);
   const auto listened = [&](core::RegionId region) {
     return apart.node(core::value_of(region)).protocol().listens_to();

@@ -2,7 +2,7 @@
 // a hand-off is late, and nobody is lost who is pushed across a border.
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test::moving {
@@ -58,18 +58,18 @@ TEST_P(MovingStaticsCluster, HasTheSameBitsAsOneWorld) {
     options.map = core::RegionMap::grid(static_cast<std::size_t>(seed % 2 + 1), 2, kCell, kCell);
     options.seed = static_cast<std::uint64_t>(seed);
     options.sync = core::SyncMode::kDeterministic;
-    options.solver = physics::Solver::kSoftStep;
+    options.physics.solver = physics::Solver::kSoftStep;
     options.aura.lookahead = 1 + seed % 3;
     options.aura.top_speed_m_s = 40;
     options.aura.redo = GetParam();
-    options.faults.loss = 0.05;
-    options.faults.latency_s = 0.004 * (seed % 4);
-    options.faults.jitter_s = 0.006;
+    options.network.loss = 0.05;
+    options.network.latency_s = 0.004 * (seed % 4);
+    options.network.jitter_s = 0.006;
     if (seed % 2 == 0) options.orders = moves_for(scene);
-    const Outcome many = ClusterSim(scene, options).run(kSteps);
+    const Outcome many = CheckedRun(scene, options).run(kSteps);
     options.map = core::RegionMap::columns(1, 1);
     options.aura.redo = false;
-    const Outcome one = ClusterSim(scene, options).run(kSteps);
+    const Outcome one = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(std::mismatch(many.hash.begin(), many.hash.end(), one.hash.begin()).first - many.hash.begin(), kSteps + 1)
         << "seed " << seed;
     EXPECT_EQ(many.lost + many.doubled + many.severed + many.bad_phases, 0u) << "seed " << seed;

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -34,10 +34,10 @@ ClusterOptions options_for(const Cut& cut, int seed) {
   options.sync = core::SyncMode::kDeterministic;
   options.aura.lookahead = 1 + seed % 3;
   options.aura.top_speed_m_s = 40;
-  options.faults.loss = 0.05;
-  options.faults.duplicate = 0.05;
-  options.faults.latency_s = 0.004 * (seed % 4);
-  options.faults.jitter_s = 0.006;
+  options.network.loss = 0.05;
+  options.network.duplicate = 0.05;
+  options.network.latency_s = 0.004 * (seed % 4);
+  options.network.jitter_s = 0.006;
   options.neighbour_distance_m = 18;  // in six columns, orders have to be passed on twice
   return options;
 }
@@ -87,7 +87,7 @@ TEST_P(OrdersCluster, HaveTheSameEffectAsInOneWorld) {
     const core::Scene scene = thrown_bodies(60, 4 * kCell, 2 * kCell, 8, static_cast<std::uint64_t>(seed));
     ClusterOptions options = options_for(cut_, seed);
     options.orders = orders_for(scene, seed);
-    const Outcome o = ClusterSim(scene, options).run(kOrderSteps);
+    const Outcome o = CheckedRun(scene, options).run(kOrderSteps);
     const Outcome central = run_central(scene, options, kOrderSteps);
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
     EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
@@ -128,7 +128,7 @@ TEST(Orders, AKickIsForeseenByTheNeighbours) {
   options.sync = core::SyncMode::kBounded;
   options.orders = {{150, core::SetVelocity{BodyId{1}, {20, 0, 0}, {}}},
                     {150, core::SetVelocity{BodyId{2}, {-20, 0, 0}, {}}}};
-  const Outcome o = ClusterSim(scene, options).run(kOrderSteps);
+  const Outcome o = CheckedRun(scene, options).run(kOrderSteps);
   EXPECT_EQ(o.applied, 2u);
   EXPECT_EQ(o.late + o.missed, 0u);
   EXPECT_EQ(o.contacts.size(), 1u);

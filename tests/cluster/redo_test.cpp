@@ -2,7 +2,7 @@
 // whatever the auras have missed.
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 
 namespace aurasim::test {
@@ -22,10 +22,10 @@ ClusterOptions options_for(int seed) {
   options.aura.substeps = 1 << (seed % 3);
   options.aura.top_speed_m_s = 40;
   options.aura.redo = true;
-  options.over_the_wire = true;
-  options.faults.latency_s = 0.004 * (seed % 7);
-  options.faults.jitter_s = 0.006 * (seed % 4);
-  options.faults.keep_order = seed % 2 == 0;
+  options.bandwidth_B_s = lab::kUnlimited_B_s;
+  options.network.latency_s = 0.004 * (seed % 7);
+  options.network.jitter_s = 0.006 * (seed % 4);
+  options.network.keep_order = seed % 2 == 0;
   return options;
 }
 
@@ -46,7 +46,7 @@ TEST_P(Redo, AloneGivesTheBitsOfOneWorld) {
   const core::Scene scene = scene_for(GetParam());
   ClusterOptions options = options_for(GetParam());
   options.aura.kind = AuraKind::kNone;
-  const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+  const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
   const Outcome central = run_central(scene, options, kRedoSteps);
   EXPECT_EQ(first_difference(apart, central), central.hash.size()) << apart.redos << " redos";
   EXPECT_EQ(apart.lost, 0u);
@@ -56,7 +56,7 @@ TEST_P(Redo, AloneGivesTheBitsOfOneWorld) {
 TEST_P(Redo, IsHardlyEverNeededWhereAurasTell) {
   const core::Scene scene = scene_for(GetParam());
   const ClusterOptions options = options_for(GetParam());
-  const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+  const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
   const Outcome central = run_central(scene, options, kRedoSteps);
   EXPECT_EQ(first_difference(apart, central), central.hash.size());
   EXPECT_LE(apart.redos, 1u);
@@ -68,7 +68,7 @@ TEST(Check, FindsWhatAurasWouldHaveTold) {
   ClusterOptions options = options_for(1);
   options.aura.kind = AuraKind::kNone;
   const core::Scene scene = scene_for(1);
-  EXPECT_GT(ClusterSim(scene, options).run(kRedoSteps).redos, 0u);
+  EXPECT_GT(CheckedRun(scene, options).run(kRedoSteps).redos, 0u);
 }
 
 TEST(Check, WithoutItsMarginMissesATouch) {
@@ -78,7 +78,7 @@ TEST(Check, WithoutItsMarginMissesATouch) {
     options.aura.kind = AuraKind::kNone;
     options.aura.check_scale = -5;
     const core::Scene scene = scene_for(seed);
-    const Outcome apart = ClusterSim(scene, options).run(kRedoSteps);
+    const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
     differ += first_difference(apart, run_central(scene, options, kRedoSteps)) < apart.hash.size();
   }
   EXPECT_GT(differ, 0u);

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "config/launch.h"
 #include "physics/solver_names.h"
 
@@ -78,14 +78,14 @@ class ShippedCluster : public testing::TestWithParam<std::tuple<std::size_t, std
     options.aura.lookahead = 1 + seed % 3;
     options.aura.substeps = launch.time.substeps;
     options.aura.uncertainty = launch.aura.uncertainty;
-    options.solver = physics::solver_named(launch.physics.solver);
-    options.solver_iterations = launch.physics.iterations;
-    options.friction_directions = launch.physics.friction_directions;
+    options.physics.solver = physics::solver_named(launch.physics.solver);
+    options.physics.solver_iterations = launch.physics.iterations;
+    options.physics.friction_directions = launch.physics.friction_directions;
     options.aura.top_speed_m_s = 40;
-    options.faults.loss = 0.05;
-    options.faults.duplicate = 0.05;
-    options.faults.latency_s = 0.004 * seed;
-    options.faults.jitter_s = 0.006;
+    options.network.loss = 0.05;
+    options.network.duplicate = 0.05;
+    options.network.latency_s = 0.004 * seed;
+    options.network.jitter_s = 0.006;
     return options;
   }
 };
@@ -94,7 +94,7 @@ TEST_P(ShippedCluster, HasTheBitsOfTheCentralRun) {
   const config::Launch launch = launch_of(shipped_.name);
   std::uint64_t hand_offs = 0;
   for (int seed = 1; seed <= shipped_.seeds; ++seed) {
-    const Outcome o = ClusterSim(launch.scene, options(launch, seed)).run(shipped_.steps);
+    const Outcome o = CheckedRun(launch.scene, options(launch, seed)).run(shipped_.steps);
     const Outcome central = run_central(launch.scene, options(launch, seed), shipped_.steps);
     const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
     EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
@@ -144,7 +144,7 @@ TEST(ShippedClusterBits, WithoutAurasJointsAreCutAndTheBitsDiffer) {
   options.sync = core::SyncMode::kDeterministic;
   options.aura.kind = core::AuraKind::kNone;
   options.aura.substeps = 4;
-  const Outcome o = ClusterSim(scene, options).run(180);
+  const Outcome o = CheckedRun(scene, options).run(180);
   EXPECT_GT(o.severed, 0u);
   EXPECT_NE(o.hash, run_central(scene, options, 180).hash);
   EXPECT_EQ(o.lost + o.doubled, 0u);

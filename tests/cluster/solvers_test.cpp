@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 #include "physics/solver_names.h"
 
@@ -19,13 +19,13 @@ TEST_P(SolverBits, AreThoseOfTheCentralRun) {
     ClusterOptions options;
     options.map = seed == 3 ? core::RegionMap::grid(2, 2, 9, 9) : core::RegionMap::columns(2, 9);
     options.sync = core::SyncMode::kDeterministic;
-    options.solver = GetParam();
-    options.friction_directions = static_cast<int>(1 + seed % 2);
+    options.physics.solver = GetParam();
+    options.physics.friction_directions = static_cast<int>(1 + seed % 2);
     options.seed = seed;
     options.aura.lookahead = static_cast<int>(1 + seed % 2);
     options.aura.top_speed_m_s = 40;
-    options.faults.loss = 0.05;
-    const Outcome o = ClusterSim(scene, options).run(180);
+    options.network.loss = 0.05;
+    const Outcome o = CheckedRun(scene, options).run(180);
     EXPECT_EQ(o.hash, run_central(scene, options, 180).hash) << "seed " << seed;
     EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
     hand_offs += o.hand_offs;
@@ -41,12 +41,12 @@ TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
     ClusterOptions options;
     options.map = seed == 1 ? core::RegionMap::grid(2, 2, 9, 9) : core::RegionMap::columns(2, 9);
     options.sync = core::SyncMode::kDeterministic;
-    options.solver = GetParam();
+    options.physics.solver = GetParam();
     options.seed = seed;
     options.aura.lookahead = 1;
     options.aura.top_speed_m_s = 60;
-    options.over_the_wire = true;
-    const Outcome o = ClusterSim(scene, options).run(240);
+    options.bandwidth_B_s = lab::kUnlimited_B_s;
+    const Outcome o = CheckedRun(scene, options).run(240);
     EXPECT_EQ(o.hash, run_central(scene, options, 240).hash) << "seed " << seed;
     EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
     hand_offs += o.hand_offs;

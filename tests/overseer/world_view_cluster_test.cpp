@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 #include "node/replica_feed.h"
 #include "overseer/frame_codec.h"
@@ -72,7 +72,7 @@ class Observed {
   }
 
   WorldView& view() { return view_; }
-  test::ClusterSim& sim() { return sim_; }
+  test::CheckedRun& sim() { return sim_; }
   const PageWorld& page() const { return page_; }
 
   std::ostringstream why;
@@ -155,7 +155,7 @@ class Observed {
   Wire wire_;
   std::mt19937 random_;
   WorldView view_;
-  test::ClusterSim sim_;
+  test::CheckedRun sim_;
   std::optional<test::Crash> crash_;
   double crashed_s_ = 1e9;
   std::vector<node::ReplicaFeed> feeds_;
@@ -175,8 +175,8 @@ test::ClusterOptions options_for(std::uint64_t seed) {
   options.seed = seed;
   options.aura.lookahead = 1 + static_cast<int>(seed % 3);
   options.aura.top_speed_m_s = 40;
-  options.faults.loss = 0.05 * static_cast<double>(seed % 4);
-  options.faults.latency_s = 0.004 * static_cast<double>(seed % 5);
+  options.network.loss = 0.05 * static_cast<double>(seed % 4);
+  options.network.latency_s = 0.004 * static_cast<double>(seed % 5);
   return options;
 }
 

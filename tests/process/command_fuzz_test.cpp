@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cluster/cluster_sim.h"
+#include "cluster/checked_run.h"
 #include "cluster/scenes.h"
 #include "core/limits.h"
 #include "process/order_issuer.h"
@@ -154,13 +154,13 @@ class CommandFuzz : public ::testing::TestWithParam<int> {
     options.sync = core::SyncMode::kDeterministic;
     options.aura.top_speed_m_s = launch_.tolerances.speed_m_s;
     options.neighbour_distance_m = 1e9;
-    options.over_the_wire = true;
-    options.solver = physics::Solver::kSoftStep;  // as the launch file's
+    options.bandwidth_B_s = lab::kUnlimited_B_s;
+    options.physics.solver = physics::Solver::kSoftStep;  // as the launch file's
     FuzzRun run;
     OrderIssuer issuer(launch_);
     Commands commands(static_cast<std::uint64_t>(GetParam()), scene_);
     const auto no_meshes = [](const core::MeshRef&) { return std::optional<core::Shape>(); };
-    test::ClusterSim cluster(scene_, options);
+    test::CheckedRun cluster(scene_, options);
     cluster.on_state = [&](node::Node& node, const node::StepReport& report, double) {
       look(node, run);
       for (const core::Refusal& refusal : node.protocol().intake().refusals()) {

@@ -1,7 +1,6 @@
 #include "lab/scale/rain_run.h"
 
 #include <cmath>
-#include <limits>
 
 #include "lab/scale/round_trips.h"
 
@@ -61,7 +60,7 @@ ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const Rain
   rules.clock = node::PhaseClock::kThreadCpu;
   rules.network.latency_s = kLatency_s;
   rules.shortest_frame_s = rules.longest_frame_s = kFrame_s;
-  rules.bandwidth_B_s = rain.bandwidth_B_s > 0 ? rain.bandwidth_B_s : std::numeric_limits<double>::infinity();
+  rules.bandwidth_B_s = rain.bandwidth_B_s > 0 ? rain.bandwidth_B_s : kUnlimited_B_s;
   return rules;
 }
 

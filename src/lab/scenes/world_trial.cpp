@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -61,6 +60,10 @@ void count_faults(const VirtualCluster& cluster, WorldOutcome& outcome) {
     outcome.late += watch.late();
     outcome.missed += watch.missed();
     outcome.unflagged += watch.unflagged();
+    for (const core::Refusal& refusal : cluster.node(r).protocol().intake().refusals()) {
+      outcome.error = fmt::format("region {} refuses a message of region {} for state {}: {}", r,
+                                  core::value_of(refusal.source), refusal.stamp, refusal.why);
+    }
   }
   outcome.violations = cluster.violations();
   outcome.speed = cluster.violations(core::ViolationKind::kSpeed);
@@ -102,7 +105,7 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
                   const std::atomic<bool>& stop, WorldOutcome& outcome) {
   ClusterRules cluster_rules = launch_rules(launch, rules.setup_of);
   cluster_rules.hash_states = true;
-  cluster_rules.bandwidth_B_s = std::numeric_limits<double>::infinity();  // coded as for DDS, but not held up
+  cluster_rules.bandwidth_B_s = kUnlimited_B_s;  // coded as for DDS, but not held up
   cluster_rules.shuffle_ranks_steps = interference.shuffle_ranks_steps;
   set_network(cluster_rules, rules.bad_network, seed);
   ClusterRules loaded_rules = cluster_rules;  // on other regions
