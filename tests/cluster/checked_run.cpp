@@ -174,6 +174,10 @@ void CheckedRun::account() {
   }
 }
 
+Step first_difference(const lab::Played& a, const lab::Played& b) {
+  return std::ranges::mismatch(a.hash, b.hash).in1 - a.hash.begin();
+}
+
 Outcome run_central(const core::Scene& scene, ClusterOptions options, Step steps) {
   options.map = core::RegionMap::columns(1, 1);
   options.crash.reset();

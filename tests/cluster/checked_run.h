@@ -98,6 +98,9 @@ class CheckedRun {
   Outcome outcome_;
 };
 
+/// The first state with other bits in the two runs; if there is none, the one after the last.
+core::Step first_difference(const lab::Played& a, const lab::Played& b);
+
 /// The same scene in one world.
 Outcome run_central(const core::Scene& scene, ClusterOptions options, core::Step steps);
 

@@ -128,9 +128,7 @@ TEST_P(ClusterTest, InDeterministicModeEveryStateHasTheBitsOfTheCentralRun) {
     const Outcome o = CheckedRun(scene, options).run(kSteps);
     const Outcome central = run_central(scene, options, kSteps);
     expect_exactly_once(o, seed);
-    const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
-    EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
-                                         << first.first - o.hash.begin();
+    EXPECT_EQ(first_difference(o, central), kSteps + 1) << "seed " << seed;
   }
 }
 
@@ -144,9 +142,7 @@ TEST_P(ClusterTest, WhoOutranksWhomMayChangeAtAnyTime) {
     const Outcome o = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(o.doubled + o.lost + o.severed + o.bad_phases, 0u) << describe(seed, o);
     const Outcome central = run_central(scene, options, kSteps);
-    const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
-    EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
-                                         << first.first - o.hash.begin();
+    EXPECT_EQ(first_difference(o, central), kSteps + 1) << "seed " << seed;
     options.sync = SyncMode::kBounded;
     const Outcome bounded = CheckedRun(scene, options).run(kSteps);
     EXPECT_EQ(bounded.late + bounded.missed + bounded.lost + bounded.doubled, 0u) << describe(seed, bounded);

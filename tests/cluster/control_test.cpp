@@ -134,10 +134,6 @@ ClusterOptions on_one_node(ClusterOptions options) {
   return options;
 }
 
-Step first_difference(const Outcome& a, const Outcome& b) {
-  return std::mismatch(a.hash.begin(), a.hash.end(), b.hash.begin()).first - a.hash.begin();
-}
-
 class SteeredCluster : public testing::TestWithParam<bool> {};  ///< with redo
 
 TEST_P(SteeredCluster, HasTheSameEffectAsInOneWorld) {

@@ -70,8 +70,7 @@ TEST_P(MovingStaticsCluster, HasTheSameBitsAsOneWorld) {
     options.map = core::RegionMap::columns(1, 1);
     options.aura.redo = false;
     const Outcome one = CheckedRun(scene, options).run(kSteps);
-    EXPECT_EQ(std::mismatch(many.hash.begin(), many.hash.end(), one.hash.begin()).first - many.hash.begin(), kSteps + 1)
-        << "seed " << seed;
+    EXPECT_EQ(first_difference(many, one), kSteps + 1) << "seed " << seed;
     EXPECT_EQ(many.lost + many.doubled + many.severed + many.bad_phases, 0u) << "seed " << seed;
     EXPECT_EQ(many.late + many.missed, 0u) << "seed " << seed;
     hand_offs += many.hand_offs;

@@ -89,9 +89,7 @@ TEST_P(OrdersCluster, HaveTheSameEffectAsInOneWorld) {
     options.orders = orders_for(scene, seed);
     const Outcome o = CheckedRun(scene, options).run(kOrderSteps);
     const Outcome central = run_central(scene, options, kOrderSteps);
-    const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
-    EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
-                                         << first.first - o.hash.begin();
+    EXPECT_EQ(first_difference(o, central), kOrderSteps + 1) << "seed " << seed;
     EXPECT_EQ(o.applied, central.applied);
     EXPECT_GE(o.applied, 30u);
     EXPECT_EQ(o.removed, central.removed);
@@ -109,8 +107,7 @@ TEST(Orders, AKickChangesTheStatesFromItsOwnOn) {
   const Outcome quiet = run_central(scene, options, 120);
   options.orders = {{80, core::Impulse{scene.bodies[0].id, {0, 0, 5}, {}}}};
   const Outcome kicked = run_central(scene, options, 120);
-  const auto first = std::mismatch(quiet.hash.begin(), quiet.hash.end(), kicked.hash.begin());
-  EXPECT_EQ(first.first - quiet.hash.begin(), 80);
+  EXPECT_EQ(first_difference(quiet, kicked), 80);
 }
 
 /// A body at rest that will be kicked towards a border is announced as fast: nothing is late, no promise is broken.

@@ -96,9 +96,7 @@ TEST_P(ShippedCluster, HasTheBitsOfTheCentralRun) {
   for (int seed = 1; seed <= shipped_.seeds; ++seed) {
     const Outcome o = CheckedRun(launch.scene, options(launch, seed)).run(shipped_.steps);
     const Outcome central = run_central(launch.scene, options(launch, seed), shipped_.steps);
-    const auto first = std::mismatch(o.hash.begin(), o.hash.end(), central.hash.begin());
-    EXPECT_EQ(first.first, o.hash.end()) << "seed " << seed << ": differs first in state "
-                                         << first.first - o.hash.begin();
+    EXPECT_EQ(first_difference(o, central), shipped_.steps + 1) << "seed " << seed;
     EXPECT_EQ(o.severed, 0u);
     EXPECT_EQ(o.late + o.missed, 0u);
     EXPECT_EQ(o.lost + o.doubled + o.thrashed + o.bad_phases, 0u);

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "config/launch.h"
+#include "scratch_folder.h"
 
 namespace aurasim::config {
 
@@ -28,24 +27,11 @@ regions: {layout: columns, count: 2, width: 40}
 
 class Workspace {
  public:
-  Workspace() {
-    static int count = 0;
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("aurasim_config_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(folder_);
-  }
-  ~Workspace() { std::filesystem::remove_all(folder_); }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::filesystem::remove(folder_ / name);  // ext4 waits for the disk when a file is overwritten
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return scratch_.write(name, text);
   }
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return scratch_.path(); }
 
   /// Reads a launch file of two columns with this scene.
   core::Scene scene(const std::string& text, const std::vector<std::string>& overrides = {}) const {
@@ -82,11 +68,11 @@ class Workspace {
 
  private:
   void strip_folder(std::string& text) const {
-    const std::string prefix = folder_.string() + "/";
+    const std::string prefix = folder().string() + "/";
     for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) text.erase(at, prefix.size());
   }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
 };
 
 /// The shape that these words of a scene file make.

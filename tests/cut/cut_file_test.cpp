@@ -13,6 +13,7 @@
 #include <zstd.h>
 
 #include "messages/samples.h"
+#include "scratch_folder.h"
 
 namespace aurasim::cut {
 namespace {
@@ -22,16 +23,10 @@ using messages::testing::hand_off_of;
 using messages::testing::same_bits;
 using testing::HasSubstr;
 
-/// One for each test, gone at its end.
 class CutFile : public testing::Test {
  protected:
-  CutFile() {
-    std::string pattern = (fs::temp_directory_path() / "aurasim_cut_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  ~CutFile() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 SavedWorld world_of(std::size_t bodies) {

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "scratch_folder.h"
+
 namespace aurasim::cut {
 namespace {
 
@@ -16,14 +18,11 @@ using testing::HasSubstr;
 class KeptOnDisk : public testing::Test {
  protected:
   KeptOnDisk() {
-    std::string pattern = (fs::temp_directory_path() / "aurasim_kept_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
     launch_.file = folder_ / "demo.yaml";
     launch_.regions = core::RegionMap::columns(2, 10);
     save_.folder = (folder_ / "saves").string();
     save_.folder_is_given = true;
   }
-  ~KeptOnDisk() override { fs::remove_all(folder_); }
 
   fs::path keep(std::uint64_t run, std::uint32_t part, core::Step step, std::int64_t at_ms,
                 std::uint64_t in_folder_of = 0) {
@@ -51,7 +50,8 @@ class KeptOnDisk : public testing::Test {
     }
   }
 
-  fs::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
   config::Launch launch_;
   SaveArguments save_;
 };

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "messages/samples.h"
+#include "scratch_folder.h"
 
 namespace aurasim::cut {
 namespace {
@@ -21,12 +22,6 @@ using testing::HasSubstr;
 
 class Store : public testing::Test {
  protected:
-  Store() {
-    std::string pattern = (fs::temp_directory_path() / "aurasim_store_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  ~Store() override { fs::remove_all(folder_); }
-
   static SavedWorld part(std::uint32_t number, core::Step step, std::uint64_t save) {
     SavedWorld world;
     world.part = number;
@@ -62,7 +57,8 @@ class Store : public testing::Test {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST(PartName, IsReadAsItIsWritten) {

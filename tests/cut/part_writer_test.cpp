@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "cut/saved_world.h"
+#include "scratch_folder.h"
 
 namespace aurasim::cut {
 namespace {
@@ -45,12 +46,9 @@ class NoRoom {
 class PartWriters : public testing::Test {
  protected:
   PartWriters() {
-    std::string pattern = (fs::temp_directory_path() / "aurasim_parts_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
     launch_.regions = core::RegionMap::columns(kRegions, 10);
     for (std::uint32_t r = 0; r < kRegions; ++r) start_node(r);
   }
-  ~PartWriters() override { fs::remove_all(folder_); }
 
   void start_node(std::uint32_t region) {
     const fs::path saves = folder_of(region);
@@ -115,7 +113,8 @@ class PartWriters : public testing::Test {
     return counts;
   }
 
-  fs::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
   config::Launch launch_;
   std::unique_ptr<PartWriter> nodes_[kRegions];
   std::set<std::uint32_t> full_;  ///< regions whose disks are

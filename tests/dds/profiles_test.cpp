@@ -11,6 +11,7 @@
 #include "dds/domain.h"
 #include "dds/link_mtu.h"
 #include "dds/participant_qos.h"
+#include "scratch_folder.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
@@ -196,10 +197,6 @@ TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
 class OwnFile : public ::testing::Test {
  protected:
   Settings write(const std::string& name, const std::string& profiles) {
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / ("aurasim_profiles_" + std::to_string(getpid()) + "_" +
-                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / name) << R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>)"
                                   << profiles << "</profiles></dds>\n";
@@ -207,9 +204,9 @@ class OwnFile : public ::testing::Test {
     settings.profiles = folder_ / name;
     return settings;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(OwnFile, ThatIsNotThereIsNamed) {

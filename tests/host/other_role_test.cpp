@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "scratch_folder.h"
+
 namespace aurasim::host {
 namespace {
 
@@ -48,19 +50,14 @@ TEST(OtherRole, ANodeThatMayBeASpareIsEither) {
 
 class AProgramsPlace : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path file(const std::string& name) {
-    std::ofstream(folder_ / name) << "program";
-    return folder_ / name;
-  }
+  std::filesystem::path file(const std::string& name) { return scratch_.write(name, "program"); }
   std::filesystem::path link_to(const std::filesystem::path& target) {
     std::filesystem::create_symlink(target, folder_ / "exe");
     return folder_ / "exe";
   }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / fmt::format("aurasim_place_{}", ::getpid());
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(AProgramsPlace, IsWhatTheLinkNames) {

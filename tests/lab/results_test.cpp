@@ -10,6 +10,7 @@
 
 #include "lab/suites/results_file.h"
 #include "lab/suites/suites.h"
+#include "scratch_folder.h"
 
 namespace aurasim::lab {
 namespace {
@@ -19,11 +20,6 @@ using ::testing::IsEmpty;
 
 class StoredResults : public ::testing::Test {
  protected:
-  StoredResults() : folder_(std::filesystem::path(::testing::TempDir()) / "stored_results") {
-    std::filesystem::remove_all(folder_);
-  }
-  ~StoredResults() override { std::filesystem::remove_all(folder_); }
-
   void store(const std::vector<ResultRow>& rows, bool quick = false, const char* commit = "abc") {
     append_results(file(), rows, {commit, "2026-01-02", "4 cores", quick});
   }
@@ -35,7 +31,8 @@ class StoredResults : public ::testing::Test {
   }
   std::filesystem::path file() const { return folder_ / "suite.jsonl"; }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path() / "results";
 };
 
 TEST_F(StoredResults, EachRunAppendsOneLinePerRow) {

@@ -14,6 +14,7 @@
 #include "lab/scenes/interference.h"
 #include "lab/scenes/random_world.h"
 #include "lab/scenes/shrink.h"
+#include "scratch_folder.h"
 #include "setup/launch_setup.h"
 
 namespace aurasim::lab {
@@ -23,13 +24,6 @@ const std::atomic<bool> kUnstopped = false;
 
 class Scenes : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("scenes_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   static TrialRules rules(core::Step steps) {
     TrialRules rules;
     rules.steps = steps;
@@ -44,7 +38,8 @@ class Scenes : public testing::Test {
     return run_world(folder_, rules, 1, kUnstopped).value();
   }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 std::string text_of(const World& world) {

@@ -13,6 +13,7 @@
 #include "bench/peers/scene.h"
 #include "lab/speed/overlap.h"
 #include "lab/speed/scene_text.h"
+#include "scratch_folder.h"
 
 namespace aurasim::lab {
 namespace {
@@ -21,14 +22,7 @@ using core::Vec3;
 
 class SpeedTest : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path file(const std::string& text) const {
-    const std::filesystem::path path = folder_ / "text.txt";
-    std::ofstream(path) << text;
-    return path;
-  }
+  std::filesystem::path file(const std::string& text) const { return scratch_.write("text.txt", text); }
 
   /// The errors of our step with the first of its settings.
   SpeedErrors run_quick(const std::string& name) const {
@@ -42,9 +36,8 @@ class SpeedTest : public testing::Test {
     return errors_of(scene, read_states(file(states.str()), scene));
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("speed_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 /// A state in which nothing has moved.

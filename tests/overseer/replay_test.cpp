@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "scratch_folder.h"
+
 namespace aurasim::overseer {
 namespace {
 
@@ -17,13 +19,7 @@ using Action = ReplayControl::Action;
 
 class Recording : public ::testing::Test {
  protected:
-  void SetUp() override {
-    file_ =
-        std::filesystem::path(::testing::TempDir()) / ("aurasim_recording_" + std::to_string(::getpid()) + "_" +
-                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    record();
-  }
-  void TearDown() override { std::filesystem::remove(file_); }
+  void SetUp() override { record(); }
 
   /// Ten seconds in which bodies fly by: at step s there are those with s in [10 slot, 10 slot + 300), at x = s.
   static bool is_there(Slot slot, core::Step step) { return step >= 10 * slot && step < 10 * slot + 300; }
@@ -73,7 +69,8 @@ class Recording : public ::testing::Test {
     }
   }
 
-  std::filesystem::path file_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path file_ = scratch_.path() / "recording";
   SlotTable table_;
   double now_s_ = 100;
   int restarts_ = 0;

@@ -12,6 +12,7 @@
 #include "config/meshes.h"
 #include "overseer/web_client.h"
 #include "overseer/web_server.h"
+#include "scratch_folder.h"
 
 namespace aurasim::overseer {
 
@@ -32,21 +33,14 @@ inline constexpr const char* kUpgrade =
 class Web : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / ("aurasim_web_" + std::to_string(::getpid()) + "_" +
-                                                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_ / "pages" / "assets");
-    std::ofstream(folder_ / "pages" / "index.html") << "<p>the page";
-    std::ofstream(folder_ / "pages" / "assets" / "main.js") << "1;";
-    std::ofstream(folder_ / "secret.txt") << "secret";
+    scratch_.write("pages/index.html", "<p>the page");
+    scratch_.write("pages/assets/main.js", "1;");
+    scratch_.write("secret.txt", "secret");
     settings_.port = 0;
     settings_.pages = folder_ / "pages";
     settings_.scenes = {"tower"};
   }
-  void TearDown() override {
-    server_.reset();
-    std::filesystem::remove_all(folder_);
-  }
+  void TearDown() override { server_.reset(); }
 
   void serve() {
     server_.emplace(settings_, shapes_);
@@ -114,7 +108,8 @@ class Web : public ::testing::Test {
     return condition();
   }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
   WebSettings settings_;
   ShapeStore shapes_{[this](const std::string& name, std::string_view bytes) { return read(name, bytes); }};
   std::optional<WebServer> server_;

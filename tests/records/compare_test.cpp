@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "records/report_rows.h"
-#include "records/scratch_folder.h"
+#include "scratch_folder.h"
 
 namespace aurasim::records {
 namespace {
@@ -29,7 +29,7 @@ class CompareReports : public ::testing::Test {
   }
   Comparison compare() const { return compare_reports(folder_.path() / "a", folder_.path() / "b"); }
 
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(CompareReports, EqualHashesOfTheSameStepsAreTheSameRun) {

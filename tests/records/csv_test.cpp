@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/ids.h"
-#include "records/scratch_folder.h"
+#include "scratch_folder.h"
 
 namespace aurasim::records {
 namespace {
@@ -48,7 +48,7 @@ class CsvTest : public ::testing::Test {
     return masses;
   }
 
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
   const std::filesystem::path file_ = folder_.path() / "crates.csv";
   std::size_t broken_ = 0;
 };

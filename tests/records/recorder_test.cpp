@@ -13,6 +13,7 @@
 
 #include "records/csv.h"
 #include "records/report.h"
+#include "scratch_folder.h"
 #include "transport/memory_transport.h"
 
 namespace aurasim::records {
@@ -44,11 +45,7 @@ class SmallDisk {
 
 class Records : public ::testing::Test {
  protected:
-  Records() : network_({{}}, {}, 1), node_({}, core::Scene{}, map_, network_.endpoint(RegionId{0})) {
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("aurasim_records_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  ~Records() override { std::filesystem::remove_all(folder_); }
+  Records() : network_({{}}, {}, 1), node_({}, core::Scene{}, map_, network_.endpoint(RegionId{0})) {}
 
   void write_steps(Recorder& recorder, core::Step first, core::Step last) {
     for (core::Step step = first; step <= last; ++step) {
@@ -76,7 +73,8 @@ class Records : public ::testing::Test {
   core::RegionMap map_ = core::RegionMap::columns(1, 1);
   transport::MemoryNetwork network_;
   node::Node node_;
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(Records, HaveOneRowPerStepAndALastWord) {

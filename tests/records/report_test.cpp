@@ -10,6 +10,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "scratch_folder.h"
+
 namespace aurasim::records {
 namespace {
 
@@ -22,8 +24,6 @@ using Json = nlohmann::json;
 class Merged : public ::testing::Test {
  protected:
   Merged() {
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("aurasim_merged_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
     for (int region = 0; region < 2; ++region) {
       append(region, "steps.csv",
              "region,step,frame_ms,wait_ms,physics_ms,protocol_ms,transport_ms,cut_ms,hash_ms,bodies,awake,"
@@ -37,7 +37,6 @@ class Merged : public ::testing::Test {
       last_word(region, {{"outcome", "finished"}, {"steps", 10}, {"real_time_factor", 1.0}});
     }
   }
-  ~Merged() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path file(int region, const std::string& name) const {
     return folder_ / ("region_" + std::to_string(region)) / name;
@@ -72,7 +71,8 @@ class Merged : public ::testing::Test {
     return accounts;
   }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
   Json summary_;
 };
 

@@ -8,33 +8,23 @@
 
 #include <stdlib.h>
 
+#include "scratch_folder.h"
 #include "security/key_store.h"
 
 namespace aurasim::security {
 
 class ScratchStore {
  public:
-  ScratchStore() : parent_(new_folder()), store(KeyStore::create(parent_ / "keys", std::chrono::days(30))) {}
-  ~ScratchStore() { std::filesystem::remove_all(parent_); }
-  ScratchStore(const ScratchStore&) = delete;
-  ScratchStore& operator=(const ScratchStore&) = delete;
-
-  const std::filesystem::path& parent() const { return parent_; }
+  const std::filesystem::path& parent() const { return folder_.path(); }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(parent_ / name, std::ios::binary) << text;
-    return parent_ / name;
+    return folder_.write(name, text);
   }
 
  private:
-  static std::filesystem::path new_folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "aurasim_store_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name);
-    return name;
-  }
-  std::filesystem::path parent_;
+  test::ScratchFolder folder_;
 
  public:
-  KeyStore store;
+  KeyStore store = KeyStore::create(folder_.path() / "keys", std::chrono::days(30));
 };
 
 inline std::string text_of(const std::filesystem::path& file) {

@@ -1,18 +1,22 @@
 // A folder of a test's own, gone with it.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-namespace aurasim::records {
+namespace aurasim::test {
 
 class ScratchFolder {
  public:
-  ScratchFolder() { std::filesystem::create_directories(path_); }
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "aurasim_test_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder like " + name);
+    path_ = name;
+  }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder() { std::filesystem::remove_all(path_); }
@@ -22,18 +26,17 @@ class ScratchFolder {
   std::filesystem::path write(const std::filesystem::path& name, const std::string& text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text;
+    std::filesystem::remove(file);  // ext4 waits for the disk when a file is overwritten
+    std::ofstream(file, std::ios::binary) << text;
     return file;
   }
   std::string read(const std::filesystem::path& name) const {
-    std::ifstream in(path_ / name);
+    std::ifstream in(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
  private:
-  const std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() /
-      ("aurasim_" + std::to_string(::getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path path_;
 };
 
-}  // namespace aurasim::records
+}  // namespace aurasim::test
